@@ -1,0 +1,23 @@
+// All figures of one view of one transfer function: what `measure` prints and the window's bars show.
+#pragma once
+
+#include <vector>
+
+#include "render/visibility.h"
+#include "saliency/saliency_field.h"
+#include "saliency/vws.h"
+
+namespace pellucid {
+
+struct Measures {
+    std::vector<FeatureMeasures> features;   ///< in the order of tf.features
+    std::vector<double> opacities;           ///< peak of each feature
+    std::vector<double> visibilityHistogram; ///< 256 shares, sum 1 or all 0
+    double visibilitySeconds = 0;
+};
+
+/// One field from the engine, then its sums and histogram. `weights` from saliencyFields() of the same tf.
+Measures measure(VisibilityEngine& engine, const Camera& camera, const TransferFunction& tf,
+                 const WeightFields& weights, const VwsOptions& options = {}, const JobControl& job = {});
+
+} // namespace pellucid

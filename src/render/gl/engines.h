@@ -1,0 +1,37 @@
+// Which engine does the work: the one place that knows all of them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "render/image_renderer.h"
+#include "render/visibility.h"
+
+namespace pellucid {
+
+enum class EngineChoice { Auto, Gl, Cpu, Reference };
+
+/// "auto", "gl", "cpu", "reference"; throws UsageError.
+EngineChoice engineChoiceFromName(const std::string& name);
+
+/// The OpenGL engine on a headless context of its own (EGL surfaceless, else OSMesa), which is made current inside each
+/// call, so that any thread may call. Throws Error where there is no GL 4.3.
+std::unique_ptr<VisibilityEngine> makeGlEngine(std::shared_ptr<const Volume> volume, Quality quality = Quality::Normal);
+std::unique_ptr<ImageRenderer> makeGlRenderer(std::shared_ptr<const Volume> volume);
+
+/// What a headless context finds here; empty where none can be made.
+struct GlInfo {
+    std::string vendor, renderer, version;
+    std::string platform;  ///< "EGL surfaceless", "OSMesa", …
+    bool software = false; ///< llvmpipe, softpipe or the like
+};
+std::optional<GlInfo> probeGl();
+
+/// Auto: gl on a real GPU, cpu on a software rasterizer or without GL.
+std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
+                                             Quality quality = Quality::Normal);
+/// The reference choice draws with the cpu renderer, since MEASURES sets no other image.
+std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);
+
+} // namespace pellucid

@@ -1,0 +1,50 @@
+// The visibility of every voxel, and what features gather of it: the interface that all engines share (MEASURES §4).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/camera.h"
+#include "saliency/vws.h"
+#include "tf/transfer_function.h"
+#include "volume/job.h"
+
+namespace pellucid {
+
+/// How much each voxel contributes to the image from one camera.
+///   shape   the volume's own grid, x fastest
+///   range   [0, 1], no unit; 0 means hidden, transparent or invalid
+///   source  docs/method.md, "Visibility": v = T·α, T the transmittance toward the eye
+struct VisibilityField {
+    Grid<float> values;
+};
+
+enum class Quality { Normal, High };
+
+/// Anything that can tell visibility from a camera. One call takes many transfer functions, so that a line search is
+/// parallel inside: SIMD lanes and threads on the CPU, render targets on GL. Order is kept.
+/// An engine is made for one volume and is used by one thread at a time.
+class VisibilityEngine {
+public:
+    virtual ~VisibilityEngine() = default;
+    virtual std::string name() const = 0; ///< "reference", "cpu" or "gl"
+    virtual const Volume& volume() const = 0;
+
+    /// Sums per feature of each of `tfs`, which share the features of the first (checked). `weights` may be null.
+    /// Throws Cancelled where `job` was asked to stop, Error where the device fails.
+    virtual std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
+                                          const WeightFields* weights, const JobControl& job = {}) = 0;
+    /// The field itself, for those who want to look at it.
+    virtual VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job = {}) = 0;
+};
+
+/// MEASURES §4 written out in double precision: one straight line per voxel, steps of at most d0/16. Slow and obvious;
+/// the oracle of the others.
+std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume);
+
+/// Threads and SIMD, no GL. Same bits for any thread count.
+std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality = Quality::Normal);
+
+} // namespace pellucid

@@ -1,0 +1,44 @@
+// Feature sums → feature visibility and visibility-weighted saliency (MEASURES §§4, 6, eq. 4.12–4.13).
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "saliency/saliency_field.h"
+#include "tf/transfer_function.h"
+
+namespace pellucid {
+
+/// What one transfer function shows: per feature the sum over its voxels of visibility v, and of v times each weight
+/// field (0 brightness, 1 saturation); and the same over all voxels. No unit.
+struct FeatureSums {
+    std::vector<double> visibility;              ///< Σ_{i∈F} v_i
+    std::array<std::vector<double>, 2> weighted; ///< Σ_{i∈F} v_i L_i
+    double allVisibility = 0;                    ///< Σ_{i∈V}
+    std::array<double, 2> allWeighted{0, 0};
+};
+
+struct VwsOptions {
+    double u1 = 0.5, u2 = 0.5; ///< weights of brightness and saturation, ≥ 0, sum 1
+    bool operator==(const VwsOptions&) const = default;
+};
+
+/// One feature's figures, each in [0,1].
+struct FeatureMeasures {
+    double visibility = 0; ///< FV_F
+    double vws = 0;        ///< W_F
+    double vwsBrightness = 0, vwsSaturation = 0;
+};
+
+std::vector<FeatureMeasures> featureMeasures(const FeatureSums& sums, const VwsOptions& options = {});
+std::vector<double> vwsOf(const FeatureSums& sums, const VwsOptions& options = {});
+
+/// Sums of a stored visibility field (shape of the volume). `weights` may be null: then `weighted` stays 0.
+FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& features, const Grid<float>& visibility,
+                        const WeightFields* weights);
+/// v_i summed per intensity bin, divided by Σ v_i; 0 where the sum is 0.
+std::vector<double> visibilityHistogram(const Volume& volume, const Grid<float>& visibility, int bins = 256);
+
+} // namespace pellucid

@@ -1,0 +1,16 @@
+// Output files that are whole or absent: write beside the target, then rename.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace pellucid {
+
+/// Calls write(temporaryPath), a path in the same folder with the same suffix, then renames it to `path`. On any
+/// exception the temporary file is removed and the exception goes on. Throws FileError where the folder is missing or
+/// not writable.
+void writeAtomically(const std::string& path, const std::function<void(const std::string& temporaryPath)>& write);
+void writeTextAtomically(const std::string& path, const std::string& text);
+std::string readText(const std::string& path); ///< throws FileError
+
+} // namespace pellucid

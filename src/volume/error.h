@@ -1,0 +1,47 @@
+// What goes wrong outside our control (files, drivers, arguments), in three parts that users can act on.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace pellucid {
+
+/// An error of the outside world: what went wrong, where, and what to do about it. `main` alone (or the window's
+/// dialog) catches it. Each part is one line without a full stop; `where` and `whatToDo` may be empty.
+class Error : public std::runtime_error {
+public:
+    Error(std::string what, std::string where, std::string whatToDo)
+        : std::runtime_error(join(what, where, whatToDo)), m_what(std::move(what)), m_where(std::move(where)),
+          m_whatToDo(std::move(whatToDo)) {}
+
+    const std::string& problem() const noexcept { return m_what; }
+    const std::string& where() const noexcept { return m_where; }
+    const std::string& whatToDo() const noexcept { return m_whatToDo; }
+    /// what() is "WHAT, WHERE, WHAT TO DO", the one line that the command line prints.
+
+private:
+    static std::string join(const std::string& a, const std::string& b, const std::string& c) {
+        std::string line = a;
+        if (!b.empty()) line += ", " + b;
+        if (!c.empty()) line += ", " + c;
+        return line;
+    }
+    std::string m_what, m_where, m_whatToDo;
+};
+
+/// A file that cannot be read or written; `where` is its path.
+class FileError : public Error {
+public:
+    using Error::Error;
+};
+
+/// Wrong arguments: exit status 2.
+class UsageError : public Error {
+public:
+    using Error::Error;
+};
+
+/// Thrown out of a long computation whose JobControl was asked to stop. Not an error: nobody prints it.
+struct Cancelled {};
+
+} // namespace pellucid

@@ -1,0 +1,58 @@
+// A dense three-dimensional array.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "volume/check.h"
+
+namespace pellucid {
+
+using Int3 = glm::ivec3;
+using Vec3 = glm::dvec3;
+
+/// Number of voxels of a grid; 64 bit, since nx·ny·nz overflows an int long before memory ends.
+inline std::size_t voxelCount(const Int3& dims) {
+    return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z);
+}
+
+/// shape (nx, ny, nz), x fastest: index = i + nx·(j + ny·k).
+template <class T>
+class Grid {
+public:
+    Grid() = default;
+    explicit Grid(const Int3& dims, T fill = T{}) : m_dims(dims), m_values(voxelCount(dims), fill) {}
+    Grid(const Int3& dims, std::vector<T> values) : m_dims(dims), m_values(std::move(values)) {
+        PELLUCID_CHECK(m_values.size() == voxelCount(dims));
+    }
+
+    const Int3& dims() const noexcept { return m_dims; }
+    std::size_t size() const noexcept { return m_values.size(); }
+    bool empty() const noexcept { return m_values.empty(); }
+    std::size_t index(int i, int j, int k) const {
+        PELLUCID_DCHECK(i >= 0 && j >= 0 && k >= 0 && i < m_dims.x && j < m_dims.y && k < m_dims.z);
+        return static_cast<std::size_t>(i) +
+               static_cast<std::size_t>(m_dims.x) *
+                   (static_cast<std::size_t>(j) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(k));
+    }
+    T& at(int i, int j, int k) { return m_values[index(i, j, k)]; }
+    const T& at(int i, int j, int k) const { return m_values[index(i, j, k)]; }
+    T& operator[](std::size_t i) { return m_values[i]; }
+    const T& operator[](std::size_t i) const { return m_values[i]; }
+    T* data() noexcept { return m_values.data(); }
+    const T* data() const noexcept { return m_values.data(); }
+    auto begin() noexcept { return m_values.begin(); }
+    auto end() noexcept { return m_values.end(); }
+    auto begin() const noexcept { return m_values.begin(); }
+    auto end() const noexcept { return m_values.end(); }
+
+private:
+    Int3 m_dims{0, 0, 0};
+    std::vector<T> m_values;
+};
+
+} // namespace pellucid

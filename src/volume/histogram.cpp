@@ -1,0 +1,41 @@
+#include "volume/histogram.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/parallel.h"
+
+namespace pellucid {
+
+int histogramBin(double s, int bins) {
+    return std::clamp(static_cast<int>(std::floor(s * bins)), 0, bins - 1);
+}
+
+Histogram makeHistogram(const Volume& volume, int bins) {
+    const std::size_t slices = static_cast<std::size_t>(volume.dims().z);
+    const std::size_t plane = volume.size() / slices;
+    constexpr std::size_t kPieces = 32; // few, since each piece carries its own bins
+    const std::size_t pieces = std::min(kPieces, slices);
+    std::vector<std::vector<std::uint64_t>> partial(pieces);
+    std::visit(
+        [&](const auto& values) {
+            parallelFor(pieces, [&](std::size_t p) {
+                auto& counts = partial[p];
+                counts.assign(static_cast<std::size_t>(bins), 0);
+                const std::size_t end = plane * (slices * (p + 1) / pieces);
+                for (std::size_t i = plane * (slices * p / pieces); i < end; ++i) {
+                    const double s = volume.intensityOfValue(static_cast<double>(values[i]));
+                    if (!std::isnan(s)) ++counts[static_cast<std::size_t>(histogramBin(s, bins))];
+                }
+            });
+        },
+        volume.samples());
+    Histogram histogram;
+    histogram.counts.assign(static_cast<std::size_t>(bins), 0);
+    for (const auto& counts : partial)
+        for (std::size_t b = 0; b < counts.size(); ++b) histogram.counts[b] += counts[b];
+    for (const std::uint64_t c : histogram.counts) histogram.total += c;
+    return histogram;
+}
+
+} // namespace pellucid

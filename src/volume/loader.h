@@ -1,0 +1,47 @@
+// The one way from a path (or a sample's name) to a volume. Nothing else in the program parses volume files, so that
+// this call can move into a process of its own.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "volume/job.h"
+#include "volume/volume.h"
+
+namespace pellucid {
+
+/// How headerless data lies in its file (--raw NX,NY,NZ,TYPE[,ENDIAN] --spacing --skip).
+struct RawLayout {
+    Int3 dims{0, 0, 0};
+    SampleType type = SampleType::U8;
+    bool bigEndian = false;
+    Vec3 spacing{1, 1, 1};
+    std::uint64_t skipBytes = 0;
+};
+
+/// "NX,NY,NZ,TYPE[,little|big]"; throws UsageError.
+RawLayout parseRawLayout(const std::string& text);
+
+/// What to open: a path, or "sample:NAME".
+struct VolumeSource {
+    std::string path;
+    std::optional<RawLayout> raw;      ///< given: the file is headerless
+    std::optional<double> missing;     ///< this value is invalid (besides what the file declares)
+    std::optional<ValueRange> range;   ///< the user's intensity window
+    int component = 0;                 ///< of a multi-component file
+    int sampleSize = 0;                ///< --size of a sample, 0 = its default
+    std::uint32_t seed = 1;            ///< of a sample
+};
+
+/// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.
+/// Files: NRRD/NHDR, MetaImage, NIfTI through ITK; headerless raw.
+Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
+
+/// Writes float32 or the volume's own type as NRRD (gzip), through a temporary file beside `path` that is renamed.
+void writeNrrd(const Volume& volume, const std::string& path);
+void writeNrrd(const Geometry& geometry, const Grid<float>& values, const std::string& path);
+
+/// File name patterns of the formats loadVolume reads, for dialogs: "*.nrrd", "*.nhdr", …
+const std::vector<std::string>& volumeFilePatterns();
+
+} // namespace pellucid

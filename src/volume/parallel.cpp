@@ -1,0 +1,49 @@
+#include "volume/parallel.h"
+
+#include <memory>
+#include <mutex>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace pellucid {
+
+namespace {
+
+std::mutex g_mutex;
+std::shared_ptr<tbb::task_arena> g_arena; // null: the default arena, one thread per core
+
+std::shared_ptr<tbb::task_arena> arena() {
+    std::lock_guard lock(g_mutex);
+    return g_arena;
+}
+
+} // namespace
+
+void setThreadCount(int threads) {
+    // An arena of our own also allows more threads than cores, which the determinism tests need.
+    auto next = threads > 0 ? std::make_shared<tbb::task_arena>(threads) : nullptr;
+    std::lock_guard lock(g_mutex);
+    g_arena = std::move(next);
+}
+
+int threadCount() {
+    const auto a = arena();
+    return a ? a->max_concurrency() : tbb::this_task_arena::max_concurrency();
+}
+
+void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+    const auto run = [&] {
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, count, 1),
+            [&](const tbb::blocked_range<std::size_t>& r) {
+                for (std::size_t i = r.begin(); i != r.end(); ++i) body(i);
+            },
+            tbb::simple_partitioner{});
+    };
+    if (const auto a = arena()) a->execute(run);
+    else run();
+}
+
+} // namespace pellucid

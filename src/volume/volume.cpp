@@ -1,0 +1,112 @@
+#include "volume/volume.h"
+
+#include <array>
+#include <limits>
+#include <mutex>
+#include <type_traits>
+
+#include "volume/error.h"
+#include "volume/parallel.h"
+
+namespace pellucid {
+
+namespace {
+
+struct TypeRow {
+    const char* name;
+    std::size_t bytes;
+};
+constexpr std::array<TypeRow, 8> kTypes{
+    {{"u8", 1}, {"i8", 1}, {"u16", 2}, {"i16", 2}, {"u32", 4}, {"i32", 4}, {"f32", 4}, {"f64", 8}}};
+
+const TypeRow& row(SampleType type) { return kTypes[static_cast<std::size_t>(type)]; }
+
+struct Statistics {
+    double lo = std::numeric_limits<double>::infinity();
+    double hi = -std::numeric_limits<double>::infinity();
+    std::size_t invalid = 0;
+};
+
+bool valid(double value, std::optional<double> missing) { return std::isfinite(value) && !(missing && value == *missing); }
+
+Statistics statisticsOf(const Samples& samples, std::optional<double> missing) {
+    return std::visit(
+        [&](const auto& values) {
+            constexpr std::size_t kBlock = 1u << 20;
+            std::vector<Statistics> blocks((values.size() + kBlock - 1) / kBlock);
+            parallelFor(blocks.size(), [&](std::size_t b) {
+                Statistics s;
+                const std::size_t end = std::min(values.size(), (b + 1) * kBlock);
+                for (std::size_t i = b * kBlock; i < end; ++i) {
+                    const double v = static_cast<double>(values[i]);
+                    if (!valid(v, missing)) {
+                        ++s.invalid;
+                        continue;
+                    }
+                    s.lo = std::min(s.lo, v);
+                    s.hi = std::max(s.hi, v);
+                }
+                blocks[b] = s;
+            });
+            Statistics all;
+            for (const Statistics& s : blocks) {
+                all.lo = std::min(all.lo, s.lo);
+                all.hi = std::max(all.hi, s.hi);
+                all.invalid += s.invalid;
+            }
+            return all;
+        },
+        samples);
+}
+
+} // namespace
+
+const char* name(SampleType type) { return row(type).name; }
+std::size_t bytesPerSample(SampleType type) { return row(type).bytes; }
+
+std::optional<SampleType> sampleTypeFromName(const std::string& name) {
+    for (std::size_t i = 0; i < kTypes.size(); ++i)
+        if (name == kTypes[i].name) return static_cast<SampleType>(i);
+    return {};
+}
+
+Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> missing)
+    : m_geometry(geometry), m_missing(missing) {
+    const Int3 d = geometry.dims;
+    if (d.x < 1 || d.y < 1 || d.z < 1) throw Error("a volume needs at least one voxel along each axis", "", "");
+    for (int a = 0; a < 3; ++a)
+        if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
+            throw Error("spacing must be positive and finite, origin finite", "", "correct the header or give --spacing");
+    const std::size_t count = std::visit([](const auto& v) { return v.size(); }, samples);
+    if (count != voxelCount(d)) throw Error("number of samples and dimensions disagree", "", "");
+    m_samples = std::make_shared<const Samples>(std::move(samples));
+    const Statistics s = statisticsOf(*m_samples, missing);
+    m_invalidCount = s.invalid;
+    if (s.invalid < count) m_dataRange = {s.lo, s.hi};
+    else m_dataRange = {0, 0};
+    m_range = m_dataRange;
+}
+
+Volume Volume::withRange(const ValueRange& range) const {
+    if (!std::isfinite(range.lo) || !std::isfinite(range.hi) || !(range.lo < range.hi))
+        throw UsageError("the intensity range needs LO < HI, both finite", "--range", "give LO,HI in data units");
+    Volume other = *this;
+    other.m_range = range;
+    return other;
+}
+
+double Volume::value(std::size_t index) const {
+    return std::visit([index](const auto& v) { return static_cast<double>(v[index]); }, *m_samples);
+}
+
+bool Volume::isValid(std::size_t index) const { return valid(value(index), m_missing); }
+
+double Volume::intensity(std::size_t index) const { return intensityOfValue(value(index)); }
+
+double Volume::intensityOfValue(double v) const {
+    if (!valid(v, m_missing)) return std::numeric_limits<double>::quiet_NaN();
+    if (m_range.lo == m_range.hi) return 0.0;
+    return std::clamp((v - m_range.lo) / (m_range.hi - m_range.lo), 0.0, 1.0);
+}
+
+} // namespace pellucid

@@ -1,0 +1,99 @@
+// A scalar volume as it was read: samples in their own type, where they lie in the world, and which are invalid.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "volume/grid.h"
+
+namespace pellucid {
+
+enum class SampleType { U8, I8, U16, I16, U32, I32, F32, F64 };
+
+/// "u8" … "f64", as --raw and `info` write them.
+const char* name(SampleType type);
+std::optional<SampleType> sampleTypeFromName(const std::string& name);
+std::size_t bytesPerSample(SampleType type);
+
+using Samples =
+    std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
+                 std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>, std::vector<float>,
+                 std::vector<double>>;
+
+/// An intensity window in data units; intensity 0 at lo, 1 at hi.
+struct ValueRange {
+    double lo = 0, hi = 1;
+    bool operator==(const ValueRange&) const = default;
+};
+
+/// Where the voxels lie: centre of voxel (i,j,k) at origin + (i·sx, j·sy, k·sz), world units.
+struct Geometry {
+    Int3 dims{0, 0, 0};
+    Vec3 spacing{1, 1, 1};
+    Vec3 origin{0, 0, 0};
+
+    /// The box of the volume: half a voxel beyond the outer centres on every side, world units.
+    Vec3 boxMin() const { return origin - 0.5 * spacing; }
+    Vec3 boxMax() const { return origin + (Vec3(dims) - 0.5) * spacing; }
+    Vec3 boxCenter() const { return 0.5 * (boxMin() + boxMax()); }
+    /// The reference length: one unit of path for opacity, world units.
+    double d0() const { return std::min(spacing.x, std::min(spacing.y, spacing.z)); }
+    Vec3 worldFromVoxel(const Vec3& voxel) const { return origin + voxel * spacing; }
+    Vec3 voxelFromWorld(const Vec3& world) const { return (world - origin) / spacing; }
+};
+
+/// Immutable once made; cheap to share by std::shared_ptr<const Volume>.
+/// Invalid voxels (NaN, infinite, or the declared missing value) count nowhere and are never drawn (MEASURES §1).
+class Volume {
+public:
+    /// Throws Error where sizes and samples disagree, or a spacing is not positive and finite.
+    Volume(const Geometry& geometry, Samples samples, std::optional<double> missing = {});
+
+    const Geometry& geometry() const noexcept { return m_geometry; }
+    const Int3& dims() const noexcept { return m_geometry.dims; }
+    std::size_t size() const noexcept { return voxelCount(m_geometry.dims); }
+    SampleType sampleType() const noexcept { return static_cast<SampleType>(m_samples->index()); }
+    const Samples& samples() const noexcept { return *m_samples; }
+    std::optional<double> missing() const noexcept { return m_missing; }
+
+    /// Smallest and largest valid value; {0, 0} where no voxel is valid.
+    const ValueRange& dataRange() const noexcept { return m_dataRange; }
+    /// The window that intensities refer to: dataRange() or the user's.
+    const ValueRange& range() const noexcept { return m_range; }
+    /// The same samples (shared, not copied) seen through another window. Throws Error unless lo < hi, both finite.
+    Volume withRange(const ValueRange& range) const;
+
+    std::size_t invalidCount() const noexcept { return m_invalidCount; }
+    bool isConstant() const noexcept { return m_dataRange.lo == m_dataRange.hi; }
+    bool hasValidVoxels() const noexcept { return m_invalidCount < size(); }
+
+    double value(std::size_t index) const;     ///< data units; what the file says, NaN included
+    bool isValid(std::size_t index) const;
+    /// Intensity in [0,1] (MEASURES §1); NaN where invalid. In a constant volume every intensity is 0.
+    double intensity(std::size_t index) const;
+    /// intensity() of a value in data units; NaN where not finite or missing.
+    double intensityOfValue(double value) const;
+    double valueOfIntensity(double s) const { return m_range.lo + s * (m_range.hi - m_range.lo); }
+
+    std::size_t memoryBytes() const noexcept { return size() * bytesPerSample(sampleType()); }
+
+    /// Free text for people, set by readers and generators.
+    std::string title;   ///< file name or sample name
+    std::string format;  ///< "NRRD", "MetaImage", "NIfTI", "raw", "sample"
+    /// Remarks the user should see once, e.g. "rotation of the axes is ignored".
+    std::vector<std::string> notices;
+
+private:
+    Geometry m_geometry;
+    std::shared_ptr<const Samples> m_samples;
+    std::optional<double> m_missing;
+    ValueRange m_dataRange, m_range;
+    std::size_t m_invalidCount = 0;
+};
+
+} // namespace pellucid
