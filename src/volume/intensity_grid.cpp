@@ -14,9 +14,9 @@ constexpr int kCodes = 65535;
 /// Codes per unit of value such that code = (value − lo)·scale is exact, or 0 where that is impossible.
 int exactScale(const Volume& volume) {
     const ValueRange r = volume.range();
-    const bool integers = std::visit(
-        [](const auto& v) { return std::is_integral_v<typename std::decay_t<decltype(v)>::value_type>; },
-        volume.samples());
+    const bool integers =
+        std::visit([](const auto& v) { return std::is_integral_v<typename std::decay_t<decltype(v)>::value_type>; },
+                   volume.samples());
     const double span = r.hi - r.lo;
     if (!integers || span < 1 || span > kCodes || r.lo != std::floor(r.lo) || r.hi != std::floor(r.hi)) return 0;
     return kCodes / static_cast<int>(span);
@@ -40,8 +40,10 @@ IntensityGrid makeIntensityGrid(const Volume& volume) {
             parallelFor(static_cast<std::size_t>(volume.dims().z), [&](std::size_t k) {
                 for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
                     const double s = volume.intensityOfValue(static_cast<double>(values[i]));
-                    if (std::isnan(s)) grid.valid[i] = 0;
-                    else grid.codes[i] = static_cast<std::uint16_t>(std::lround(s * grid.maxCode));
+                    if (std::isnan(s))
+                        grid.valid[i] = 0;
+                    else
+                        grid.codes[i] = static_cast<std::uint16_t>(std::lround(s * grid.maxCode));
                 }
             });
         },
