@@ -53,9 +53,11 @@ Volume makeDisks(const Geometry& geometry, std::uint32_t, const JobControl& job)
         const Vec3 p = (Vec3(i, j, k) + 0.5) / Vec3(d) - 0.5; // [−½, ½]
         if (p.y * p.y + p.z * p.z > 0.36 * 0.36) return 0;
         constexpr double kHalfThickness = 0.0625, kDistance = 0.25;
-        for (int disk = 0; disk < 3; ++disk)
-            if (std::abs(p.x - kDistance * (disk - 1)) < kHalfThickness)
-                return static_cast<std::uint8_t>(42 + 84 * disk);
+        for (int disk = 0; disk < 3; ++disk) {
+            const double along = p.x - kDistance * (disk - 1);
+            // Half open: at least one voxel plane in the smallest size.
+            if (along >= -kHalfThickness && along < kHalfThickness) return static_cast<std::uint8_t>(42 + 84 * disk);
+        }
         return 0;
     });
     return Volume(geometry, std::move(values)).withRange({0, 252});

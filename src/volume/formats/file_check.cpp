@@ -9,6 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include <zlib.h>
+
+#include "volume/check.h"
 #include "volume/error.h"
 
 namespace pellucid {
@@ -110,6 +113,44 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
                             where, toDo);
         break;
     }
+}
+
+void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                     const JobControl& job) {
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(start));
+    z_stream stream{};
+    PELLUCID_CHECK(inflateInit2(&stream, zlib ? MAX_WBITS + 32 : MAX_WBITS + 16) == Z_OK);
+    const struct End {
+        z_stream& stream;
+        ~End() { inflateEnd(&stream); }
+    } end{stream};
+    std::vector<unsigned char> packed(1u << 18), unpacked(1u << 20);
+    std::uint64_t yield = 0;
+    int status = Z_OK;
+    // Beyond what is wanted nothing matters, so that a stream which never ends cannot hold us up.
+    while (yield <= wanted) {
+        if (stream.avail_in == 0) {
+            job.throwIfStopped();
+            in.read(reinterpret_cast<char*>(packed.data()), static_cast<std::streamsize>(packed.size()));
+            stream.next_in = packed.data();
+            stream.avail_in = static_cast<uInt>(in.gcount());
+            if (stream.avail_in == 0) break;
+        }
+        // Only another gzip member may follow a finished one; other bytes are left alone.
+        if (status == Z_STREAM_END && (zlib || *stream.next_in != 0x1f || inflateReset(&stream) != Z_OK)) break;
+        stream.next_out = unpacked.data();
+        stream.avail_out = static_cast<uInt>(unpacked.size());
+        status = inflate(&stream, Z_NO_FLUSH);
+        yield += unpacked.size() - stream.avail_out;
+        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) break;
+    }
+    const bool whole = status == Z_STREAM_END || yield > wanted;
+    if (yield >= wanted && whole) return;
+    const bool ended = status == Z_OK || status == Z_BUF_ERROR || status == Z_STREAM_END;
+    throw FileError("the compressed data " + std::string(ended ? "ends" : "is damaged") + " after " +
+                        std::to_string(yield) + " of " + std::to_string(wanted) + " bytes",
+                    path, "copy or write the file again");
 }
 
 std::uint64_t availableMemoryBytes() {

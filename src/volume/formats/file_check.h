@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "volume/job.h"
+
 namespace pellucid {
 
 /// Size of a file that can be read. Throws FileError: no such file, a folder, not permitted.
@@ -28,6 +30,12 @@ enum class Encoding { Raw, Deflate, Text };
 /// the file that holds the data; `toDo` advises what to check.
 void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
                    std::uint64_t stored, const std::string& toDo);
+
+/// Unpacks the deflate stream that begins at byte `start` of a file (gzip, several members too; one of zlib or gzip
+/// where `zlib`) without keeping it. Throws FileError unless it yields at least `wanted` bytes undamaged: the format
+/// libraries fill what is missing with zeros and say nothing.
+void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                     const JobControl& job);
 
 /// Memory that this machine can give without swapping, bytes (MemAvailable); the largest number where unknown.
 std::uint64_t availableMemoryBytes();

@@ -115,7 +115,7 @@ void checkSpacing(const MetaHeader& header, std::size_t axes, const std::string&
     }
 }
 
-HeaderClaim checkedClaim(const std::string& path) {
+HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     const MetaHeader header = parseHeader(path);
     std::vector<std::int64_t> sizes = sizesIn(header, path);
     checkSpacing(header, sizes.size(), path);
@@ -133,11 +133,11 @@ HeaderClaim checkedClaim(const std::string& path) {
         const fs::path data(dataFile);
         claim.dataPath = (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
     }
-    std::uint64_t stored = readableFileBytes(claim.dataPath);
-    if (local) stored -= std::min(header.dataStart, stored);
     const std::int64_t skip = wholeNumber(header, "HeaderSize", 0, path); // −1: the data end where the file ends
     if (skip < -1) throw FileError("the header's HeaderSize is negative", path, "correct the header");
-    if (skip > 0 && !local) stored -= std::min(static_cast<std::uint64_t>(skip), stored);
+    const std::uint64_t start = local ? header.dataStart : static_cast<std::uint64_t>(std::max(skip, std::int64_t{0}));
+    const std::uint64_t fileBytes = readableFileBytes(claim.dataPath);
+    const std::uint64_t stored = fileBytes - std::min(start, fileBytes);
 
     const bool compressed = header.isTrue("CompressedData");
     const bool text = !header.get("BinaryData").empty() && !header.isTrue("BinaryData");
@@ -150,6 +150,7 @@ HeaderClaim checkedClaim(const std::string& path) {
     }
     requireStored(claim.dataPath, encoding, claim.values, claim.bytesPerValue, stored, toDo);
     const std::uint64_t bytes = claim.values * claim.bytesPerValue;
+    if (compressed) requireInflates(claim.dataPath, start, true, bytes, job);
     if (encoding == Encoding::Raw && skip >= 0 && stored > bytes)
         claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
     return claim;
@@ -163,7 +164,7 @@ public:
         return kSuffixes;
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const HeaderClaim claim = checkedClaim(source.path);
+        const HeaderClaim claim = checkedClaim(source.path, job);
         const auto io = itk::MetaImageIO::New();
         return readWithItk(*io, source, claim, job);
     }

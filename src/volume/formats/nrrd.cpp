@@ -191,7 +191,7 @@ Encoding encodingIn(const NrrdHeader& header, const std::string& path) {
                     path, "write it with encoding raw or gzip");
 }
 
-HeaderClaim checkedClaim(const std::string& path) {
+HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     const NrrdHeader header = parseHeader(path);
     const std::vector<std::int64_t> sizes = sizesIn(header, path);
     HeaderClaim claim;
@@ -224,6 +224,9 @@ HeaderClaim checkedClaim(const std::string& path) {
     requireStored(claim.dataPath, encoding, claim.values, claim.bytesPerValue, stored,
                   "check sizes and type in the header, or copy the file again");
     const std::uint64_t bytes = claim.values * claim.bytesPerValue;
+    if (encoding == Encoding::Deflate) // bytes are skipped in what comes out
+        requireInflates(claim.dataPath, start, false,
+                        bytes + static_cast<std::uint64_t>(std::max(byteSkip, std::int64_t{0})), job);
     if (encoding == Encoding::Raw && byteSkip >= 0 && stored > bytes)
         claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
     return claim;
@@ -237,7 +240,7 @@ public:
         return kSuffixes;
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const HeaderClaim claim = checkedClaim(source.path);
+        const HeaderClaim claim = checkedClaim(source.path, job);
         const auto io = itk::NrrdImageIO::New();
         return readWithItk(*io, source, claim, job);
     }
