@@ -286,7 +286,10 @@ TEST_CASE("a wrong raw layout is wrong usage", "[bad-input]") {
 TEST_CASE("headers that leave something out or contradict themselves are refused", "[bad-input]") {
     const TempFolder folder;
     const std::string data = "12345678";
-    CHECK_THAT(errorOf(folder.write("a.nrrd", "NRRD0004\n")), Contains("sizes"));
+    CHECK_THAT(errorOf(folder.write("a.nrrd", "NRRD0004\n")), Contains("no dimension"));
+    CHECK_THAT(errorOf(folder.write("h.nrrd", "NRRD0004\ntype: \x1b" + std::string(5000, 'x') +
+                                                  "\ndimension: 1\nsizes: 2\nencoding: raw\n\nab")),
+               Contains("' xxxx") && Contains("is not supported"));
     CHECK_THAT(errorOf(folder.write("b.nrrd", nrrd("sizes: 2 2", data))), Contains("2 sizes for dimension 3"));
     CHECK_THAT(errorOf(folder.write("c.nrrd", nrrd("sizes: 2 two 2", data))), Contains("whole number"));
     CHECK_THAT(errorOf(folder.write("d.nrrd", nrrd("sizes: 2 2 2\nbyte skip: -7", data))), Contains("negative"));

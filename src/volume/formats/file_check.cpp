@@ -147,6 +147,8 @@ void requireInflates(const std::string& path, std::uint64_t start, bool zlib, st
     }
     const bool whole = status == Z_STREAM_END || yield > wanted;
     if (yield >= wanted && whole) return;
+    if (yield >= wanted && status != Z_OK && status != Z_BUF_ERROR)
+        throw FileError("the checksum of the compressed data is wrong", path, "copy or write the file again");
     const bool ended = status == Z_OK || status == Z_BUF_ERROR || status == Z_STREAM_END;
     throw FileError("the compressed data " + std::string(ended ? "ends" : "is damaged") + " after " +
                         std::to_string(yield) + " of " + std::to_string(wanted) + " bytes",
@@ -180,6 +182,13 @@ std::string describeBytes(std::uint64_t bytes) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", value);
     return std::string(text) + " " + kUnits[unit];
+}
+
+std::string inQuotes(std::string_view text) {
+    constexpr std::size_t kMost = 40;
+    std::string quote("'");
+    quote += text.substr(0, kMost);
+    return quote + (text.size() > kMost ? "…'" : "'");
 }
 
 std::vector<std::string> splitWords(std::string_view text) {

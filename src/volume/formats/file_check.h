@@ -45,6 +45,8 @@ void requireMemory(const std::string& path, std::uint64_t needed, std::uint64_t 
 /// "512 bytes", "1.50 GB" (powers of 1000).
 std::string describeBytes(std::uint64_t bytes);
 
+/// A text out of a header, in quotes and cut to 40 bytes: a damaged one may go on for long.
+std::string inQuotes(std::string_view text);
 /// Blank-separated words.
 std::vector<std::string> splitWords(std::string_view text);
 std::string trimmed(std::string_view text);

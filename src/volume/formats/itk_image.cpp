@@ -1,5 +1,6 @@
 #include "volume/formats/itk_image.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <iostream>
@@ -42,7 +43,8 @@ std::mutex QuietStreams::s_mutex;
 std::string causeIn(const std::string& description) {
     const std::size_t last = description.rfind("[nrrd] ");
     if (last == std::string::npos) return {};
-    std::string line = description.substr(last + 7, description.find('\n', last) - last - 7);
+    const std::size_t length = std::min(description.find('\n', last), last + 160) - last - 7;
+    const std::string line = description.substr(last + 7, length);
     const std::size_t function = line.find(": "); // "nrrdLoad: cause"
     return trimmed(function == std::string::npos ? line : line.substr(function + 2));
 }
