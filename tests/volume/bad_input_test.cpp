@@ -48,7 +48,8 @@ std::string errorOf(const std::string& path) {
     return errorOf(source);
 }
 
-const std::string kPng("\x89PNG\r\n\x1a\n\0\0\0\rIHDR and so on", 34);
+using namespace std::string_literals;
+const std::string kPng = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR and so on"s;
 
 std::string nrrd(const std::string& fields, const std::string& data) {
     return "NRRD0004\ntype: uint8\ndimension: 3\n" + fields + "\nencoding: raw\n\n" + data;
@@ -204,6 +205,19 @@ TEST_CASE("truncated data is refused in every format and encoding", "[bad-input]
 
     const std::string meta = "ObjectType = Image\nNDims = 3\nDimSize = 20 30 4\nElementType = MET_USHORT\n";
     CHECK_THAT(errorOf(folder.write("r.mha", meta + "ElementDataFile = LOCAL\n" + half)), Contains("2400 of 4800"));
+    CHECK_THAT(
+        errorOf(folder.write("t.mha", "ObjectType = Image\nNDims = 2\nDimSize = 3 3\nBinaryData = False\n"
+                                      "ElementType = MET_USHORT\nElementDataFile = LOCAL\n10000 20000 30000\n40000\n")),
+        Contains("4 of 9 values"));
+    CHECK_THAT(errorOf(folder.write("t.nrrd", "NRRD0004\ntype: ushort\ndimension: 2\nsizes: 3 3\nencoding: text\n\n"
+                                              "10000 20000 30000\n40000\n")),
+               Contains("4 of 9 values"));
+    const std::string hex = "NRRD0004\ntype: uchar\ndimension: 2\nsizes: 2 2\nencoding: hex\n\n";
+    CHECK_THAT(errorOf(folder.write("h.nrrd", hex + "01 02 03")), Contains("cannot be read"));
+    CHECK_THAT(errorOf(folder.write("i.nrrd", hex + "010203")), Contains("3 of 4 bytes"));
+    CHECK_THAT(errorOf(folder.write("u.mha", "ObjectType = Image\nNDims = 2\nDimSize = 1 2\nBinaryData = False\n"
+                                             "ElementType = MET_USHORT\nElementDataFile = LOCAL\n1 two\n")),
+               Contains("'two'"));
     const std::string zlib = zlibbed(data);
     const std::string compressed = meta + "CompressedData = True\n";
     const std::string claimed = compressed + "CompressedDataSize = " + std::to_string(zlib.size()) + "\n";

@@ -106,6 +106,11 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
                                 " of compressed data cannot hold",
                             where, toDo);
         break;
+    case Encoding::Hex:
+        if (stored / 2 < bytes)
+            throw FileError("the data has " + std::to_string(stored / 2) + " of " + std::to_string(bytes) + " bytes",
+                            where, toDo);
+        break;
     case Encoding::Text:
         if (stored / 2 + 1 < values)
             throw FileError("the header claims " + std::to_string(values) + " values, which " + describeBytes(stored) +
@@ -149,10 +154,41 @@ void requireInflates(const std::string& path, std::uint64_t start, bool zlib, st
     if (yield >= wanted && whole) return;
     if (yield >= wanted && status != Z_OK && status != Z_BUF_ERROR)
         throw FileError("the checksum of the compressed data is wrong", path, "copy or write the file again");
+    if (yield >= wanted) throw FileError("the compressed data is cut off at its end", path, "copy the file again");
     const bool ended = status == Z_OK || status == Z_BUF_ERROR || status == Z_STREAM_END;
     throw FileError("the compressed data " + std::string(ended ? "ends" : "is damaged") + " after " +
                         std::to_string(yield) + " of " + std::to_string(wanted) + " bytes",
                     path, "copy or write the file again");
+}
+
+void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job) {
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(start));
+    std::string word;
+    std::uint64_t count = 0;
+    const auto take = [&] {
+        double value = 0;
+        if (!word.empty() && !parseNumber(word, value))
+            throw FileError("there is " + inQuotes(word) + " where a number belongs", path,
+                            "copy or write the file again");
+        if (!word.empty()) ++count;
+        word.clear();
+    };
+    std::vector<char> piece(1u << 18);
+    while (count < wanted && in) {
+        job.throwIfStopped();
+        in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        for (std::streamsize i = 0; i < in.gcount() && count < wanted; ++i) {
+            const char c = piece[static_cast<std::size_t>(i)];
+            const bool separates = c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0;
+            if (separates || word.size() > 400) take();
+            if (!separates) word += c;
+        }
+    }
+    if (count < wanted) take();
+    if (count < wanted)
+        throw FileError("the data has " + std::to_string(count) + " of " + std::to_string(wanted) + " values", path,
+                        "check the sizes in the header, or copy the file again");
 }
 
 std::uint64_t availableMemoryBytes() {

@@ -24,7 +24,7 @@ std::string describeContent(std::string_view head);
 /// bytesPerValue stays below 2^63.
 std::uint64_t valueCount(const std::string& path, std::span<const std::int64_t> sizes, std::uint64_t bytesPerValue);
 
-enum class Encoding { Raw, Deflate, Text };
+enum class Encoding { Raw, Deflate, Text, Hex };
 
 /// Throws FileError where `stored` bytes cannot hold `values` values of `bytesPerValue` in this encoding. `where` is
 /// the file that holds the data; `toDo` advises what to check.
@@ -36,6 +36,10 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
 /// libraries fill what is missing with zeros and say nothing.
 void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
                      const JobControl& job);
+
+/// Throws FileError unless the text that begins at byte `start` of a file holds `wanted` numbers, between blanks or
+/// commas: some libraries go on with the last one where the text ends.
+void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job);
 
 /// Memory that this machine can give without swapping, bytes (MemAvailable); the largest number where unknown.
 std::uint64_t availableMemoryBytes();

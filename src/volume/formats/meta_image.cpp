@@ -154,6 +154,7 @@ HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     requireStored(claim.dataPath, encoding, claim.values, claim.bytesPerValue, stored, toDo);
     const std::uint64_t bytes = claim.values * claim.bytesPerValue;
     if (compressed) requireInflates(claim.dataPath, start, true, bytes, job);
+    if (encoding == Encoding::Text) requireNumbers(claim.dataPath, start, claim.values, job);
     if (encoding == Encoding::Raw && skip >= 0 && stored > bytes)
         claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
     return claim;

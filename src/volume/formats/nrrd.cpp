@@ -189,7 +189,8 @@ Encoding encodingIn(const NrrdHeader& header, const std::string& path) {
     const std::string name = lowerCase(header.get("encoding"));
     if (name == "raw") return Encoding::Raw;
     if (name == "gzip" || name == "gz") return Encoding::Deflate;
-    if (name == "ascii" || name == "text" || name == "txt" || name == "hex") return Encoding::Text;
+    if (name == "ascii" || name == "text" || name == "txt") return Encoding::Text;
+    if (name == "hex") return Encoding::Hex;
     throw FileError(name.empty() ? "the header names no encoding"
                                  : "the encoding " + inQuotes(name) + " is not supported",
                     path, "write it with encoding raw or gzip");
@@ -224,12 +225,13 @@ HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     if (lineSkip < 0 || byteSkip < -1)
         throw FileError("the header skips a negative number of lines or bytes", path, "correct the header");
     if (lineSkip > 0) start += bytesOfLines(claim.dataPath, start, lineSkip);
-    if (encoding == Encoding::Raw && byteSkip > 0) start += static_cast<std::uint64_t>(byteSkip);
+    if (encoding != Encoding::Deflate && byteSkip > 0) start += static_cast<std::uint64_t>(byteSkip);
     stored -= std::min(start, stored);
 
     requireStored(claim.dataPath, encoding, claim.values, claim.bytesPerValue, stored,
                   "check sizes and type in the header, or copy the file again");
     const std::uint64_t bytes = claim.values * claim.bytesPerValue;
+    if (encoding == Encoding::Text) requireNumbers(claim.dataPath, start, claim.values, job);
     if (encoding == Encoding::Deflate) // bytes are skipped in what comes out
         requireInflates(claim.dataPath, start, false,
                         bytes + static_cast<std::uint64_t>(std::max(byteSkip, std::int64_t{0})), job);
