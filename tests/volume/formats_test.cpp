@@ -1,4 +1,5 @@
 // Good files: types, byte orders, geometry, components, and what is written reads back.
+#include <clocale>
 #include <limits>
 #include <numeric>
 
@@ -178,6 +179,24 @@ TEST_CASE("NIfTI plain and compressed, its slope applied", "[formats]") {
     const Volume scaled = load(folder.write("b.nii", nifti.header() + bytesOf(values)));
     CHECK(scaled.value(0) == -1.0);
     CHECK(scaled.value(23) == 10.5); // 0.5 · 23 − 1
+}
+
+TEST_CASE("numbers have a point in every locale", "[formats]") {
+    const std::string before = std::setlocale(LC_NUMERIC, nullptr);
+    const char* comma = nullptr;
+    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "es_ES.UTF-8"})
+        if (comma == nullptr) comma = std::setlocale(LC_NUMERIC, name);
+    if (comma == nullptr) WARN("no locale with a decimal comma is installed: only the plain one is tested");
+    const TempFolder folder;
+    writeNrrd(Volume({{1, 1, 1}, {0.25, 0.5, 1.5}, {-0.75, 0, 0}}, std::vector<float>{1.5f}), folder.path("a.nrrd"));
+    folder.write("b.mha", "ObjectType = Image\nNDims = 3\nDimSize = 1 1 1\nElementSpacing = 0.25 0.5 1.5\n"
+                          "Offset = -0.75 0 0\nElementType = MET_UCHAR\nElementDataFile = LOCAL\nx");
+    for (const char* name : {"a.nrrd", "b.mha"}) {
+        const Geometry geometry = load(folder.path(name)).geometry();
+        CHECK(geometry.spacing == Vec3(0.25, 0.5, 1.5));
+        CHECK(geometry.origin == Vec3(-0.75, 0, 0));
+    }
+    std::setlocale(LC_NUMERIC, before.c_str());
 }
 
 TEST_CASE("axis directions are not applied, and the volume says so", "[formats]") {

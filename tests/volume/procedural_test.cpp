@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "volume/analytic.h"
 #include "volume/error.h"
 #include "volume/noise.h"
 #include "volume/parallel.h"
@@ -162,4 +163,20 @@ TEST_CASE("noise has the mean and deviation it says, and depends on place and se
         values.insert(v);
     }
     CHECK(values.size() > 190);
+}
+
+TEST_CASE("the gradients of the analytic fields match central differences", "[samples]") {
+    const auto ball = [](const Vec3& p) { return gaussianBall(p, {1, -2, 0.5}, 1.7); };
+    const auto wave = [](const Vec3& p) { return planeWave(p, {0.8, -1.1, 0.3}); };
+    constexpr double h = 1e-4; // error of the difference about h²·f''' < 1e-8
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, -2, 0.5), Vec3(2.5, -1, 1)})
+        for (int a = 0; a < 3; ++a) {
+            Vec3 step(0);
+            step[a] = h;
+            CHECK(ball(p).gradient[a] == Approx((ball(p + step).value - ball(p - step).value) / (2 * h)).margin(1e-7));
+            CHECK(wave(p).gradient[a] == Approx((wave(p + step).value - wave(p - step).value) / (2 * h)).margin(1e-7));
+        }
+    const Volume volume = sampleField({{3, 1, 1}, {0.5, 1, 1}, {1, -2, 0.5}}, ball);
+    CHECK(volume.value(0) == 1.0);
+    CHECK(volume.value(2) == Approx(std::exp(-1 / (2 * 1.7 * 1.7)))); // one unit from the middle
 }
