@@ -10,7 +10,9 @@
 
 #include <locale.h>
 
-#include <itkImageIOBase.h>
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
 
 #include "volume/formats/file_check.h"
 
@@ -139,6 +141,19 @@ Samples readSamples(itk::ImageIOBase& io, const std::string& path, const Layout&
     return first;
 }
 
+/// The object is made here and not by ITK's factories: nothing is registered, nothing guesses the format.
+itk::ImageIOBase::Pointer makeImageIO(ItkFormat format) {
+    switch (format) {
+    case ItkFormat::Nrrd:
+        return itk::NrrdImageIO::New().GetPointer();
+    case ItkFormat::MetaImage:
+        return itk::MetaImageIO::New().GetPointer();
+    case ItkFormat::Nifti:
+        return itk::NiftiImageIO::New().GetPointer();
+    }
+    PELLUCID_CHECK(false);
+}
+
 bool axesAreIdentity(const itk::ImageIOBase& io, unsigned dimensions) {
     for (unsigned axis = 0; axis < dimensions; ++axis) {
         const std::vector<double> direction = io.GetDirection(axis);
@@ -150,7 +165,9 @@ bool axesAreIdentity(const itk::ImageIOBase& io, unsigned dimensions) {
 
 } // namespace
 
-Volume readWithItk(itk::ImageIOBase& io, const VolumeSource& source, const HeaderClaim& claim, const JobControl& job) {
+Volume readWithItk(ItkFormat format, const VolumeSource& source, const HeaderClaim& claim, const JobControl& job) {
+    const itk::ImageIOBase::Pointer pointer = makeImageIO(format);
+    itk::ImageIOBase& io = *pointer;
     const std::string& path = source.path;
     job.throwIfStopped();
     translated(path, [&] {

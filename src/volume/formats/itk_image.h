@@ -1,15 +1,14 @@
-// The part that every format read through ITK shares. ITK's own headers stay in the .cpp files.
+// The part that every format read through ITK shares. ITK's own headers, heavy and fit for one compiler only as Debian
+// installs them, stay in itk_image.cpp.
 #pragma once
 
 #include <cstdint>
 
 #include "volume/loader.h"
 
-namespace itk {
-class ImageIOBase;
-}
-
 namespace pellucid {
+
+enum class ItkFormat { Nrrd, MetaImage, Nifti };
 
 /// What our own look at the header found; ITK has to agree before it may read.
 struct HeaderClaim {
@@ -19,8 +18,8 @@ struct HeaderClaim {
     std::vector<std::string> notices;
 };
 
-/// Reads source.path with `io`, a new object of the format's ImageIO class. The first time step of a series, component
-/// source.component. Throws FileError for everything that ITK refuses, UsageError for a component that is not there.
-Volume readWithItk(itk::ImageIOBase& io, const VolumeSource& source, const HeaderClaim& claim, const JobControl& job);
+/// Reads the samples of source.path and where they lie. The first time step of a series, component source.component.
+/// Throws FileError for everything that ITK refuses, UsageError for a component that is not there.
+Volume readWithItk(ItkFormat format, const VolumeSource& source, const HeaderClaim& claim, const JobControl& job);
 
 } // namespace pellucid

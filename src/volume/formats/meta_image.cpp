@@ -4,8 +4,6 @@
 #include <limits>
 #include <map>
 
-#include <itkMetaImageIO.h>
-
 #include "volume/formats/file_check.h"
 #include "volume/formats/itk_image.h"
 #include "volume/formats/reader.h"
@@ -169,8 +167,7 @@ public:
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
         const HeaderClaim claim = checkedClaim(source.path, job);
-        const auto io = itk::MetaImageIO::New();
-        return readWithItk(*io, source, claim, job);
+        return readWithItk(ItkFormat::MetaImage, source, claim, job);
     }
 };
 

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <map>
 
-#include <itkNiftiImageIO.h>
 #include <zlib.h>
 
 #include "volume/formats/file_check.h"
@@ -137,8 +136,7 @@ public:
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
         const HeaderClaim claim = checkedClaim(source.path, job);
-        const auto io = itk::NiftiImageIO::New();
-        return readWithItk(*io, source, claim, job);
+        return readWithItk(ItkFormat::Nifti, source, claim, job);
     }
 };
 

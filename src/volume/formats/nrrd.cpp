@@ -7,8 +7,6 @@
 #include <map>
 #include <utility>
 
-#include <itkNrrdImageIO.h>
-
 #include "volume/formats/file_check.h"
 #include "volume/formats/itk_image.h"
 #include "volume/formats/reader.h"
@@ -249,8 +247,7 @@ public:
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
         const HeaderClaim claim = checkedClaim(source.path, job);
-        const auto io = itk::NrrdImageIO::New();
-        return readWithItk(*io, source, claim, job);
+        return readWithItk(ItkFormat::Nrrd, source, claim, job);
     }
 };
 
