@@ -7,9 +7,7 @@
 
 namespace pellucid {
 
-int histogramBin(double s, int bins) {
-    return std::clamp(static_cast<int>(std::floor(s * bins)), 0, bins - 1);
-}
+int histogramBin(double s, int bins) { return std::clamp(static_cast<int>(std::floor(s * bins)), 0, bins - 1); }
 
 Histogram makeHistogram(const Volume& volume, int bins) {
     const std::size_t slices = static_cast<std::size_t>(volume.dims().z);

@@ -42,8 +42,10 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
             },
             tbb::simple_partitioner{});
     };
-    if (const auto a = arena()) a->execute(run);
-    else run();
+    if (const auto a = arena())
+        a->execute(run);
+    else
+        run();
 }
 
 } // namespace pellucid

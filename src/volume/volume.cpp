@@ -27,7 +27,9 @@ struct Statistics {
     std::size_t invalid = 0;
 };
 
-bool valid(double value, std::optional<double> missing) { return std::isfinite(value) && !(missing && value == *missing); }
+bool valid(double value, std::optional<double> missing) {
+    return std::isfinite(value) && !(missing && value == *missing);
+}
 
 Statistics statisticsOf(const Samples& samples, std::optional<double> missing) {
     return std::visit(
@@ -76,14 +78,17 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
     if (d.x < 1 || d.y < 1 || d.z < 1) throw Error("a volume needs at least one voxel along each axis", "", "");
     for (int a = 0; a < 3; ++a)
         if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
-            throw Error("spacing must be positive and finite, origin finite", "", "correct the header or give --spacing");
+            throw Error("spacing must be positive and finite, origin finite", "",
+                        "correct the header or give --spacing");
     const std::size_t count = std::visit([](const auto& v) { return v.size(); }, samples);
     if (count != voxelCount(d)) throw Error("number of samples and dimensions disagree", "", "");
     m_samples = std::make_shared<const Samples>(std::move(samples));
     const Statistics s = statisticsOf(*m_samples, missing);
     m_invalidCount = s.invalid;
-    if (s.invalid < count) m_dataRange = {s.lo, s.hi};
-    else m_dataRange = {0, 0};
+    if (s.invalid < count)
+        m_dataRange = {s.lo, s.hi};
+    else
+        m_dataRange = {0, 0};
     m_range = m_dataRange;
 }
 
