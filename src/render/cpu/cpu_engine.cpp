@@ -111,7 +111,7 @@ private:
         in.hu = h.x, in.hv = h.y, in.hw = h.z;
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
-        in.maxStep = high ? 0.5 : 1.25;
+        in.maxStep = high ? 0.5 : 1.0;
         in.raySpacing = in.maxRaySpacing = high ? 1 / 1.5 : 1.0;
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {

@@ -51,7 +51,7 @@ struct SweepInput {
     double firstSlopeStep = 1;           ///< perspective: slope between neighbouring rays at slice 0; halved on the way
     double maxRaySpacing = 1;            ///< perspective: in voxels
     double hu = 1, hv = 1, hw = 1;       ///< spacing in d0
-    double maxStep = 1.25;               ///< distance of samples along a ray, in d0
+    double maxStep = 1.0;               ///< distance of samples along a ray, in d0
 };
 
 /// The rays b in [first, last], and the voxel rows that lie in [first, last) between them; in units of the first ray

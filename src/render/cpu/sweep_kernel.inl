@@ -141,7 +141,7 @@ private:
                 const double l = lengthPerSlice(middle, b);
                 const int at = (b - m_b0) * blockCount() + block;
                 m_offset[at] = static_cast<float>(0.5 / l);
-                m_samples[at] = larger(1, ceilInt(l / m_in.maxStep));
+                m_samples[at] = larger(1, ceilInt(l / m_in.maxStep - 1e-6));
             }
         }
     }
