@@ -46,7 +46,7 @@ struct OptimizeResult {
     int evaluations = 0;                ///< of W
     StopReason reason = StopReason::MaxIterations;
 
-    int iterations() const { return static_cast<int>(history.size()) - 1; }
+    int iterations() const { return history.empty() ? 0 : static_cast<int>(history.size()) - 1; }
     bool converged() const { return reason == StopReason::Converged; }
 };
 
