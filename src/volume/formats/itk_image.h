@@ -1,0 +1,26 @@
+// The part that every format read through ITK shares. ITK's own headers stay in the .cpp files.
+#pragma once
+
+#include <cstdint>
+
+#include "volume/loader.h"
+
+namespace itk {
+class ImageIOBase;
+}
+
+namespace pellucid {
+
+/// What our own look at the header found; ITK has to agree before it may read.
+struct HeaderClaim {
+    std::uint64_t values = 0;        ///< all axes, components and time steps together
+    std::uint64_t bytesPerValue = 0; ///< in the file
+    std::string dataPath;            ///< the file that holds the samples
+    std::vector<std::string> notices;
+};
+
+/// Reads source.path with `io`, a new object of the format's ImageIO class. The first time step of a series, component
+/// source.component. Throws FileError for everything that ITK refuses, UsageError for a component that is not there.
+Volume readWithItk(itk::ImageIOBase& io, const VolumeSource& source, const HeaderClaim& claim, const JobControl& job);
+
+} // namespace pellucid
