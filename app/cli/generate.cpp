@@ -24,6 +24,7 @@ void checkSuffix(const std::string& path) {
 }
 
 Answer run(const Options& o, Progress& progress) {
+    requireFileName(o.out, "--out");
     checkSuffix(o.out);
     checkOutputFile(o.out, "--out");
     const Volume volume = makeSample(o.name, o.size, o.seed, progress.phase("generating"));

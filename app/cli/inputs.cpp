@@ -250,9 +250,13 @@ VwsOptions SaliencyInput::vws() const {
     return options;
 }
 
+void requireFileName(const std::string& path, const std::string& option) {
+    if (path.empty()) throw UsageError("the file name is empty", option, "name the file to write");
+}
+
 void checkOutputFile(const std::string& path, const std::string& option) {
     namespace fs = std::filesystem;
-    if (path.empty()) throw UsageError("the file name is empty", option, "name the file to write");
+    requireFileName(path, option);
     const fs::path target(path);
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     std::error_code ec;

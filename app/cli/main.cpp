@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 
 #include "commands.h"
@@ -36,6 +37,24 @@ void addCommonOptions(CLI::App& app, CommonOptions& common) {
         },
         "threads to use (default: all cores)", group);
     app.get_help_ptr()->group(group);
+}
+
+/// Column of the descriptions in --help, and where its lines end.
+constexpr std::size_t kHelpIndent = 34, kHelpWidth = 100;
+
+/// Help as CLI11 lays it out, with long descriptions broken between words and without double blank lines.
+std::string wrapped(const std::string& help) {
+    std::string result, line;
+    std::istringstream lines(help);
+    while (std::getline(lines, line)) {
+        if (line.empty() && result.ends_with("\n\n")) continue;
+        for (std::size_t end; line.size() > kHelpWidth && (end = line.rfind(' ', kHelpWidth)) > kHelpIndent;) {
+            result += line.substr(0, end) + "\n";
+            line = std::string(kHelpIndent, ' ') + line.substr(end + 1);
+        }
+        result += line + "\n";
+    }
+    return result;
 }
 
 struct Failure {
@@ -78,6 +97,9 @@ std::string problem(const CLI::App& program, const CLI::ParseError& error) {
         return (unknown.front().starts_with("-") ? "unknown option '" : "unknown command '") + unknown.front() + "'";
     }
     std::string text = error.what();
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && text.starts_with("--"))
+        return text.substr(0, text.find(':')) +
+               (text.find("At Most") != std::string::npos ? " is given more than once" : " has no value");
     if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
     if (text.starts_with("vOLUME")) text.front() = 'V';
     return text;
@@ -139,7 +161,7 @@ int run(const std::vector<std::string>& arguments) {
     CLI::App program("Pellucid on the command line: measures and shapes what a volume rendering shows.", kProgram);
     program.set_version_flag("--version", std::string(kProgram) + " " + PELLUCID_VERSION, "print the version");
     program.require_subcommand(1);
-    program.get_formatter()->column_width(34);
+    program.get_formatter()->column_width(kHelpIndent);
     program.footer("Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.\n"
                    "`pellucid-cli COMMAND --help` lists a command's options.");
 
@@ -158,9 +180,9 @@ int run(const std::vector<std::string>& arguments) {
             if (dynamic_cast<const CLI::CallForVersion*>(&e) != nullptr)
                 writeAnswer(std::string(e.what()) + "\n");
             else if (const auto parsed = program.get_subcommands(); !parsed.empty())
-                writeAnswer(parsed.front()->help(place(program)));
+                writeAnswer(wrapped(parsed.front()->help(kProgram)));
             else
-                writeAnswer(program.help());
+                writeAnswer(wrapped(program.help()));
             return 0;
         }
         return fail({2, problem(program, e) + ", " + place(program) + ", see " + place(program) + " --help"});

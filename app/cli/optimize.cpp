@@ -32,6 +32,7 @@ std::vector<double> parseTargets(const std::string& text, const std::string& opt
     double sum = 0;
     for (const double t : targets) {
         if (t < 0) throw UsageError("the target " + plainText(t) + " is negative", option, "give numbers from 0 on");
+        if (t > 1e9) throw UsageError("the target " + plainText(t) + " is too large", option, "only proportions count");
         sum += t;
     }
     if (sum == 0) throw UsageError("all targets are 0", option, "give at least one above 0");

@@ -76,11 +76,9 @@ std::vector<double> parseReals(const std::string& text, const std::string& optio
 
 std::vector<double> parseReals(const std::string& text, const std::string& option, std::size_t count,
                                const std::string& what) {
-    const std::size_t given = split(text, ',').size();
-    if (given != count)
-        throw UsageError(quoted(text) + " has " + std::to_string(given) + " numbers instead of " +
-                             std::to_string(count),
-                         option, "give " + what);
+    if (split(text, ',').size() != count)
+        throw UsageError(quoted(text) + " is not " + std::to_string(count) + " numbers with commas between", option,
+                         "give " + what);
     return parseReals(text, option);
 }
 

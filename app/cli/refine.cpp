@@ -92,7 +92,7 @@ Command addRefine(CLI::App& program) {
         },
         "at most so many (default 5000)");
     addRepeated(
-        *app, "--fix", "X ...",
+        *app, "--fix", "X",
         [o](const std::string& text, const std::string& option) {
             for (const double x : parseReals(text, option)) {
                 if (x < 0 || x > 1)

@@ -34,6 +34,7 @@ bool isJpeg(const std::string& path) {
 
 /// What can be told before the volume is read.
 void check(const Options& o) {
+    requireFileName(o.out, "--out");
     checkImageSuffix(o.out);
     if (!o.background && isJpeg(o.out))
         throw UsageError("a JPEG file holds no transparency", "--background transparent",
@@ -47,7 +48,7 @@ int featureIndex(const TransferFunction& tf, const std::string& name) {
     std::string known;
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         if (tf.features[i].name == name) return static_cast<int>(i);
-        known += (known.empty() ? "" : " ") + tf.features[i].name;
+        known += (known.empty() ? "'" : ", '") + tf.features[i].name + "'";
     }
     throw UsageError("no feature is named '" + name + "'", "--feature",
                      known.empty() ? "leave it out: this transfer function has none" : "known: " + known);
@@ -129,7 +130,7 @@ Command addRender(CLI::App& program) {
         "largest distance of samples in reference lengths, the smallest voxel spacing (default 0.5)");
     app->add_flag("--shading", o->shading, "light from the eye, by the gradient");
     addRepeated(
-        *app, "--clip", "x:A:B ...",
+        *app, "--clip", "x:A:B",
         [o](const std::string& text, const std::string& option) { o->clips.push_back(parseClip(text, option)); },
         "draw only this part of the box along x, y or z, in fractions from 0 to 1");
     addValue(
