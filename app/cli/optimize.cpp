@@ -28,7 +28,7 @@ struct Seconds {
 
 /// What can be told about the targets before their features are known.
 std::vector<double> parseTargets(const std::string& text, const std::string& option) {
-    const auto targets = parseReals(text, option);
+    auto targets = parseReals(text, option);
     double sum = 0;
     for (const double t : targets) {
         if (t < 0) throw UsageError("the target " + plainText(t) + " is negative", option, "give numbers from 0 on");
@@ -87,7 +87,12 @@ Answer run(const Options& o, Progress& progress) {
     seconds.saliency = saliency.seconds();
     const Stopwatch search;
     const VwsFunction function(*engine, camera, tf, weights, vws);
-    const OptimizeResult result = optimize(function, o.targets, o.optimize, progress.phase("optimizing"));
+    JobControl job = progress.phase("optimizing");
+    job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
+    int moves = -1;
+    const OptimizeResult result = optimize(function, o.targets, o.optimize, job, [&](const OptimizeState& state) {
+        progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
+    });
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     seconds.search = search.seconds();
     if (o.outTf) writeTf(result.tf, *o.outTf);

@@ -32,7 +32,11 @@ void requireFinite(const Json& json, const std::string& place) {
     if (json.is_number_float() && !std::isfinite(json.get<double>()))
         throw Error("a result is not a finite number", place, "check the volume's values and the options");
     if (!json.is_structured()) return;
-    for (const auto& [key, value] : json.items()) requireFinite(value, place.empty() ? key : place + "/" + key);
+    for (const auto& [key, value] : json.items()) {
+        std::string inner = place;
+        if (!inner.empty()) inner += "/";
+        requireFinite(value, inner += key);
+    }
 }
 
 } // namespace
@@ -59,7 +63,8 @@ std::string listing(const std::vector<std::pair<std::string, std::string>>& line
     std::size_t columns = 0;
     for (const auto& [name, value] : lines) columns = std::max(columns, width(name));
     std::string text;
-    for (const auto& [name, value] : lines) text += name + padding(name, columns) + "  " + value + "\n";
+    for (const auto& [name, value] : lines)
+        text.append(name).append(padding(name, columns)).append("  ").append(value).append("\n");
     return text;
 }
 

@@ -67,6 +67,14 @@ void Progress::show(double fraction) {
                   " %");
 }
 
+void Progress::tell(const std::string& news) {
+    const std::lock_guard lock(m_mutex);
+    if (m_style == Style::Lines) writeToStderr(m_phase + ": " + news + "\n");
+    if (m_style != Style::Bar) return;
+    g_barVisible = true;
+    writeToStderr("\r\033[K" + m_phase + ": " + news);
+}
+
 void Progress::finish() { clearProgressLine(); }
 
 void clearProgressLine() {

@@ -557,4 +557,10 @@ TEST_CASE("progress goes to stderr where it is asked for", "[cli]") {
     CHECK(loud.err.find("saliency 0 %\n") != std::string::npos);
     CHECK(loud.err.find("visibility 0 %\n") != std::string::npos);
     CHECK(withoutSeconds(json::parse(loud.out)) == withoutSeconds(json::parse(quiet.out)));
+
+    // The start and one move.
+    const Outcome search = w.run({"optimize", "sample:shells", "--size", "16", "--target", "1,3,6", "--max-iterations",
+                                  "1", "--engine", "cpu", "--progress"});
+    CHECK(search.err.find("optimizing: 0 moves, distance ") != std::string::npos);
+    CHECK(search.err.find("optimizing: 1 moves, distance ") != std::string::npos);
 }
