@@ -11,24 +11,24 @@
 namespace pellucid {
 
 enum class SearchMethod { Fixed, Line, Parallel };
-const char* name(SearchMethod method);                     ///< "fixed", "line", "parallel"
+const char* name(SearchMethod method);                      ///< "fixed", "line", "parallel"
 SearchMethod searchMethodFromName(const std::string& name); ///< throws UsageError
 
 enum class StopReason {
-    Converged,     ///< F < tolerance
+    Converged, ///< F < tolerance
     MaxIterations,
-    NoProgress,    ///< no trial step lowers F, or no step moves any opacity
+    NoProgress, ///< no trial step lowers F, or no step moves any opacity
     Cancelled
 };
 const char* name(StopReason reason); ///< "converged", "max-iterations", "no-progress", "cancelled"
 
 struct OptimizeOptions {
     SearchMethod method = SearchMethod::Parallel;
-    bool normalize = false;   ///< the direction scaled to unit length, as §5.3.4 prints it
-    double step = 0.05;       ///< (0, 10]
-    double tolerance = 0.03;  ///< on F, > 0
-    int maxIterations = 200;  ///< moves, ≥ 0
-    void validate() const;    ///< throws UsageError
+    bool normalize = false;  ///< the direction scaled to unit length, as §5.3.4 prints it
+    double step = 0.05;      ///< (0, 10]
+    double tolerance = 0.03; ///< on F, > 0
+    int maxIterations = 200; ///< moves, ≥ 0
+    void validate() const;   ///< throws UsageError
 };
 
 /// One state of the search: the start first, then one after each move.
@@ -46,7 +46,7 @@ struct OptimizeResult {
     int evaluations = 0;                ///< of W
     StopReason reason = StopReason::MaxIterations;
 
-    int iterations() const { return static_cast<int>(history.size()) - 1; }
+    int iterations() const { return history.empty() ? 0 : static_cast<int>(history.size()) - 1; }
     bool converged() const { return reason == StopReason::Converged; }
 };
 

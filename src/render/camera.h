@@ -19,8 +19,8 @@ struct Camera {
     Vec3 eye{0, -3, 0};
     Vec3 center{0, 0, 0};
     Vec3 up{0, 0, 1};
-    double fovY = 30;   ///< degrees, perspective: full vertical angle of the image, (0, 180)
-    double height = 1;  ///< world units, orthographic: full height of the image, > 0
+    double fovY = 30;  ///< degrees, perspective: full vertical angle of the image, (0, 180)
+    double height = 1; ///< world units, orthographic: full height of the image, > 0
 
     bool operator==(const Camera&) const = default;
 

@@ -10,13 +10,13 @@
 namespace pellucid {
 
 struct RenderSettings {
-    int width = 512, height = 512;  ///< pixels, each in [1, 16384]
+    int width = 512, height = 512;                ///< pixels, each in [1, 16384]
     std::optional<Rgb> background = Rgb{0, 0, 0}; ///< empty: transparent
-    double stepInD0 = 0.5;          ///< largest distance of samples along a ray, in d0, (0, 16]
-    bool shading = false;           ///< diffuse and specular light from the eye, by the gradient
+    double stepInD0 = 0.5;                        ///< largest distance of samples along a ray, in d0, (0, 16]
+    bool shading = false;                         ///< diffuse and specular light from the eye, by the gradient
     /// The part of the box that is drawn, in fractions [0,1] of it along each axis, lo < hi.
     Vec3 clipLo{0, 0, 0}, clipHi{1, 1, 1};
-    int onlyFeature = -1;           ///< index: draw the voxels of this feature alone; −1: all
+    int onlyFeature = -1; ///< index: draw the voxels of this feature alone; −1: all
 
     void validate() const; ///< throws UsageError
 };

@@ -45,6 +45,7 @@ public:
 std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume);
 
 /// Threads and SIMD, no GL. Same bits for any thread count.
-std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality = Quality::Normal);
+std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume,
+                                                Quality quality = Quality::Normal);
 
 } // namespace pellucid

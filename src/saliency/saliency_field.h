@@ -16,7 +16,7 @@ enum class SaliencyKernel {
 };
 
 struct SaliencyOptions {
-    double sigma = 2.0; ///< in d0, > 0, at most 32
+    double sigma = 2.0; ///< in d0, (0, 8]
     SaliencyKernel kernel = SaliencyKernel::Thesis;
     double w1 = 1.0, w2 = 1.0;
     Rgb background; ///< colour of voxels in no feature, and of invalid ones

@@ -13,8 +13,6 @@ inline constexpr double kMaxOpacity = 1.0 - 1e-7;
 inline double opticalDepthOfOpacity(double alpha) { return -std::log1p(-std::min(alpha, kMaxOpacity)); }
 
 /// 1 − (1 − α)^(d/d0); `steps` = d/d0, the step's length in reference lengths.
-inline double opacityOfStep(double alpha, double steps) {
-    return -std::expm1(-opticalDepthOfOpacity(alpha) * steps);
-}
+inline double opacityOfStep(double alpha, double steps) { return -std::expm1(-opticalDepthOfOpacity(alpha) * steps); }
 
 } // namespace pellucid

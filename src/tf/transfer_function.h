@@ -56,18 +56,21 @@ private:
 
 inline constexpr double kDefaultPeak = 0.5;
 
-/// `tents:N[:PEAK]`: N tents of equal peaks, one feature each, named f1 … fN. Throws UsageError (1 ≤ N ≤ 64, 0 ≤ peak ≤ 1).
+/// `tents:N[:PEAK]`: N tents of equal peaks, one feature each, named f1 … fN. Throws UsageError (1 ≤ N ≤ 64, 0 ≤ peak ≤
+/// 1).
 TransferFunction tents(int count, double peak = kDefaultPeak);
 /// `ramp:N`: N points of opacity 1/6; one feature over everything.
 TransferFunction ramp(int count);
-/// "tents:N[:PEAK]" or "ramp:N"; empty where `text` names neither (it is a file then); throws UsageError where it does badly.
+/// "tents:N[:PEAK]" or "ramp:N"; empty where `text` names neither (it is a file then); throws UsageError where it does
+/// badly.
 std::optional<TransferFunction> tfFromSpec(const std::string& text);
 
 /// One feature per maximal interval of positive opacity between points of opacity 0, coloured like its peak, named
 /// f1, f2, …: what a file without features gets.
 std::vector<Feature> deriveFeatures(const TransferFunction& tf);
 
-/// The peak opacity of each feature, in their order: the parameters x_F of the optimization. The supremum of α over [a,b).
+/// The peak opacity of each feature, in their order: the parameters x_F of the optimization. The supremum of α over
+/// [a,b).
 std::vector<double> featureOpacities(const TransferFunction& tf);
 
 /// `tf` with feature f's α scaled so that its peak is x[f], each x in [0,1]. Where α is not 0 at a feature's end, a

@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <cstdlib>
 
-#define PELLUCID_CHECK(condition)                                                                                     \
-    do {                                                                                                              \
-        if (!(condition)) {                                                                                           \
-            std::fprintf(stderr, "%s:%d: check failed: %s\n", __FILE__, __LINE__, #condition);                        \
-            std::abort();                                                                                             \
-        }                                                                                                             \
+#define PELLUCID_CHECK(condition)                                                                                      \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            std::fprintf(stderr, "%s:%d: check failed: %s\n", __FILE__, __LINE__, #condition);                         \
+            std::abort();                                                                                              \
+        }                                                                                                              \
     } while (false)
 
 #ifdef NDEBUG

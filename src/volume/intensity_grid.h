@@ -8,12 +8,28 @@
 
 namespace pellucid {
 
-/// Intensity s of a voxel is code / maxCode. For integer data whose window spans at most 65 535 values the codes are
-/// exact (a whole multiple of value − lo); otherwise they are s rounded to 1/65535.
+/// How intensities of one volume become codes: s = code / maxCode.
+class IntensityCoder {
+public:
+    explicit IntensityCoder(const Volume& volume);
+
+    int maxCode() const noexcept { return m_maxCode; } ///< in [1, 65535]
+    /// True for integer data whose window spans at most 65 535 values: then code / maxCode is s itself, because codes
+    /// are a whole multiple of value − lo. Otherwise it is s rounded to 1/65535.
+    bool exact() const noexcept { return m_exact; }
+    /// Code of an intensity in [0,1].
+    std::uint16_t code(double s) const { return static_cast<std::uint16_t>(s * m_maxCode + 0.5); }
+    double intensity(int code) const { return static_cast<double>(code) / m_maxCode; }
+
+private:
+    int m_maxCode = 65535;
+    bool m_exact = false;
+};
+
 struct IntensityGrid {
-    Grid<std::uint16_t> codes;        ///< shape of the volume; 0 where invalid
-    int maxCode = 65535;              ///< in [1, 65535]
-    std::vector<std::uint8_t> valid;  ///< one byte per voxel, 1 = valid; empty where every voxel is valid
+    Grid<std::uint16_t> codes;       ///< shape of the volume; 0 where invalid
+    int maxCode = 65535;             ///< intensity is code / maxCode
+    std::vector<std::uint8_t> valid; ///< one byte per voxel, 1 = valid; empty where every voxel is valid
 };
 
 IntensityGrid makeIntensityGrid(const Volume& volume);

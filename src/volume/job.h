@@ -10,8 +10,8 @@ namespace pellucid {
 
 /// Handed to everything that may take over a second. Default: runs to the end, tells nobody.
 struct JobControl {
-    std::stop_token stop;                  ///< asked between pieces of work
-    std::function<void(double)> progress;  ///< fraction done in [0,1]; may be called from any thread; may be empty
+    std::stop_token stop;                 ///< asked between pieces of work
+    std::function<void(double)> progress; ///< fraction done in [0,1]; may be called from any thread; may be empty
 
     void throwIfStopped() const {
         if (stop.stop_requested()) throw Cancelled{};

@@ -112,6 +112,7 @@ RawLayout parseRawLayout(const std::string& text) {
 }
 
 Volume loadVolume(const VolumeSource& source, const JobControl& job) {
+    if (source.path.empty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
     const bool builtIn = source.path.rfind(kSamplePrefix, 0) == 0;
     Volume volume = builtIn ? sample(source, job) : readFile(source, job);
     if (!volume.hasValidVoxels())

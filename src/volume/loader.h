@@ -25,12 +25,12 @@ RawLayout parseRawLayout(const std::string& text);
 /// What to open: a path, or "sample:NAME".
 struct VolumeSource {
     std::string path;
-    std::optional<RawLayout> raw;      ///< given: the file is headerless
-    std::optional<double> missing;     ///< this value is invalid (besides what the file declares)
-    std::optional<ValueRange> range;   ///< the user's intensity window
-    int component = 0;                 ///< of a multi-component file
-    int sampleSize = 0;                ///< --size of a sample, 0 = its default
-    std::uint32_t seed = 1;            ///< of a sample
+    std::optional<RawLayout> raw;    ///< given: the file is headerless
+    std::optional<double> missing;   ///< this value is invalid (besides what the file declares)
+    std::optional<ValueRange> range; ///< the user's intensity window
+    int component = 0;               ///< of a multi-component file
+    int sampleSize = 0;              ///< --size of a sample, 0 = its default
+    std::uint32_t seed = 1;          ///< of a sample
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.

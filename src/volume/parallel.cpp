@@ -4,6 +4,8 @@
 #include <mutex>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -12,6 +14,7 @@ namespace pellucid {
 namespace {
 
 std::mutex g_mutex;
+std::unique_ptr<tbb::global_control> g_limit;
 std::shared_ptr<tbb::task_arena> g_arena; // null: the default arena, one thread per core
 
 std::shared_ptr<tbb::task_arena> arena() {
@@ -22,9 +25,13 @@ std::shared_ptr<tbb::task_arena> arena() {
 } // namespace
 
 void setThreadCount(int threads) {
-    // An arena of our own also allows more threads than cores, which the determinism tests need.
     auto next = threads > 0 ? std::make_shared<tbb::task_arena>(threads) : nullptr;
     std::lock_guard lock(g_mutex);
+    g_limit.reset();
+    // Without this TBB takes no more workers than cores, and says so on stderr.
+    if (threads > tbb::info::default_concurrency())
+        g_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                        static_cast<std::size_t>(threads));
     g_arena = std::move(next);
 }
 

@@ -53,9 +53,11 @@ Volume makeDisks(const Geometry& geometry, std::uint32_t, const JobControl& job)
         const Vec3 p = (Vec3(i, j, k) + 0.5) / Vec3(d) - 0.5; // [−½, ½]
         if (p.y * p.y + p.z * p.z > 0.36 * 0.36) return 0;
         constexpr double kHalfThickness = 0.0625, kDistance = 0.25;
-        for (int disk = 0; disk < 3; ++disk)
-            if (std::abs(p.x - kDistance * (disk - 1)) < kHalfThickness)
-                return static_cast<std::uint8_t>(42 + 84 * disk);
+        for (int disk = 0; disk < 3; ++disk) {
+            const double along = p.x - kDistance * (disk - 1);
+            // Half open: at least one voxel plane in the smallest size.
+            if (along >= -kHalfThickness && along < kHalfThickness) return static_cast<std::uint8_t>(42 + 84 * disk);
+        }
         return 0;
     });
     return Volume(geometry, std::move(values)).withRange({0, 252});
@@ -70,8 +72,8 @@ double shellsIntensity(const Vec3& p, double blur, std::uint32_t seed) {
     const Vec3 n = r > 0 ? p / r : Vec3(0, 0, 1);
     const double ripple = 0.6 * smoothNoise(p * 3.0, seed) + 0.3 * smoothNoise(p * 7.0, seed + 1);
     // Low harmonics of the direction, another for each shell.
-    const double outer = 0.80 + 0.10 * 5.2 * n.x * n.y * n.z + 0.03 * ripple;
-    const double middle = 0.54 + 0.07 * (n.x * n.x - n.y * n.y) - 0.08 * n.z * n.z + 0.04 * ripple;
+    const double outer = 0.78 + 0.14 * 5.2 * n.x * n.y * n.z + 0.03 * ripple;
+    const double middle = 0.54 + 0.10 * (n.x * n.x - n.y * n.y) - 0.08 * n.z * n.z + 0.04 * ripple;
     const double core = 0.22 + 0.14 * n.x * n.x + 0.03 * ripple;
     const auto inside = [&](double radius) { return 1.0 - smoothStep(radius - blur, radius + blur, r); };
     const double grain = 0.05 * ripple + 0.03 * smoothNoise(p * 16.0, seed + 2);

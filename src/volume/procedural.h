@@ -12,8 +12,8 @@ namespace pellucid {
 
 /// One built-in data set.
 struct SampleInfo {
-    std::string name;         ///< after "sample:"
-    std::string description;  ///< one line
+    std::string name;        ///< after "sample:"
+    std::string description; ///< one line
     Int3 defaultDims;
 };
 

@@ -20,10 +20,9 @@ const char* name(SampleType type);
 std::optional<SampleType> sampleTypeFromName(const std::string& name);
 std::size_t bytesPerSample(SampleType type);
 
-using Samples =
-    std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
-                 std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>, std::vector<float>,
-                 std::vector<double>>;
+using Samples = std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
+                             std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
+                             std::vector<float>, std::vector<double>>;
 
 /// An intensity window in data units; intensity 0 at lo, 1 at hi.
 struct ValueRange {
@@ -72,7 +71,7 @@ public:
     bool isConstant() const noexcept { return m_dataRange.lo == m_dataRange.hi; }
     bool hasValidVoxels() const noexcept { return m_invalidCount < size(); }
 
-    double value(std::size_t index) const;     ///< data units; what the file says, NaN included
+    double value(std::size_t index) const; ///< data units; what the file says, NaN included
     bool isValid(std::size_t index) const;
     /// Intensity in [0,1] (MEASURES §1); NaN where invalid. In a constant volume every intensity is 0.
     double intensity(std::size_t index) const;
@@ -83,8 +82,8 @@ public:
     std::size_t memoryBytes() const noexcept { return size() * bytesPerSample(sampleType()); }
 
     /// Free text for people, set by readers and generators.
-    std::string title;   ///< file name or sample name
-    std::string format;  ///< "NRRD", "MetaImage", "NIfTI", "raw", "sample"
+    std::string title;  ///< file name or sample name
+    std::string format; ///< "NRRD", "MetaImage", "NIfTI", "raw", "sample"
     /// Remarks the user should see once, e.g. "rotation of the axes is ignored".
     std::vector<std::string> notices;
 

@@ -9,6 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include <zlib.h>
+
+#include "volume/check.h"
 #include "volume/error.h"
 
 namespace pellucid {
@@ -103,6 +106,11 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
                                 " of compressed data cannot hold",
                             where, toDo);
         break;
+    case Encoding::Hex:
+        if (stored / 2 < bytes)
+            throw FileError("the data has " + std::to_string(stored / 2) + " of " + std::to_string(bytes) + " bytes",
+                            where, toDo);
+        break;
     case Encoding::Text:
         if (stored / 2 + 1 < values)
             throw FileError("the header claims " + std::to_string(values) + " values, which " + describeBytes(stored) +
@@ -110,6 +118,77 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
                             where, toDo);
         break;
     }
+}
+
+void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                     const JobControl& job) {
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(start));
+    z_stream stream{};
+    PELLUCID_CHECK(inflateInit2(&stream, zlib ? MAX_WBITS + 32 : MAX_WBITS + 16) == Z_OK);
+    const struct End {
+        z_stream& stream;
+        ~End() { inflateEnd(&stream); }
+    } end{stream};
+    std::vector<unsigned char> packed(1u << 18), unpacked(1u << 20);
+    std::uint64_t yield = 0;
+    int status = Z_OK;
+    // Beyond what is wanted nothing matters, so that a stream which never ends cannot hold us up.
+    while (yield <= wanted) {
+        if (stream.avail_in == 0) {
+            job.throwIfStopped();
+            in.read(reinterpret_cast<char*>(packed.data()), static_cast<std::streamsize>(packed.size()));
+            stream.next_in = packed.data();
+            stream.avail_in = static_cast<uInt>(in.gcount());
+            if (stream.avail_in == 0) break;
+        }
+        // Only another gzip member may follow a finished one; other bytes are left alone.
+        if (status == Z_STREAM_END && (zlib || *stream.next_in != 0x1f || inflateReset(&stream) != Z_OK)) break;
+        stream.next_out = unpacked.data();
+        stream.avail_out = static_cast<uInt>(unpacked.size());
+        status = inflate(&stream, Z_NO_FLUSH);
+        yield += unpacked.size() - stream.avail_out;
+        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) break;
+    }
+    const bool whole = status == Z_STREAM_END || yield > wanted;
+    if (yield >= wanted && whole) return;
+    if (yield >= wanted && status != Z_OK && status != Z_BUF_ERROR)
+        throw FileError("the checksum of the compressed data is wrong", path, "copy or write the file again");
+    if (yield >= wanted) throw FileError("the compressed data is cut off at its end", path, "copy the file again");
+    const bool ended = status == Z_OK || status == Z_BUF_ERROR || status == Z_STREAM_END;
+    throw FileError("the compressed data " + std::string(ended ? "ends" : "is damaged") + " after " +
+                        std::to_string(yield) + " of " + std::to_string(wanted) + " bytes",
+                    path, "copy or write the file again");
+}
+
+void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job) {
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(start));
+    std::string word;
+    std::uint64_t count = 0;
+    const auto take = [&] {
+        double value = 0;
+        if (!word.empty() && !parseNumber(word, value))
+            throw FileError("there is " + inQuotes(word) + " where a number belongs", path,
+                            "copy or write the file again");
+        if (!word.empty()) ++count;
+        word.clear();
+    };
+    std::vector<char> piece(1u << 18);
+    while (count < wanted && in) {
+        job.throwIfStopped();
+        in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        for (std::streamsize i = 0; i < in.gcount() && count < wanted; ++i) {
+            const char c = piece[static_cast<std::size_t>(i)];
+            const bool separates = c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0;
+            if (separates || word.size() > 400) take();
+            if (!separates) word += c;
+        }
+    }
+    if (count < wanted) take();
+    if (count < wanted)
+        throw FileError("the data has " + std::to_string(count) + " of " + std::to_string(wanted) + " values", path,
+                        "check the sizes in the header, or copy the file again");
 }
 
 std::uint64_t availableMemoryBytes() {
@@ -139,6 +218,13 @@ std::string describeBytes(std::uint64_t bytes) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", value);
     return std::string(text) + " " + kUnits[unit];
+}
+
+std::string inQuotes(std::string_view text) {
+    constexpr std::size_t kMost = 40;
+    std::string quote("'");
+    quote += text.substr(0, kMost);
+    return quote + (text.size() > kMost ? "…'" : "'");
 }
 
 std::vector<std::string> splitWords(std::string_view text) {

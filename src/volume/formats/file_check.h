@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "volume/job.h"
+
 namespace pellucid {
 
 /// Size of a file that can be read. Throws FileError: no such file, a folder, not permitted.
@@ -22,12 +24,22 @@ std::string describeContent(std::string_view head);
 /// bytesPerValue stays below 2^63.
 std::uint64_t valueCount(const std::string& path, std::span<const std::int64_t> sizes, std::uint64_t bytesPerValue);
 
-enum class Encoding { Raw, Deflate, Text };
+enum class Encoding { Raw, Deflate, Text, Hex };
 
 /// Throws FileError where `stored` bytes cannot hold `values` values of `bytesPerValue` in this encoding. `where` is
 /// the file that holds the data; `toDo` advises what to check.
 void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
                    std::uint64_t stored, const std::string& toDo);
+
+/// Unpacks the deflate stream that begins at byte `start` of a file (gzip, several members too; one of zlib or gzip
+/// where `zlib`) without keeping it. Throws FileError unless it yields at least `wanted` bytes undamaged: the format
+/// libraries fill what is missing with zeros and say nothing.
+void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                     const JobControl& job);
+
+/// Throws FileError unless the text that begins at byte `start` of a file holds `wanted` numbers, between blanks or
+/// commas: some libraries go on with the last one where the text ends.
+void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job);
 
 /// Memory that this machine can give without swapping, bytes (MemAvailable); the largest number where unknown.
 std::uint64_t availableMemoryBytes();
@@ -37,6 +49,8 @@ void requireMemory(const std::string& path, std::uint64_t needed, std::uint64_t 
 /// "512 bytes", "1.50 GB" (powers of 1000).
 std::string describeBytes(std::uint64_t bytes);
 
+/// A text out of a header, in quotes and cut to 40 bytes: a damaged one may go on for long.
+std::string inQuotes(std::string_view text);
 /// Blank-separated words.
 std::vector<std::string> splitWords(std::string_view text);
 std::string trimmed(std::string_view text);

@@ -1,11 +1,14 @@
 #include "volume/formats/itk_image.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <iostream>
 #include <limits>
 #include <mutex>
 #include <type_traits>
+
+#include <locale.h>
 
 #include <itkImageIOBase.h>
 
@@ -15,34 +18,42 @@ namespace pellucid {
 
 namespace {
 
-/// Swallows what the format libraries print (MetaIO writes its complaints to std::cerr and std::cout): users get our
-/// one line, stdout carries only answers. One reader at a time, since the streams belong to the process.
-class QuietStreams {
+/// While it lives, the format libraries are silent and read numbers with a point.
+/// Silent: MetaIO writes its complaints to std::cerr and std::cout; users get our one line, stdout carries only
+/// answers. One reader at a time, since the streams belong to the process. The point: the NRRD and MetaIO parsers
+/// follow the C locale of the process, which a desktop program takes from its user.
+class LibraryCall {
 public:
-    QuietStreams() : m_lock(s_mutex), m_out(std::cout.rdbuf(nullptr)), m_error(std::cerr.rdbuf(nullptr)) {
+    LibraryCall()
+        : m_lock(s_mutex), m_out(std::cout.rdbuf(nullptr)), m_error(std::cerr.rdbuf(nullptr)),
+          m_plain(newlocale(LC_NUMERIC_MASK, "C", duplocale(LC_GLOBAL_LOCALE))), m_before(uselocale(m_plain)) {
         itk::Object::SetGlobalWarningDisplay(false);
     }
-    ~QuietStreams() {
+    ~LibraryCall() {
+        uselocale(m_before);
+        freelocale(m_plain);
         std::cout.rdbuf(m_out); // also clears the error state that writing to nothing left behind
         std::cerr.rdbuf(m_error);
     }
-    QuietStreams(const QuietStreams&) = delete;
-    QuietStreams& operator=(const QuietStreams&) = delete;
+    LibraryCall(const LibraryCall&) = delete;
+    LibraryCall& operator=(const LibraryCall&) = delete;
 
 private:
     static std::mutex s_mutex;
     std::lock_guard<std::mutex> m_lock;
     std::streambuf* m_out;
     std::streambuf* m_error;
+    locale_t m_plain, m_before; // of this thread only
 };
-std::mutex QuietStreams::s_mutex;
+std::mutex LibraryCall::s_mutex;
 
 /// The last line of the NRRD library's own account, which is the cause; empty for the others, whose texts name source
 /// files and say no more than that reading failed.
 std::string causeIn(const std::string& description) {
     const std::size_t last = description.rfind("[nrrd] ");
     if (last == std::string::npos) return {};
-    std::string line = description.substr(last + 7, description.find('\n', last) - last - 7);
+    const std::size_t length = std::min(description.find('\n', last), last + 160) - last - 7;
+    const std::string line = description.substr(last + 7, length);
     const std::size_t function = line.find(": "); // "nrrdLoad: cause"
     return trimmed(function == std::string::npos ? line : line.substr(function + 2));
 }
@@ -52,7 +63,7 @@ template <class Call>
 void translated(const std::string& path, const Call& call) {
     const char* kToDo = "the file may be damaged, write or copy it again";
     try {
-        const QuietStreams quiet;
+        const LibraryCall scope;
         call();
     } catch (const Error&) {
         throw;

@@ -46,7 +46,7 @@ MetaHeader parseHeader(const std::string& path) {
         begin = std::min(end + 1, head.size());
     }
     header.dataStart = begin;
-    if (header.fields.count("NDims") == 0 && header.fields.count("DimSize") == 0)
+    if (header.fields.count("NDims") == 0 && header.fields.count("ObjectType") == 0)
         throw FileError("this is not a MetaImage file but " + describeContent(head.substr(0, 1024)), path,
                         "give it the suffix of its own format, or --raw");
     for (const char* name : {"NDims", "DimSize", "ElementType", "ElementDataFile"})
@@ -54,7 +54,7 @@ MetaHeader parseHeader(const std::string& path) {
             throw FileError("the header has no " + std::string(name), path,
                             "correct the header, or copy the file again");
     if (const std::string object = header.get("ObjectType"); !object.empty() && object != "Image")
-        throw FileError("this MetaIO file holds an object of type '" + object + "', not an image", path, "");
+        throw FileError("this MetaIO file holds an object of type " + inQuotes(object) + ", not an image", path, "");
     return header;
 }
 
@@ -76,7 +76,7 @@ std::uint64_t bytesOfType(std::string type, const std::string& path) {
     if (type.size() > 6 && type.ends_with("_ARRAY")) type.resize(type.size() - 6);
     const auto it = kBytes.find(type);
     if (it != kBytes.end()) return it->second;
-    throw FileError("the ElementType '" + given + "' is not supported", path,
+    throw FileError("the ElementType " + inQuotes(given) + " is not supported", path,
                     "it is one of MET_CHAR, MET_UCHAR, … MET_FLOAT, MET_DOUBLE");
 }
 
@@ -86,7 +86,8 @@ std::vector<std::int64_t> sizesIn(const MetaHeader& header, const std::string& p
     for (const std::string& word : splitWords(header.get("DimSize"))) {
         std::int64_t size = 0;
         if (!parseNumber(word, size))
-            throw FileError("the header's DimSize '" + word + "' is not a whole number", path, "correct the header");
+            throw FileError("the header's DimSize " + inQuotes(word) + " is not a whole number", path,
+                            "correct the header");
         sizes.push_back(size);
     }
     if (dimensions < 1 || dimensions > 10 || sizes.size() != static_cast<std::size_t>(dimensions))
@@ -108,14 +109,14 @@ void checkSpacing(const MetaHeader& header, std::size_t axes, const std::string&
         for (std::size_t a = 0; a < std::min<std::size_t>(axes, 3); ++a) {
             double spacing = 0;
             if (!parseNumber(words[a], spacing) || !(spacing > 0) || !std::isfinite(spacing))
-                throw FileError("the spacing of axis " + std::to_string(a) + " is '" + words[a] +
-                                    "', it must be positive and finite",
+                throw FileError("the spacing of axis " + std::to_string(a) + " is " + inQuotes(words[a]) +
+                                    ", it must be positive and finite",
                                 path, "correct the header");
         }
     }
 }
 
-HeaderClaim checkedClaim(const std::string& path) {
+HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     const MetaHeader header = parseHeader(path);
     std::vector<std::int64_t> sizes = sizesIn(header, path);
     checkSpacing(header, sizes.size(), path);
@@ -130,14 +131,16 @@ HeaderClaim checkedClaim(const std::string& path) {
     if (!local) {
         if (dataFile.rfind("LIST", 0) == 0 || dataFile.find('%') != std::string::npos)
             throw FileError("a data file in several parts is not supported", path, "write it as one file");
+        if (dataFile.size() > 1000)
+            throw FileError("the name of the data file is too long", path, "correct the header");
         const fs::path data(dataFile);
         claim.dataPath = (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
     }
-    std::uint64_t stored = readableFileBytes(claim.dataPath);
-    if (local) stored -= std::min(header.dataStart, stored);
     const std::int64_t skip = wholeNumber(header, "HeaderSize", 0, path); // −1: the data end where the file ends
     if (skip < -1) throw FileError("the header's HeaderSize is negative", path, "correct the header");
-    if (skip > 0 && !local) stored -= std::min(static_cast<std::uint64_t>(skip), stored);
+    const std::uint64_t start = local ? header.dataStart : static_cast<std::uint64_t>(std::max(skip, std::int64_t{0}));
+    const std::uint64_t fileBytes = readableFileBytes(claim.dataPath);
+    const std::uint64_t stored = fileBytes - std::min(start, fileBytes);
 
     const bool compressed = header.isTrue("CompressedData");
     const bool text = !header.get("BinaryData").empty() && !header.isTrue("BinaryData");
@@ -150,6 +153,8 @@ HeaderClaim checkedClaim(const std::string& path) {
     }
     requireStored(claim.dataPath, encoding, claim.values, claim.bytesPerValue, stored, toDo);
     const std::uint64_t bytes = claim.values * claim.bytesPerValue;
+    if (compressed) requireInflates(claim.dataPath, start, true, bytes, job);
+    if (encoding == Encoding::Text) requireNumbers(claim.dataPath, start, claim.values, job);
     if (encoding == Encoding::Raw && skip >= 0 && stored > bytes)
         claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
     return claim;
@@ -163,7 +168,7 @@ public:
         return kSuffixes;
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const HeaderClaim claim = checkedClaim(source.path);
+        const HeaderClaim claim = checkedClaim(source.path, job);
         const auto io = itk::MetaImageIO::New();
         return readWithItk(*io, source, claim, job);
     }

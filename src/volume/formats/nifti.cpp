@@ -92,7 +92,7 @@ NiftiType typeOf(int code, const std::string& path) {
                     "convert it to integers of 8 to 64 bits, float or double");
 }
 
-HeaderClaim checkedClaim(const std::string& path) {
+HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     const std::uint64_t fileBytes = readableFileBytes(path);
     const NiftiHeader header(path);
     const int axes = header.dim(0);
@@ -122,6 +122,7 @@ HeaderClaim checkedClaim(const std::string& path) {
     requireStored(path, compressed ? Encoding::Deflate : Encoding::Raw, claim.values, claim.bytesPerValue, stored,
                   "check dim and datatype in the header, or copy the file again");
     const std::uint64_t bytes = claim.values * claim.bytesPerValue;
+    if (compressed) requireInflates(path, 0, false, start + bytes, job);
     if (!compressed && stored > bytes)
         claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
     return claim;
@@ -135,7 +136,7 @@ public:
         return kSuffixes;
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const HeaderClaim claim = checkedClaim(source.path);
+        const HeaderClaim claim = checkedClaim(source.path, job);
         const auto io = itk::NiftiImageIO::New();
         return readWithItk(*io, source, claim, job);
     }

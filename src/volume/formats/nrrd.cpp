@@ -61,7 +61,7 @@ std::int64_t wholeNumber(const NrrdHeader& header, const std::string& field, std
     std::int64_t value = otherwise;
     const std::string text = header.get(field);
     if (!text.empty() && !parseNumber(text, value))
-        throw FileError("the header's field '" + field + "' is not a whole number", path, "correct the header");
+        throw FileError("the header's field " + inQuotes(field) + " is not a whole number", path, "correct the header");
     return value;
 }
 
@@ -84,8 +84,8 @@ std::uint64_t bytesOfType(const std::string& type, const std::string& path) {
     }();
     const auto it = kBytes.find(lowerCase(type));
     if (it != kBytes.end()) return it->second;
-    throw FileError(type.empty() ? "the header names no type" : "the type '" + type + "' is not supported", path,
-                    "the types are signed and unsigned integers of 8 to 64 bits, float and double");
+    throw FileError(type.empty() ? "the header names no type" : "the type " + inQuotes(type) + " is not supported",
+                    path, "the types are signed and unsigned integers of 8 to 64 bits, float and double");
 }
 
 /// "none (1,0,0) (0,1,0)": one word per axis; blanks inside the brackets are allowed.
@@ -152,8 +152,8 @@ void checkSpacing(const NrrdHeader& header, std::size_t axes, const std::string&
             if (!parseNumber(text, spacing)) spacing = std::numeric_limits<double>::quiet_NaN();
         }
         if (!(spacing > 0) || !std::isfinite(spacing))
-            throw FileError("the spacing of axis " + std::to_string(a) + " is '" + text +
-                                "', it must be positive and finite",
+            throw FileError("the spacing of axis " + std::to_string(a) + " is " + inQuotes(text) +
+                                ", it must be positive and finite",
                             path, "correct the header");
     }
 }
@@ -168,11 +168,14 @@ std::uint64_t bytesOfLines(const std::string& path, std::uint64_t start, std::in
 
 std::vector<std::int64_t> sizesIn(const NrrdHeader& header, const std::string& path) {
     const std::int64_t dimension = wholeNumber(header, "dimension", 0, path);
+    if (header.get("dimension").empty())
+        throw FileError("the header gives no dimension", path, "correct the header, or copy the file again");
     std::vector<std::int64_t> sizes;
     for (const std::string& word : splitWords(header.get("sizes"))) {
         std::int64_t size = 0;
         if (!parseNumber(word, size))
-            throw FileError("the header's size '" + word + "' is not a whole number", path, "correct the header");
+            throw FileError("the header's size " + inQuotes(word) + " is not a whole number", path,
+                            "correct the header");
         sizes.push_back(size);
     }
     if (dimension < 1 || dimension > 16 || sizes.size() != static_cast<std::size_t>(dimension))
@@ -186,12 +189,14 @@ Encoding encodingIn(const NrrdHeader& header, const std::string& path) {
     const std::string name = lowerCase(header.get("encoding"));
     if (name == "raw") return Encoding::Raw;
     if (name == "gzip" || name == "gz") return Encoding::Deflate;
-    if (name == "ascii" || name == "text" || name == "txt" || name == "hex") return Encoding::Text;
-    throw FileError(name.empty() ? "the header names no encoding" : "the encoding '" + name + "' is not supported",
+    if (name == "ascii" || name == "text" || name == "txt") return Encoding::Text;
+    if (name == "hex") return Encoding::Hex;
+    throw FileError(name.empty() ? "the header names no encoding"
+                                 : "the encoding " + inQuotes(name) + " is not supported",
                     path, "write it with encoding raw or gzip");
 }
 
-HeaderClaim checkedClaim(const std::string& path) {
+HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     const NrrdHeader header = parseHeader(path);
     const std::vector<std::int64_t> sizes = sizesIn(header, path);
     HeaderClaim claim;
@@ -208,6 +213,8 @@ HeaderClaim checkedClaim(const std::string& path) {
         if (dataFile.rfind("LIST", 0) == 0 || dataFile.rfind("SKIPLIST", 0) == 0 ||
             dataFile.find('%') != std::string::npos)
             throw FileError("a data file in several parts is not supported", path, "write it as one file");
+        if (dataFile.size() > 1000)
+            throw FileError("the name of the data file is too long", path, "correct the header");
         const fs::path data(dataFile);
         claim.dataPath = (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
     }
@@ -218,12 +225,16 @@ HeaderClaim checkedClaim(const std::string& path) {
     if (lineSkip < 0 || byteSkip < -1)
         throw FileError("the header skips a negative number of lines or bytes", path, "correct the header");
     if (lineSkip > 0) start += bytesOfLines(claim.dataPath, start, lineSkip);
-    if (encoding == Encoding::Raw && byteSkip > 0) start += static_cast<std::uint64_t>(byteSkip);
+    if (encoding != Encoding::Deflate && byteSkip > 0) start += static_cast<std::uint64_t>(byteSkip);
     stored -= std::min(start, stored);
 
     requireStored(claim.dataPath, encoding, claim.values, claim.bytesPerValue, stored,
                   "check sizes and type in the header, or copy the file again");
     const std::uint64_t bytes = claim.values * claim.bytesPerValue;
+    if (encoding == Encoding::Text) requireNumbers(claim.dataPath, start, claim.values, job);
+    if (encoding == Encoding::Deflate) // bytes are skipped in what comes out
+        requireInflates(claim.dataPath, start, false,
+                        bytes + static_cast<std::uint64_t>(std::max(byteSkip, std::int64_t{0})), job);
     if (encoding == Encoding::Raw && byteSkip >= 0 && stored > bytes)
         claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
     return claim;
@@ -237,7 +248,7 @@ public:
         return kSuffixes;
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const HeaderClaim claim = checkedClaim(source.path);
+        const HeaderClaim claim = checkedClaim(source.path, job);
         const auto io = itk::NrrdImageIO::New();
         return readWithItk(*io, source, claim, job);
     }

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that Pellucid is built, run and tested with. Needs root or sudo for that; does nothing
+# when all are there.
+set -euo pipefail
+
+packages=(
+    # the build
+    g++ cmake ninja-build ccache pkg-config git ca-certificates
+    # volume files, images, threads, maths, JSON, command line
+    libinsighttoolkit5-dev zlib1g-dev
+    libopenimageio-dev openimageio-tools libopencv-dev # OpenImageIO's CMake files name the last two
+    libtbb-dev libglm-dev nlohmann-json3-dev libcli11-dev
+    # OpenGL, on a GPU or in software, with and without a display
+    libepoxy-dev libgl-dev libegl-dev libopengl-dev libvulkan-dev libegl1 libgl1-mesa-dri libegl-mesa0 libosmesa6
+    # the window
+    qt6-base-dev libqt6opengl6-dev libqt6openglwidgets6
+    # the tests: Catch2, a display without a screen, a font for its windows
+    catch2 xvfb xauth fonts-dejavu-core
+)
+
+if [ "$(dpkg-query -W -f '${db:Status-Status}\n' "${packages[@]}" 2>/dev/null | grep -c '^installed$')" -eq "${#packages[@]}" ]; then
+    exit 0
+fi
+missing=()
+for package in "${packages[@]}"; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)" = installed ] || missing+=("$package")
+done
+
+echo "setup: installing ${#missing[@]} Debian packages: ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || {
+        echo "setup: not root and no sudo: install these packages by hand, then run this again" >&2
+        exit 1
+    }
+    as_root=(sudo)
+fi
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"

@@ -1,0 +1,205 @@
+#include "optimize/optimizer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/error.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kSmallestParallelStep = -2, kLargestParallelStep = 5; ///< exponents of 2 of the parallel line search
+constexpr int kHalvings = 5, kDoublings = 12;                       ///< of the sequential one
+
+/// The search so far and what its moves need.
+class Search {
+public:
+    Search(const VwsFunction& function, const std::vector<double>& targets, const OptimizeOptions& options,
+           const JobControl& job)
+        : m_function(function), m_targets(targets), m_options(options), m_job(job) {}
+
+    std::vector<OptimizeState> evaluate(const std::vector<std::vector<double>>& candidates) {
+        const auto vws = m_function.evaluate(candidates, m_job);
+        m_evaluations += static_cast<int>(candidates.size());
+        std::vector<OptimizeState> states;
+        for (std::size_t i = 0; i < candidates.size(); ++i)
+            states.push_back({objectiveOf(vws[i], m_targets), vws[i], candidates[i]});
+        return states;
+    }
+
+    /// The state after one move from `at`, which is `at` itself where no move helps.
+    OptimizeState move(const OptimizeState& at) {
+        const std::vector<double> d = direction(at);
+        switch (m_options.method) {
+        case SearchMethod::Fixed:
+            return fixedStep(at, d);
+        case SearchMethod::Line:
+            return lineSearch(at, d);
+        case SearchMethod::Parallel:
+            return parallelLineSearch(at, d);
+        }
+        return at;
+    }
+
+    int evaluations() const { return m_evaluations; }
+
+private:
+    /// Method 1: ∂F/∂W_i taken as 2(W − t), with ∂W_i/∂x_i replaced by 1.
+    std::vector<double> direction(const OptimizeState& at) const {
+        std::vector<double> d(m_targets.size());
+        double square = 0;
+        for (std::size_t i = 0; i < d.size(); ++i) {
+            d[i] = 2 * (at.vws[i] - m_targets[i]);
+            square += d[i] * d[i];
+        }
+        if (m_options.normalize && square > 0)
+            for (double& v : d) v /= std::sqrt(square);
+        return d;
+    }
+
+    static std::vector<double> stepped(const OptimizeState& at, const std::vector<double>& d, double step) {
+        std::vector<double> x = at.opacity;
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::clamp(x[i] - step * d[i], 0.0, 1.0);
+        return x;
+    }
+
+    OptimizeState trial(const OptimizeState& at, const std::vector<double>& d, double step) {
+        return evaluate({stepped(at, d, step)})[0];
+    }
+
+    OptimizeState fixedStep(const OptimizeState& at, const std::vector<double>& d) {
+        if (stepped(at, d, m_options.step) == at.opacity) return at;
+        return trial(at, d, m_options.step);
+    }
+
+    OptimizeState lineSearch(const OptimizeState& at, const std::vector<double>& d) {
+        double step = m_options.step;
+        OptimizeState best = trial(at, d, step);
+        if (best.objective < at.objective) {
+            for (int n = 0; n < kDoublings; ++n) {
+                step *= 2;
+                if (stepped(at, d, step) == best.opacity) break; // clamped at every end already
+                OptimizeState next = trial(at, d, step);
+                if (!(next.objective < best.objective)) break;
+                best = std::move(next);
+            }
+            return best;
+        }
+        for (int n = 0; n < kHalvings; ++n) {
+            step /= 2;
+            OptimizeState next = trial(at, d, step);
+            if (next.objective < at.objective) return next;
+        }
+        return at;
+    }
+
+    OptimizeState parallelLineSearch(const OptimizeState& at, const std::vector<double>& d) {
+        constexpr int kCount = kLargestParallelStep - kSmallestParallelStep + 1;
+        // Where the whole batch overshoots, the valley is narrower than its smallest step: one finer batch looks there.
+        for (const int shift : {0, -kCount}) {
+            std::vector<std::vector<double>> candidates;
+            for (int i = kSmallestParallelStep; i <= kLargestParallelStep; ++i)
+                candidates.push_back(stepped(at, d, m_options.step * std::exp2(i + shift)));
+            const auto states = evaluate(candidates);
+            // Of equal ones the shorter step: min_element keeps the first. A NaN never wins.
+            const auto best = std::min_element(states.begin(), states.end(),
+                                               [](const auto& a, const auto& b) { return a.objective < b.objective; });
+            if (best->objective < at.objective) return *best;
+        }
+        return at;
+    }
+
+    const VwsFunction& m_function;
+    const std::vector<double>& m_targets;
+    const OptimizeOptions& m_options;
+    const JobControl& m_job;
+    int m_evaluations = 0;
+};
+
+} // namespace
+
+const char* name(SearchMethod method) {
+    switch (method) {
+    case SearchMethod::Fixed:
+        return "fixed";
+    case SearchMethod::Line:
+        return "line";
+    case SearchMethod::Parallel:
+        return "parallel";
+    }
+    return "";
+}
+
+SearchMethod searchMethodFromName(const std::string& text) {
+    for (const SearchMethod m : {SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel})
+        if (text == name(m)) return m;
+    throw UsageError("there is no search method '" + text + "'", "--method", "choose fixed, line or parallel");
+}
+
+const char* name(StopReason reason) {
+    switch (reason) {
+    case StopReason::Converged:
+        return "converged";
+    case StopReason::MaxIterations:
+        return "max-iterations";
+    case StopReason::NoProgress:
+        return "no-progress";
+    case StopReason::Cancelled:
+        return "cancelled";
+    }
+    return "";
+}
+
+void OptimizeOptions::validate() const {
+    if (!(step > 0 && step <= 10)) throw UsageError("the step lies in (0,10]", "optimize", "correct --step");
+    if (!(tolerance > 0) || !std::isfinite(tolerance))
+        throw UsageError("the tolerance is positive", "optimize", "correct --tolerance");
+    if (maxIterations < 0)
+        throw UsageError("the number of iterations is not negative", "optimize", "correct --max-iterations");
+}
+
+OptimizeResult optimize(const VwsFunction& function, const std::vector<double>& targets, const OptimizeOptions& options,
+                        const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
+    options.validate();
+    OptimizeResult result;
+    result.tf = function.base();
+    result.targets = normalizedTargets(targets, function.featureCount());
+    Search search(function, result.targets, options, job);
+
+    const auto arrive = [&](OptimizeState state) {
+        result.history.push_back(std::move(state));
+        if (result.history.back().objective < result.history[result.best].objective)
+            result.best = result.history.size() - 1;
+        if (watch) watch(result.history.back());
+        job.report(options.maxIterations == 0 ? 1.0 : static_cast<double>(result.iterations()) / options.maxIterations);
+    };
+    try {
+        arrive(search.evaluate({featureOpacities(function.base())})[0]);
+        for (;;) {
+            const OptimizeState& at = result.history.back();
+            if (at.objective < options.tolerance) {
+                result.reason = StopReason::Converged;
+                break;
+            }
+            if (result.iterations() >= options.maxIterations) {
+                result.reason = StopReason::MaxIterations;
+                break;
+            }
+            job.throwIfStopped();
+            OptimizeState next = search.move(at);
+            if (next.opacity == at.opacity) {
+                result.reason = StopReason::NoProgress;
+                break;
+            }
+            arrive(std::move(next));
+        }
+    } catch (const Cancelled&) {
+        result.reason = StopReason::Cancelled;
+    }
+    result.evaluations = search.evaluations();
+    if (!result.history.empty()) result.tf = withFeatureOpacities(function.base(), result.history[result.best].opacity);
+    return result;
+}
+
+} // namespace pellucid

@@ -1,0 +1,143 @@
+#include "render/camera.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "volume/atomic_file.h"
+#include "volume/error.h"
+
+namespace pellucid {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr double kDefaultFov = 30.0;
+
+bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+const json& need(const json& j, const char* key, const std::string& where) {
+    const auto it = j.find(key);
+    if (it == j.end()) throw Error(std::string("the key '") + key + "' is missing", where, "add it to the camera");
+    return *it;
+}
+
+double needNumber(const json& j, const char* key, const std::string& where) {
+    const json& v = need(j, key, where);
+    if (!v.is_number()) throw Error("a number is expected", where + " at /" + key, "correct the camera");
+    return v.get<double>();
+}
+
+Vec3 needVec3(const json& j, const char* key, const std::string& where) {
+    const json& v = need(j, key, where);
+    if (!v.is_array() || v.size() != 3 || !v[0].is_number() || !v[1].is_number() || !v[2].is_number())
+        throw Error("three numbers [x,y,z] are expected", where + " at /" + key, "correct the camera");
+    return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
+}
+
+json jsonFromVec3(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+} // namespace
+
+Vec3 Camera::forward() const { return glm::normalize(center - eye); }
+Vec3 Camera::right() const { return glm::normalize(glm::cross(forward(), up)); }
+Vec3 Camera::trueUp() const { return glm::cross(right(), forward()); }
+
+Vec3 Camera::towardEye(const Vec3& point) const {
+    return projection == Projection::Orthographic ? -forward() : glm::normalize(eye - point);
+}
+
+void Camera::validate(const Geometry& geometry, const std::string& where) const {
+    const char* correct = "correct the camera";
+    if (!finite(eye) || !finite(center) || !finite(up))
+        throw Error("the camera has a number that is not finite", where, correct);
+    if (!(glm::length(center - eye) > 0)) throw Error("eye and center are the same point", where, correct);
+    if (!(glm::length(glm::cross(forward(), up)) > 1e-9 * glm::length(up)))
+        throw Error("up is zero or parallel to the view direction", where, correct);
+    if (projection == Projection::Orthographic) {
+        if (!(height > 0) || !std::isfinite(height)) throw Error("height must be positive", where, correct);
+        return;
+    }
+    if (!(fovY > 0 && fovY < 180)) throw Error("fov_y lies between 0 and 180 degrees", where, correct);
+    const Vec3 lo = geometry.boxMin(), hi = geometry.boxMax();
+    bool inside = true;
+    for (int a = 0; a < 3; ++a) inside = inside && eye[a] > lo[a] && eye[a] < hi[a];
+    if (inside)
+        throw Error("the eye is inside the volume's box", where, "move it outside, or use an orthographic camera");
+}
+
+Ray pixelRay(const Camera& camera, double x, double y, int width, int height) {
+    const double halfHeight =
+        camera.projection == Projection::Perspective ? std::tan(camera.fovY * kRadians / 2) : camera.height / 2;
+    const double sx = (2 * x / width - 1) * halfHeight * width / height;
+    const double sy = (1 - 2 * y / height) * halfHeight;
+    const Vec3 offset = sx * camera.right() + sy * camera.trueUp();
+    if (camera.projection == Projection::Perspective) return {camera.eye, glm::normalize(camera.forward() + offset)};
+    return {camera.eye + offset, camera.forward()};
+}
+
+Camera cameraFromView(const Geometry& geometry, double azimuth, double elevation, double zoom, Projection projection) {
+    if (!std::isfinite(azimuth) || !std::isfinite(elevation))
+        throw UsageError("azimuth and elevation are finite degrees", "view", "correct them");
+    if (!(zoom > 0) || !std::isfinite(zoom)) throw UsageError("zoom is a positive factor", "view", "correct it");
+    const double az = azimuth * kRadians, el = elevation * kRadians;
+    const Vec3 toEye{std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el), std::sin(el)};
+    const double radius = 0.5 * glm::length(geometry.boxMax() - geometry.boxMin());
+
+    Camera camera;
+    camera.projection = projection;
+    camera.center = geometry.boxCenter();
+    // The derivative of toEye by elevation: perpendicular to the view and defined at the poles too.
+    camera.up = {-std::sin(az) * std::sin(el), std::cos(az) * std::sin(el), std::cos(el)};
+    // Zooming narrows the image instead of moving the eye, so that no zoom leads into the box.
+    camera.eye = camera.center + toEye * (radius / std::sin(kDefaultFov * kRadians / 2));
+    camera.fovY = 2 * std::atan(std::tan(kDefaultFov * kRadians / 2) / zoom) / kRadians;
+    camera.height = 2 * radius / zoom;
+    return camera;
+}
+
+Camera cameraFromJson(const json& j, const std::string& where) {
+    if (!j.is_object()) throw Error("a JSON object is expected", where, "give a camera file");
+    const json& projection = need(j, "projection", where);
+    Camera camera;
+    camera.eye = needVec3(j, "eye", where);
+    camera.center = needVec3(j, "center", where);
+    camera.up = needVec3(j, "up", where);
+    if (projection == "perspective") {
+        camera.projection = Projection::Perspective;
+        camera.fovY = needNumber(j, "fov_y", where);
+    } else if (projection == "orthographic") {
+        camera.projection = Projection::Orthographic;
+        camera.height = needNumber(j, "height", where);
+    } else {
+        throw Error("the projection is neither \"perspective\" nor \"orthographic\"", where + " at /projection",
+                    "correct the camera");
+    }
+    return camera;
+}
+
+json jsonFromCamera(const Camera& camera) {
+    json j = {
+        {"eye", jsonFromVec3(camera.eye)}, {"center", jsonFromVec3(camera.center)}, {"up", jsonFromVec3(camera.up)}};
+    const bool perspective = camera.projection == Projection::Perspective;
+    j["projection"] = perspective ? "perspective" : "orthographic";
+    if (perspective)
+        j["fov_y"] = camera.fovY;
+    else
+        j["height"] = camera.height;
+    return j;
+}
+
+Camera readCamera(const std::string& path) {
+    try {
+        return cameraFromJson(json::parse(readText(path)), path);
+    } catch (const json::parse_error& e) {
+        throw FileError("this is not valid JSON (byte " + std::to_string(e.byte) + ")", path, "correct the file");
+    }
+}
+
+} // namespace pellucid

@@ -1,0 +1,259 @@
+// The fast engine: sets up sweeps (see sweep.h) and runs their bands on threads.
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+
+#include "render/cpu/sweep.h"
+#include "render/visibility.h"
+#include "tf/opacity.h"
+#include "volume/intensity_grid.h"
+#include "volume/parallel.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kDepthTableSize = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
+
+/// The tables of up to kSweepLanes transfer functions side by side.
+struct SweepTables {
+    SweepTables(std::span<const TransferFunction> tfs, int laneCount, int maxCode) : lanes(laneCount) {
+        const auto n = static_cast<std::size_t>(lanes), codes = static_cast<std::size_t>(maxCode) + 1;
+        depth.assign(static_cast<std::size_t>(kDepthTableSize) * n, 0.0f);
+        alpha.assign(codes * n, 0.0f);
+        featureOfCode.assign(codes, kTransparent);
+        for (std::size_t lane = 0; lane < tfs.size(); ++lane) {
+            const TfSampler sampler(tfs[lane]);
+            for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i)
+                depth[i * n + lane] = static_cast<float>(
+                    opticalDepthOfOpacity(sampler.opacity(static_cast<double>(i) / (kDepthTableSize - 1))));
+            for (std::size_t c = 0; c < codes; ++c) {
+                const double s = static_cast<double>(c) / maxCode;
+                const double a = sampler.opacity(s);
+                alpha[c * n + lane] = static_cast<float>(a);
+                if (a <= 0 || featureOfCode[c] != kTransparent) continue;
+                const int f = featureAt(tfs[0].features, s);
+                featureOfCode[c] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(tfs[0].features.size()) : f);
+            }
+        }
+    }
+    int lanes;
+    std::vector<float> depth, alpha;
+    std::vector<std::uint8_t> featureOfCode;
+};
+
+class CpuEngine final : public VisibilityEngine {
+public:
+    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality)
+        : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)) {}
+
+    std::string name() const override { return "cpu"; }
+    const Volume& volume() const override { return *m_volume; }
+
+    std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
+                                  const WeightFields* weights, const JobControl& job) override {
+        std::vector<FeatureSums> all;
+        for (std::size_t first = 0; first < tfs.size(); first += kSweepLanes) {
+            const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
+            for (FeatureSums& s : sweep(camera, batch, weights, nullptr, job)) all.push_back(std::move(s));
+        }
+        return all;
+    }
+
+    VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
+        VisibilityField field{Grid<float>(m_volume->dims())};
+        sweep(camera, {&tf, 1}, nullptr, &field.values, job);
+        return field;
+    }
+
+private:
+    struct Axes {
+        int u, v, w;
+        bool flipped; ///< the nearest slice is the one of the highest index
+    };
+
+    static Vec3 permuted(const Vec3& p, const Axes& x) { return {p[x.u], p[x.v], p[x.w]}; }
+
+    /// The sweep axis: the one nearest the view direction; for a perspective eye the one whose rays stay steepest.
+    Axes chooseAxes(const Camera& camera) const {
+        const Geometry& g = m_volume->geometry();
+        int w = 0;
+        bool flipped = false;
+        if (camera.projection == Projection::Orthographic) {
+            const Vec3 d = camera.forward();
+            for (int a = 1; a < 3; ++a)
+                if (std::abs(d[a]) > std::abs(d[w])) w = a;
+            flipped = d[w] < 0;
+        } else {
+            const Vec3 lo = g.boxMin(), hi = g.boxMax();
+            double best = 1e300;
+            for (int a = 0; a < 3; ++a) {
+                const double outside = std::max(lo[a] - camera.eye[a], camera.eye[a] - hi[a]);
+                if (outside < 0) continue;
+                double lateral = 0;
+                for (int b = 0; b < 3; ++b)
+                    if (b != a)
+                        lateral = std::max({lateral, std::abs(lo[b] - camera.eye[b]), std::abs(hi[b] - camera.eye[b])});
+                const double slope = lateral / (outside + (hi[a] - lo[a]) / 2);
+                if (slope >= best) continue;
+                best = slope;
+                w = a;
+                flipped = camera.eye[a] >= hi[a];
+            }
+        }
+        return {w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped};
+    }
+
+    void setRays(SweepInput& in, const Camera& camera, const Axes& axes) const {
+        const Geometry& g = m_volume->geometry();
+        const Vec3 h = permuted(g.spacing, axes) / g.d0();
+        in.hu = h.x, in.hv = h.y, in.hw = h.z;
+        const double sign = axes.flipped ? -1 : 1;
+        const bool high = m_quality == Quality::High;
+        in.maxStep = high ? 0.5 : 1.0;
+        in.raySpacing = in.maxRaySpacing = high ? 1 / 1.5 : 1.0;
+        in.perspective = camera.projection == Projection::Perspective;
+        if (!in.perspective) {
+            const Vec3 d = permuted(camera.forward() / g.spacing, axes);
+            in.slopeU = d.x / (sign * d.z);
+            in.slopeV = d.y / (sign * d.z);
+            // Rays through the voxels' own centres need no company.
+            if (in.slopeU == 0 && in.slopeV == 0) in.raySpacing = 1;
+            return;
+        }
+        const Vec3 eye = permuted(g.voxelFromWorld(camera.eye), axes);
+        in.eyeU = eye.x;
+        in.eyeV = eye.y;
+        in.eyeW = axes.flipped ? in.nw - 1 - eye.z : eye.z;
+        const double near = 0 - in.eyeW, far = in.nw - 1 - in.eyeW;
+        const double halvings = std::floor(std::log2(far / near));
+        in.firstSlopeStep = in.maxRaySpacing / far * std::exp2(halvings);
+    }
+
+    /// Codes laid out so that neighbours along u are neighbours in memory.
+    const std::uint16_t* codesFor(const Axes& axes, SweepStrides& strides) {
+        const Int3 n = m_volume->dims();
+        const std::ptrdiff_t nx = n.x, ny = n.y, nz = n.z;
+        if (axes.w != 0) {
+            strides = axes.w == 2 ? SweepStrides{1, nx, nx * ny} : SweepStrides{1, nx * ny, nx};
+            return m_grid.codes.data();
+        }
+        if (m_codesYZX.empty()) {
+            m_codesYZX.resize(m_grid.codes.size());
+            parallelFor(static_cast<std::size_t>(nz), [&](std::size_t k) {
+                for (int j = 0; j < n.y; ++j)
+                    for (int i = 0; i < n.x; ++i)
+                        m_codesYZX[static_cast<std::size_t>(j + ny * (static_cast<std::ptrdiff_t>(k) + nz * i))] =
+                            m_grid.codes.at(i, j, static_cast<int>(k));
+            });
+        }
+        strides = {1, ny, ny * nz};
+        return m_codesYZX.data();
+    }
+
+    std::vector<FeatureSums> sweep(const Camera& camera, std::span<const TransferFunction> tfs,
+                                   const WeightFields* weights, Grid<float>* field, const JobControl& job) {
+        const Geometry& g = m_volume->geometry();
+        camera.validate(g, "camera");
+        const std::size_t features = tfs[0].features.size();
+        for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features.size() == features);
+        if (features >= kTransparent)
+            throw Error("at most 254 features can be measured", "transfer function", "join some");
+
+        const int lanes = tfs.size() == 1 ? 1 : kSweepLanes;
+        const SweepTables tables(tfs, lanes, m_grid.maxCode);
+        const Axes axes = chooseAxes(camera);
+
+        SweepInput in;
+        in.lanes = lanes;
+        in.nu = g.dims[axes.u], in.nv = g.dims[axes.v], in.nw = g.dims[axes.w];
+        in.codes = codesFor(axes, in.codeStrides);
+        const std::array<std::ptrdiff_t, 3> natural{1, g.dims.x, static_cast<std::ptrdiff_t>(g.dims.x) * g.dims.y};
+        in.fieldStrides = {natural[static_cast<std::size_t>(axes.u)], natural[static_cast<std::size_t>(axes.v)],
+                           natural[static_cast<std::size_t>(axes.w)]};
+        std::ptrdiff_t start = 0;
+        if (axes.flipped) {
+            start = (in.nw - 1) * in.fieldStrides.w;
+            in.codes += (in.nw - 1) * in.codeStrides.w;
+            in.fieldStrides.w = -in.fieldStrides.w;
+            in.codeStrides.w = -in.codeStrides.w;
+        }
+        if (!m_grid.valid.empty()) in.valid = m_grid.valid.data() + start;
+        if (weights) {
+            PELLUCID_CHECK(weights->brightness.dims() == g.dims && weights->saturation.dims() == g.dims);
+            in.weights[0] = weights->brightness.data() + start;
+            in.weights[1] = weights->saturation.data() + start;
+        }
+        if (field) in.field = field->data() + start;
+        in.tableSize = kDepthTableSize;
+        in.tableEntryOfCode = static_cast<float>(kDepthTableSize - 1) / static_cast<float>(m_grid.maxCode);
+        in.depthTable = tables.depth.data();
+        in.alphaTable = tables.alpha.data();
+        in.featureOfCode = tables.featureOfCode.data();
+        in.features = static_cast<int>(features);
+        setRays(in, camera, axes);
+        return run(in, tfs.size(), job);
+    }
+
+    std::vector<FeatureSums> run(const SweepInput& in, std::size_t candidates, const JobControl& job) {
+        const auto bands = sweepBands(in);
+        const auto lanes = static_cast<std::size_t>(in.lanes), features = static_cast<std::size_t>(in.features);
+        std::vector<std::vector<double>> partial(bands.size());
+        std::atomic<std::size_t> done = 0;
+        parallelFor(bands.size(), [&](std::size_t i) {
+            job.throwIfStopped();
+            partial[i].assign((features + 1) * 3 * lanes, 0.0);
+            const auto scratch = borrowScratch();
+            sweepKernel(in.lanes)(in, bands[i], *scratch, partial[i].data());
+            returnScratch(scratch);
+            job.report(static_cast<double>(++done) / static_cast<double>(bands.size()));
+        });
+
+        std::vector<FeatureSums> all(candidates);
+        for (std::size_t lane = 0; lane < candidates; ++lane) {
+            FeatureSums& sums = all[lane];
+            sums.visibility.assign(features, 0.0);
+            for (auto& w : sums.weighted) w.assign(features, 0.0);
+            for (const auto& part : partial) // in the order of the bands, whatever thread made them
+                for (std::size_t f = 0; f <= features; ++f) {
+                    const double* v = &part[f * 3 * lanes + lane];
+                    sums.allVisibility += v[0];
+                    sums.allWeighted[0] += v[lanes];
+                    sums.allWeighted[1] += v[2 * lanes];
+                    if (f == features) continue;
+                    sums.visibility[f] += v[0];
+                    sums.weighted[0][f] += v[lanes];
+                    sums.weighted[1][f] += v[2 * lanes];
+                }
+        }
+        return all;
+    }
+
+    std::shared_ptr<SweepScratch> borrowScratch() {
+        std::lock_guard lock(m_scratchMutex);
+        if (m_scratch.empty()) return std::make_shared<SweepScratch>();
+        auto scratch = m_scratch.back();
+        m_scratch.pop_back();
+        return scratch;
+    }
+    void returnScratch(std::shared_ptr<SweepScratch> scratch) {
+        std::lock_guard lock(m_scratchMutex);
+        m_scratch.push_back(std::move(scratch));
+    }
+
+    std::shared_ptr<const Volume> m_volume;
+    Quality m_quality;
+    IntensityGrid m_grid;
+    std::vector<std::uint16_t> m_codesYZX; ///< made when a sweep along x first needs it
+    std::mutex m_scratchMutex;
+    std::vector<std::shared_ptr<SweepScratch>> m_scratch;
+};
+
+} // namespace
+
+std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality) {
+    return std::make_unique<CpuEngine>(std::move(volume), quality);
+}
+
+} // namespace pellucid

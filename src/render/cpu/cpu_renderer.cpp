@@ -1,0 +1,132 @@
+// A ray per pixel: midpoint samples of the emission-absorption integral (MEASURES §4, last point).
+#include <atomic>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "render/image_renderer.h"
+#include "render/ray_box.h"
+#include "render/trilinear.h"
+#include "tf/tf_table.h"
+#include "volume/intensity_grid.h"
+#include "volume/parallel.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kTableSize = 4096;
+constexpr double kDark = 1e-4; ///< transmittance below which a ray ends: a quarter of an 8-bit level at most
+
+// Light from the eye; the same numbers stand in shaders/include/shading.glsl.
+constexpr double kAmbient = 0.35, kDiffuse = 0.65, kSpecular = 0.25, kShininess = 24;
+
+/// Opacities of all but one feature's intensities set to 0.
+void keepOnly(TfTable& table, const Feature& feature) {
+    for (std::size_t i = 0; i < table.rgba.size(); ++i)
+        if (!feature.contains(static_cast<double>(i) / (table.size - 1)))
+            table.rgba[i][3] = table.opticalDepth[i] = 0.0f;
+}
+
+class CpuRenderer final : public ImageRenderer {
+public:
+    explicit CpuRenderer(std::shared_ptr<const Volume> volume)
+        : m_volume(std::move(volume)), m_grid(makeIntensityGrid(*m_volume)) {}
+
+    std::string name() const override { return "cpu"; }
+
+    Image render(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
+                 const JobControl& job) override {
+        settings.validate();
+        camera.validate(m_volume->geometry(), "camera");
+        TfTable table = makeTfTable(tf, kTableSize);
+        if (settings.onlyFeature >= 0) keepOnly(table, tf.features.at(static_cast<std::size_t>(settings.onlyFeature)));
+
+        Image image(settings.width, settings.height);
+        std::atomic<int> done = 0;
+        parallelFor(static_cast<std::size_t>(settings.height), [&](std::size_t row) {
+            job.throwIfStopped();
+            const int y = static_cast<int>(row);
+            for (int x = 0; x < settings.width; ++x) {
+                const Ray ray = pixelRay(camera, x + 0.5, y + 0.5, settings.width, settings.height);
+                store(image.pixel(x, y), trace(ray, camera, table, settings), settings);
+            }
+            job.report(static_cast<double>(++done) / settings.height);
+        });
+        return image;
+    }
+
+private:
+    struct Light {
+        Vec3 rgb{0, 0, 0}; ///< premultiplied
+        double transmittance = 1;
+    };
+
+    Light trace(const Ray& ray, const Camera& camera, const TfTable& table, const RenderSettings& settings) const {
+        const Geometry& g = m_volume->geometry();
+        const Vec3 lo = g.boxMin(), size = g.boxMax() - lo;
+        RayInterval t = intersectBox(ray, lo + size * settings.clipLo, lo + size * settings.clipHi);
+        if (camera.projection == Projection::Perspective) t.enter = std::max(t.enter, 0.0);
+        Light light;
+        if (t.empty()) return light;
+        const int steps = std::max(1, static_cast<int>(std::ceil((t.exit - t.enter) / (settings.stepInD0 * g.d0()))));
+        const double step = (t.exit - t.enter) / steps;
+        const double stepInD0 = step / g.d0();
+        for (int n = 0; n < steps && light.transmittance > kDark; ++n) {
+            const Vec3 at = g.voxelFromWorld(ray.origin + ray.direction * (t.enter + (n + 0.5) * step));
+            const Interpolated code = interpolate(m_grid.codes, m_grid.valid, at);
+            if (code.validShare == 0) continue;
+            const std::size_t entry = table.index(code.value / m_grid.maxCode);
+            const double depth = static_cast<double>(table.opticalDepth[entry]) * code.validShare * stepInD0;
+            if (depth == 0) continue;
+            const double alpha = -std::expm1(-depth);
+            const auto& c = table.rgba[entry];
+            Vec3 color(c[0], c[1], c[2]);
+            if (settings.shading) color = shaded(color, at, ray.direction);
+            light.rgb += light.transmittance * alpha * color;
+            light.transmittance *= 1 - alpha;
+        }
+        return light;
+    }
+
+    Vec3 shaded(const Vec3& color, const Vec3& at, const Vec3& view) const {
+        Vec3 gradient(0);
+        for (int a = 0; a < 3; ++a) {
+            Vec3 step(0);
+            step[a] = 1;
+            const Interpolated ahead = interpolate(m_grid.codes, m_grid.valid, at + step),
+                               behind = interpolate(m_grid.codes, m_grid.valid, at - step);
+            gradient[a] = (ahead.value - behind.value) / m_volume->geometry().spacing[a];
+        }
+        const double length = glm::length(gradient);
+        if (length * m_volume->geometry().d0() < 1e-6 * m_grid.maxCode)
+            return color; // inside a homogeneous region there is no surface to light
+        const double cosine = std::abs(glm::dot(gradient / length, view));
+        const Vec3 lit = color * (kAmbient + kDiffuse * cosine) + Vec3(kSpecular * std::pow(cosine, kShininess));
+        return glm::min(lit, Vec3(1));
+    }
+
+    static void store(float* pixel, const Light& light, const RenderSettings& settings) {
+        double alpha = 1 - light.transmittance;
+        Vec3 rgb = light.rgb;
+        if (settings.background) {
+            rgb += light.transmittance * Vec3(settings.background->r, settings.background->g, settings.background->b);
+            alpha = 1;
+        } else if (alpha > 0) {
+            rgb /= alpha;
+        }
+        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(rgb[c]);
+        pixel[3] = static_cast<float>(alpha);
+    }
+
+    std::shared_ptr<const Volume> m_volume;
+    IntensityGrid m_grid;
+};
+
+} // namespace
+
+std::unique_ptr<ImageRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume) {
+    return std::make_unique<CpuRenderer>(std::move(volume));
+}
+
+} // namespace pellucid

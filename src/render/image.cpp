@@ -1,0 +1,74 @@
+#include "render/image.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include <OpenImageIO/imageio.h>
+
+#include "volume/atomic_file.h"
+#include "volume/error.h"
+
+namespace pellucid {
+
+namespace {
+
+std::string suffixOf(const std::string& path) {
+    std::string suffix = std::filesystem::path(path).extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+    return suffix;
+}
+
+OIIO::TypeDesc sampleFormat(const std::string& suffix) {
+    if (suffix == ".exr") return OIIO::TypeDesc::HALF;
+    if (suffix == ".tif" || suffix == ".tiff") return OIIO::TypeDesc::UINT16;
+    return OIIO::TypeDesc::UINT8;
+}
+
+} // namespace
+
+void checkImageSuffix(const std::string& path) {
+    const std::string suffix = suffixOf(path);
+    for (const char* known : {".png", ".exr", ".tif", ".tiff", ".jpg", ".jpeg"})
+        if (suffix == known) return;
+    throw UsageError("images are written as .png, .exr, .tif or .jpg", path, "give one of these suffixes");
+}
+
+void writeImage(const Image& image, const std::string& path) {
+    checkImageSuffix(path);
+    const std::string suffix = suffixOf(path);
+    const int channels = suffix == ".jpg" || suffix == ".jpeg" ? 3 : 4;
+    writeAtomically(path, [&](const std::string& temporary) {
+        const auto out = OIIO::ImageOutput::create(temporary);
+        if (!out) throw FileError("no writer for this kind of image", path, "choose another suffix");
+        OIIO::ImageSpec spec(image.width, image.height, channels, sampleFormat(suffix));
+        spec.attribute("oiio:ColorSpace", "sRGB");
+        spec.attribute("oiio:UnassociatedAlpha", 1); // Image holds straight colours
+        const bool good = out->open(temporary, spec) &&
+                          out->write_image(OIIO::TypeDesc::FLOAT, image.rgba.data(), 4 * sizeof(float)) && out->close();
+        if (!good)
+            throw FileError("cannot write the image (" + out->geterror() + ")", path, "check permissions and space");
+    });
+}
+
+Image readImage(const std::string& path) {
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    const auto in = OIIO::ImageInput::open(path, &config);
+    if (!in) throw FileError("cannot read the image (" + OIIO::geterror() + ")", path, "check the file");
+    const OIIO::ImageSpec& spec = in->spec();
+    const int channels = spec.nchannels;
+    const auto pixels = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+    std::vector<float> raw(pixels * static_cast<std::size_t>(channels));
+    if (!in->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, raw.data()))
+        throw FileError("cannot read the image (" + in->geterror() + ")", path, "check the file");
+    Image image(spec.width, spec.height);
+    for (std::size_t p = 0; p < pixels; ++p) {
+        const float* from = &raw[p * static_cast<std::size_t>(channels)];
+        for (int c = 0; c < 3; ++c) image.rgba[4 * p + static_cast<std::size_t>(c)] = from[channels >= 3 ? c : 0];
+        image.rgba[4 * p + 3] = channels == 4 || channels == 2 ? from[channels - 1] : 1.0f;
+    }
+    return image;
+}
+
+} // namespace pellucid

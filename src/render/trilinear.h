@@ -1,0 +1,51 @@
+// Intensity between voxel centres (MEASURES §1).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "volume/grid.h"
+
+namespace pellucid {
+
+/// An interpolated intensity. An invalid voxel has opacity 0, which interpolation carries on: the intensity is the mean
+/// over the valid corners, and what it absorbs is multiplied by `validShare`.
+struct Interpolated {
+    double value = 0;
+    double validShare = 0; ///< weight of the valid corners, [0,1]
+};
+
+/// Trilinear between centres, clamped to the edge beyond the outer ones. `at` is in voxels. `valid` may be empty.
+template <class T>
+Interpolated interpolate(const Grid<T>& grid, const std::vector<std::uint8_t>& valid, const Vec3& at) {
+    const Int3 n = grid.dims();
+    int base[3];
+    double fraction[3];
+    std::size_t step[3] = {1, static_cast<std::size_t>(n.x),
+                           static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y)};
+    for (int a = 0; a < 3; ++a) {
+        const double p = std::clamp(at[a], 0.0, static_cast<double>(n[a] - 1));
+        base[a] = std::min(static_cast<int>(p), std::max(0, n[a] - 2));
+        fraction[a] = p - base[a];
+        if (n[a] == 1) step[a] = 0;
+    }
+    const std::size_t corner = grid.index(base[0], base[1], base[2]);
+    Interpolated result;
+    for (int c = 0; c < 8; ++c) {
+        double w = 1;
+        std::size_t i = corner;
+        for (int a = 0; a < 3; ++a) {
+            const bool upper = (c >> a) & 1;
+            w *= upper ? fraction[a] : 1 - fraction[a];
+            if (upper) i += step[a];
+        }
+        if (w == 0 || (!valid.empty() && !valid[i])) continue;
+        result.value += w * static_cast<double>(grid[i]);
+        result.validShare += w;
+    }
+    if (!valid.empty() && result.validShare > 0) result.value /= result.validShare;
+    return result;
+}
+
+} // namespace pellucid

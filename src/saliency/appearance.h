@@ -1,0 +1,54 @@
+// The attributes that saliency is made of, voxel by voxel (MEASURES §5).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "saliency/lch.h"
+#include "saliency/saliency_field.h"
+#include "volume/intensity_grid.h"
+
+namespace pellucid {
+
+/// O_b and O_s of every voxel of a volume under a transfer function, read row by row so that no field is stored.
+class AppearanceReader {
+public:
+    AppearanceReader(const Volume& volume, const TransferFunction& tf, const Rgb& background);
+
+    Appearance at(std::size_t voxel) const { return atIntensity(m_volume.intensity(voxel)); }
+    /// The nx values of the row that starts at voxel index `first`.
+    void readRow(std::size_t first, std::span<float> brightness, std::span<float> saturation) const;
+
+private:
+    Appearance atIntensity(double s) const;
+
+    const Volume& m_volume;
+    TfSampler m_sampler;
+    std::vector<Feature> m_features;
+    Appearance m_background;
+    IntensityCoder m_coder;
+    std::vector<Appearance> m_ofCode; ///< per code; only where codes are exact
+};
+
+/// One direction of a truncated kernel: the voxels (i+dx, j+dy, k+dz), |dx| ≤ halfWidth, of the ball around (i,j,k).
+struct KernelRun {
+    int dy = 0, dz = 0, halfWidth = 0;
+};
+
+/// The ball of radius R = `radiusInD0` around a voxel and its weights, a product of three one-dimensional ones:
+/// exp(−|j−i|²/s²), s = 2R (4.7) or R/4 (Narrow); |j−i| < R strictly, in units of d0.
+struct BallKernel {
+    BallKernel(const Geometry& geometry, double radiusInD0, SaliencyKernel kernel);
+
+    std::vector<KernelRun> runs;
+    std::array<std::vector<double>, 3> weights; ///< per axis, by |offset|
+    double weight(int dx, int dy, int dz) const {
+        return weights[0][static_cast<std::size_t>(std::abs(dx))] * weights[1][static_cast<std::size_t>(std::abs(dy))] *
+               weights[2][static_cast<std::size_t>(std::abs(dz))];
+    }
+    int reach(int axis) const { return static_cast<int>(weights[static_cast<std::size_t>(axis)].size()) - 1; }
+};
+
+void validate(const SaliencyOptions& options);
+
+} // namespace pellucid

@@ -1,0 +1,58 @@
+// Saliency by the book: each voxel, each neighbour, double precision.
+#include <cmath>
+
+#include "saliency/appearance.h"
+#include "volume/parallel.h"
+
+namespace pellucid {
+
+namespace {
+
+/// Weighted means of both attributes over the part of the ball that lies inside the volume (4.6).
+Appearance meanOver(const BallKernel& ball, const Grid<Appearance>& o, const Int3& at) {
+    const Int3 n = o.dims();
+    Appearance sum;
+    double norm = 0;
+    for (const KernelRun& run : ball.runs) {
+        const int y = at.y + run.dy, z = at.z + run.dz;
+        if (y < 0 || y >= n.y || z < 0 || z >= n.z) continue;
+        for (int dx = -run.halfWidth; dx <= run.halfWidth; ++dx) {
+            const int x = at.x + dx;
+            if (x < 0 || x >= n.x) continue;
+            const double w = ball.weight(dx, run.dy, run.dz);
+            sum.brightness += w * o.at(x, y, z).brightness;
+            sum.saturation += w * o.at(x, y, z).saturation;
+            norm += w;
+        }
+    }
+    return {sum.brightness / norm, sum.saturation / norm};
+}
+
+} // namespace
+
+WeightFields saliencyFieldsReference(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options,
+                                     const JobControl& job) {
+    validate(options);
+    const AppearanceReader reader(volume, tf, options.background);
+    Grid<Appearance> o(volume.dims());
+    for (std::size_t i = 0; i < o.size(); ++i) o[i] = reader.at(i);
+    const BallKernel centre(volume.geometry(), options.sigma, options.kernel);
+    const BallKernel surround(volume.geometry(), 2 * options.sigma, options.kernel);
+
+    WeightFields fields{Grid<float>(volume.dims()), Grid<float>(volume.dims())};
+    parallelFor(static_cast<std::size_t>(volume.dims().z), [&](std::size_t slice) {
+        job.throwIfStopped();
+        const int k = static_cast<int>(slice);
+        for (int j = 0; j < volume.dims().y; ++j)
+            for (int i = 0; i < volume.dims().x; ++i) {
+                const Appearance c = meanOver(centre, o, {i, j, k}), s = meanOver(surround, o, {i, j, k});
+                fields.brightness.at(i, j, k) =
+                    static_cast<float>(std::abs(options.w1 * c.brightness - options.w2 * s.brightness));
+                fields.saturation.at(i, j, k) =
+                    static_cast<float>(std::abs(options.w1 * c.saturation - options.w2 * s.saturation));
+            }
+    });
+    return fields;
+}
+
+} // namespace pellucid

@@ -1,0 +1,100 @@
+#include "saliency/vws.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/check.h"
+#include "volume/histogram.h"
+#include "volume/intensity_grid.h"
+#include "volume/parallel.h"
+
+namespace pellucid {
+
+namespace {
+
+double share(double part, double whole) { return whole > 0 ? part / whole : 0.0; }
+
+FeatureSums emptySums(std::size_t features) {
+    FeatureSums sums;
+    sums.visibility.assign(features, 0.0);
+    for (auto& w : sums.weighted) w.assign(features, 0.0);
+    return sums;
+}
+
+void add(FeatureSums& total, const FeatureSums& part) {
+    for (std::size_t f = 0; f < total.visibility.size(); ++f) {
+        total.visibility[f] += part.visibility[f];
+        for (std::size_t w = 0; w < 2; ++w) total.weighted[w][f] += part.weighted[w][f];
+    }
+    total.allVisibility += part.allVisibility;
+    for (std::size_t w = 0; w < 2; ++w) total.allWeighted[w] += part.allWeighted[w];
+}
+
+} // namespace
+
+std::vector<FeatureMeasures> featureMeasures(const FeatureSums& sums, const VwsOptions& options) {
+    // An attribute that is nowhere salient has no say: the other one then carries weight 1.
+    double u1 = sums.allWeighted[0] > 0 ? options.u1 : 0.0;
+    double u2 = sums.allWeighted[1] > 0 ? options.u2 : 0.0;
+    if (sums.allWeighted[0] <= 0 && sums.allWeighted[1] > 0) u2 = 1.0;
+    if (sums.allWeighted[1] <= 0 && sums.allWeighted[0] > 0) u1 = 1.0;
+
+    std::vector<FeatureMeasures> all(sums.visibility.size());
+    for (std::size_t f = 0; f < all.size(); ++f) {
+        FeatureMeasures& m = all[f];
+        m.visibility = share(sums.visibility[f], sums.allVisibility);
+        m.vwsBrightness = share(sums.weighted[0][f], sums.allWeighted[0]);
+        m.vwsSaturation = share(sums.weighted[1][f], sums.allWeighted[1]);
+        m.vws = u1 * m.vwsBrightness + u2 * m.vwsSaturation;
+    }
+    return all;
+}
+
+std::vector<double> vwsOf(const FeatureSums& sums, const VwsOptions& options) {
+    std::vector<double> vws;
+    for (const FeatureMeasures& m : featureMeasures(sums, options)) vws.push_back(m.vws);
+    return vws;
+}
+
+FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& features, const Grid<float>& visibility,
+                        const WeightFields* weights) {
+    PELLUCID_CHECK(visibility.dims() == volume.dims());
+    const auto slices = static_cast<std::size_t>(volume.dims().z);
+    const std::size_t plane = volume.size() / slices;
+    std::vector<FeatureSums> parts(slices, emptySums(features.size()));
+    parallelFor(slices, [&](std::size_t k) {
+        FeatureSums& sums = parts[k];
+        for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
+            const double v = visibility[i];
+            if (v == 0) continue;
+            const double lb = weights ? weights->brightness[i] : 0.0, ls = weights ? weights->saturation[i] : 0.0;
+            sums.allVisibility += v;
+            sums.allWeighted[0] += v * lb;
+            sums.allWeighted[1] += v * ls;
+            const int f = featureAt(features, volume.intensity(i));
+            if (f < 0) continue;
+            const auto at = static_cast<std::size_t>(f);
+            sums.visibility[at] += v;
+            sums.weighted[0][at] += v * lb;
+            sums.weighted[1][at] += v * ls;
+        }
+    });
+    FeatureSums total = emptySums(features.size());
+    for (const FeatureSums& part : parts) add(total, part);
+    return total;
+}
+
+std::vector<double> visibilityHistogram(const Volume& volume, const Grid<float>& visibility, int bins) {
+    std::vector<double> histogram(static_cast<std::size_t>(bins), 0.0);
+    double total = 0;
+    for (std::size_t i = 0; i < visibility.size(); ++i) {
+        const double v = visibility[i];
+        if (v == 0) continue;
+        histogram[static_cast<std::size_t>(histogramBin(volume.intensity(i), bins))] += v;
+        total += v;
+    }
+    for (double& h : histogram) h = share(h, total);
+    return histogram;
+}
+
+} // namespace pellucid

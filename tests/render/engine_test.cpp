@@ -1,0 +1,123 @@
+#include <catch2/catch.hpp>
+
+#include <limits>
+
+#include "render/ray_box.h"
+#include "support/engine_checks.h"
+#include "volume/parallel.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+
+namespace {
+
+const auto reference = [](std::shared_ptr<const Volume> v) { return makeReferenceEngine(std::move(v)); };
+const auto cpu = [](std::shared_ptr<const Volume> v) { return makeCpuEngine(std::move(v)); };
+
+} // namespace
+
+TEST_CASE("a homogeneous block gives v_k = α(1 − α)^k", "[visibility][reference]") { checkHomogeneousBlock(reference); }
+TEST_CASE("a homogeneous block gives v_k = α(1 − α)^k on the cpu engine", "[visibility][cpu]") {
+    checkHomogeneousBlock(cpu);
+}
+TEST_CASE("opacity refers to d0, whatever the spacing", "[visibility][reference]") { checkAnisotropicBlock(reference); }
+TEST_CASE("opacity refers to d0, whatever the spacing, on the cpu engine", "[visibility][cpu]") {
+    checkAnisotropicBlock(cpu);
+}
+TEST_CASE("invalid voxels are transparent", "[visibility][reference]") { checkInvalidVoxels(reference); }
+TEST_CASE("invalid voxels are transparent on the cpu engine", "[visibility][cpu]") { checkInvalidVoxels(cpu); }
+
+TEST_CASE("many candidates in one call give what each gives alone", "[visibility][cpu]") {
+    std::mt19937 random(5);
+    const auto volume = roughVolume(random, {20, 18, 22}, {1, 1.3, 0.8});
+    const Camera camera = cameraFromView(volume->geometry(), 130, 35, 1, Projection::Perspective);
+    const TransferFunction base = tents(3);
+    const WeightFields weights = saliencyFields(*volume, base);
+    std::vector<TransferFunction> tfs;
+    for (int i = 0; i < 11; ++i) tfs.push_back(withFeatureOpacities(base, {0.05 * i, 0.5, 1 - 0.08 * i}));
+    const auto engine = makeCpuEngine(volume);
+    const auto together = engine->sums(camera, tfs, &weights);
+    REQUIRE(together.size() == 11);
+    for (std::size_t i = 0; i < tfs.size(); ++i) {
+        const FeatureSums alone = engine->sums(camera, {&tfs[i], 1}, &weights)[0];
+        const FeatureSums field = sumsOfField(*volume, base.features, engine->field(camera, tfs[i]).values, &weights);
+        for (std::size_t f = 0; f < 3; ++f) {
+            CHECK(together[i].visibility[f] == Approx(alone.visibility[f]).epsilon(1e-5).margin(1e-9));
+            CHECK(together[i].weighted[1][f] == Approx(alone.weighted[1][f]).epsilon(1e-5).margin(1e-9));
+            CHECK(field.weighted[0][f] == Approx(alone.weighted[0][f]).epsilon(1e-5).margin(1e-9));
+        }
+        CHECK(together[i].allVisibility == Approx(alone.allVisibility).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("the cpu engine gives the same bits for any number of threads", "[visibility][cpu]") {
+    std::mt19937 random(6);
+    const auto volume = roughVolume(random, {40, 60, 50}, Vec3(1));
+    const TransferFunction tf = tents(3);
+    const WeightFields weights = saliencyFields(*volume, tf);
+    const std::vector<TransferFunction> tfs(8, tf);
+    for (const auto projection : {Projection::Perspective, Projection::Orthographic}) {
+        const Camera camera = cameraFromView(volume->geometry(), 30, 20, 1, projection);
+        std::vector<FeatureSums> results;
+        for (const int threads : {1, 2, 3, 8}) {
+            setThreadCount(threads);
+            results.push_back(makeCpuEngine(volume)->sums(camera, tfs, &weights)[7]);
+        }
+        setThreadCount(0);
+        for (const FeatureSums& r : results) {
+            CHECK(r.visibility == results[0].visibility);
+            CHECK(r.weighted == results[0].weighted);
+            CHECK(r.allVisibility == results[0].allVisibility);
+        }
+    }
+}
+
+TEST_CASE("visibility adds up to no more than 1 along an axis", "[visibility][cpu]") {
+    std::mt19937 random(11);
+    const auto volume = roughVolume(random, {16, 16, 16}, Vec3(1));
+    const Grid<float> v =
+        makeCpuEngine(volume)->field(lookingAlong(volume->geometry(), {0, 1, 0}), tents(3, 0.9)).values;
+    for (int k = 0; k < 16; ++k)
+        for (int i = 0; i < 16; ++i) {
+            double sum = 0;
+            for (int j = 0; j < 16; ++j) sum += v.at(i, j, k);
+            CHECK(sum <= 1.02); // midpoint samples do not add up exactly in a rough volume
+        }
+}
+
+TEST_CASE("a volume of one voxel, and one of one slice, can be measured", "[visibility]") {
+    for (const Int3 dims : {Int3(1), Int3(1, 9, 9), Int3(9, 1, 9), Int3(9, 9, 1)}) {
+        const auto volume = slab(dims, 0.5);
+        for (const auto& engine : {makeReferenceEngine(volume), makeCpuEngine(volume)})
+            for (const auto projection : {Projection::Perspective, Projection::Orthographic}) {
+                const Camera camera = cameraFromView(volume->geometry(), 40, 30, 1, projection);
+                const TransferFunction tf = homogeneous(0.5);
+                const FeatureSums sums = engine->sums(camera, {&tf, 1}, nullptr)[0];
+                CHECK(sums.visibility[0] > 0);
+                CHECK(sums.visibility[0] <= static_cast<double>(volume->size()));
+            }
+    }
+}
+
+TEST_CASE("volumes with nothing to see have sums of 0", "[visibility]") {
+    const auto nothing = volumeFrom(geometryOf({5, 5, 5}), [](int, int, int) { return std::nan(""); }, {});
+    const TransferFunction tf = tents(3);
+    for (const auto& engine : {makeReferenceEngine(nothing), makeCpuEngine(nothing)}) {
+        const FeatureSums sums =
+            engine->sums(cameraFromView(nothing->geometry(), 0, 0, 1, Projection::Perspective), {&tf, 1}, nullptr)[0];
+        CHECK(sums.allVisibility == 0);
+        CHECK(featureMeasures(sums)[0].vws == 0);
+    }
+}
+
+TEST_CASE("an engine hears a stop and refuses a camera inside the box", "[visibility]") {
+    const auto volume = slab({8, 8, 8}, 0.5);
+    std::stop_source stop;
+    stop.request_stop();
+    Camera camera = cameraFromView(volume->geometry(), 0, 0, 1, Projection::Perspective);
+    for (const auto& engine : {makeReferenceEngine(volume), makeCpuEngine(volume)})
+        CHECK_THROWS_AS(engine->field(camera, tents(3), {stop.get_token(), {}}), Cancelled);
+    camera.eye = volume->geometry().boxCenter() + Vec3(0, 1, 0);
+    for (const auto& engine : {makeReferenceEngine(volume), makeCpuEngine(volume)})
+        CHECK_THROWS_AS(engine->field(camera, tents(3)), Error);
+}

@@ -1,0 +1,141 @@
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+
+#include "render/image_renderer.h"
+#include "support/volumes.h"
+#include "volume/error.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+
+namespace {
+
+/// A folder that is gone after the test.
+struct TemporaryFolder {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("pellucid-image-" + std::to_string(std::random_device{}()));
+    TemporaryFolder() { std::filesystem::create_directory(path); }
+    ~TemporaryFolder() { std::filesystem::remove_all(path); }
+};
+
+RenderSettings small() {
+    RenderSettings settings;
+    settings.width = 31, settings.height = 21;
+    settings.background = {};
+    return settings;
+}
+
+} // namespace
+
+TEST_CASE("a pixel's alpha is 1 − exp(−∫τ), its colour that of the volume", "[image]") {
+    // Ten planes of α = 0.1 along the view: 1 − 0.9^10.
+    const auto volume = slab({12, 10, 12}, 0.5);
+    const Image image =
+        makeCpuRenderer(volume)->render(lookingAlong(volume->geometry(), {0, 1, 0}), homogeneous(0.1), small());
+    Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
+    camera.height = 8;
+    const Image close = makeCpuRenderer(volume)->render(camera, homogeneous(0.1), small());
+    CHECK(close.pixel(15, 10)[3] == Approx(1 - std::pow(0.9, 10)).margin(1e-3));
+    CHECK(close.pixel(15, 10)[0] == Approx(1).margin(1e-3));
+    CHECK(close.pixel(15, 10)[1] == Approx(0).margin(1e-3));
+    CHECK(image.pixel(0, 0)[3] == 0); // beside the volume
+}
+
+TEST_CASE("a background shows through in proportion", "[image]") {
+    const auto volume = slab({12, 4, 12}, 0.5);
+    Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
+    camera.height = 4;
+    RenderSettings settings = small();
+    settings.background = Rgb{0, 0, 1};
+    const Image image = makeCpuRenderer(volume)->render(camera, homogeneous(0.2), settings);
+    CHECK(image.pixel(15, 10)[2] == Approx(std::pow(0.8, 4)).margin(1e-3));
+    CHECK(image.pixel(15, 10)[0] == Approx(1 - std::pow(0.8, 4)).margin(1e-3));
+    CHECK(image.pixel(15, 10)[3] == 1);
+}
+
+TEST_CASE("clipping shortens the path", "[image]") {
+    const auto volume = slab({12, 10, 12}, 0.5);
+    Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
+    camera.height = 4;
+    RenderSettings settings = small();
+    settings.clipHi.y = 0.5;
+    CHECK(makeCpuRenderer(volume)->render(camera, homogeneous(0.1), settings).pixel(15, 10)[3] ==
+          Approx(1 - std::pow(0.9, 5)).margin(1e-3));
+}
+
+TEST_CASE("one feature can be drawn alone", "[image]") {
+    // A block of intensity 1/6 (feature 1 of three tents) in front of one of 5/6 (feature 3).
+    const auto volume = volumeFrom(geometryOf({8, 8, 8}), [](int, int j, int) { return j < 4 ? 1.0 / 6 : 5.0 / 6; });
+    Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
+    camera.height = 4;
+    RenderSettings settings = small();
+    settings.onlyFeature = 2;
+    const Image image = makeCpuRenderer(volume)->render(camera, tents(3, 0.9), settings);
+    const Rgb expected = tents(3).features[2].color; // magenta
+    CHECK(image.pixel(15, 10)[0] == Approx(expected.r).margin(0.02));
+    CHECK(image.pixel(15, 10)[1] == Approx(expected.g).margin(0.02));
+    CHECK(image.pixel(15, 10)[3] > 0.9);
+}
+
+TEST_CASE("shading changes colours, never alpha", "[image]") {
+    const auto volume = volumeFrom(geometryOf({16, 16, 16}), [](int i, int j, int k) {
+        return std::clamp(1.2 - glm::length(Vec3(i, j, k) - 7.5) / 8, 0.0, 1.0);
+    });
+    const Camera camera = cameraFromView(volume->geometry(), 30, 20, 1, Projection::Perspective);
+    RenderSettings settings = small();
+    const Image flat = makeCpuRenderer(volume)->render(camera, tents(2), settings);
+    settings.shading = true;
+    const Image lit = makeCpuRenderer(volume)->render(camera, tents(2), settings);
+    double difference = 0;
+    for (std::size_t i = 0; i < flat.rgba.size(); ++i) {
+        if (i % 4 == 3)
+            CHECK(lit.rgba[i] == flat.rgba[i]);
+        else
+            difference = std::max(difference, static_cast<double>(std::abs(lit.rgba[i] - flat.rgba[i])));
+    }
+    CHECK(difference > 0.1);
+}
+
+TEST_CASE("images survive a file in the precision of its format", "[image]") {
+    const TemporaryFolder folder;
+    Image image(5, 3);
+    for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = static_cast<float>(i % 16) / 15;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 0.2f + 0.8f * static_cast<float>(i) / 60;
+    for (const auto& [suffix, tolerance] : {std::pair{"png", 0.002}, {"tif", 1e-5}, {"exr", 5e-3}}) {
+        const std::string path = (folder.path / ("image." + std::string(suffix))).string();
+        writeImage(image, path);
+        const Image back = readImage(path);
+        REQUIRE(back.width == 5);
+        REQUIRE(back.height == 3);
+        double worst = 0;
+        for (std::size_t i = 0; i < image.rgba.size(); ++i)
+            worst = std::max(worst, static_cast<double>(std::abs(back.rgba[i] - image.rgba[i])));
+        INFO(suffix);
+        CHECK(worst <= tolerance);
+    }
+    writeImage(image, (folder.path / "image.jpg").string());
+    CHECK(readImage((folder.path / "image.jpg").string()).width == 5);
+}
+
+TEST_CASE("an image that cannot be written leaves nothing behind", "[image]") {
+    const TemporaryFolder folder;
+    CHECK_THROWS_AS(checkImageSuffix("x.gif"), UsageError);
+    CHECK_THROWS_AS(writeImage(Image(2, 2), (folder.path / "no" / "x.png").string()), FileError);
+    std::filesystem::create_directory(folder.path / "x.png");
+    CHECK_THROWS_AS(writeImage(Image(2, 2), (folder.path / "x.png").string()), FileError);
+    CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 1);
+    CHECK_THROWS_AS(readImage((folder.path / "none.png").string()), FileError);
+}
+
+TEST_CASE("impossible settings are refused", "[image]") {
+    const auto refused = [](auto change) {
+        RenderSettings settings;
+        change(settings);
+        CHECK_THROWS_AS(settings.validate(), UsageError);
+    };
+    refused([](RenderSettings& s) { s.width = 0; });
+    refused([](RenderSettings& s) { s.height = 20000; });
+    refused([](RenderSettings& s) { s.stepInD0 = 0; });
+    refused([](RenderSettings& s) { s.clipLo.x = 1; });
+}

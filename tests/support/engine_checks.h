@@ -1,0 +1,90 @@
+// What every visibility engine must satisfy, whichever it is.
+#pragma once
+
+#include <catch2/catch.hpp>
+
+#include "render/visibility.h"
+#include "support/volumes.h"
+
+namespace pellucid::test {
+
+/// How far two engines lie apart: figures of MEASURES §10.
+struct Disagreement {
+    double visibilityRms = 0; ///< of the reference's largest visibility
+    double visibility = 0;    ///< largest |ΔFV_F|
+    double vws = 0;           ///< largest |ΔW_F|
+};
+
+inline Disagreement compare(VisibilityEngine& reference, VisibilityEngine& engine, const Camera& camera,
+                            const TransferFunction& tf, const WeightFields& weights) {
+    Disagreement d;
+    const Grid<float> a = reference.field(camera, tf).values, b = engine.field(camera, tf).values;
+    double largest = 0, squares = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        largest = std::max(largest, static_cast<double>(a[i]));
+        squares += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2);
+    }
+    if (largest > 0) d.visibilityRms = std::sqrt(squares / static_cast<double>(a.size())) / largest;
+    const auto ma = featureMeasures(sumsOfField(reference.volume(), tf.features, a, &weights));
+    const auto mb = featureMeasures(engine.sums(camera, {&tf, 1}, &weights)[0]);
+    for (std::size_t f = 0; f < ma.size(); ++f) {
+        d.visibility = std::max(d.visibility, std::abs(ma[f].visibility - mb[f].visibility));
+        d.vws = std::max(d.vws, std::abs(ma[f].vws - mb[f].vws));
+    }
+    return d;
+}
+
+/// v_k = α(1 − α)^k for the k-th voxel plane, along each axis from both ends (MEASURES §4), to 1e-4 per voxel.
+template <class MakeEngine>
+void checkHomogeneousBlock(const MakeEngine& makeEngine) {
+    const auto volume = slab({7, 6, 5}, 0.5, Vec3(1.5));
+    const auto engine = makeEngine(volume);
+    for (const double alpha : {0.0, 0.1, 0.5, 0.9, 1.0})
+        for (int axis = 0; axis < 3; ++axis)
+            for (const int sign : {1, -1}) {
+                Vec3 direction(0);
+                direction[axis] = sign;
+                const Grid<float> v =
+                    engine->field(lookingAlong(volume->geometry(), direction), homogeneous(alpha)).values;
+                double worst = 0;
+                for (int k = 0; k < 5; ++k)
+                    for (int j = 0; j < 6; ++j)
+                        for (int i = 0; i < 7; ++i) {
+                            const Int3 at{i, j, k};
+                            const int plane = sign > 0 ? at[axis] : volume->dims()[axis] - 1 - at[axis];
+                            const double expected = alpha * std::pow(1 - std::min(alpha, 1 - 1e-7), plane);
+                            worst = std::max(worst, std::abs(static_cast<double>(v.at(i, j, k)) - expected));
+                        }
+                INFO("alpha " << alpha << " axis " << axis << " sign " << sign);
+                CHECK(worst < 1e-4);
+            }
+}
+
+/// Along one axis of anisotropic voxels a step of s/d0 reference lengths lies between planes: the voxel behind m others
+/// has light left of exp(−τ·(m·s + (s − d0)/2)): whole planes, and what its own and the first voxel hold before the
+/// point d0/2 in front of its centre.
+template <class MakeEngine>
+void checkAnisotropicBlock(const MakeEngine& makeEngine) {
+    const double alpha = 0.3;
+    const auto volume = slab({4, 4, 6}, 0.5, Vec3(1, 1, 2.5));
+    const Grid<float> v =
+        makeEngine(volume)->field(lookingAlong(volume->geometry(), {0, 0, 1}), homogeneous(alpha)).values;
+    for (int k = 0; k < 6; ++k)
+        CHECK(v.at(1, 2, k) == Approx(alpha * std::pow(1 - alpha, k * 2.5 + 0.75)).margin(1e-4));
+}
+
+/// An invalid voxel in front of others hides nothing and shows nothing; the corners that touch it count half.
+template <class MakeEngine>
+void checkInvalidVoxels(const MakeEngine& makeEngine) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const auto volume = volumeFrom(geometryOf({3, 3, 4}), [&](int, int, int k) { return k < 2 ? nan : 0.5f; });
+    const Grid<float> v =
+        makeEngine(volume)->field(lookingAlong(volume->geometry(), {0, 0, 1}), homogeneous(0.5)).values;
+    CHECK(v.at(1, 1, 0) == 0);
+    CHECK(v.at(1, 1, 1) == 0);
+    // τ falls linearly from plane 2 to the invalid plane 1. From z = 1 to z = 1.5, in front of plane 2, the share of
+    // plane 2 rises from 0 to ½: mean ¼ over half a step, an eighth of one step's depth: T = 0.5^(1/8).
+    CHECK(v.at(1, 1, 2) == Approx(0.5 * std::pow(0.5, 0.125)).margin(0.05)); // a fast engine samples this once
+}
+
+} // namespace pellucid::test
