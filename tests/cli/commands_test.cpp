@@ -1,4 +1,5 @@
 // Every command on small samples: what it prints, what it writes, and that the figures agree with each other.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -221,6 +222,47 @@ TEST_CASE("the reference engine and high quality measure the same within the tol
         CHECK(normal[i] == Approx(reference[i]).margin(0.01)); // MEASURES §10
         CHECK(high[i] == Approx(reference[i]).margin(0.005));
     }
+}
+
+TEST_CASE("the OpenGL engine measures and draws as the cpu does, or says that there is none", "[cli][gl]") {
+    const Workshop w;
+    const std::vector<std::string> measure{"measure", "sample:shells", "--size", "24", "--json", "--engine"};
+    const auto by = [&](const std::string& engine) {
+        auto arguments = measure;
+        arguments.push_back(engine);
+        return w.run(arguments);
+    };
+    const Outcome gl = by("gl");
+    if (gl.status != 0) {
+        CHECK(gl.status == 1);
+        CHECK(gl.out.empty());
+        CHECK(gl.err.rfind("pellucid-cli: error: ", 0) == 0);
+        CHECK(std::count(gl.err.begin(), gl.err.end(), '\n') == 1);
+        CHECK(json::parse(by("auto").out)["engine"] == "cpu");
+        return;
+    }
+    const json byGl = json::parse(gl.out), byCpu = json::parse(by("cpu").out);
+    CHECK(byGl["engine"] == "gl");
+    CHECK(byCpu["engine"] == "cpu");
+    for (const char* key : {"visibility", "vws"}) {
+        const auto a = column(byGl["features"], key), b = column(byCpu["features"], key);
+        REQUIRE(a.size() == b.size());
+        for (std::size_t i = 0; i < a.size(); ++i) CHECK(a[i] == Approx(b[i]).margin(0.01)); // MEASURES §10
+    }
+    for (const std::string engine : {"gl", "cpu"})
+        CHECK(w.json({"render", "sample:shells", "--sample-size", "24", "--size", "64x64", "--engine", engine, "--out",
+                      engine + ".exr"})["engine"] == engine);
+    // Two ways to integrate the same rays: close everywhere, closer on average.
+    const Image a = readImage(w.path("gl.exr").string()), b = readImage(w.path("cpu.exr").string());
+    REQUIRE(a.rgba.size() == b.rgba.size());
+    double total = 0, most = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        const double difference = std::abs(a.rgba[i] - b.rgba[i]);
+        total += difference;
+        most = std::max(most, difference);
+    }
+    CHECK(most < 0.1);
+    CHECK(total / static_cast<double>(a.rgba.size()) < 0.005);
 }
 
 TEST_CASE("fields writes volumes whose sums are the measures", "[cli]") {
