@@ -21,13 +21,20 @@ struct SweepTables {
     SweepTables(std::span<const TransferFunction> tfs, int laneCount, int maxCode) : lanes(laneCount) {
         const auto n = static_cast<std::size_t>(lanes), codes = static_cast<std::size_t>(maxCode) + 1;
         depth.assign(static_cast<std::size_t>(kDepthTableSize) * n, 0.0f);
+        integral.assign(depth.size(), 0.0f);
         alpha.assign(codes * n, 0.0f);
         featureOfCode.assign(codes, kTransparent);
         for (std::size_t lane = 0; lane < tfs.size(); ++lane) {
             const TfSampler sampler(tfs[lane]);
-            for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i)
-                depth[i * n + lane] = static_cast<float>(
-                    opticalDepthOfOpacity(sampler.opacity(static_cast<double>(i) / (kDepthTableSize - 1))));
+            double sum = 0, before = 0;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i) {
+                const double tau =
+                    opticalDepthOfOpacity(sampler.opacity(static_cast<double>(i) / (kDepthTableSize - 1)));
+                if (i > 0) sum += (before + tau) / 2;
+                before = tau;
+                depth[i * n + lane] = static_cast<float>(tau);
+                integral[i * n + lane] = static_cast<float>(sum);
+            }
             for (std::size_t c = 0; c < codes; ++c) {
                 const double s = static_cast<double>(c) / maxCode;
                 const double a = sampler.opacity(s);
@@ -39,7 +46,7 @@ struct SweepTables {
         }
     }
     int lanes;
-    std::vector<float> depth, alpha;
+    std::vector<float> depth, integral, alpha;
     std::vector<std::uint8_t> featureOfCode;
 };
 
@@ -112,14 +119,17 @@ private:
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
         in.maxStep = high ? 0.5 : 1.0;
-        in.raySpacing = in.maxRaySpacing = high ? 1 / 1.5 : 1.0;
+        in.raySpacing = in.maxRaySpacing = high ? 0.5 : 0.75;
+        in.ownSlices = high ? 2 : 1;
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
             in.slopeU = d.x / (sign * d.z);
             in.slopeV = d.y / (sign * d.z);
-            // Rays through the voxels' own centres need no company.
-            if (in.slopeU == 0 && in.slopeV == 0) in.raySpacing = 1;
+            if (in.slopeU == 0 && in.slopeV == 0) { // every ray is a voxel's own line
+                in.raySpacing = 1;
+                in.ownSlices = 0;
+            }
             return;
         }
         const Vec3 eye = permuted(g.voxelFromWorld(camera.eye), axes);
@@ -189,6 +199,7 @@ private:
         in.tableSize = kDepthTableSize;
         in.tableEntryOfCode = static_cast<float>(kDepthTableSize - 1) / static_cast<float>(m_grid.maxCode);
         in.depthTable = tables.depth.data();
+        in.integralTable = tables.integral.data();
         in.alphaTable = tables.alpha.data();
         in.featureOfCode = tables.featureOfCode.data();
         in.features = static_cast<int>(features);
