@@ -1,4 +1,5 @@
 // The fast engine: sets up sweeps (see sweep.h) and runs their bands on threads.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -44,8 +45,15 @@ struct SweepTables {
                 featureOfCode[c] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(tfs[0].features.size()) : f);
             }
         }
+        opaqueBefore.assign(static_cast<std::size_t>(kDepthTableSize) + 1, 0);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i) {
+            const auto entry = depth.begin() + static_cast<std::ptrdiff_t>(i * n);
+            const bool opaque = std::any_of(entry, entry + lanes, [](float tau) { return tau > 0; });
+            opaqueBefore[i + 1] = opaqueBefore[i] + (opaque ? 1 : 0);
+        }
     }
     int lanes;
+    std::vector<int> opaqueBefore;
     std::vector<float> depth, integral, alpha;
     std::vector<std::uint8_t> featureOfCode;
 };
@@ -119,8 +127,8 @@ private:
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
         in.maxStep = high ? 0.5 : 1.0;
-        in.raySpacing = in.maxRaySpacing = high ? 0.5 : 0.75;
-        in.ownSlices = high ? 2 : 1;
+        in.raySpacing = in.maxRaySpacing = high ? 0.4 : 0.75;
+        in.ownSlices = high ? 3 : 1;
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
@@ -199,6 +207,7 @@ private:
         in.tableSize = kDepthTableSize;
         in.tableEntryOfCode = static_cast<float>(kDepthTableSize - 1) / static_cast<float>(m_grid.maxCode);
         in.depthTable = tables.depth.data();
+        in.opaqueBefore = tables.opaqueBefore.data();
         in.integralTable = tables.integral.data();
         in.alphaTable = tables.alpha.data();
         in.featureOfCode = tables.featureOfCode.data();

@@ -40,6 +40,7 @@ struct SweepInput {
     float tableEntryOfCode = 0;                  ///< (tableSize − 1) / maxCode
     const float* depthTable = nullptr;           ///< [tableSize][lanes], −ln(1 − α)
     const float* integralTable = nullptr;        ///< [tableSize][lanes], its integral from entry 0
+    const int* opaqueBefore = nullptr;           ///< [tableSize + 1], entries before this one with any τ > 0
     const float* alphaTable = nullptr;           ///< [maxCode + 1][lanes], α
     const std::uint8_t* featureOfCode = nullptr; ///< [maxCode + 1]; `features` for "in none", or kTransparent
     int features = 0;
@@ -70,8 +71,8 @@ public:
     int* ints(int slot, std::size_t count);
 
 private:
-    std::vector<float> m_floats[8];
-    std::vector<int> m_ints[2];
+    std::vector<float> m_floats[9];
+    std::vector<int> m_ints[3];
 };
 
 /// Sums of one band: double[features + 1][3][lanes], the last feature being "in none"; added to.

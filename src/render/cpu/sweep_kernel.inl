@@ -96,6 +96,7 @@ public:
 
 private:
     static constexpr int kOutside = -1;
+    static constexpr float kNoShare = 1e-6f; ///< of valid corners: nothing there has an intensity
 
     /// Neighbouring lines toward the eye, rays or those of voxels, and how far they have come: per line the optical
     /// depth of each candidate, the table entry at the last sample (kOutside: not in the box there), and where voxels
@@ -105,8 +106,9 @@ private:
         float* depth = nullptr;  ///< [line][K]
         int* entry = nullptr;
         float* share = nullptr;
-        const float* length = nullptr; ///< d0 per slice
-        int lengthStep = 1;            ///< 0: the same for all
+        const float* length = nullptr;        ///< d0 per slice
+        int lengthStep = 1;                   ///< 0: the same for all
+        const std::uint16_t* codes = nullptr; ///< of the voxels whose lines these are; null for rays
     };
 
     // ---- The ray grid --------------------------------------------------------------------------------------------
@@ -156,6 +158,10 @@ private:
         m_rays.entry = m_scratch.ints(1, rays());
         m_gatherRow = m_scratch.floats(6, rowRays() * K);
         m_length = m_scratch.floats(7, rays());
+        const std::size_t longest =
+            rowRays() > static_cast<std::size_t>(m_in.nu) ? rowRays() : static_cast<std::size_t>(m_in.nu);
+        m_next = m_scratch.ints(2, longest);
+        m_nextShare = m_scratch.floats(8, longest);
         for (int b = m_b0; b <= m_b1; ++b)
             for (int a = m_a0; a <= m_a1; ++a) m_length[rayIndex(a, b)] = static_cast<float>(rayLength(a, b));
         for (std::size_t i = 0; i < rays() * K; ++i) m_rays.depth[i] = 0.0f;
@@ -195,7 +201,8 @@ private:
     }
     Lines raysOf(const Block& block) const {
         const std::size_t at = rayIndex(block.first, block.row);
-        return {block.first, block.last, m_rays.depth + at * K, m_rays.entry + at, m_rays.share + at, m_length + at, 1};
+        return {block.first, block.last, m_rays.depth + at * K, m_rays.entry + at, m_rays.share + at, m_length + at,
+                1,           nullptr};
     }
 
     // ---- Along the lines -----------------------------------------------------------------------------------------
@@ -240,22 +247,35 @@ private:
         interpolateRow(x0, x1, clampTo(p.baseV + row * p.scale, m_in.nv - 1), clampTo(w, m_in.nw - 1));
     }
 
-    struct Sample {
-        int entry;
-        float share;
-    };
-    Sample sampleAt(float u) const {
+    /// Samples the lines `inside` where they meet the row that was read last: table entries into m_next, and where
+    /// voxels may be invalid the shares of valid corners into m_nextShare.
+    void sampleRow(const RayPlane& p, const Inside& inside) {
+        const int count = inside.last - inside.first + 1;
+        const float first = static_cast<float>(p.baseU + inside.first * p.scale), scale = static_cast<float>(p.scale);
         const float limit = static_cast<float>(m_in.nu - 1);
-        u = u < 0 ? 0 : (u > limit ? limit : u);
-        const int x = static_cast<int>(u);
-        const float f = u - static_cast<float>(x);
-        float entry = m_row[x] + f * (m_row[x + 1] - m_row[x]), share = 1;
+        const int top = m_in.tableSize - 1;
+        const float* row = m_row;
+        int* next = m_next;
         if (m_in.valid) {
             const float* shares = m_row + m_in.nu + 1;
-            share = shares[x] + f * (shares[x + 1] - shares[x]);
-            entry = share > 1e-6f ? entry / share : 0;
+            for (int i = 0; i < count; ++i) {
+                float u = first + static_cast<float>(i) * scale;
+                u = u < 0 ? 0 : (u > limit ? limit : u);
+                const int x = static_cast<int>(u);
+                const float f = u - static_cast<float>(x), share = shares[x] + f * (shares[x + 1] - shares[x]);
+                const float entry = row[x] + f * (row[x + 1] - row[x]);
+                m_nextShare[i] = share;
+                next[i] = share > kNoShare ? smaller(top, static_cast<int>(entry / share + 0.5f)) : 0;
+            }
+            return;
         }
-        return {smaller(m_in.tableSize - 1, static_cast<int>(entry + 0.5f)), share};
+        for (int i = 0; i < count; ++i) {
+            float u = first + static_cast<float>(i) * scale;
+            u = u < 0 ? 0 : (u > limit ? limit : u);
+            const int x = static_cast<int>(u);
+            const float f = u - static_cast<float>(x);
+            next[i] = smaller(top, static_cast<int>(row[x] + f * (row[x + 1] - row[x]) + 0.5f));
+        }
     }
 
     /// Notes where the lines start from.
@@ -264,69 +284,73 @@ private:
         const Inside inside = insideAt(p, row, lines);
         if (inside.first > inside.last) return;
         readRow(p, w, row, inside);
-        for (int a = inside.first; a <= inside.last; ++a) {
-            const Sample s = sampleAt(static_cast<float>(p.baseU + a * p.scale));
-            lines.entry[a - lines.first] = s.entry;
-            lines.share[a - lines.first] = s.share;
-        }
+        sampleRow(p, inside);
+        const int offset = inside.first - lines.first;
+        for (int i = 0; i <= inside.last - inside.first; ++i) lines.entry[i + offset] = m_next[i];
+        if (!m_in.valid) return;
+        for (int i = 0; i <= inside.last - inside.first; ++i) lines.share[i + offset] = m_nextShare[i];
     }
 
-    /// ∫τ over one unit of path on which the intensity goes linearly from one table entry to another: exact, by the
+    /// Adds `path` times the mean of τ while the intensity goes linearly from one table entry to another: exact, by the
     /// table's running integral.
-    V meanDepth(int from, int to) const {
-        const int distance = to - from;
-        if (distance > -kNear && distance < kNear)
-            return L::load(m_in.depthTable + static_cast<std::ptrdiff_t>((from + to) / 2) * K);
-        const V integral = L::load(m_in.integralTable + static_cast<std::ptrdiff_t>(to) * K) -
-                           L::load(m_in.integralTable + static_cast<std::ptrdiff_t>(from) * K);
-        return integral * (1.0f / static_cast<float>(distance));
+    void addDepth(float* depth, int from, int to, float path) const {
+        const int low = smaller(from, to), high = larger(from, to);
+        if (m_in.opaqueBefore[high + 1] == m_in.opaqueBefore[low]) return; // transparent in every candidate
+        const int distance = high - low;
+        // Entries next to each other are averaged by their middle: their integrals differ by less than floats can tell.
+        const bool near = distance < kNear;
+        const float* plus = near ? m_in.depthTable + static_cast<std::ptrdiff_t>((low + high) / 2) * K
+                                 : m_in.integralTable + static_cast<std::ptrdiff_t>(high) * K;
+        if (near) {
+            L::store(depth, L::load(depth) + path * L::load(plus));
+            return;
+        }
+        const float* minus = m_in.integralTable + static_cast<std::ptrdiff_t>(low) * K;
+        L::store(depth, L::load(depth) + (path / static_cast<float>(distance)) * (L::load(plus) - L::load(minus)));
     }
 
     /// Adds to the lines what they meet between two planes. Returns `to`.
     template <class Plane>
     double step(const Plane& plane, double from, double to, int row, const Lines& lines) {
         const RayPlane p = plane(to), before = plane(from);
-        const Inside inside = insideAt(p, row, lines);
-        const bool some = inside.first <= inside.last;
-        if (some) readRow(p, to, row, inside);
+        Inside inside = insideAt(p, row, lines);
+        if (inside.first > inside.last) inside = {lines.last + 1, lines.last};
         const float slices = static_cast<float>(to - from);
-        if (some)
-            for (int a = inside.first; a <= inside.last; ++a) {
-                const int i = a - lines.first;
-                const Sample s = sampleAt(static_cast<float>(p.baseU + a * p.scale));
-                const int last = lines.entry[i];
-                lines.entry[i] = s.entry;
-                float path = lines.length[i * lines.lengthStep] * slices;
-                int start = last;
-                if (last == kOutside) { // came in through a side on the way
-                    path *= insideShare(p, before, a, row);
-                    start = s.entry;
-                }
-                if (m_in.valid) {
-                    const float lastShare = last == kOutside ? s.share : lines.share[i];
-                    lines.share[i] = s.share;
-                    if (lastShare <= 1e-6f) start = s.entry;
-                    const int end = s.share <= 1e-6f ? start : s.entry;
-                    path *= 0.5f * (lastShare + s.share);
-                    L::store(lines.depth + i * K, L::load(lines.depth + i * K) + path * meanDepth(start, end));
-                    continue;
-                }
-                L::store(lines.depth + i * K, L::load(lines.depth + i * K) + path * meanDepth(start, s.entry));
+        if (inside.first <= inside.last) {
+            readRow(p, to, row, inside);
+            sampleRow(p, inside);
+        }
+        for (int a = inside.first; a <= inside.last; ++a) {
+            const int i = a - lines.first, now = m_next[a - inside.first];
+            int last = lines.entry[i];
+            lines.entry[i] = now;
+            if (lines.codes && m_in.featureOfCode[lines.codes[i]] == kTransparent) continue;
+            float path = lines.length[i * lines.lengthStep] * slices;
+            const bool cameIn = last == kOutside; // through a side, on the way
+            if (cameIn) {
+                path *= insideShare(p, before, a, row);
+                last = now;
             }
-        // Those that went out through a side.
-        const auto leave = [&](int a) {
+            int end = now;
+            if (m_in.valid) {
+                const float share = m_nextShare[a - inside.first], lastShare = cameIn ? share : lines.share[i];
+                lines.share[i] = share;
+                if (lastShare <= kNoShare) last = now;
+                if (share <= kNoShare) end = last;
+                path *= 0.5f * (lastShare + share);
+            }
+            addDepth(lines.depth + i * K, last, end, path);
+        }
+        const auto leave = [&](int a) { // through a side
             const int i = a - lines.first;
             if (lines.entry[i] == kOutside) return;
             float path = lines.length[i * lines.lengthStep] * slices * insideShare(before, p, a, row);
             if (m_in.valid) path *= lines.share[i];
-            L::store(lines.depth + i * K,
-                     L::load(lines.depth + i * K) + path * meanDepth(lines.entry[i], lines.entry[i]));
+            addDepth(lines.depth + i * K, lines.entry[i], lines.entry[i], path);
             lines.entry[i] = kOutside;
         };
-        const int low = some ? inside.first : lines.last + 1;
-        for (int a = lines.first; a < low; ++a) leave(a);
-        if (some)
-            for (int a = inside.last + 1; a <= lines.last; ++a) leave(a);
+        for (int a = lines.first; a < inside.first; ++a) leave(a);
+        for (int a = inside.last + 1; a <= lines.last; ++a) leave(a);
         return to;
     }
 
@@ -407,7 +431,7 @@ private:
                 const V d = L::load(near + i * K);
                 L::store(m_gatherRow + i * K, d + fb * (L::load(far + i * K) - d));
             }
-            followOwnLines(u0, u1, v, k);
+            followOwnLines(codes, u0, u1, v, k);
             gatherRow(codes, u0, u1, v, k, static_cast<float>(first - a0), static_cast<float>(1 / p.scale),
                       a1 - a0 - 1);
         }
@@ -415,7 +439,7 @@ private:
 
     /// What the voxels u ∈ [u0, u1] have right in front of them, along lines of their own: surfaces there change so
     /// much from ray to ray that depths between rays would not do.
-    void followOwnLines(int u0, int u1, int v, int k) {
+    void followOwnLines(const std::uint16_t* codes, int u0, int u1, int v, int k) {
         for (int i = 0; i < (u1 - u0 + 1) * K; ++i) m_local.depth[i] = 0.0f;
         if (m_in.ownSlices == 0) return;
         const auto plane = [&](double w) { return voxelPlane(w, k); };
@@ -427,7 +451,8 @@ private:
                                  ? lengthOf((0.5 * (first + last) - m_in.eyeU) / away, (v - m_in.eyeV) / away)
                                  : lengthOf(m_in.slopeU, m_in.slopeV);
             const float length = static_cast<float>(l);
-            const Lines lines{first, last, m_local.depth + (first - u0) * K, m_local.entry, m_local.share, &length, 0};
+            const Lines lines{
+                first, last, m_local.depth + (first - u0) * K, m_local.entry, m_local.share, &length, 0, codes + first};
             const int start = k - m_in.ownSlices; // where the rays are
             const double from = start < 0 ? -0.5 : start - 0.5 / l;
             begin(plane(from), from, v, lines);
@@ -473,13 +498,15 @@ private:
     const SweepBand& m_band;
     SweepScratch& m_scratch;
     double* m_sums;
-    double m_slopeStep;           ///< perspective: slope between neighbouring rays
-    int m_a0 = 0, m_a1 = 0;       ///< rays of a row
-    int m_b0, m_b1;               ///< rows of rays; m_b1 is the first of the next band
-    float* m_accumulator;         ///< [features + 1][3][K]
-    float* m_row;                 ///< see interpolateRow
-    Lines m_rays;                 ///< all rows of rays
-    Lines m_local;                ///< the voxels of one row
+    double m_slopeStep;     ///< perspective: slope between neighbouring rays
+    int m_a0 = 0, m_a1 = 0; ///< rays of a row
+    int m_b0, m_b1;         ///< rows of rays; m_b1 is the first of the next band
+    float* m_accumulator;   ///< [features + 1][3][K]
+    float* m_row;           ///< see interpolateRow
+    Lines m_rays;           ///< all rows of rays
+    Lines m_local;          ///< the voxels of one row
+    int* m_next = nullptr;  ///< see sampleRow
+    float* m_nextShare = nullptr;
     float* m_gatherRow = nullptr; ///< [ray][K], optical depth between two rows of rays
     float* m_length = nullptr;    ///< [row][ray], d0 per slice
 };
