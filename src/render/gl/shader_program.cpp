@@ -62,6 +62,7 @@ ProgramName makeProgram(const std::vector<std::string>& files, const std::vector
 
 void requireGl43() {
     const int version = epoxy_gl_version();
+    if (version == 0) throw Error("no OpenGL context is current", "OpenGL", "use --engine cpu");
     if (version < 43 || !epoxy_is_desktop_gl())
         throw Error("OpenGL " + std::to_string(version / 10) + "." + std::to_string(version % 10) +
                         " is too old, 4.3 is needed",
