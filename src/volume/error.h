@@ -7,12 +7,13 @@
 namespace pellucid {
 
 /// An error of the outside world: what went wrong, where, and what to do about it. `main` alone (or the window's
-/// dialog) catches it. Each part is one line without a full stop; `where` and `whatToDo` may be empty.
+/// dialog) catches it. Each part is one line without a full stop; `where` and `whatToDo` may be empty. Control
+/// characters, which file names and damaged headers bring along, become blanks.
 class Error : public std::runtime_error {
 public:
     Error(std::string what, std::string where, std::string whatToDo)
-        : std::runtime_error(join(what, where, whatToDo)), m_what(std::move(what)), m_where(std::move(where)),
-          m_whatToDo(std::move(whatToDo)) {}
+        : std::runtime_error(oneLine(join(what, where, whatToDo))), m_what(oneLine(std::move(what))),
+          m_where(oneLine(std::move(where))), m_whatToDo(oneLine(std::move(whatToDo))) {}
 
     const std::string& problem() const noexcept { return m_what; }
     const std::string& where() const noexcept { return m_where; }
@@ -25,6 +26,11 @@ private:
         if (!b.empty()) line += ", " + b;
         if (!c.empty()) line += ", " + c;
         return line;
+    }
+    static std::string oneLine(std::string text) {
+        for (char& c : text)
+            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+        return text;
     }
     std::string m_what, m_where, m_whatToDo;
 };

@@ -14,8 +14,8 @@ namespace pellucid {
 namespace {
 
 std::mutex g_mutex;
+std::unique_ptr<tbb::global_control> g_limit;
 std::shared_ptr<tbb::task_arena> g_arena; // null: the default arena, one thread per core
-std::unique_ptr<tbb::global_control> g_limit; // lets an arena have more threads than there are cores
 
 std::shared_ptr<tbb::task_arena> arena() {
     std::lock_guard lock(g_mutex);
@@ -25,11 +25,13 @@ std::shared_ptr<tbb::task_arena> arena() {
 } // namespace
 
 void setThreadCount(int threads) {
-    const auto count = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
-    auto limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, count);
     auto next = threads > 0 ? std::make_shared<tbb::task_arena>(threads) : nullptr;
     std::lock_guard lock(g_mutex);
-    g_limit = std::move(limit);
+    g_limit.reset();
+    // Without this TBB takes no more workers than cores, and says so on stderr.
+    if (threads > tbb::info::default_concurrency())
+        g_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                        static_cast<std::size_t>(threads));
     g_arena = std::move(next);
 }
 

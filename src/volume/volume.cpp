@@ -83,7 +83,9 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
     const std::size_t count = std::visit([](const auto& v) { return v.size(); }, samples);
     if (count != voxelCount(d)) throw Error("number of samples and dimensions disagree", "", "");
     m_samples = std::make_shared<const Samples>(std::move(samples));
-    const Statistics s = statisticsOf(*m_samples, missing);
+    // −999.9 written as a decimal is not the float that the file holds for it.
+    if (m_missing && sampleType() == SampleType::F32) m_missing = static_cast<double>(static_cast<float>(*m_missing));
+    const Statistics s = statisticsOf(*m_samples, m_missing);
     m_invalidCount = s.invalid;
     if (s.invalid < count)
         m_dataRange = {s.lo, s.hi};

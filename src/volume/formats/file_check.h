@@ -1,0 +1,62 @@
+// What a header claims, held against what is really there, before anything is allocated.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "volume/job.h"
+
+namespace pellucid {
+
+/// Size of a file that can be read. Throws FileError: no such file, a folder, not permitted.
+std::uint64_t readableFileBytes(const std::string& path);
+
+/// The first `limit` bytes, fewer where the file is shorter. Throws FileError.
+std::string fileHead(const std::string& path, std::size_t limit);
+
+/// What a file seems to be, for error messages: "a PNG image", "text", "binary data", …
+std::string describeContent(std::string_view head);
+
+/// Number of values, product of `sizes`. Throws FileError unless each is in [1, 2^31) and the product times
+/// bytesPerValue stays below 2^63.
+std::uint64_t valueCount(const std::string& path, std::span<const std::int64_t> sizes, std::uint64_t bytesPerValue);
+
+enum class Encoding { Raw, Deflate, Text, Hex };
+
+/// Throws FileError where `stored` bytes cannot hold `values` values of `bytesPerValue` in this encoding. `where` is
+/// the file that holds the data; `toDo` advises what to check.
+void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
+                   std::uint64_t stored, const std::string& toDo);
+
+/// Unpacks the deflate stream that begins at byte `start` of a file (gzip, several members too; one of zlib or gzip
+/// where `zlib`) without keeping it. Throws FileError unless it yields at least `wanted` bytes undamaged: the format
+/// libraries fill what is missing with zeros and say nothing.
+void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                     const JobControl& job);
+
+/// Throws FileError unless the text that begins at byte `start` of a file holds `wanted` numbers, between blanks or
+/// commas: some libraries go on with the last one where the text ends.
+void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job);
+
+/// Memory that this machine can give without swapping, bytes (MemAvailable); the largest number where unknown.
+std::uint64_t availableMemoryBytes();
+/// Throws FileError where `needed` exceeds `available`.
+void requireMemory(const std::string& path, std::uint64_t needed, std::uint64_t available);
+
+/// "512 bytes", "1.50 GB" (powers of 1000).
+std::string describeBytes(std::uint64_t bytes);
+
+/// A text out of a header, in quotes and cut to 40 bytes: a damaged one may go on for long.
+std::string inQuotes(std::string_view text);
+/// Blank-separated words.
+std::vector<std::string> splitWords(std::string_view text);
+std::string trimmed(std::string_view text);
+std::string lowerCase(std::string_view text);
+/// Numbers independent of the locale; the whole text must be the number. Return false otherwise.
+bool parseNumber(std::string_view text, std::int64_t& value);
+bool parseNumber(std::string_view text, double& value);
+
+} // namespace pellucid

@@ -1,0 +1,110 @@
+// Writes NRRD0004, gzip-compressed, in the volume's own type.
+#include <bit>
+#include <charconv>
+#include <fstream>
+#include <type_traits>
+
+#include <zlib.h>
+
+#include "volume/atomic_file.h"
+#include "volume/error.h"
+#include "volume/loader.h"
+
+namespace pellucid {
+
+namespace {
+
+/// The shortest text that reads back as the same number, in any locale.
+std::string exactText(double value) {
+    char text[40];
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    PELLUCID_CHECK(error == std::errc{});
+    return {text, end};
+}
+
+const char* nrrdType(SampleType type) {
+    switch (type) {
+    case SampleType::U8:
+        return "uint8";
+    case SampleType::I8:
+        return "int8";
+    case SampleType::U16:
+        return "uint16";
+    case SampleType::I16:
+        return "int16";
+    case SampleType::U32:
+        return "uint32";
+    case SampleType::I32:
+        return "int32";
+    case SampleType::F32:
+        return "float";
+    case SampleType::F64:
+        return "double";
+    }
+    PELLUCID_CHECK(false);
+}
+
+std::string headerText(const Geometry& g, SampleType type) {
+    const auto vector = [](const Vec3& v) {
+        return exactText(v.x).insert(0, 1, '(') + ',' + exactText(v.y) + ',' + exactText(v.z) + ')';
+    };
+    // "space dimension" and no named space: our world has no patient in it.
+    std::string text =
+        "NRRD0004\ntype: " + std::string(nrrdType(type)) +
+        "\ndimension: 3\nspace dimension: 3\nsizes: " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) +
+        " " + std::to_string(g.dims.z) + "\nspace directions: " + vector({g.spacing.x, 0, 0}) + " " +
+        vector({0, g.spacing.y, 0}) + " " + vector({0, 0, g.spacing.z}) +
+        "\nkinds: domain domain domain\nendian: " + (std::endian::native == std::endian::big ? "big" : "little") +
+        "\nencoding: gzip\nspace origin: " + vector(g.origin) + "\n\n";
+    return text;
+}
+
+void deflateInto(std::ofstream& out, const char* data, std::size_t bytes) {
+    constexpr int kGzipFrame = 16;
+    constexpr int kLevel = 3; // noise does not get smaller at higher levels, only slower
+    z_stream stream{};
+    PELLUCID_CHECK(deflateInit2(&stream, kLevel, Z_DEFLATED, MAX_WBITS + kGzipFrame, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+    std::vector<char> packed(1u << 18);
+    constexpr std::size_t kPiece = 1u << 24;
+    std::size_t done = 0;
+    bool last = false;
+    while (!last) {
+        const std::size_t piece = std::min(kPiece, bytes - done);
+        last = done + piece == bytes;
+        stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data + done)); // zlib does not write there
+        stream.avail_in = static_cast<uInt>(piece);
+        do {
+            stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+            stream.avail_out = static_cast<uInt>(packed.size());
+            deflate(&stream, last ? Z_FINISH : Z_NO_FLUSH);
+            out.write(packed.data(), static_cast<std::streamsize>(packed.size() - stream.avail_out));
+        } while (stream.avail_out == 0 && out);
+        if (!out) break;
+        done += piece;
+    }
+    deflateEnd(&stream);
+}
+
+void writeFile(const std::string& path, const Geometry& geometry, SampleType type, const void* data) {
+    writeAtomically(path, [&](const std::string& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        out << headerText(geometry, type);
+        deflateInto(out, static_cast<const char*>(data), voxelCount(geometry.dims) * bytesPerSample(type));
+        out.close();
+        if (!out) throw FileError("cannot write the file", path, "check permissions and space");
+    });
+}
+
+} // namespace
+
+void writeNrrd(const Volume& volume, const std::string& path) {
+    std::visit([&](const auto& values) { writeFile(path, volume.geometry(), volume.sampleType(), values.data()); },
+               volume.samples());
+}
+
+void writeNrrd(const Geometry& geometry, const Grid<float>& values, const std::string& path) {
+    PELLUCID_CHECK(values.dims() == geometry.dims);
+    writeFile(path, geometry, SampleType::F32, values.data());
+}
+
+} // namespace pellucid

@@ -1,0 +1,139 @@
+#include "volume/loader.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+
+#include "volume/formats/file_check.h"
+#include "volume/formats/reader.h"
+#include "volume/procedural.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::string_view kSamplePrefix = "sample:";
+
+const std::array<const VolumeReader*, 3>& readers() {
+    static const std::array<const VolumeReader*, 3> kReaders{&nrrdReader(), &metaImageReader(), &niftiReader()};
+    return kReaders;
+}
+
+const VolumeReader* readerFor(const std::string& path) {
+    const std::string lower = lowerCase(std::filesystem::path(path).filename().string());
+    for (const VolumeReader* reader : readers())
+        for (const std::string& suffix : reader->suffixes())
+            if (lower.size() > suffix.size() && lower.ends_with(suffix)) return reader;
+    return nullptr;
+}
+
+std::string knownSuffixes() {
+    std::string list;
+    for (const VolumeReader* reader : readers())
+        for (const std::string& suffix : reader->suffixes()) list += (list.empty() ? "" : " ") + suffix;
+    return list;
+}
+
+Volume readFile(const VolumeSource& source, const JobControl& job) {
+    if (readableFileBytes(source.path) == 0) throw FileError("the file is empty", source.path, "copy it again");
+    Volume volume = [&] {
+        if (source.raw) {
+            Volume read = readRaw(source, job);
+            read.format = "raw";
+            return read;
+        }
+        const VolumeReader* reader = readerFor(source.path);
+        if (reader == nullptr) {
+            const bool named = lowerCase(source.path).ends_with(".raw");
+            throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format",
+                            source.path,
+                            named ? "give --raw NX,NY,NZ,TYPE"
+                                  : "give one of " + knownSuffixes() + ", or --raw NX,NY,NZ,TYPE for headerless data");
+        }
+        Volume read = reader->read(source, job);
+        read.format = reader->name();
+        return read;
+    }();
+    volume.title = std::filesystem::path(source.path).filename().string();
+    return volume;
+}
+
+Volume sample(const VolumeSource& source, const JobControl& job) {
+    if (source.raw) throw UsageError("a sample has no raw layout", source.path, "leave out --raw");
+    if (source.component != 0) throw UsageError("a sample has one component", source.path, "leave out --component");
+    Volume volume = makeSample(source.path.substr(kSamplePrefix.size()), source.sampleSize, source.seed, job);
+    if (!source.missing) return volume;
+    Volume other(volume.geometry(), volume.samples(), source.missing);
+    if (volume.range() != volume.dataRange()) other = other.withRange(volume.range());
+    other.title = volume.title;
+    other.format = volume.format;
+    return other;
+}
+
+/// "7", "-0.5": a value as people write it.
+std::string plainNumber(double value) {
+    char text[40];
+    const auto result = std::to_chars(text, text + sizeof text, value);
+    return {text, result.ptr};
+}
+
+} // namespace
+
+RawLayout parseRawLayout(const std::string& text) {
+    const auto fail = [&](const std::string& why) {
+        return UsageError(why, "--raw " + text,
+                          "give NX,NY,NZ,TYPE[,little|big], TYPE one of u8 i8 u16 i16 u32 i32 f32 f64");
+    };
+    std::vector<std::string> parts(1);
+    for (const char c : text) {
+        if (c == ',')
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    if (parts.size() < 4 || parts.size() > 5) throw fail("the layout has " + std::to_string(parts.size()) + " parts");
+    RawLayout layout;
+    for (int a = 0; a < 3; ++a) {
+        std::int64_t size = 0;
+        const std::string& part = parts[static_cast<std::size_t>(a)];
+        if (!parseNumber(part, size) || size < 1 || size > std::numeric_limits<int>::max())
+            throw fail("'" + part + "' is not a number of voxels");
+        layout.dims[a] = static_cast<int>(size);
+    }
+    const auto type = sampleTypeFromName(parts[3]);
+    if (!type) throw fail("'" + parts[3] + "' is not a sample type");
+    layout.type = *type;
+    if (parts.size() == 5) {
+        if (parts[4] != "little" && parts[4] != "big") throw fail("'" + parts[4] + "' is not a byte order");
+        layout.bigEndian = parts[4] == "big";
+    }
+    return layout;
+}
+
+Volume loadVolume(const VolumeSource& source, const JobControl& job) {
+    if (source.path.empty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
+    const bool builtIn = source.path.rfind(kSamplePrefix, 0) == 0;
+    Volume volume = builtIn ? sample(source, job) : readFile(source, job);
+    if (!volume.hasValidVoxels())
+        volume.notices.emplace_back("no voxel has a valid value");
+    else if (volume.isConstant())
+        volume.notices.push_back(
+            (volume.invalidCount() > 0 ? "all valid voxels have the value " : "all voxels have the value ") +
+            plainNumber(volume.dataRange().lo));
+    if (source.range) volume = volume.withRange(*source.range);
+    job.report(1.0);
+    return volume;
+}
+
+const std::vector<std::string>& volumeFilePatterns() {
+    static const std::vector<std::string> kPatterns = [] {
+        std::vector<std::string> patterns;
+        for (const VolumeReader* reader : readers())
+            for (const std::string& suffix : reader->suffixes()) patterns.push_back("*" + suffix);
+        return patterns;
+    }();
+    return kPatterns;
+}
+
+} // namespace pellucid

@@ -1,0 +1,51 @@
+#include <stdexcept>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "volume/parallel.h"
+
+using namespace pellucid;
+
+TEST_CASE("parallelFor calls each index once, whatever the thread count", "[parallel]") {
+    for (const int threads : {1, 3, 0}) {
+        setThreadCount(threads);
+        std::vector<int> calls(1000, 0);
+        parallelFor(calls.size(), [&](std::size_t i) { ++calls[i]; });
+        CHECK(calls == std::vector<int>(1000, 1));
+    }
+    setThreadCount(0);
+    parallelFor(0, [](std::size_t) { FAIL("nothing to call"); });
+}
+
+TEST_CASE("a reduction by slots has the same bits for any thread count", "[parallel]") {
+    const auto sum = [](int threads) {
+        setThreadCount(threads);
+        std::vector<double> slots(64);
+        parallelFor(slots.size(), [&](std::size_t s) {
+            for (int i = 1; i < 1000; ++i) slots[s] += 1.0 / (static_cast<double>(s) + 0.1 * i);
+        });
+        double total = 0;
+        for (const double v : slots) total += v;
+        return total;
+    };
+    const double one = sum(1);
+    CHECK(one == sum(2));
+    CHECK(one == sum(5));
+    setThreadCount(0);
+}
+
+TEST_CASE("the thread count is what was asked for", "[parallel]") {
+    setThreadCount(3);
+    CHECK(threadCount() == 3);
+    setThreadCount(0);
+    CHECK(threadCount() >= 1);
+}
+
+TEST_CASE("an exception inside parallelFor comes out", "[parallel]") {
+    CHECK_THROWS_AS(parallelFor(100,
+                                [](std::size_t i) {
+                                    if (i == 17) throw std::runtime_error("17");
+                                }),
+                    std::runtime_error);
+}
