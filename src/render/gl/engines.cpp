@@ -1,0 +1,59 @@
+#include "render/gl/engines.h"
+
+#include "render/gl/headless_context.h"
+#include "volume/error.h"
+
+namespace pellucid {
+
+EngineChoice engineChoiceFromName(const std::string& name) {
+    if (name == "auto") return EngineChoice::Auto;
+    if (name == "gl") return EngineChoice::Gl;
+    if (name == "cpu") return EngineChoice::Cpu;
+    if (name == "reference") return EngineChoice::Reference;
+    throw UsageError("unknown engine \"" + name + "\"", "--engine", "use auto, gl, cpu or reference");
+}
+
+std::optional<GlInfo> probeGl() {
+    try {
+        return gl::HeadlessContext().info();
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+namespace {
+
+bool haveGpu() {
+    // Asked once: drivers do not come and go, and a context takes a while.
+    static const bool gpu = [] {
+        const auto info = probeGl();
+        return info && !info->software;
+    }();
+    return gpu;
+}
+
+EngineChoice resolved(EngineChoice choice) {
+    if (choice != EngineChoice::Auto) return choice;
+    return haveGpu() ? EngineChoice::Gl : EngineChoice::Cpu;
+}
+
+} // namespace
+
+std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
+                                             Quality quality) {
+    switch (resolved(choice)) {
+    case EngineChoice::Gl:
+        return makeGlEngine(std::move(volume), quality);
+    case EngineChoice::Reference:
+        return makeReferenceEngine(std::move(volume));
+    default:
+        return makeCpuEngine(std::move(volume), quality);
+    }
+}
+
+std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume) {
+    if (resolved(choice) == EngineChoice::Gl) return makeGlRenderer(std::move(volume));
+    return makeCpuRenderer(std::move(volume));
+}
+
+} // namespace pellucid

@@ -1,0 +1,81 @@
+// A GL name that frees itself. The context it was made in must be current when it is made and when it dies.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+#include "render/gl/gl.h"
+
+namespace pellucid::gl {
+
+/// Kind: static GLuint create(); static void destroy(GLuint).
+template <class Kind>
+class GlObject {
+public:
+    GlObject() noexcept = default; ///< empty, calls no GL
+    static GlObject make() {
+        GlObject object;
+        object.m_id = Kind::create();
+        return object;
+    }
+    GlObject(GlObject&& other) noexcept : m_id(std::exchange(other.m_id, 0)) {}
+    GlObject& operator=(GlObject&& other) noexcept {
+        std::swap(m_id, other.m_id);
+        return *this;
+    }
+    ~GlObject() {
+        if (m_id != 0) Kind::destroy(m_id);
+    }
+    GLuint id() const noexcept { return m_id; }
+    explicit operator bool() const noexcept { return m_id != 0; }
+
+private:
+    GLuint m_id = 0;
+};
+
+struct TextureKind {
+    static GLuint create() {
+        GLuint id = 0;
+        glGenTextures(1, &id);
+        return id;
+    }
+    static void destroy(GLuint id) { glDeleteTextures(1, &id); }
+};
+struct FramebufferKind {
+    static GLuint create() {
+        GLuint id = 0;
+        glGenFramebuffers(1, &id);
+        return id;
+    }
+    static void destroy(GLuint id) { glDeleteFramebuffers(1, &id); }
+};
+struct BufferKind {
+    static GLuint create() {
+        GLuint id = 0;
+        glGenBuffers(1, &id);
+        return id;
+    }
+    static void destroy(GLuint id) { glDeleteBuffers(1, &id); }
+};
+struct VertexArrayKind {
+    static GLuint create() {
+        GLuint id = 0;
+        glGenVertexArrays(1, &id);
+        return id;
+    }
+    static void destroy(GLuint id) { glDeleteVertexArrays(1, &id); }
+};
+struct ProgramKind {
+    static GLuint create() { return glCreateProgram(); }
+    static void destroy(GLuint id) { glDeleteProgram(id); }
+};
+
+using TextureName = GlObject<TextureKind>;
+using FramebufferName = GlObject<FramebufferKind>;
+using BufferName = GlObject<BufferKind>;
+using VertexArrayName = GlObject<VertexArrayKind>;
+using ProgramName = GlObject<ProgramKind>;
+
+static_assert(!std::is_copy_constructible_v<TextureName>);
+
+} // namespace pellucid::gl

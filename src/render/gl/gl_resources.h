@@ -1,0 +1,49 @@
+// Textures, framebuffers and buffers with their sizes, and how GL's errors become ours.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "render/gl/gl_object.h"
+
+namespace pellucid::gl {
+
+/// Throws Error where GL has recorded one since the last call: `doing` says what was attempted ("drawing the slices").
+void throwOnGlError(const std::string& doing);
+
+int glInteger(GLenum parameter);
+
+/// Immutable storage, one level, clamped to the edge.
+struct Texture2d {
+    TextureName name;
+    glm::ivec2 size{0, 0};
+    GLenum format = 0; ///< sized internal format
+};
+struct Texture3d {
+    TextureName name;
+    glm::ivec3 size{0, 0, 0};
+    GLenum format = 0;
+};
+/// `filter` is GL_NEAREST or GL_LINEAR; `what` names the content in errors. Throw Error: too large, out of memory.
+Texture2d makeTexture2d(glm::ivec2 size, GLenum format, GLenum filter, const std::string& what);
+Texture3d makeTexture3d(glm::ivec3 size, GLenum format, GLenum filter, const std::string& what);
+
+/// A framebuffer with one colour texture.
+struct ColorTarget {
+    Texture2d color;
+    FramebufferName framebuffer;
+};
+ColorTarget makeColorTarget(glm::ivec2 size, GLenum format, GLenum filter, const std::string& what);
+
+struct Buffer {
+    BufferName name;
+    std::size_t bytes = 0;
+};
+Buffer makeBuffer(GLenum target, std::size_t bytes, const void* data, GLenum usage, const std::string& what);
+
+void bindTexture(int unit, GLenum target, const TextureName& name);
+
+} // namespace pellucid::gl

@@ -1,0 +1,71 @@
+#include "render/gl/shader_program.h"
+
+#include "volume/error.h"
+
+namespace pellucid::gl {
+
+namespace {
+
+GLenum stageOf(const std::string& file) {
+    const std::string suffix = file.substr(file.rfind('.') + 1);
+    if (suffix == "vert") return GL_VERTEX_SHADER;
+    if (suffix == "frag") return GL_FRAGMENT_SHADER;
+    if (suffix == "comp") return GL_COMPUTE_SHADER;
+    throw Error("a shader file without a stage", file, "name it .vert, .frag or .comp");
+}
+
+struct ShaderName {
+    explicit ShaderName(GLenum stage) : id(glCreateShader(stage)) {}
+    ~ShaderName() { glDeleteShader(id); }
+    ShaderName(const ShaderName&) = delete;
+    ShaderName& operator=(const ShaderName&) = delete;
+    GLuint id;
+};
+
+void compileInto(GLuint program, const std::string& file, const std::vector<std::string>& defines,
+                 const ShaderLookup& lookup) {
+    const ShaderSource source = expandShader(file, defines, lookup);
+    const ShaderName shader(stageOf(file));
+    const char* text = source.text.c_str();
+    glShaderSource(shader.id, 1, &text, nullptr);
+    glCompileShader(shader.id);
+    GLint done = GL_FALSE, length = 0;
+    glGetShaderiv(shader.id, GL_COMPILE_STATUS, &done);
+    if (done != GL_TRUE) {
+        glGetShaderiv(shader.id, GL_INFO_LOG_LENGTH, &length);
+        std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+        glGetShaderInfoLog(shader.id, length, nullptr, log.data());
+        throw Error("a shader does not compile: " + mapShaderLog(log.c_str(), source), file,
+                    "use --engine cpu and report this with your driver's version");
+    }
+    glAttachShader(program, shader.id);
+}
+
+} // namespace
+
+ProgramName makeProgram(const std::vector<std::string>& files, const std::vector<std::string>& defines,
+                        const ShaderLookup& lookup) {
+    ProgramName program = ProgramName::make();
+    for (const std::string& file : files) compileInto(program.id(), file, defines, lookup);
+    glLinkProgram(program.id());
+    GLint done = GL_FALSE, length = 0;
+    glGetProgramiv(program.id(), GL_LINK_STATUS, &done);
+    if (done != GL_TRUE) {
+        glGetProgramiv(program.id(), GL_INFO_LOG_LENGTH, &length);
+        std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+        glGetProgramInfoLog(program.id(), length, nullptr, log.data());
+        throw Error(std::string("a shader program does not link: ") + log.c_str(), files.front(),
+                    "use --engine cpu and report this with your driver's version");
+    }
+    return program;
+}
+
+void requireGl43() {
+    const int version = epoxy_gl_version();
+    if (version < 43 || !epoxy_is_desktop_gl())
+        throw Error("OpenGL " + std::to_string(version / 10) + "." + std::to_string(version % 10) +
+                        " is too old, 4.3 is needed",
+                    "OpenGL", "update the graphics driver, or use --engine cpu");
+}
+
+} // namespace pellucid::gl

@@ -1,0 +1,57 @@
+// Draws the volume with view-aligned slices, front to back, into any framebuffer of the current OpenGL context: the one
+// renderer of the window and of the command line. Includes no GL header, so that the window can use it beside Qt's own.
+#pragma once
+
+#include <memory>
+
+#include "render/render_settings.h"
+#include "tf/transfer_function.h"
+#include "volume/job.h"
+#include "volume/volume.h"
+
+namespace pellucid::gl {
+
+/// Where a picture goes.
+struct DrawTarget {
+    unsigned framebuffer = 0; ///< GL name of the framebuffer drawn into (QOpenGLWidget::defaultFramebufferObject())
+    int x = 0, y = 0;         ///< lower left corner of the picture in that framebuffer, pixels
+    /// The part of the RenderSettings' width × height image that is drawn, pixels from its top left corner; width and
+    /// height 0: all of it. Lets a large image be drawn in tiles.
+    int tileX = 0, tileY = 0, tileWidth = 0, tileHeight = 0;
+    /// Rays per pixel along each axis, (0, 1]: below 1 the picture is drawn smaller and enlarged, for a quick answer
+    /// while the mouse moves.
+    double resolutionScale = 1.0;
+};
+
+/// Emission and absorption along every pixel's ray (MEASURES §4): slices parallel to the image plane, each fragment
+/// weighted by the true length of its ray within its slice and the box.
+///
+/// Every member function, the constructor and the destructor need the same OpenGL context, 4.3 core or later, to be
+/// current. GL state afterwards: no program, vertex array or texture bound, blending, depth and scissor test off, the
+/// target framebuffer bound and the viewport over the picture.
+class SliceRaycaster {
+public:
+    /// Compiles the shaders. Throws Error where the context is older than 4.3 or a shader does not compile.
+    SliceRaycaster();
+    ~SliceRaycaster();
+    SliceRaycaster(SliceRaycaster&&) noexcept;
+    SliceRaycaster& operator=(SliceRaycaster&&) noexcept;
+
+    /// Uploads the intensities. Throws Error (too large for the device, out of memory); the former volume stays then.
+    void setVolume(std::shared_ptr<const Volume> volume);
+    /// Cheap: a table of some thousand entries; nothing happens where `tf` equals the present one.
+    void setTransferFunction(const TransferFunction& tf);
+
+    /// Draws settings.width × settings.height pixels (or the tile) over whatever the target holds. Needs a volume and a
+    /// transfer function. With a background the result is opaque; without, colours are premultiplied by alpha.
+    /// settings.stepInD0 is the largest distance of samples along a ray: larger is faster and coarser.
+    /// Throws Error (invalid camera or settings, the device fails), Cancelled.
+    void draw(const Camera& camera, const RenderSettings& settings, const DrawTarget& target,
+              const JobControl& job = {});
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+} // namespace pellucid::gl

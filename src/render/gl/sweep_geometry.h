@@ -1,0 +1,65 @@
+// How the volume is swept to measure visibility: along which of its axes, with which rays and in which slabs. No GL.
+#pragma once
+
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+
+#include "render/camera.h"
+#include "render/visibility.h"
+
+namespace pellucid::gl {
+
+/// One sweep: slabs perpendicular to an axis of the volume, front to back, and straight rays through all of them.
+/// Slabs follow the volume's axes, not the view: rays can then stand exactly on the voxel columns of the farthest
+/// plane, so that a view along an axis is computed without any interpolation, and no voxel is ever seen at a flat
+/// angle.
+///
+/// Coordinates q = (a, b, c) are voxel coordinates with the sweep's axis last and c growing away from the eye.
+struct Sweep {
+    int axis = 2; ///< of the volume
+    int sign = 1; ///< +1: c grows along the axis; −1: against it
+    /// Only the voxels whose direction from the eye lies nearest this axis and sign belong to the sweep; else all.
+    bool pyramid = false;
+
+    Int3 dims{0, 0, 0};    ///< of a, b, c
+    Vec3 spacing{1, 1, 1}; ///< of a, b, c in units of d0
+    bool perspective = true;
+    Vec3 eye{0, 0, 0};      ///< in q (perspective)
+    glm::dvec2 shear{0, 0}; ///< change of (a, b) per unit of c (orthographic)
+
+    double reference = 0;    ///< c of the plane whose points (a, b) name the rays: the farthest voxel centres
+    glm::dvec2 grid{0, 0};   ///< (a, b) of the first ray
+    double raysPerVoxel = 1; ///< along a and b, on the reference plane
+    glm::ivec2 rays{0, 0};   ///< number along a, b
+
+    /// Where T differs by more than this between the rays around a voxel, its own ray is followed.
+    double tolerance = 0;
+
+    double firstLayer = 0; ///< c where the first slab begins
+    double layerStep = 0;  ///< c per slab
+    int layers = 0;        ///< slabs; there is one boundary more
+    int firstPlane = 0;    ///< first c that has voxels of this sweep
+
+    /// Voxel coordinates (i, j, k) = matrix·q + offset.
+    glm::dmat3 voxelFromQ() const;
+    Vec3 voxelOffset() const;
+    /// Index of voxel q in the volume = base + a·stride.x + b·stride.y + c·stride.z.
+    struct Strides {
+        std::ptrdiff_t base = 0, a = 0, b = 0, c = 0;
+    };
+    Strides strides() const;
+
+    /// Slabs [first, last] such that boundaries first … last + 1 … enclose all of plane c and of what lies half a
+    /// voxel in front of it.
+    int layerBefore(double c) const;
+    int layerAfter(double c) const;
+};
+
+/// One sweep for orthographic cameras and for eyes far enough away; else up to six, a pyramid of directions each, so
+/// that an eye close to the box sees every voxel at a moderate angle. `quality` sets the slabs' thickness (along a ray)
+/// and the rays per voxel.
+std::vector<Sweep> makeSweeps(const Camera& camera, const Geometry& geometry, Quality quality);
+
+} // namespace pellucid::gl

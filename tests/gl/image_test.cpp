@@ -1,0 +1,229 @@
+#include "gl_test.h"
+
+#include "render/gl/engines.h"
+#include "render/gl/gl_resources.h"
+#include "render/gl/slice_raycaster.h"
+
+using namespace pellucid;
+using namespace pellucid::testing;
+
+namespace {
+
+struct Difference {
+    double mean = 0, largest = 0;
+};
+
+Difference difference(const Image& a, const Image& b) {
+    REQUIRE(a.rgba.size() == b.rgba.size());
+    Difference d;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        const double e = std::abs(static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]));
+        d.mean += e / static_cast<double>(a.rgba.size());
+        d.largest = std::max(d.largest, e);
+    }
+    return d;
+}
+
+double meanAlpha(const Image& image) {
+    double sum = 0;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += static_cast<double>(image.rgba[i]);
+    return 4 * sum / static_cast<double>(image.rgba.size());
+}
+
+RenderSettings smallSettings() {
+    RenderSettings settings;
+    settings.width = 72;
+    settings.height = 56;
+    settings.stepInD0 = 0.25;
+    return settings;
+}
+
+} // namespace
+
+TEST_CASE("a homogeneous block has the opacity of its length along every ray", "[gl]") {
+    if (!haveGl()) return;
+    // 8 × 8 × 8 voxels of spacing 0.5 seen along x: 4 world units = 8 d0 of α = 0.1: 1 − 0.9^8. Seen along the diagonal
+    // (1,1,0) the middle ray is √2 times as long.
+    const auto volume = volumeOf({8, 8, 8}, std::vector<std::uint8_t>(512, 200), {0.5, 0.5, 0.5});
+    const auto renderer = makeGlRenderer(volume);
+    RenderSettings settings = smallSettings();
+    settings.width = settings.height = 33;
+    settings.background = {};
+    const Rgb color{0.25, 0.5, 0.75};
+    for (const double step : {0.5, 1.0, 3.0}) { // no result depends on the step
+        settings.stepInD0 = step;
+        CAPTURE(step);
+        const Image along =
+            renderer->render(orthographic(volume->geometry(), {1, 0, 0}, 6), constantOpacity(0.1, color), settings);
+        const float* p = along.pixel(16, 16);
+        CHECK(static_cast<double>(p[3]) == Approx(1 - std::pow(0.9, 8)).margin(1e-4));
+        CHECK(static_cast<double>(p[0]) == Approx(0.25).margin(1e-3)); // straight colours
+        CHECK(static_cast<double>(p[2]) == Approx(0.75).margin(1e-3));
+        CHECK(along.pixel(0, 16)[3] == 0.0f);
+        const Image across =
+            renderer->render(orthographic(volume->geometry(), {1, 1, 0}, 6), constantOpacity(0.1, color), settings);
+        CHECK(static_cast<double>(across.pixel(16, 16)[3]) ==
+              Approx(1 - std::pow(0.9, 8 * std::sqrt(2.0))).margin(2e-3));
+    }
+}
+
+TEST_CASE("gl and cpu draw the same picture", "[gl]") {
+    if (!haveGl()) return;
+    const auto volume = waves({28, 24, 16}, {1, 0.8, 1.5});
+    const auto gl = makeGlRenderer(volume);
+    const auto cpu = makeCpuRenderer(volume);
+    const Geometry& g = volume->geometry();
+    const Vec3 half = 0.5 * (g.boxMax() - g.boxMin());
+    const std::vector<std::pair<std::string, Camera>> views{{"from afar", perspective(g, {40, -60, 20})},
+                                                            {"from close", perspective(g, {2, -half.y - 1, -2})},
+                                                            {"from a corner", perspective(g, half + Vec3(1, 2, 1))},
+                                                            {"along an axis", orthographic(g, {0, 0, -1}, 40)},
+                                                            {"at a slant", orthographic(g, {1, -0.7, 0.4}, 40)}};
+    struct Case {
+        std::string name;
+        void (*change)(RenderSettings&);
+        double largest;
+    };
+    // Shading divides by the gradient's length: where that is small the picture hangs on the last bits.
+    const std::vector<Case> cases{{"plain", [](RenderSettings&) {}, 0.03},
+                                  {"transparent", [](RenderSettings& s) { s.background = {}; }, 0.03},
+                                  {"background",
+                                   [](RenderSettings& s) {
+                                       s.background = Rgb{0.2, 0.7, 1};
+                                   },
+                                   0.03},
+                                  {"shading", [](RenderSettings& s) { s.shading = true; }, 0.1},
+                                  {"clipped",
+                                   [](RenderSettings& s) {
+                                       s.clipLo = {0.1, 0.3, 0.2};
+                                       s.clipHi = {0.8, 1, 0.75};
+                                   },
+                                   0.03},
+                                  {"one feature", [](RenderSettings& s) { s.onlyFeature = 1; }, 0.03}};
+    const TransferFunction tf = tents(3, 0.25);
+    for (const auto& [view, camera] : views)
+        for (const Case& c : cases) {
+            CAPTURE(view, c.name);
+            RenderSettings settings = smallSettings();
+            c.change(settings);
+            const Image a = gl->render(camera, tf, settings), b = cpu->render(camera, tf, settings);
+            if (!settings.background) {
+                // Straight colours of nearly transparent pixels mean nothing: compare what is seen.
+                CHECK(meanAlpha(a) == Approx(meanAlpha(b)).margin(1e-3));
+                CHECK(meanAlpha(a) > 0.05);
+                continue;
+            }
+            const Difference d = difference(a, b);
+            CHECK(d.mean < 1.0 / 255);
+            CHECK(d.largest < c.largest);
+        }
+}
+
+TEST_CASE("invalid voxels are not drawn", "[gl]") {
+    if (!haveGl()) return;
+    const Int3 dims(12, 12, 12);
+    std::vector<float> values(voxelCount(dims), 1.0f);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i % 2 == 0) values[i] = 3.0f;
+        if (i % static_cast<std::size_t>(dims.x) < 6) values[i] = std::nanf("");
+    }
+    const auto volume = std::make_shared<const Volume>(Geometry{dims, {1, 1, 1}, {0, 0, 0}}, Samples(values));
+    RenderSettings settings = smallSettings();
+    settings.background = {};
+    const Camera camera = orthographic(volume->geometry(), {0, 1, 0}, 16);
+    const Image a = makeGlRenderer(volume)->render(camera, constantOpacity(0.5), settings);
+    const Image b = makeCpuRenderer(volume)->render(camera, constantOpacity(0.5), settings);
+    CHECK(meanAlpha(a) == Approx(meanAlpha(b)).margin(1e-3));
+    // Left of the middle everything is invalid: x = 2 is pixel 36 + (2 − 5.5)·56/16 ≈ 24.
+    CHECK(a.pixel(24, 28)[3] == 0.0f);
+    CHECK(a.pixel(50, 28)[3] > 0.99f);
+}
+
+TEST_CASE("a picture larger than a tile is the same picture", "[gl]") {
+    if (!haveGl()) return;
+    const auto volume = waves({12, 10, 8}, {1, 1, 1});
+    const auto renderer = makeGlRenderer(volume);
+    const auto cpu = makeCpuRenderer(volume);
+    RenderSettings settings;
+    settings.width = 2100; // tiles are 2048 wide
+    settings.height = 40;
+    settings.stepInD0 = 1;
+    Camera camera = orthographic(volume->geometry(), {0.2, 1, 0.1}, 0.25);
+    const Difference d =
+        difference(renderer->render(camera, tents(3, 0.3), settings), cpu->render(camera, tents(3, 0.3), settings));
+    CHECK(d.mean < 1.0 / 255);
+    CHECK(d.largest < 0.05);
+}
+
+TEST_CASE("the ray caster draws into a part of any framebuffer, coarser where asked, and leaves the state tidy",
+          "[gl]") {
+    if (!haveGl()) return;
+    const auto volume = waves({20, 20, 20}, {1, 1, 1});
+    RenderSettings settings = smallSettings();
+    settings.background = Rgb{0.1, 0.2, 0.3};
+    const Camera camera = perspective(volume->geometry(), {20, -40, 15});
+    const TransferFunction tf = tents(3, 0.2);
+    const Image expected = makeCpuRenderer(volume)->render(camera, tf, settings);
+    gl::HeadlessContext context;
+    context.run([&] {
+        gl::SliceRaycaster raycaster;
+        raycaster.setVolume(volume);
+        raycaster.setTransferFunction(tf);
+        const auto target = gl::makeColorTarget({100, 80}, GL_RGBA8, GL_NEAREST, "test");
+        for (const double scale : {1.0, 0.5}) {
+            glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.id());
+            glClearColor(1, 0, 1, 1);
+            glClear(GL_COLOR_BUFFER_BIT);
+            glEnable(GL_SCISSOR_TEST);
+            glScissor(0, 0, 1, 1); // whoever was here before
+            glEnable(GL_DEPTH_TEST);
+            raycaster.draw(camera, settings, {target.framebuffer.id(), 10, 15, 0, 0, 0, 0, scale});
+            GLint bound = 0, program = 0, array = 0;
+            glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+            glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+            glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &array);
+            CHECK(bound == static_cast<GLint>(target.framebuffer.id()));
+            CHECK(program == 0);
+            CHECK(array == 0);
+            CHECK(glIsEnabled(GL_BLEND) == GL_FALSE);
+            CHECK(glIsEnabled(GL_SCISSOR_TEST) == GL_FALSE);
+
+            std::vector<float> pixels(100 * 80 * 4);
+            glReadPixels(0, 0, 100, 80, GL_RGBA, GL_FLOAT, pixels.data());
+            CHECK(glGetError() == GL_NO_ERROR);
+            const auto at = [&](int x, int y) { return &pixels[static_cast<std::size_t>(4 * (y * 100 + x))]; };
+            CHECK(at(9, 40)[1] == 0.0f); // outside nothing has changed
+            CHECK(at(82, 40)[1] == 0.0f);
+            CHECK(at(40, 71)[1] == 0.0f);
+            double mean = 0;
+            for (int y = 0; y < settings.height; ++y)
+                for (int x = 0; x < settings.width; ++x)
+                    for (int c = 0; c < 4; ++c)
+                        mean += std::abs(static_cast<double>(at(10 + x, 15 + settings.height - 1 - y)[c]) -
+                                         static_cast<double>(expected.pixel(x, y)[c])) /
+                                (4.0 * settings.width * settings.height);
+            CAPTURE(scale);
+            CHECK(mean < (scale == 1.0 ? 0.004 : 0.02));
+        }
+    });
+}
+
+TEST_CASE("wrong requests for a picture are errors, and stopping stops", "[gl]") {
+    if (!haveGl()) return;
+    const auto volume = noise({6, 6, 6}, {1, 1, 1}, 1);
+    const auto renderer = makeGlRenderer(volume);
+    const Camera camera = perspective(volume->geometry(), {0, -20, 0});
+    RenderSettings settings = smallSettings();
+    settings.onlyFeature = 3;
+    CHECK_THROWS_AS(renderer->render(camera, tents(3), settings), Error);
+    settings.onlyFeature = -1;
+    settings.width = 0;
+    CHECK_THROWS_AS(renderer->render(camera, tents(3), settings), UsageError);
+    settings.width = 72;
+    std::stop_source stop;
+    stop.request_stop();
+    JobControl job;
+    job.stop = stop.get_token();
+    CHECK_THROWS_AS(renderer->render(camera, tents(3), settings, job), Cancelled);
+    CHECK(renderer->render(camera, tents(3), settings).width == 72);
+}

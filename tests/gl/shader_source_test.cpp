@@ -1,0 +1,112 @@
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "render/gl/shader_source.h"
+#include "volume/error.h"
+
+using namespace pellucid;
+using namespace pellucid::gl;
+
+namespace {
+
+ShaderLookup filesOf(std::map<std::string, std::string> files) {
+    return [files = std::move(files)](const std::string& name) -> std::optional<std::string> {
+        const auto found = files.find(name);
+        if (found == files.end()) return {};
+        return found->second;
+    };
+}
+
+std::string readFile(const std::filesystem::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+} // namespace
+
+TEST_CASE("includes are expanded once, and every line knows where it came from", "[shader_source]") {
+    const auto lookup =
+        filesOf({{"a.frag", "one\n#include \"b.glsl\"\n  #include \"b.glsl\" // again\nfour\n"}, {"b.glsl", "b1\nb2"}});
+    const ShaderSource source = expandShader("a.frag", {"FAST", "N 4"}, lookup);
+    CHECK(source.text == "#version 430 core\n#define FAST\n#define N 4\none\nb1\nb2\nfour\n");
+    REQUIRE(source.lines.size() == 7);
+    CHECK(source.lines[0].line == 0);
+    CHECK(source.lines[3].file == "a.frag");
+    CHECK(source.lines[3].line == 1);
+    CHECK(source.lines[5].file == "b.glsl");
+    CHECK(source.lines[5].line == 2);
+    CHECK(source.lines[6].file == "a.frag");
+    CHECK(source.lines[6].line == 4);
+}
+
+TEST_CASE("two files that include each other end", "[shader_source]") {
+    const auto lookup = filesOf({{"a.glsl", "a\n#include \"b.glsl\"\n"}, {"b.glsl", "b\n#include \"a.glsl\"\n"}});
+    CHECK(expandShader("a.glsl", {}, lookup).text == "#version 430 core\na\nb\n");
+}
+
+TEST_CASE("a missing or malformed include names its file and line", "[shader_source]") {
+    const auto lookup = filesOf({{"a.frag", "x\n\n#include \"gone.glsl\"\n"}, {"b.frag", "#include <c.glsl>\n"}});
+    try {
+        expandShader("a.frag", {}, lookup);
+        FAIL("expected an error");
+    } catch (const Error& error) {
+        CHECK(error.where() == "a.frag:3");
+        CHECK(error.problem().find("gone.glsl") != std::string::npos);
+    }
+    try {
+        expandShader("b.frag", {}, lookup);
+        FAIL("expected an error");
+    } catch (const Error& error) {
+        CHECK(error.where() == "b.frag:1");
+    }
+    CHECK_THROWS_AS(expandShader("absent.frag", {}, lookup), Error);
+}
+
+TEST_CASE("compilers' messages lead back to the original file and line", "[shader_source]") {
+    const auto lookup = filesOf({{"a.frag", "one\n#include \"b.glsl\"\nlast\n"}, {"b.glsl", "b1\nb2\n"}});
+    const ShaderSource source = expandShader("a.frag", {}, lookup);
+    // Line 1 is #version, 2 "one", 3 and 4 those of b.glsl, 5 "last".
+    CHECK(mapShaderLog("0:4(7): error: no", source) == "b.glsl:2: error: no");
+    CHECK(mapShaderLog("0(5) : error C1: no", source) == "a.frag:3: error C1: no");
+    CHECK(mapShaderLog("ERROR: 0:2: 'x' : no\nsummary", source) == "ERROR: a.frag:1: 'x' : no\nsummary");
+    CHECK(mapShaderLog("0:99(1): error: beyond", source) == "0:99(1): error: beyond");
+}
+
+TEST_CASE("every shader file is embedded as it is, and every include is found", "[shader_source]") {
+    const std::filesystem::path folder = std::filesystem::path(PELLUCID_SOURCE_DIR) / "shaders";
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (!entry.is_regular_file()) continue;
+        ++files;
+        const std::string name = std::filesystem::relative(entry.path(), folder).generic_string();
+        CAPTURE(name);
+        const auto source = embeddedShaderSource(name);
+        REQUIRE(source);
+        CHECK(*source == readFile(entry.path()));
+        CHECK_NOTHROW(expandShader(name, {}));
+    }
+    CHECK(files == embeddedShaders().size());
+    CHECK(files > 0);
+}
+
+TEST_CASE("the list of GL functions is that of the sources", "[shader_source]") {
+    const std::filesystem::path root = PELLUCID_SOURCE_DIR, list = root / "src/render/gl/gl_functions.h";
+    const auto names = [](const std::string& text, const std::regex& pattern) {
+        std::set<std::string> found;
+        for (std::sregex_iterator i(text.begin(), text.end(), pattern), end; i != end; ++i) found.insert((*i)[1]);
+        return found;
+    };
+    std::set<std::string> used;
+    for (const char* folder : {"src/render/gl", "tests/gl"})
+        for (const auto& entry : std::filesystem::directory_iterator(root / folder))
+            if (entry.path() != list) // glInteger is a function of ours
+                used.merge(names(readFile(entry.path()), std::regex(R"(\b(gl(?!Integer)[A-Z]\w+)\()")));
+    CHECK(used == names(readFile(list), std::regex(R"(X\((gl\w+)\))")));
+}

@@ -1,0 +1,136 @@
+#include "gl_test.h"
+
+#include <glm/geometric.hpp>
+
+#include "render/gl/slice_geometry.h"
+#include "render/gl/sweep_geometry.h"
+
+using namespace pellucid;
+using namespace pellucid::gl;
+using namespace pellucid::testing;
+
+namespace {
+
+const Geometry kBox{{12, 9, 7}, {1, 0.5, 2}, {4, 5, 6}};
+
+double areaOf(const SlabVertex& p, const SlabVertex& q, const SlabVertex& r) {
+    return 0.5 * std::abs(static_cast<double>((q.x - p.x) * (r.y - p.y) - (r.x - p.x) * (q.y - p.y)));
+}
+
+} // namespace
+
+TEST_CASE("a view along an axis has one ray per voxel column and slabs that end at voxel faces", "[sweep]") {
+    const Geometry cube{{6, 5, 4}, {1, 1, 1}, {0, 0, 0}};
+    const auto sweeps = makeSweeps(orthographic(cube, {0, -1, 0}, 10), cube, Quality::Normal);
+    REQUIRE(sweeps.size() == 1);
+    const Sweep& s = sweeps[0];
+    CHECK(s.axis == 1);
+    CHECK(s.sign == -1);
+    CHECK(s.dims == Int3(6, 4, 5)); // x and z across, y along
+    CHECK(s.rays == glm::ivec2(6, 4));
+    CHECK(s.grid == glm::dvec2(0, 0));
+    CHECK(s.firstLayer == -0.5);
+    CHECK(s.layers % 5 == 0);
+    CHECK(s.layers * s.layerStep == Approx(5));
+    CHECK(s.layerStep <= 0.25 + 1e-12);
+}
+
+TEST_CASE("sweep coordinates and the volume's own agree", "[sweep]") {
+    for (const Vec3& direction :
+         {Vec3(1, 0.2, 0), Vec3(-1, 0.2, 0), Vec3(0, 1, 0.1), Vec3(0, -1, 0.1), Vec3(0, 0, 1), Vec3(0, 0.1, -1)}) {
+        const auto sweeps = makeSweeps(orthographic(kBox, direction, 10), kBox, Quality::Normal);
+        REQUIRE(sweeps.size() == 1);
+        const Sweep& s = sweeps[0];
+        const Grid<char> grid(kBox.dims);
+        const auto stride = s.strides();
+        double depthBefore = -1e9;
+        for (int c = 0; c < s.dims.z; ++c) {
+            const int a = (c * 3) % s.dims.x, b = (c * 5) % s.dims.y;
+            const Int3 voxel(glm::round(s.voxelFromQ() * Vec3(a, b, c) + s.voxelOffset()));
+            CHECK(static_cast<std::ptrdiff_t>(grid.index(voxel.x, voxel.y, voxel.z)) ==
+                  stride.base + a * stride.a + b * stride.b + c * stride.c);
+            const double depth = voxel[s.axis] * direction[s.axis];
+            CHECK(depth > depthBefore); // c grows away from the eye
+            depthBefore = depth;
+        }
+    }
+}
+
+TEST_CASE("every voxel's ray lies between rays of its sweep", "[sweep]") {
+    const Vec3 c = kBox.boxCenter(), hi = kBox.boxMax();
+    for (const Vec3& eye :
+         {c + Vec3(30, -50, 20), c + Vec3(0, -2.8, 0), hi + Vec3(0.5, 0.6, 0.4), Vec3(c.x, c.y, hi.z + 0.1)}) {
+        Camera camera = perspective(kBox, eye - c);
+        int voxels = 0;
+        for (const Sweep& s : makeSweeps(camera, kBox, Quality::Normal)) {
+            for (int z = s.firstPlane; z < s.dims.z; ++z)
+                for (int y = 0; y < s.dims.y; ++y)
+                    for (int x = 0; x < s.dims.x; ++x) {
+                        const Vec3 q(x, y, z), d = (q - s.eye) * s.spacing;
+                        if (s.pyramid && (std::abs(d.x) > d.z || std::abs(d.y) > d.z)) continue;
+                        ++voxels;
+                        for (int lateral = 0; lateral < 2; ++lateral) {
+                            const double at = s.eye[lateral] +
+                                              (q[lateral] - s.eye[lateral]) * (s.reference - s.eye.z) / (q.z - s.eye.z);
+                            const double position = (at - s.grid[lateral]) * s.raysPerVoxel;
+                            CHECK(position >= -1e-3);
+                            CHECK(position <= s.rays[lateral] - 1 + 1e-3);
+                        }
+                    }
+        }
+        // Voxels on the border of two pyramids are counted twice here; none may be missing.
+        CHECK(voxels >= static_cast<int>(voxelCount(kBox.dims)));
+    }
+}
+
+TEST_CASE("an eye far away needs one sweep, one close to the box several", "[sweep]") {
+    CHECK(makeSweeps(perspective(kBox, {3, -60, 5}), kBox, Quality::Normal).size() == 1);
+    CHECK(makeSweeps(perspective(kBox, {0, -2.3, 0}), kBox, Quality::Normal).size() > 1);
+}
+
+TEST_CASE("the slabs of a view along an axis are the box's face, one behind the other", "[slices]") {
+    RenderSettings settings;
+    settings.width = 200;
+    settings.height = 100;
+    settings.stepInD0 = 1.0; // d0 = 0.5
+    const Camera camera = orthographic(kBox, {0, 1, 0}, 20);
+    const SliceView view(camera, kBox, settings);
+    const auto vertices = slabTriangles(view, kBox, settings);
+    // Along y the box is 9 · 0.5 = 4.5 deep: 9 slabs of 0.5, two triangles each.
+    REQUIRE(vertices.size() == 9 * 2 * 3);
+    // 12 × 14 world units in a picture of 40 × 20: 168/800 of the square [−1,1]² of area 4.
+    for (std::size_t i = 0; i < vertices.size(); i += 6) {
+        CHECK(areaOf(vertices[i], vertices[i + 1], vertices[i + 2]) +
+                  areaOf(vertices[i + 3], vertices[i + 4], vertices[i + 5]) ==
+              Approx(4 * 168.0 / 800));
+        CHECK(static_cast<double>(vertices[i].nearDepth) ==
+              Approx(-2.25 + 0.5 * static_cast<double>(i / 6)).margin(1e-6));
+    }
+}
+
+TEST_CASE("rays of the picture are the camera's", "[slices]") {
+    RenderSettings settings;
+    settings.width = 31;
+    settings.height = 17;
+    for (const Camera& camera : {perspective(kBox, {10, -20, 15}), orthographic(kBox, {0.3, 1, -0.4}, 20)}) {
+        const SliceView view(camera, kBox, settings);
+        for (const auto& [x, y] : {std::pair(0.5, 0.5), std::pair(20.25, 3.0)}) {
+            const Vec3 picture(2 * x / settings.width - 1, 1 - 2 * y / settings.height, 1);
+            const Ray ray = pixelRay(camera, x, y, settings.width, settings.height);
+            const Vec3 size = kBox.boxMax() - kBox.boxMin();
+            const Vec3 direction = glm::normalize(view.rayDirection(kBox) * picture * size);
+            const Vec3 point = kBox.boxMin() + view.rayOrigin(kBox) * picture * size;
+            CHECK(glm::length(direction - ray.direction) < 1e-9);
+            // The point lies on the camera's ray.
+            const Vec3 off = point - ray.origin;
+            CHECK(glm::length(off - ray.direction * glm::dot(off, ray.direction)) < 1e-8);
+        }
+    }
+}
+
+TEST_CASE("a step that would need millions of slices is refused", "[slices]") {
+    RenderSettings settings;
+    settings.stepInD0 = 1e-6;
+    const Camera camera = orthographic(kBox, {0, 1, 0}, 20);
+    CHECK_THROWS_AS(slabTriangles(SliceView(camera, kBox, settings), kBox, settings), Error);
+}
