@@ -17,11 +17,13 @@
 #include <QVBoxLayout>
 
 #include "opacity_editor.h"
+#include "theme.h"
 
 namespace pellucid::gui {
 namespace {
 
 constexpr int kRowHeight = 26;
+constexpr int kSwatch = 26; // width of the colour in the name's cell
 
 /// A slider in each cell of the opacity column.
 class OpacityDelegate : public QStyledItemDelegate {
@@ -92,11 +94,12 @@ FeaturesPanel::FeaturesPanel(Document& document, QWidget* parent)
     m_table->setShowGrid(false);
     m_table->setSelectionMode(QAbstractItemView::NoSelection);
     m_table->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    m_table->setEditTriggers(QAbstractItemView::EditKeyPressed);
     connect(m_table, &QTableView::doubleClicked, this, [this](const QModelIndex& index) {
         if (index.column() != FeaturesModel::Name || m_optimizing) return;
-        // The swatch at the left of the cell; the rest of the cell edits the name.
+        // The swatch at the left of the cell, or the name in the rest of it.
         const QPoint mouse = m_table->viewport()->mapFromGlobal(QCursor::pos());
-        if (mouse.x() > m_table->columnViewportPosition(FeaturesModel::Name) + 26) return;
+        if (mouse.x() > m_table->columnViewportPosition(FeaturesModel::Name) + kSwatch) return m_table->edit(index);
         const QColor color =
             QColorDialog::getColor(index.data(Qt::DecorationRole).value<QColor>(), this, tr("Colour of the feature"));
         if (color.isValid()) m_model->setData(index, color, Qt::DecorationRole);
@@ -132,7 +135,7 @@ FeaturesPanel::FeaturesPanel(Document& document, QWidget* parent)
     for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     m_message->setObjectName("panelMessage");
     m_message->setWordWrap(true);
-    m_message->setEnabled(false);
+    m_message->setStyleSheet(QStringLiteral("color: %1").arg(theme::kFaint.name()));
 
     auto* choices = new QGridLayout;
     choices->setContentsMargins(10, 0, 10, 0);

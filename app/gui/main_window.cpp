@@ -37,6 +37,10 @@ constexpr auto kRecentKey = "recentFiles";
 
 bool looksLikeTf(const QString& path) { return path.endsWith(".tf.json", Qt::CaseInsensitive); }
 
+QString counted(int n, const QString& one, const QString& many) {
+    return QStringLiteral("%1 %2").arg(n).arg(n == 1 ? one : many);
+}
+
 QString rangeText(const ValueRange& range) {
     const double span = range.hi - range.lo;
     return QStringLiteral("%1 – %2").arg(numberText(range.lo, span), numberText(range.hi, span));
@@ -218,8 +222,9 @@ void MainWindow::makeMenus() {
         const QString name = QString::fromLatin1(spec);
         const QString number = name.section(':', 1);
         action(presets,
-               name.startsWith("tents") ? tr("%n tent(s), one feature each", nullptr, number.toInt())
-                                        : tr("Ramp of %1 points, one feature").arg(number),
+               name.startsWith("tents")
+                   ? (number == "1" ? tr("One tent, one feature") : tr("%1 tents, one feature each").arg(number))
+                   : tr("Ramp of %1 points, one feature").arg(number),
                spec, {}, [this, name] { m_document.setTf(*tfFromSpec(name.toStdString()), name); });
     }
     tfMenu->addSeparator();
@@ -351,9 +356,10 @@ void MainWindow::connectJobs() {
         m_document.commitPreview(tr("Optimize"));
         const OptimizeState& best = result.history[result.best];
         m_document.setVws(best.vws);
-        const QString figures = tr("F = %1, from %2, in %n move(s)", nullptr, result.iterations())
+        const QString figures = tr("F = %1, from %2, in %3")
                                     .arg(best.objective, 0, 'f', 4)
-                                    .arg(result.history.front().objective, 0, 'f', 4);
+                                    .arg(result.history.front().objective, 0, 'f', 4)
+                                    .arg(counted(result.iterations(), tr("move"), tr("moves")));
         switch (result.reason) {
         case StopReason::Converged:
             m_features->setMessage(tr("On target: %1.").arg(figures));
@@ -410,9 +416,16 @@ void MainWindow::openVolume(const VolumeSource& source, const QString& tfSpec) {
     m_load->start(path, [this, source, tfSpec](const JobControl& job) -> BackgroundTask::Delivery {
         LoadedVolume loaded = loadForWindow(source, job);
         std::shared_ptr<TransferFunction> tf;
-        if (!tfSpec.isEmpty()) tf = std::make_shared<TransferFunction>(loadTf(tfSpec.toStdString()));
-        return [this, loaded = std::move(loaded), tf, tfSpec] {
+        std::optional<Error> tfError; // no reason not to show the volume
+        try {
+            if (!tfSpec.isEmpty()) tf = std::make_shared<TransferFunction>(loadTf(tfSpec.toStdString()));
+        } catch (const Error& e) {
+            tfError = e;
+        }
+        return [this, loaded = std::move(loaded), tf, tfError, tfSpec] {
             volumeLoaded(loaded, tf.get(), tf && !tfFromSpec(tfSpec.toStdString()) ? tfSpec : QString());
+            if (tf) noteRange(*tf);
+            if (tfError) error(tr("Cannot open the transfer function"), *tfError);
         };
     });
 }
@@ -473,17 +486,21 @@ void MainWindow::openTf(const QString& specOrPath) {
             m_tfPath = specOrPath;
             m_document.undoStack().setClean();
         }
-        const ValueRange& range = m_document.volume()->range();
-        if (tf.range && !(*tf.range == range)) {
-            m_notices->addNotice(tr("This transfer function was made for values %1; it has been stretched to %2.")
-                                     .arg(rangeText(*tf.range), rangeText(range)));
-        }
+        noteRange(tf);
     } catch (const Error& e) {
         error(tr("Cannot open the transfer function"), e);
     }
 }
 
+void MainWindow::noteRange(const TransferFunction& tf) {
+    const ValueRange& range = m_document.volume()->range();
+    if (!tf.range || *tf.range == range) return;
+    m_notices->addNotice(tr("This transfer function was made for values %1; it has been stretched to %2.")
+                             .arg(rangeText(*tf.range), rangeText(range)));
+}
+
 bool MainWindow::saveTf(const QString& path) {
+    if (!m_document.hasVolume()) return false;
     try {
         TransferFunction tf = m_document.committedTf();
         tf.range = m_document.volume()->range();
@@ -538,7 +555,8 @@ void MainWindow::refineTf() {
             return;
         }
         m_document.setTf(result.tf, tr("Refine"));
-        m_features->setMessage(tr("Refined in %n step(s): energy %1, from %2.", nullptr, result.iterations)
+        m_features->setMessage(tr("Refined in %1: energy %2, from %3.")
+                                   .arg(counted(result.iterations, tr("step"), tr("steps")))
                                    .arg(QString::number(after, 'g', 3), QString::number(before, 'g', 3)));
     } catch (const Error& e) {
         error(tr("Refinement failed"), e);

@@ -75,6 +75,7 @@ private:
     bool maybeSave();                        ///< false: the user wants to stay
     bool askRawLayout(VolumeSource& source); ///< false: the user gave up
     void volumeLoaded(const LoadedVolume& loaded, const TransferFunction* tf, const QString& tfPath);
+    void noteRange(const TransferFunction& tf); ///< a notice where it was made for other values
     void optimizationEnded();
     void addRecentFile(const QString& path);
     void updateRecentFiles();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <QDoubleSpinBox>
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QSignalBlocker>
 #include <QSlider>
@@ -36,6 +37,11 @@ OpacityEditor::OpacityEditor(QWidget* parent)
         widget->setToolTip(tr("Highest opacity of the feature: opacity of a path one voxel long (d0).\n"
                               "The slider is finer near zero."));
     }
+    // The wheel scrolls the table; it must not change an opacity in passing.
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_slider, m_spin}) {
+        widget->setFocusPolicy(Qt::StrongFocus);
+        widget->installEventFilter(this);
+    }
     setFocusProxy(m_slider);
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(4, 0, 2, 0);
@@ -58,6 +64,14 @@ OpacityEditor::OpacityEditor(QWidget* parent)
         setOpacity(value);
         Q_EMIT edited(value);
     });
+}
+
+bool OpacityEditor::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::Wheel && !static_cast<QWidget*>(watched)->hasFocus()) {
+        event->ignore();
+        return true;
+    }
+    return QWidget::eventFilter(watched, event);
 }
 
 void OpacityEditor::setOpacity(double opacity) {

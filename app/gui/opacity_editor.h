@@ -22,6 +22,9 @@ Q_SIGNALS:
     void released();              ///< the end of a drag
     void edited(double opacity);  ///< typed, or by keys and wheel
 
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
 private:
     QSlider* m_slider;
     QDoubleSpinBox* m_spin;

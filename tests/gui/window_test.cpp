@@ -209,12 +209,28 @@ TEST_CASE("a transfer function that cannot be read leaves the present one", "[wi
     CHECK(w.document().undoStack().count() == 0);
 }
 
+TEST_CASE("a wrong transfer function at the start does not keep the volume from opening", "[window]") {
+    OpenWindow w;
+    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    VolumeSource source;
+    source.path = "sample:disks";
+    source.sampleSize = 16;
+    w.window.openVolume(source, "/nonexistent/a.tf.json");
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    REQUIRE(errorDialog(w.window) != nullptr);
+    errorDialog(w.window)->accept();
+    CHECK(w.document().volume()->title.find("disks") != std::string::npos);
+    CHECK(w.document().tf() == w.document().loaded().defaultTf);
+}
+
 TEST_CASE("files that are dropped on the window are opened", "[window]") {
     OpenWindow w;
     const QTemporaryDir folder;
     const QString volumePath = folder.filePath("small.nrrd"), tfPath = folder.filePath("two.tf.json");
     writeNrrd(makeSample("disks", 16), volumePath.toStdString());
-    writeTf(tents(2, 0.25), tfPath.toStdString());
+    TransferFunction two = tents(2, 0.25);
+    two.range = ValueRange{-1000, 3000}; // made for other data than this
+    writeTf(two, tfPath.toStdString());
     QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
     drop(w.window, volumePath);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
@@ -223,8 +239,9 @@ TEST_CASE("files that are dropped on the window are opened", "[window]") {
     drop(w.window, tfPath);
     REQUIRE(waitFor([&] { return w.document().tf().features.size() == 2; }));
     CHECK(featureOpacities(w.document().tf()) == std::vector<double>{0.25, 0.25});
-    CHECK(w.document().undoStack().canUndo()); // opening a transfer function can be undone
-    CHECK_FALSE(w.window.isWindowModified());  // and it is saved already
+    CHECK(w.document().undoStack().canUndo());                     // opening a transfer function can be undone
+    CHECK_FALSE(w.window.isWindowModified());                      // and it is saved already
+    CHECK(w.child<QLabel>("noticeText").text().contains("-1000")); // whoever looks is told that it was stretched
     w.settle();
 }
 
