@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kSmallestParallelStep = -2, kLargestParallelStep = 5; ///< exponents of 2 of the parallel line search
 constexpr int kHalvings = 5, kDoublings = 12;                       ///< of the sequential one
+constexpr int kPatience = 12;                                       ///< moves of a search without a new best
 
 /// The search so far and what its moves need.
 class Search {
@@ -28,7 +29,8 @@ public:
         return states;
     }
 
-    /// The state after one move from `at`, which is `at` itself where no move helps.
+    /// The state after one move from `at`. The direction is not the gradient (∂W/∂x is replaced by 1), so that at times
+    /// no step along it helps: then the search goes on from the best of them, worse than `at`.
     OptimizeState move(const OptimizeState& at) {
         const std::vector<double> d = direction(at);
         switch (m_options.method) {
@@ -88,15 +90,16 @@ private:
         }
         for (int n = 0; n < kHalvings; ++n) {
             step /= 2;
-            OptimizeState next = trial(at, d, step);
-            if (next.objective < at.objective) return next;
+            best = trial(at, d, step);
+            if (best.objective < at.objective) break;
         }
-        return at;
+        return best;
     }
 
     OptimizeState parallelLineSearch(const OptimizeState& at, const std::vector<double>& d) {
         constexpr int kCount = kLargestParallelStep - kSmallestParallelStep + 1;
         // Where the whole batch overshoots, the valley is narrower than its smallest step: one finer batch looks there.
+        OptimizeState leastBad;
         for (const int shift : {0, -kCount}) {
             std::vector<std::vector<double>> candidates;
             for (int i = kSmallestParallelStep; i <= kLargestParallelStep; ++i)
@@ -106,8 +109,9 @@ private:
             const auto best = std::min_element(states.begin(), states.end(),
                                                [](const auto& a, const auto& b) { return a.objective < b.objective; });
             if (best->objective < at.objective) return *best;
+            if (shift == 0) leastBad = *best;
         }
-        return at;
+        return leastBad;
     }
 
     const VwsFunction& m_function;
@@ -188,7 +192,9 @@ OptimizeResult optimize(const VwsFunction& function, const std::vector<double>& 
             }
             job.throwIfStopped();
             OptimizeState next = search.move(at);
-            if (next.opacity == at.opacity) {
+            const bool searches = options.method != SearchMethod::Fixed;
+            const bool stalled = searches && result.history.size() - 1 - result.best >= kPatience;
+            if (next.opacity == at.opacity || stalled) {
                 result.reason = StopReason::NoProgress;
                 break;
             }

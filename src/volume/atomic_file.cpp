@@ -3,6 +3,8 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <sstream>
 
 #include <unistd.h>
@@ -12,6 +14,36 @@
 namespace pellucid {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+std::mutex g_mutex;
+
+/// Never freed: removeUnfinishedFiles() may be called while the process is ending.
+std::set<std::string>& unfinished() {
+    static auto* const g_paths = new std::set<std::string>;
+    return *g_paths;
+}
+
+/// Holds a temporary file's name in the list while it is being written.
+class Unfinished {
+public:
+    explicit Unfinished(std::string path) : m_path(std::move(path)) {
+        const std::lock_guard lock(g_mutex);
+        unfinished().insert(m_path);
+    }
+    ~Unfinished() {
+        const std::lock_guard lock(g_mutex);
+        unfinished().erase(m_path);
+    }
+    Unfinished(const Unfinished&) = delete;
+    Unfinished& operator=(const Unfinished&) = delete;
+
+private:
+    std::string m_path;
+};
+
+} // namespace
 
 void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& write) {
     fs::path target(path);
@@ -31,6 +63,7 @@ void writeAtomically(const std::string& path, const std::function<void(const std
     std::string name(".");
     name += target.stem().string() + ".part" + std::to_string(getpid()) + "-" + std::to_string(s_count++);
     const fs::path temporary = folder / (name + target.extension().string());
+    const Unfinished entry(temporary.string());
     try {
         write(temporary.string());
         fs::rename(temporary, target, ec);
@@ -59,6 +92,11 @@ std::string readText(const std::string& path) {
     text << in.rdbuf();
     if (!in) throw FileError("cannot read the file", path, "check permissions");
     return text.str();
+}
+
+void removeUnfinishedFiles() noexcept {
+    const std::lock_guard lock(g_mutex);
+    for (const std::string& path : unfinished()) ::unlink(path.c_str());
 }
 
 } // namespace pellucid

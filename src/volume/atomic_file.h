@@ -13,4 +13,8 @@ void writeAtomically(const std::string& path, const std::function<void(const std
 void writeTextAtomically(const std::string& path, const std::string& text);
 std::string readText(const std::string& path); ///< throws FileError
 
+/// Removes the temporary files of the writeAtomically() calls in progress, for a process that is about to end without
+/// unwinding (Ctrl-C inside a library). Callable from any thread.
+void removeUnfinishedFiles() noexcept;
+
 } // namespace pellucid

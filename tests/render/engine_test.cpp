@@ -14,6 +14,40 @@ namespace {
 const auto reference = [](std::shared_ptr<const Volume> v) { return makeReferenceEngine(std::move(v)); };
 const auto cpu = [](std::shared_ptr<const Volume> v) { return makeCpuEngine(std::move(v)); };
 
+/// A random transfer function: tents, some nearly transparent, some solid, or boxes with vertical sides.
+TransferFunction randomTf(std::mt19937& random) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    TransferFunction tf = tents(2 + static_cast<int>(unit(random) * 4));
+    if (unit(random) < 0.4) {
+        tf = {};
+        for (int i = 0; i < 3; ++i) {
+            const double a = (i + 0.2) / 3, b = (i + 0.8) / 3;
+            const Rgb c = rgbFromHsv(120.0 * i, 1, 1);
+            for (const auto& [x, alpha] : {std::pair{a, 0.0}, {a, 0.5}, {b, 0.5}, {b, 0.0}})
+                tf.points.push_back({x, alpha, c, false, {}});
+            tf.features.push_back({"box" + std::to_string(i), a, b, c, {}});
+        }
+    }
+    const double most = tf.points.size() == 12 && tf.points[0].x == tf.points[1].x ? 0.3 : 1.0;
+    std::vector<double> x;
+    for (std::size_t f = 0; f < tf.features.size(); ++f) x.push_back(most * std::pow(unit(random), 2));
+    return withFeatureOpacities(tf, x);
+}
+
+/// Perspective, orthographic, at 45° between axes, and with the eye close to the box.
+Camera randomCamera(std::mt19937& random, const Geometry& g, int kind) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    const double az = 360 * unit(random), el = 160 * unit(random) - 80;
+    if (kind == 0) return cameraFromView(g, az, el, 1, Projection::Perspective);
+    if (kind == 1) return cameraFromView(g, az, el, 1, Projection::Orthographic);
+    if (kind == 2)
+        return cameraFromView(g, 45 * std::round(az / 45), 45 * std::round(el / 45), 1, Projection::Orthographic);
+    Camera camera = cameraFromView(g, az, el, 1, Projection::Perspective);
+    const RayInterval t = intersectBox({camera.eye, camera.forward()}, g.boxMin(), g.boxMax());
+    camera.eye += camera.forward() * (t.enter * (0.97 - 0.3 * unit(random)));
+    return camera;
+}
+
 } // namespace
 
 TEST_CASE("a homogeneous block gives v_k = α(1 − α)^k", "[visibility][reference]") { checkHomogeneousBlock(reference); }
@@ -26,6 +60,37 @@ TEST_CASE("opacity refers to d0, whatever the spacing, on the cpu engine", "[vis
 }
 TEST_CASE("invalid voxels are transparent", "[visibility][reference]") { checkInvalidVoxels(reference); }
 TEST_CASE("invalid voxels are transparent on the cpu engine", "[visibility][cpu]") { checkInvalidVoxels(cpu); }
+
+TEST_CASE("the cpu engine agrees with the reference", "[visibility][cpu]") {
+    std::vector<double> fv, vws;
+    for (int n = 0; n < 24; ++n) {
+        std::mt19937 random(100 + static_cast<unsigned>(n));
+        std::uniform_real_distribution<double> unit(0, 1);
+        const auto length = [&] { return 20 + static_cast<int>(unit(random) * 16); };
+        const Int3 dims{length(), length(), length()};
+        const Vec3 spacing{0.6 + unit(random), 0.6 + unit(random), 0.6 + unit(random)};
+        const auto volume = roughVolume(random, dims, spacing);
+        const TransferFunction tf = randomTf(random);
+        const Camera camera = randomCamera(random, volume->geometry(), n % 4);
+        const WeightFields weights = saliencyFields(*volume, tf);
+        const auto oracle = makeReferenceEngine(volume);
+        INFO("case " << n);
+        const Disagreement d = compare(*oracle, *makeCpuEngine(volume), camera, tf, weights);
+        CHECK(d.visibilityRms < 0.015);
+        CHECK(d.visibility < 0.01);
+        CHECK(d.vws < 0.01);
+        const Disagreement high = compare(*oracle, *makeCpuEngine(volume, Quality::High), camera, tf, weights);
+        CHECK(high.visibilityRms < 0.008);
+        CHECK(high.visibility < 0.005);
+        CHECK(high.vws < 0.005);
+        fv.push_back(d.visibility);
+        vws.push_back(d.vws);
+    }
+    std::nth_element(fv.begin(), fv.begin() + 12, fv.end());
+    std::nth_element(vws.begin(), vws.begin() + 12, vws.end());
+    CHECK(fv[12] < 0.003);
+    CHECK(vws[12] < 0.003);
+}
 
 TEST_CASE("many candidates in one call give what each gives alone", "[visibility][cpu]") {
     std::mt19937 random(5);

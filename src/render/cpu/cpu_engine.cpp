@@ -1,4 +1,5 @@
 // The fast engine: sets up sweeps (see sweep.h) and runs their bands on threads.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -21,13 +22,20 @@ struct SweepTables {
     SweepTables(std::span<const TransferFunction> tfs, int laneCount, int maxCode) : lanes(laneCount) {
         const auto n = static_cast<std::size_t>(lanes), codes = static_cast<std::size_t>(maxCode) + 1;
         depth.assign(static_cast<std::size_t>(kDepthTableSize) * n, 0.0f);
+        integral.assign(depth.size(), 0.0f);
         alpha.assign(codes * n, 0.0f);
         featureOfCode.assign(codes, kTransparent);
         for (std::size_t lane = 0; lane < tfs.size(); ++lane) {
             const TfSampler sampler(tfs[lane]);
-            for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i)
-                depth[i * n + lane] = static_cast<float>(
-                    opticalDepthOfOpacity(sampler.opacity(static_cast<double>(i) / (kDepthTableSize - 1))));
+            double sum = 0, before = 0;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i) {
+                const double tau =
+                    opticalDepthOfOpacity(sampler.opacity(static_cast<double>(i) / (kDepthTableSize - 1)));
+                if (i > 0) sum += (before + tau) / 2;
+                before = tau;
+                depth[i * n + lane] = static_cast<float>(tau);
+                integral[i * n + lane] = static_cast<float>(sum);
+            }
             for (std::size_t c = 0; c < codes; ++c) {
                 const double s = static_cast<double>(c) / maxCode;
                 const double a = sampler.opacity(s);
@@ -37,9 +45,16 @@ struct SweepTables {
                 featureOfCode[c] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(tfs[0].features.size()) : f);
             }
         }
+        opaqueBefore.assign(static_cast<std::size_t>(kDepthTableSize) + 1, 0);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i) {
+            const auto entry = depth.begin() + static_cast<std::ptrdiff_t>(i * n);
+            const bool opaque = std::any_of(entry, entry + lanes, [](float tau) { return tau > 0; });
+            opaqueBefore[i + 1] = opaqueBefore[i] + (opaque ? 1 : 0);
+        }
     }
     int lanes;
-    std::vector<float> depth, alpha;
+    std::vector<int> opaqueBefore;
+    std::vector<float> depth, integral, alpha;
     std::vector<std::uint8_t> featureOfCode;
 };
 
@@ -112,14 +127,17 @@ private:
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
         in.maxStep = high ? 0.5 : 1.0;
-        in.raySpacing = in.maxRaySpacing = high ? 1 / 1.5 : 1.0;
+        in.raySpacing = in.maxRaySpacing = high ? 0.4 : 0.75;
+        in.ownSlices = high ? 3 : 1;
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
             in.slopeU = d.x / (sign * d.z);
             in.slopeV = d.y / (sign * d.z);
-            // Rays through the voxels' own centres need no company.
-            if (in.slopeU == 0 && in.slopeV == 0) in.raySpacing = 1;
+            if (in.slopeU == 0 && in.slopeV == 0) { // every ray is a voxel's own line
+                in.raySpacing = 1;
+                in.ownSlices = 0;
+            }
             return;
         }
         const Vec3 eye = permuted(g.voxelFromWorld(camera.eye), axes);
@@ -189,6 +207,8 @@ private:
         in.tableSize = kDepthTableSize;
         in.tableEntryOfCode = static_cast<float>(kDepthTableSize - 1) / static_cast<float>(m_grid.maxCode);
         in.depthTable = tables.depth.data();
+        in.opaqueBefore = tables.opaqueBefore.data();
+        in.integralTable = tables.integral.data();
         in.alphaTable = tables.alpha.data();
         in.featureOfCode = tables.featureOfCode.data();
         in.features = static_cast<int>(features);

@@ -39,6 +39,8 @@ struct SweepInput {
     int tableSize = 0;                           ///< of depthTable
     float tableEntryOfCode = 0;                  ///< (tableSize − 1) / maxCode
     const float* depthTable = nullptr;           ///< [tableSize][lanes], −ln(1 − α)
+    const float* integralTable = nullptr;        ///< [tableSize][lanes], its integral from entry 0
+    const int* opaqueBefore = nullptr;           ///< [tableSize + 1], entries before this one with any τ > 0
     const float* alphaTable = nullptr;           ///< [maxCode + 1][lanes], α
     const std::uint8_t* featureOfCode = nullptr; ///< [maxCode + 1]; `features` for "in none", or kTransparent
     int features = 0;
@@ -48,10 +50,11 @@ struct SweepInput {
     double slopeU = 0, slopeV = 0;       ///< orthographic: du/dw, dv/dw of every ray
     double eyeU = 0, eyeV = 0, eyeW = 0; ///< perspective: the eye, eyeW < −1/2
     double raySpacing = 1;               ///< orthographic: of the rays, in voxels
-    double firstSlopeStep = 1;           ///< perspective: slope between neighbouring rays at slice 0; halved on the way
-    double maxRaySpacing = 1;            ///< perspective: in voxels
-    double hu = 1, hv = 1, hw = 1;       ///< spacing in d0
-    double maxStep = 1.0;               ///< distance of samples along a ray, in d0
+    double firstSlopeStep = 1;     ///< perspective: slope between neighbouring rays at slice 0; halved further away
+    double maxRaySpacing = 1;      ///< perspective: in voxels
+    double hu = 1, hv = 1, hw = 1; ///< spacing in d0
+    double maxStep = 1.0;          ///< distance of samples along a ray between voxel planes, in d0
+    int ownSlices = 1;             ///< slice distances right in front of voxels followed along lines of their own
 };
 
 /// The rays b in [first, last], and the voxel rows that lie in [first, last) between them; in units of the first ray
@@ -68,8 +71,8 @@ public:
     int* ints(int slot, std::size_t count);
 
 private:
-    std::vector<float> m_floats[8];
-    std::vector<int> m_ints[2];
+    std::vector<float> m_floats[9];
+    std::vector<int> m_ints[3];
 };
 
 /// Sums of one band: double[features + 1][3][lanes], the last feature being "in none"; added to.

@@ -62,165 +62,315 @@ template <class V>
 class Band {
     using L = Lanes<V>;
     static constexpr int K = L::kCount;
-    static constexpr int kBlock = 32; ///< rays that share their sample planes where rays diverge
+    static constexpr int kNear = 4; ///< table entries closer than this are averaged by their middle
 
 public:
     Band(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums)
         : m_in(in), m_band(band), m_scratch(scratch), m_sums(sums), m_slopeStep(in.firstSlopeStep), m_b0(band.first),
           m_b1(band.last) {
+        const auto nu = static_cast<std::size_t>(in.nu);
         m_accumulator = scratch.floats(0, accumulatorSize());
         for (std::size_t i = 0; i < accumulatorSize(); ++i) m_accumulator[i] = 0.0f;
-        m_row = scratch.floats(1, 2 * (static_cast<std::size_t>(in.nu) + 1));
-        startGrid(0);
-        for (std::size_t i = 0; i < rays() * K; ++i) m_depth[i] = 0.0f;
+        m_row = scratch.floats(1, 2 * (nu + 1));
+        m_local.depth = scratch.floats(2, nu * K);
+        m_local.share = scratch.floats(3, nu);
+        m_local.entry = scratch.ints(0, nu);
     }
 
+    /// Slices in turn, each range of them with rays of its own, dense enough there: rays that diverge from a near eye
+    /// start anew from the front of the box as soon as they lie too far apart.
     void run() {
-        for (int k = 0; k < m_in.nw; ++k) {
-            if (m_in.perspective && m_slopeStep * (k - m_in.eyeW) > m_in.maxRaySpacing) refineRays(k);
-            advance(k);
+        for (int begin = 0; begin < m_in.nw;) {
+            int end = m_in.nw;
+            if (m_in.perspective) {
+                end = smaller(end, floorInt(m_in.eyeW + m_in.maxRaySpacing / m_slopeStep * (1 + 1e-9)) + 1);
+                if (end <= begin) end = begin; // not dense enough for a single slice
+            }
+            if (end > begin) sweepSlices(begin, end);
+            begin = end;
+            m_slopeStep *= 0.5;
+            m_b0 *= 2;
+            m_b1 *= 2;
+        }
+    }
+
+private:
+    static constexpr int kOutside = -1;
+    static constexpr float kNoShare = 1e-6f; ///< of valid corners: nothing there has an intensity
+
+    /// Neighbouring lines toward the eye, rays or those of voxels, and how far they have come: per line the optical
+    /// depth of each candidate, the table entry at the last sample (kOutside: not in the box there), and where voxels
+    /// may be invalid the share of valid corners there.
+    struct Lines {
+        int first = 0, last = 0; ///< indices along u
+        float* depth = nullptr;  ///< [line][K]
+        int* entry = nullptr;
+        float* share = nullptr;
+        const float* length = nullptr;        ///< d0 per slice
+        int lengthStep = 1;                   ///< 0: the same for all
+        const std::uint16_t* codes = nullptr; ///< of the voxels whose lines these are; null for rays
+    };
+
+    // ---- The ray grid --------------------------------------------------------------------------------------------
+
+    RayPlane rayPlane(double w) const {
+        if (m_in.perspective) return {m_in.eyeU, m_in.eyeV, m_slopeStep * (w - m_in.eyeW)};
+        return {m_in.slopeU * w, m_in.slopeV * w, m_in.raySpacing};
+    }
+    /// The same for the lines through the voxels of slice k.
+    RayPlane voxelPlane(double w, int k) const {
+        if (!m_in.perspective) return {m_in.slopeU * (w - k), m_in.slopeV * (w - k), 1.0};
+        const double scale = (w - m_in.eyeW) / (k - m_in.eyeW);
+        return {m_in.eyeU * (1 - scale), m_in.eyeV * (1 - scale), scale};
+    }
+    std::size_t rowRays() const { return static_cast<std::size_t>(m_a1 - m_a0 + 1); }
+    std::size_t rays() const { return rowRays() * static_cast<std::size_t>(m_b1 - m_b0 + 1); }
+    std::size_t rayIndex(int a, int b) const {
+        return static_cast<std::size_t>(b - m_b0) * rowRays() + static_cast<std::size_t>(a - m_a0);
+    }
+    std::size_t accumulatorSize() const { return static_cast<std::size_t>(m_in.features + 1) * 3 * K; }
+
+    /// Takes rays from the front of the box to the slices [begin, end), whose voxels ask for them.
+    void sweepSlices(int begin, int end) {
+        startRays(begin, end);
+        for (int k = 0; k < begin - m_in.ownSlices; ++k) advanceRays(k);
+        int next = larger(0, begin - m_in.ownSlices); // where the rays go next
+        for (int k = begin; k < end; ++k) {
+            for (; next <= k - m_in.ownSlices; ++next) advanceRays(next);
             gather(k);
             flush();
         }
     }
 
-private:
-    // ---- The ray grid --------------------------------------------------------------------------------------------
-
-    RayPlane plane(double w) const {
-        if (m_in.perspective) return {m_in.eyeU, m_in.eyeV, m_slopeStep * (w - m_in.eyeW)};
-        return {m_in.slopeU * w, m_in.slopeV * w, m_in.raySpacing};
-    }
-    std::size_t rays() const {
-        return static_cast<std::size_t>(m_a1 - m_a0 + 1) * static_cast<std::size_t>(m_b1 - m_b0 + 1);
-    }
-    std::size_t rowRays() const { return static_cast<std::size_t>(m_a1 - m_a0 + 1); }
-    float* depthRow(int b) { return m_depth + static_cast<std::size_t>(b - m_b0) * rowRays() * K; }
-    std::size_t accumulatorSize() const { return static_cast<std::size_t>(m_in.features + 1) * 3 * K; }
-
-    /// Chooses the rays that voxels of slices ≥ k will ask for, and lays out their memory (the slot alternates, so that
-    /// the old grid can still be read).
-    void startGrid(int k) {
+    /// Chooses the rays that voxels of the slices [begin, end) will ask for, and lets them start.
+    void startRays(int begin, int end) {
         double lo = 1e30, hi = -1e30;
-        for (int end = 0; end < 2; ++end) { // positions are monotone in w: the extremes are at the ends
-            const RayPlane p = plane(end == 0 ? k : m_in.nw - 1);
+        for (int side = 0; side < 2; ++side) { // positions are monotone in w: the extremes are at the ends
+            const RayPlane p = rayPlane(side == 0 ? begin : end - 1);
             const double first = (0 - p.baseU) / p.scale, last = (m_in.nu - 1 - p.baseU) / p.scale;
             lo = first < lo ? first : lo;
             hi = last > hi ? last : hi;
         }
         m_a0 = floorInt(lo);
         m_a1 = floorInt(hi) + 1;
-        m_slot = m_slot == 2 ? 3 : 2;
-        m_depth = m_scratch.floats(m_slot, rays() * K);
-        m_gatherRow = m_scratch.floats(4, rowRays() * K);
-        m_length = m_scratch.floats(5, rays());
-        const int blocks = blockCount() * (m_b1 - m_b0 + 1);
-        m_offset = m_scratch.floats(6, static_cast<std::size_t>(blocks));
-        m_samples = m_scratch.ints(0, static_cast<std::size_t>(blocks));
-        measureRays();
-    }
-
-    int blockSize() const { return m_in.perspective ? kBlock : m_a1 - m_a0 + 1; }
-    int blockCount() const { return (m_a1 - m_a0 + blockSize()) / blockSize(); }
-
-    /// Length of a ray between two slices, in d0.
-    double lengthPerSlice(int a, int b) const {
-        const double su = m_in.perspective ? a * m_slopeStep : m_in.slopeU,
-                     sv = m_in.perspective ? b * m_slopeStep : m_in.slopeV;
-        return __builtin_sqrt(m_in.hw * m_in.hw + su * m_in.hu * su * m_in.hu + sv * m_in.hv * sv * m_in.hv);
-    }
-
-    /// Per ray the length between slices, per block the number of samples in it and how far in front of a slice (in
-    /// slices) lies the point that is d0/2 away from it. Both are constant along a ray.
-    void measureRays() {
-        for (int b = m_b0; b <= m_b1; ++b) {
-            float* length = m_length + static_cast<std::size_t>(b - m_b0) * rowRays();
-            for (int a = m_a0; a <= m_a1; ++a) length[a - m_a0] = static_cast<float>(lengthPerSlice(a, b));
-            for (int block = 0; block < blockCount(); ++block) {
-                const int middle = smaller(m_a0 + block * blockSize() + blockSize() / 2, m_a1);
-                const double l = lengthPerSlice(middle, b);
-                const int at = (b - m_b0) * blockCount() + block;
-                m_offset[at] = static_cast<float>(0.5 / l);
-                m_samples[at] = larger(1, ceilInt(l / m_in.maxStep - 1e-6));
-            }
-        }
-    }
-
-    /// Twice as many rays each way; new ones take the depth that their neighbours have between them.
-    void refineRays(int k) {
-        const float* old = m_depth;
-        const int oldA0 = m_a0, oldB0 = m_b0, oldA1 = m_a1, oldB1 = m_b1;
-        const std::size_t oldRow = rowRays();
-        m_slopeStep *= 0.5;
-        m_b0 *= 2;
-        m_b1 *= 2;
-        startGrid(k);
+        m_rays.depth = m_scratch.floats(4, rays() * K);
+        m_rays.share = m_scratch.floats(5, rays());
+        m_rays.entry = m_scratch.ints(1, rays());
+        m_gatherRow = m_scratch.floats(6, rowRays() * K);
+        m_length = m_scratch.floats(7, rays());
+        const std::size_t longest =
+            rowRays() > static_cast<std::size_t>(m_in.nu) ? rowRays() : static_cast<std::size_t>(m_in.nu);
+        m_next = m_scratch.ints(2, longest);
+        m_nextShare = m_scratch.floats(8, longest);
         for (int b = m_b0; b <= m_b1; ++b)
-            for (int a = m_a0; a <= m_a1; ++a) {
-                const int al = larger(oldA0, smaller(oldA1, a >> 1)), ah = larger(oldA0, smaller(oldA1, (a + 1) >> 1));
-                const int bl = smaller(oldB1, b >> 1), bh = smaller(oldB1, (b + 1) >> 1);
-                const auto at = [&](int aa, int bb) {
-                    return L::load(
-                        old +
-                        (static_cast<std::size_t>(bb - oldB0) * oldRow + static_cast<std::size_t>(aa - oldA0)) * K);
-                };
-                L::store(depthRow(b) + static_cast<std::size_t>(a - m_a0) * K,
-                         0.25f * ((at(al, bl) + at(ah, bl)) + (at(al, bh) + at(ah, bh))));
-            }
+            for (int a = m_a0; a <= m_a1; ++a) m_length[rayIndex(a, b)] = static_cast<float>(rayLength(a, b));
+        for (std::size_t i = 0; i < rays() * K; ++i) m_rays.depth[i] = 0.0f;
+        forEachBlock([&](const Block& block) { this->begin(rayPlane(-0.5), -0.5, block.row, raysOf(block)); });
     }
 
-    // ---- Along the rays ------------------------------------------------------------------------------------------
+    double lengthOf(double slopeU, double slopeV) const {
+        return __builtin_sqrt(m_in.hw * m_in.hw + slopeU * m_in.hu * slopeU * m_in.hu +
+                              slopeV * m_in.hv * slopeV * m_in.hv);
+    }
+    /// Length of a ray between two slices, in d0; the same all along it.
+    double rayLength(int a, int b) const {
+        return m_in.perspective ? lengthOf(a * m_slopeStep, b * m_slopeStep) : lengthOf(m_in.slopeU, m_in.slopeV);
+    }
 
-    /// Takes every ray from d0/2 in front of slice k − 1 (the first time: from where it enters the box) to d0/2 in
-    /// front of slice k.
-    void advance(int k) {
+    /// Lines along a row that may share their sample planes: all where they are parallel, else as long as their slopes
+    /// (here `slopeStep` apart) hardly change.
+    int blockSize(double slopeStep, int all) const {
+        constexpr double kSlopeChange = 0.06;
+        return m_in.perspective
+                   ? larger(1, static_cast<int>(clampTo(kSlopeChange * m_in.hw / (slopeStep * m_in.hu), all)))
+                   : all;
+    }
+
+    struct Block {
+        int row, first, last;
+        double length; ///< d0 per slice, in the middle
+    };
+    template <class Body>
+    void forEachBlock(const Body& body) {
+        const int size = blockSize(m_slopeStep, m_a1 - m_a0 + 1);
         for (int b = m_b0; b <= m_b1; ++b)
-            for (int block = 0; block < blockCount(); ++block) {
-                const int at = (b - m_b0) * blockCount() + block;
-                const int first = m_a0 + block * blockSize(), last = smaller(first + blockSize() - 1, m_a1);
-                const double end = k - static_cast<double>(m_offset[at]);
-                const double span = k == 0 ? end + 0.5 : 1.0; // in slices
-                if (span < 1e-6) continue;
-                const int samples = k == 0 ? larger(1, ceilInt(m_samples[at] * span)) : m_samples[at];
-                for (int s = 0; s < samples; ++s)
-                    sample(b, first, last, end - span * (s + 0.5) / samples, static_cast<float>(span / samples));
+            for (int a = m_a0; a <= m_a1; a += size) {
+                const int last = smaller(a + size - 1, m_a1);
+                body(Block{b, a, last, rayLength((a + last) / 2, b)});
             }
     }
+    Lines raysOf(const Block& block) const {
+        const std::size_t at = rayIndex(block.first, block.row);
+        return {block.first, block.last, m_rays.depth + at * K, m_rays.entry + at, m_rays.share + at, m_length + at,
+                1,           nullptr};
+    }
 
-    /// Adds to the rays a ∈ [first, last] of row b what they meet at the plane w, over `share` of a slice distance.
-    void sample(int b, int first, int last, double w, float share) {
-        const RayPlane p = plane(w);
-        const double v = p.baseV + b * p.scale;
-        if (v < -0.5 || v > m_in.nv - 0.5) return;
-        const int a0 = larger(first, ceilInt((-0.5 - p.baseU) / p.scale)),
-                  a1 = smaller(last, floorInt((m_in.nu - 0.5 - p.baseU) / p.scale));
-        if (a0 > a1) return;
+    // ---- Along the lines -----------------------------------------------------------------------------------------
+
+    /// Takes every ray on to d0/2 in front of slice k.
+    void advanceRays(int k) {
+        forEachBlock([&](const Block& block) {
+            const auto plane = [&](double w) { return rayPlane(w); };
+            toSlice(plane, k, block.length, block.row, raysOf(block));
+        });
+    }
+
+    /// From d0/2 in front of slice k − 1 (k = 0: from the front of the box) to d0/2 in front of slice k. A sample lies
+    /// on each voxel plane, since that is where trilinear interpolation has its kinks.
+    template <class Plane>
+    void toSlice(const Plane& plane, int k, double length, int row, const Lines& lines) {
+        const double end = k - 0.5 / length;
+        double from = k == 0 ? -0.5 : end - 1;
+        if (k > 0) from = step(plane, from, k - 1, row, lines);
+        const int steps = larger(1, ceilInt((end - from) * length / m_in.maxStep - 1e-6));
+        const double start = from;
+        if (end - start < 1e-6) return;
+        for (int n = 1; n <= steps; ++n) from = step(plane, from, start + (end - start) * n / steps, row, lines);
+    }
+
+    /// The lines of `row` that are inside the box at this plane; empty where first > last.
+    struct Inside {
+        int first, last;
+    };
+    Inside insideAt(const RayPlane& p, int row, const Lines& lines) const {
+        const double v = p.baseV + row * p.scale;
+        if (v < -0.5 || v > m_in.nv - 0.5) return {lines.first, lines.first - 1};
+        return {larger(lines.first, ceilInt((-0.5 - p.baseU) / p.scale)),
+                smaller(lines.last, floorInt((m_in.nu - 0.5 - p.baseU) / p.scale))};
+    }
+
+    /// Reads the volume along `row` where it meets the plane w, into m_row; see interpolateRow.
+    void readRow(const RayPlane& p, double w, int row, const Inside& inside) {
         const double top = m_in.nu - 1;
-        const int x0 = static_cast<int>(clampTo(p.baseU + a0 * p.scale, top)),
-                  x1 = smaller(m_in.nu - 1, static_cast<int>(clampTo(p.baseU + a1 * p.scale, top)) + 1);
-        interpolateRow(x0, x1, clampTo(v, m_in.nv - 1), clampTo(w, m_in.nw - 1));
+        const int x0 = static_cast<int>(clampTo(p.baseU + inside.first * p.scale, top)),
+                  x1 = smaller(m_in.nu - 1, static_cast<int>(clampTo(p.baseU + inside.last * p.scale, top)) + 1);
+        interpolateRow(x0, x1, clampTo(p.baseV + row * p.scale, m_in.nv - 1), clampTo(w, m_in.nw - 1));
+    }
 
-        float* depth = depthRow(b) + static_cast<std::size_t>(a0 - m_a0) * K;
-        const float* length = m_length + static_cast<std::size_t>(b - m_b0) * rowRays() + (a0 - m_a0);
-        const float scale = static_cast<float>(p.scale), base = static_cast<float>(p.baseU + a0 * p.scale),
-                    limit = static_cast<float>(top);
-        const float* share01 = m_in.valid ? m_row + m_in.nu + 1 : nullptr;
-        for (int a = 0; a <= a1 - a0; ++a, depth += K) {
-            float u = base + static_cast<float>(a) * scale;
+    /// Samples the lines `inside` where they meet the row that was read last: table entries into m_next, and where
+    /// voxels may be invalid the shares of valid corners into m_nextShare.
+    void sampleRow(const RayPlane& p, const Inside& inside) {
+        const int count = inside.last - inside.first + 1;
+        const float first = static_cast<float>(p.baseU + inside.first * p.scale), scale = static_cast<float>(p.scale);
+        const float limit = static_cast<float>(m_in.nu - 1);
+        const int top = m_in.tableSize - 1;
+        const float* row = m_row;
+        int* next = m_next;
+        if (m_in.valid) {
+            const float* shares = m_row + m_in.nu + 1;
+            for (int i = 0; i < count; ++i) {
+                float u = first + static_cast<float>(i) * scale;
+                u = u < 0 ? 0 : (u > limit ? limit : u);
+                const int x = static_cast<int>(u);
+                const float f = u - static_cast<float>(x), share = shares[x] + f * (shares[x + 1] - shares[x]);
+                const float entry = row[x] + f * (row[x + 1] - row[x]);
+                m_nextShare[i] = share;
+                next[i] = share > kNoShare ? smaller(top, static_cast<int>(entry / share + 0.5f)) : 0;
+            }
+            return;
+        }
+        for (int i = 0; i < count; ++i) {
+            float u = first + static_cast<float>(i) * scale;
             u = u < 0 ? 0 : (u > limit ? limit : u);
             const int x = static_cast<int>(u);
             const float f = u - static_cast<float>(x);
-            float entry = m_row[x] + f * (m_row[x + 1] - m_row[x]);
-            float path = length[a] * share;
-            if (share01) {
-                const float validShare = share01[x] + f * (share01[x + 1] - share01[x]);
-                if (validShare <= 0) continue;
-                entry /= validShare;
-                path *= validShare;
-            }
-            const int index = smaller(m_in.tableSize - 1, static_cast<int>(entry + 0.5f));
-            L::store(depth, L::load(depth) + path * L::load(m_in.depthTable + static_cast<std::size_t>(index) * K));
+            next[i] = smaller(top, static_cast<int>(row[x] + f * (row[x + 1] - row[x]) + 0.5f));
         }
+    }
+
+    /// Notes where the lines start from.
+    void begin(const RayPlane& p, double w, int row, const Lines& lines) {
+        for (int a = 0; a <= lines.last - lines.first; ++a) lines.entry[a] = kOutside;
+        const Inside inside = insideAt(p, row, lines);
+        if (inside.first > inside.last) return;
+        readRow(p, w, row, inside);
+        sampleRow(p, inside);
+        const int offset = inside.first - lines.first;
+        for (int i = 0; i <= inside.last - inside.first; ++i) lines.entry[i + offset] = m_next[i];
+        if (!m_in.valid) return;
+        for (int i = 0; i <= inside.last - inside.first; ++i) lines.share[i + offset] = m_nextShare[i];
+    }
+
+    /// Adds `path` times the mean of τ while the intensity goes linearly from one table entry to another: exact, by the
+    /// table's running integral.
+    void addDepth(float* depth, int from, int to, float path) const {
+        const int low = smaller(from, to), high = larger(from, to);
+        if (m_in.opaqueBefore[high + 1] == m_in.opaqueBefore[low]) return; // transparent in every candidate
+        const int distance = high - low;
+        // Entries next to each other are averaged by their middle: their integrals differ by less than floats can tell.
+        const bool near = distance < kNear;
+        const float* plus = near ? m_in.depthTable + static_cast<std::ptrdiff_t>((low + high) / 2) * K
+                                 : m_in.integralTable + static_cast<std::ptrdiff_t>(high) * K;
+        if (near) {
+            L::store(depth, L::load(depth) + path * L::load(plus));
+            return;
+        }
+        const float* minus = m_in.integralTable + static_cast<std::ptrdiff_t>(low) * K;
+        L::store(depth, L::load(depth) + (path / static_cast<float>(distance)) * (L::load(plus) - L::load(minus)));
+    }
+
+    /// Adds to the lines what they meet between two planes. Returns `to`.
+    template <class Plane>
+    double step(const Plane& plane, double from, double to, int row, const Lines& lines) {
+        const RayPlane p = plane(to), before = plane(from);
+        Inside inside = insideAt(p, row, lines);
+        if (inside.first > inside.last) inside = {lines.last + 1, lines.last};
+        const float slices = static_cast<float>(to - from);
+        if (inside.first <= inside.last) {
+            readRow(p, to, row, inside);
+            sampleRow(p, inside);
+        }
+        for (int a = inside.first; a <= inside.last; ++a) {
+            const int i = a - lines.first, now = m_next[a - inside.first];
+            int last = lines.entry[i];
+            lines.entry[i] = now;
+            if (lines.codes && m_in.featureOfCode[lines.codes[i]] == kTransparent) continue;
+            float path = lines.length[i * lines.lengthStep] * slices;
+            const bool cameIn = last == kOutside; // through a side, on the way
+            if (cameIn) {
+                path *= insideShare(p, before, a, row);
+                last = now;
+            }
+            int end = now;
+            if (m_in.valid) {
+                const float share = m_nextShare[a - inside.first], lastShare = cameIn ? share : lines.share[i];
+                lines.share[i] = share;
+                if (lastShare <= kNoShare) last = now;
+                if (share <= kNoShare) end = last;
+                path *= 0.5f * (lastShare + share);
+            }
+            addDepth(lines.depth + i * K, last, end, path);
+        }
+        const auto leave = [&](int a) { // through a side
+            const int i = a - lines.first;
+            if (lines.entry[i] == kOutside) return;
+            float path = lines.length[i * lines.lengthStep] * slices * insideShare(before, p, a, row);
+            if (m_in.valid) path *= lines.share[i];
+            addDepth(lines.depth + i * K, lines.entry[i], lines.entry[i], path);
+            lines.entry[i] = kOutside;
+        };
+        for (int a = lines.first; a < inside.first; ++a) leave(a);
+        for (int a = inside.last + 1; a <= lines.last; ++a) leave(a);
+        return to;
+    }
+
+    /// The part of a line between two planes that lies inside the sides of the box, where it is inside at `in` and
+    /// outside at `out`.
+    float insideShare(const RayPlane& in, const RayPlane& out, int a, int row) const {
+        const double u0 = in.baseU + a * in.scale, u1 = out.baseU + a * out.scale;
+        const double v0 = in.baseV + row * in.scale, v1 = out.baseV + row * out.scale;
+        double share = 1;
+        const auto cut = [&](double x0, double x1, double size) {
+            double t = 1;
+            if (x1 < -0.5)
+                t = (x0 + 0.5) / (x0 - x1);
+            else if (x1 > size - 0.5)
+                t = (size - 0.5 - x0) / (x1 - x0);
+            share = t < share ? t : share;
+        };
+        cut(u0, u1, m_in.nu);
+        cut(v0, v1, m_in.nv);
+        return static_cast<float>(share < 0 ? 0 : share);
     }
 
     /// m_row[x], x ∈ [x0, x1]: the volume at (x, v, w) as an entry of the depth table; m_row[x1 + 1] repeats the last,
@@ -259,7 +409,7 @@ private:
     // ---- At the voxels -------------------------------------------------------------------------------------------
 
     void gather(int k) {
-        const RayPlane p = plane(k);
+        const RayPlane p = rayPlane(k);
         for (int v = 0; v < m_in.nv; ++v) {
             const double b = (v - p.baseV) / p.scale;
             if ((b < m_b0 && !m_band.outermostLow) || (b >= m_b1 && !m_band.outermostHigh)) continue;
@@ -275,14 +425,38 @@ private:
             const int a0 = larger(m_a0, smaller(m_a1 - 1, floorInt(first))),
                       a1 = larger(a0 + 1, smaller(m_a1, floorInt(last) + 1));
             const float fb = static_cast<float>(b - row);
-            const float* near = depthRow(row) + static_cast<std::size_t>(a0 - m_a0) * K;
-            const float* far = depthRow(row + 1) + static_cast<std::size_t>(a0 - m_a0) * K;
+            const float* near = m_rays.depth + rayIndex(a0, row) * K;
+            const float* far = m_rays.depth + rayIndex(a0, row + 1) * K;
             for (int i = 0; i <= (a1 - a0); ++i) {
                 const V d = L::load(near + i * K);
                 L::store(m_gatherRow + i * K, d + fb * (L::load(far + i * K) - d));
             }
+            followOwnLines(codes, u0, u1, v, k);
             gatherRow(codes, u0, u1, v, k, static_cast<float>(first - a0), static_cast<float>(1 / p.scale),
                       a1 - a0 - 1);
+        }
+    }
+
+    /// What the voxels u ∈ [u0, u1] have right in front of them, along lines of their own: surfaces there change so
+    /// much from ray to ray that depths between rays would not do.
+    void followOwnLines(const std::uint16_t* codes, int u0, int u1, int v, int k) {
+        for (int i = 0; i < (u1 - u0 + 1) * K; ++i) m_local.depth[i] = 0.0f;
+        if (m_in.ownSlices == 0) return;
+        const auto plane = [&](double w) { return voxelPlane(w, k); };
+        const int size = blockSize(1 / (k - m_in.eyeW), u1 - u0 + 1);
+        for (int first = u0; first <= u1; first += size) {
+            const int last = smaller(u1, first + size - 1);
+            const double away = k - m_in.eyeW;
+            const double l = m_in.perspective
+                                 ? lengthOf((0.5 * (first + last) - m_in.eyeU) / away, (v - m_in.eyeV) / away)
+                                 : lengthOf(m_in.slopeU, m_in.slopeV);
+            const float length = static_cast<float>(l);
+            const Lines lines{
+                first, last, m_local.depth + (first - u0) * K, m_local.entry, m_local.share, &length, 0, codes + first};
+            const int start = k - m_in.ownSlices; // where the rays are
+            const double from = start < 0 ? -0.5 : start - 0.5 / l;
+            begin(plane(from), from, v, lines);
+            for (int slice = larger(0, start + 1); slice <= k; ++slice) toSlice(plane, slice, l, v, lines);
         }
     }
 
@@ -299,7 +473,8 @@ private:
             const int i = larger(0, smaller(lastPair, static_cast<int>(a)));
             const float f = a - static_cast<float>(i);
             const V near = L::load(m_gatherRow + i * K);
-            const V depth = near + f * (L::load(m_gatherRow + (i + 1) * K) - near);
+            const V depth =
+                near + f * (L::load(m_gatherRow + (i + 1) * K) - near) + L::load(m_local.depth + (u - u0) * K);
             const V seen = expMinus<V>(depth) * L::load(m_in.alphaTable + static_cast<std::size_t>(codes[u]) * K);
             float* sum = m_accumulator + static_cast<std::size_t>(feature) * 3 * K;
             L::store(sum, L::load(sum) + seen);
@@ -326,14 +501,14 @@ private:
     double m_slopeStep;     ///< perspective: slope between neighbouring rays
     int m_a0 = 0, m_a1 = 0; ///< rays of a row
     int m_b0, m_b1;         ///< rows of rays; m_b1 is the first of the next band
-    int m_slot = 3;
-    float* m_accumulator;         ///< [features + 1][3][K]
-    float* m_row;                 ///< see interpolateRow
-    float* m_depth = nullptr;     ///< [row][ray][K], optical depth
+    float* m_accumulator;   ///< [features + 1][3][K]
+    float* m_row;           ///< see interpolateRow
+    Lines m_rays;           ///< all rows of rays
+    Lines m_local;          ///< the voxels of one row
+    int* m_next = nullptr;  ///< see sampleRow
+    float* m_nextShare = nullptr;
     float* m_gatherRow = nullptr; ///< [ray][K], optical depth between two rows of rays
     float* m_length = nullptr;    ///< [row][ray], d0 per slice
-    float* m_offset = nullptr;    ///< [row][block], see measureRays
-    int* m_samples = nullptr;     ///< [row][block]
 };
 
 } // namespace

@@ -32,16 +32,26 @@ bool haveGpu() {
     return gpu;
 }
 
-EngineChoice resolved(EngineChoice choice) {
-    if (choice != EngineChoice::Auto) return choice;
-    return haveGpu() ? EngineChoice::Gl : EngineChoice::Cpu;
+/// Who leaves the choice to us gets an answer even where the volume is too large for the GPU.
+template <class T, class MakeGl, class MakeCpu>
+std::unique_ptr<T> gpuElseCpu(MakeGl makeGl, MakeCpu makeCpu) {
+    if (haveGpu()) {
+        try {
+            return makeGl();
+        } catch (const Error&) { // said by the choice "gl"
+        }
+    }
+    return makeCpu();
 }
 
 } // namespace
 
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality) {
-    switch (resolved(choice)) {
+    if (choice == EngineChoice::Auto)
+        return gpuElseCpu<VisibilityEngine>([&] { return makeGlEngine(volume, quality); },
+                                            [&] { return makeCpuEngine(volume, quality); });
+    switch (choice) {
     case EngineChoice::Gl:
         return makeGlEngine(std::move(volume), quality);
     case EngineChoice::Reference:
@@ -52,7 +62,10 @@ std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_pt
 }
 
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume) {
-    if (resolved(choice) == EngineChoice::Gl) return makeGlRenderer(std::move(volume));
+    if (choice == EngineChoice::Auto)
+        return gpuElseCpu<ImageRenderer>([&] { return makeGlRenderer(volume); },
+                                         [&] { return makeCpuRenderer(volume); });
+    if (choice == EngineChoice::Gl) return makeGlRenderer(std::move(volume));
     return makeCpuRenderer(std::move(volume));
 }
 

@@ -28,7 +28,7 @@ struct GlInfo {
 };
 std::optional<GlInfo> probeGl();
 
-/// Auto: gl on a real GPU, cpu on a software rasterizer or without GL.
+/// Auto: gl on a real GPU, cpu on a software rasterizer, without GL, or where the volume is too large for the GPU.
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality = Quality::Normal);
 /// The reference choice draws with the cpu renderer, since MEASURES sets no other image.

@@ -132,9 +132,15 @@ private:
         const double texel = 4.0 * candidates;
         const double layerBytes = texel * s.rays.x * s.rays.y, planeBytes = texel * s.dims.x * s.dims.y;
         const double depthLimit = glInteger(GL_MAX_3D_TEXTURE_SIZE);
+        const double blockLimit = glInteger(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+        if (planeBytes > blockLimit)
+            throw Error("one plane of voxels takes " + std::to_string(static_cast<long long>(planeBytes)) +
+                            " bytes, the device's buffers " + std::to_string(static_cast<long long>(blockLimit)),
+                        "OpenGL", "use --engine cpu");
+        const double visibilityBytes = std::min(m_budget.visibilityBytes, blockLimit);
         const double layersAtOnce = std::min(m_budget.depthTextureBytes / layerBytes, depthLimit) - 4;
         const int planesAtOnce = std::clamp(
-            static_cast<int>(std::min(layersAtOnce * s.layerStep, m_budget.visibilityBytes / planeBytes)), 1, s.dims.z);
+            static_cast<int>(std::min(layersAtOnce * s.layerStep, visibilityBytes / planeBytes)), 1, s.dims.z);
         const int layersNeeded =
             std::min(s.layers, static_cast<int>(std::ceil((planesAtOnce + 1) / s.layerStep)) + 2) + 1;
         const GLenum format = candidates == 4 ? GL_RGBA32F : GL_R32F;
@@ -186,8 +192,10 @@ private:
                                             GL_MAP_READ_BIT);
         throwOnGlError("measuring visibility");
         if (data == nullptr) throw Error("the visibility cannot be read back", "OpenGL", "use --engine cpu");
+        const struct Unmap {
+            ~Unmap() { glUnmapBuffer(GL_SHADER_STORAGE_BUFFER); }
+        } unmap;
         sink({s, plane, end, candidates, {static_cast<const float*>(data), count}});
-        glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
     }
 
     VisibilityBudget m_budget;

@@ -1,0 +1,39 @@
+// The commands of pellucid-cli, one file each.
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+#include "output.h"
+#include "progress.h"
+
+namespace pellucid::cli {
+
+/// A command as main() knows it: its options (already added to the program) and its work.
+struct Command {
+    CLI::App* app = nullptr;
+    /// Throws UsageError, Error or Cancelled; prints nothing on stdout itself.
+    std::function<Answer(Progress&)> run;
+};
+
+Command addInfo(CLI::App& program);
+Command addSamples(CLI::App& program);
+Command addGenerate(CLI::App& program);
+Command addRender(CLI::App& program);
+Command addMeasure(CLI::App& program);
+Command addFields(CLI::App& program);
+Command addRefine(CLI::App& program);
+Command addOptimize(CLI::App& program);
+
+/// Wall-clock seconds since it was made.
+class Stopwatch {
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count(); }
+
+private:
+    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
+} // namespace pellucid::cli

@@ -1,0 +1,120 @@
+// `fields`: what every voxel contributes, as volumes to look at.
+#include <filesystem>
+
+#include "commands.h"
+#include "inputs.h"
+#include "parse.h"
+#include "render/visibility.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    VolumeOptions volume;
+    TfOptions tf;
+    CameraOptions camera;
+    EngineOptions engine;
+    SaliencyInput saliency;
+    std::string out;
+};
+
+void checkFolder(const std::string& path) {
+    if (path.empty()) throw UsageError("the folder name is empty", "--out", "name the folder to write to");
+    std::error_code ec;
+    if (fs::is_directory(path, ec)) return;
+    if (fs::exists(path, ec)) throw FileError("a file has the folder's name", path, "choose another name");
+    const fs::path parent =
+        fs::path(path).has_filename() ? fs::path(path).parent_path() : fs::path(path).parent_path().parent_path();
+    if (!parent.empty() && !fs::is_directory(parent, ec))
+        throw FileError("the folder does not exist", parent.string(), "create it first");
+}
+
+void createFolder(const std::string& path) {
+    std::error_code ec;
+    fs::create_directory(path, ec);
+    if (ec && !fs::is_directory(path))
+        throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
+}
+
+double sumOfProducts(const Grid<float>& a, const Grid<float>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>(a[i]) * b[i];
+    return sum;
+}
+
+/// Each voxel's share of the visibility-weighted saliency: u1·v·L_b / Σ v·L_b + u2·v·L_s / Σ v·L_s, so that the sum
+/// over the voxels of a feature is its W_F (MEASURES §6, with its rule for an attribute whose sum is 0).
+Grid<float> vwsField(const Grid<float>& visibility, const WeightFields& weights, const VwsOptions& options) {
+    const double brightness = sumOfProducts(visibility, weights.brightness);
+    const double saturation = sumOfProducts(visibility, weights.saturation);
+    const double u1 = saturation > 0 ? options.u1 : 1.0;
+    const double u2 = brightness > 0 ? options.u2 : 1.0;
+    const double b = brightness > 0 ? u1 / brightness : 0.0;
+    const double s = saturation > 0 ? u2 / saturation : 0.0;
+    Grid<float> field(visibility.dims());
+    for (std::size_t i = 0; i < field.size(); ++i)
+        field[i] = static_cast<float>(visibility[i] * (b * weights.brightness[i] + s * weights.saturation[i]));
+    return field;
+}
+
+Answer run(const Options& o, Progress& progress) {
+    const Stopwatch total;
+    const VwsOptions vws = o.saliency.vws();
+    checkFolder(o.out);
+    o.camera.check();
+    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
+    const Geometry& geometry = volume->geometry();
+    const Camera camera = o.camera.camera(geometry);
+    const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
+    const WeightFields weights = saliencyFields(*volume, tf, o.saliency.saliency, progress.phase("saliency"));
+    const VisibilityField visibility = engine->field(camera, tf, progress.phase("visibility"));
+    const Grid<float> shares = vwsField(visibility.values, weights, vws);
+
+    createFolder(o.out);
+    const std::vector<std::pair<const char*, const Grid<float>*>> files{
+        {"visibility.nrrd", &visibility.values},
+        {"saliency_brightness.nrrd", &weights.brightness},
+        {"saliency_saturation.nrrd", &weights.saturation},
+        {"vws.nrrd", &shares}};
+    const JobControl writing = progress.phase("writing");
+    std::string text;
+    Json names = Json::array();
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        writing.throwIfStopped();
+        writing.report(static_cast<double>(i) / static_cast<double>(files.size()));
+        const std::string path = (fs::path(o.out) / files[i].first).string();
+        writeNrrd(geometry, *files[i].second, path);
+        text += "wrote " + path + "\n";
+        names.push_back(path);
+    }
+    Json json{{"command", "fields"},
+              {"engine", engine->name()},
+              {"volume", jsonFromVolume(*volume)},
+              {"files", names},
+              {"seconds", {{"total", total.seconds()}}}};
+    return {text, std::move(json), volume->notices, {}};
+}
+
+} // namespace
+
+Command addFields(CLI::App& program) {
+    CLI::App* app = program.add_subcommand(
+        "fields",
+        "Writes visibility, saliency and each voxel's share of the VWS as NRRD files (float32, the volume's grid)");
+    const auto o = std::make_shared<Options>();
+    o->volume.add(*app);
+    o->tf.add(*app);
+    o->camera.add(*app);
+    o->engine.add(*app, "high: half the error, more time");
+    o->saliency.add(*app);
+    addValue(
+        *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },
+        "folder for visibility.nrrd, saliency_brightness.nrrd, saliency_saturation.nrrd, vws.nrrd; made where missing")
+        ->required();
+    return {app, [o](Progress& progress) { return run(*o, progress); }};
+}
+
+} // namespace pellucid::cli

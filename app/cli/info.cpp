@@ -1,0 +1,53 @@
+// `info`: what a volume file holds.
+#include "commands.h"
+#include "inputs.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+std::string textOf(const Volume& v) {
+    std::vector<std::pair<std::string, std::string>> lines{
+        {"title", v.title},
+        {"format", v.format},
+        {"dims", dimsText(v.dims()) + " voxels"},
+        {"type", name(v.sampleType())},
+        {"spacing", vectorText(v.geometry().spacing) + " world units"},
+        {"origin", vectorText(v.geometry().origin) + " world units"},
+        {"range", rangeText(v.range().lo, v.range().hi)},
+    };
+    if (v.range() != v.dataRange()) lines.emplace_back("values", rangeText(v.dataRange().lo, v.dataRange().hi));
+    lines.emplace_back("invalid", countText(v.invalidCount()) + " of " + countText(v.size()) + " voxels");
+    lines.emplace_back("memory", bytesText(v.memoryBytes()));
+    for (const std::string& notice : v.notices) lines.emplace_back("notice", notice);
+    return listing(lines);
+}
+
+Json jsonOf(const Volume& v) {
+    return {{"command", "info"},
+            {"dims", jsonFromDims(v.dims())},
+            {"type", name(v.sampleType())},
+            {"spacing", jsonFromVector(v.geometry().spacing)},
+            {"origin", jsonFromVector(v.geometry().origin)},
+            {"range", jsonFromRange(v.range())},
+            {"data_range", jsonFromRange(v.dataRange())},
+            {"invalid", v.invalidCount()},
+            {"memory_bytes", v.memoryBytes()},
+            {"format", v.format},
+            {"title", v.title},
+            {"notices", v.notices}};
+}
+
+} // namespace
+
+Command addInfo(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("info", "What a volume holds: size, type, spacing, range, invalid voxels");
+    const auto options = std::make_shared<VolumeOptions>();
+    options->add(*app);
+    return {app, [options](Progress& progress) {
+                const auto volume = loadVolume(*options, progress);
+                return Answer{textOf(*volume), jsonOf(*volume), {}, {}};
+            }};
+}
+
+} // namespace pellucid::cli

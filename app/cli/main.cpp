@@ -1,0 +1,207 @@
+// pellucid-cli: everything without a display. Parses, dispatches, and turns what happens into the exit status:
+// 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+
+#include "commands.h"
+#include "interrupt.h"
+#include "parse.h"
+#include "volume/parallel.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr const char* kProgram = "pellucid-cli";
+
+/// The options that every command has.
+struct CommonOptions {
+    bool json = false;
+    bool progress = false;
+    int threads = 0; ///< 0: all that the machine has
+};
+
+void addCommonOptions(CLI::App& app, CommonOptions& common) {
+    const char* const group = "General";
+    app.add_flag("--json", common.json, "print one JSON object")->group(group);
+    app.add_flag("--progress", common.progress, "show progress on stderr even where it is no terminal")->group(group);
+    addValue(
+        app, "--threads", "N",
+        [&common](const std::string& text, const std::string& option) {
+            common.threads = static_cast<int>(parseInteger(text, option, 1, 1024));
+        },
+        "threads to use (default: all cores)", group);
+    app.get_help_ptr()->group(group);
+}
+
+/// Column of the descriptions in --help, and where its lines end.
+constexpr std::size_t kHelpIndent = 34, kHelpWidth = 100;
+
+/// Help as CLI11 lays it out, with long descriptions broken between words and without double blank lines.
+std::string wrapped(const std::string& help) {
+    std::string result, line;
+    std::istringstream lines(help);
+    while (std::getline(lines, line)) {
+        if (line.empty() && result.ends_with("\n\n")) continue;
+        for (std::size_t end; line.size() > kHelpWidth && (end = line.rfind(' ', kHelpWidth)) > kHelpIndent;) {
+            result += line.substr(0, end) + "\n";
+            line = std::string(kHelpIndent, ' ') + line.substr(end + 1);
+        }
+        result += line + "\n";
+    }
+    return result;
+}
+
+struct Failure {
+    int status = 1;
+    std::string message;
+};
+
+/// `--clip x:0:.5 y:0:.5` → `--clip x:0:.5 --clip y:0:.5`. A list ends where something else begins, so VOLUME may
+/// follow it.
+std::vector<std::string> withListsExpanded(const std::vector<std::string>& arguments) {
+    std::vector<std::string> expanded;
+    std::string list; // the option whose list is going on
+    for (const std::string& argument : arguments) {
+        const bool belongs =
+            (list == "--clip" && looksLikeClip(argument)) || (list == "--fix" && looksLikeNumber(argument));
+        if (belongs && expanded.back() != list) expanded.push_back(list);
+        expanded.push_back(argument);
+        if (!belongs) list = argument == "--clip" || argument == "--fix" ? argument : std::string();
+    }
+    return expanded;
+}
+
+/// "pellucid-cli measure", or the program alone where no command was recognized.
+std::string place(const CLI::App& program) {
+    const auto parsed = program.get_subcommands();
+    return parsed.empty() ? kProgram : std::string(kProgram) + " " + parsed.front()->get_name();
+}
+
+std::string problem(const CLI::App& program, const CLI::ParseError& error) {
+    const auto parsed = program.get_subcommands();
+    const CLI::App& app = parsed.empty() ? program : *parsed.front();
+    const auto unknown = app.remaining();
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty()) {
+        const std::string& first = unknown.front();
+        if (first.starts_with("-")) return "unknown option '" + first + "'";
+        return (parsed.empty() ? "unknown command '" : "unexpected argument '") + first + "'";
+    }
+    if (parsed.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+        if (unknown.empty()) return "no command is given";
+        return (unknown.front().starts_with("-") ? "unknown option '" : "unknown command '") + unknown.front() + "'";
+    }
+    std::string text = error.what();
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && text.starts_with("--"))
+        return text.substr(0, text.find(':')) +
+               (text.find("At Most") != std::string::npos ? " is given more than once" : " has no value");
+    if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
+    if (text.starts_with("vOLUME")) text.front() = 'V';
+    return text;
+}
+
+Failure failureOf(const std::exception_ptr& thrown, const std::string& where) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const UsageError& e) {
+        return {2, e.what()};
+    } catch (const Error& e) {
+        return {1, e.what()};
+    } catch (const std::bad_alloc&) {
+        return {1, "out of memory, " + where + ", use a smaller volume, --size or machine with more"};
+    } catch (const std::length_error&) {
+        return {1, "out of memory, " + where + ", use a smaller volume, --size or machine with more"};
+    } catch (const std::filesystem::filesystem_error& e) {
+        return {1, e.code().message() + ", " + e.path1().string() + ", check permissions and space"};
+    } catch (const std::exception& e) {
+        return {1, std::string("unexpected failure (") + e.what() + "), " + where +
+                       ", please report it with the command line"};
+    } catch (...) {
+        return {1, "unexpected failure, " + where + ", please report it with the command line"};
+    }
+}
+
+int fail(const Failure& failure) {
+    std::fprintf(stderr, "%s: error: %s\n", kProgram, oneLine(failure.message).c_str());
+    return failure.status;
+}
+
+/// The status of a stopped command. Where both a signal and an error came, the signal is what the user did.
+int stoppedStatus() { return interruptStatus() != 0 ? interruptStatus() : 130; }
+
+int runCommand(const Command& command, const CommonOptions& common) {
+    Progress progress(Progress::styleFor(common.progress));
+    const std::string where = std::string(kProgram) + " " + command.app->get_name();
+    try {
+        if (common.threads > 0) setThreadCount(common.threads);
+        const Answer answer = command.run(progress);
+        progress.finish();
+        if (interruptStatus() != 0) return stoppedStatus();
+        writeAnswer(common.json ? jsonText(answer.json) : answer.text);
+        if (answer.failure) return fail({1, answer.failure->what()});
+        for (const std::string& notice : answer.notices)
+            std::fprintf(stderr, "%s: note: %s\n", kProgram, oneLine(notice).c_str());
+        return 0;
+    } catch (const Cancelled&) {
+        progress.finish();
+        return stoppedStatus();
+    } catch (...) {
+        progress.finish();
+        if (interruptStatus() != 0) return stoppedStatus();
+        return fail(failureOf(std::current_exception(), where));
+    }
+}
+
+int run(const std::vector<std::string>& arguments) {
+    CLI::App program("Pellucid on the command line: measures and shapes what a volume rendering shows.", kProgram);
+    program.set_version_flag("--version", std::string(kProgram) + " " + PELLUCID_VERSION, "print the version");
+    program.require_subcommand(1);
+    program.get_formatter()->column_width(kHelpIndent);
+    program.footer("Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.\n"
+                   "`pellucid-cli COMMAND --help` lists a command's options.");
+
+    const std::array commands{addInfo(program),    addSamples(program), addGenerate(program), addRender(program),
+                              addMeasure(program), addFields(program),  addRefine(program),   addOptimize(program)};
+    CommonOptions common;
+    for (const Command& command : commands) addCommonOptions(*command.app, common);
+
+    try {
+        std::vector<std::string> reversed = withListsExpanded(arguments);
+        std::reverse(reversed.begin(), reversed.end()); // the order in which CLI11 takes them
+        program.parse(std::move(reversed));
+    } catch (const CLI::ParseError& e) {
+        // Help and version are thrown too; they are answers.
+        if (e.get_exit_code() == 0) {
+            if (dynamic_cast<const CLI::CallForVersion*>(&e) != nullptr)
+                writeAnswer(std::string(e.what()) + "\n");
+            else if (const auto parsed = program.get_subcommands(); !parsed.empty())
+                writeAnswer(wrapped(parsed.front()->help(kProgram)));
+            else
+                writeAnswer(wrapped(program.help()));
+            return 0;
+        }
+        return fail({2, problem(program, e) + ", " + place(program) + ", see " + place(program) + " --help"});
+    }
+    const auto chosen =
+        std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });
+    return runCommand(*chosen, common);
+}
+
+} // namespace
+
+} // namespace pellucid::cli
+
+int main(int argc, char** argv) {
+    namespace cli = pellucid::cli;
+    cli::installInterrupt();
+    try {
+        return cli::run({argv + 1, argv + argc});
+    } catch (...) {
+        return cli::fail(cli::failureOf(std::current_exception(), cli::kProgram));
+    }
+}

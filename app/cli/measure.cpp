@@ -1,0 +1,89 @@
+// `measure`: what each feature shows from one view.
+#include "optimize/measure.h"
+#include "commands.h"
+#include "inputs.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct Options {
+    VolumeOptions volume;
+    TfOptions tf;
+    CameraOptions camera;
+    EngineOptions engine;
+    SaliencyInput saliency;
+};
+
+struct Seconds {
+    double visibility = 0, saliency = 0, total = 0;
+};
+
+std::string textOf(const TransferFunction& tf, const Measures& m, const std::string& engine, const Seconds& seconds) {
+    Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation"});
+    for (std::size_t i = 0; i < tf.features.size(); ++i) {
+        const FeatureMeasures& f = m.features[i];
+        table.add({tf.features[i].name, fixedText(tf.features[i].a, 3) + " .. " + fixedText(tf.features[i].b, 3),
+                   fixedText(m.opacities[i], 4), fixedText(f.visibility, 4), fixedText(f.vws, 4),
+                   fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4)});
+    }
+    const std::string features = tf.features.empty() ? "the transfer function has no features\n" : table.text();
+    return features + "engine " + engine + ": visibility " + secondsText(seconds.visibility) + ", saliency " +
+           secondsText(seconds.saliency) + ", total " + secondsText(seconds.total) + "\n";
+}
+
+Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m, const std::string& engine,
+            const Seconds& seconds) {
+    Json features = Json::array();
+    for (std::size_t i = 0; i < tf.features.size(); ++i) {
+        const FeatureMeasures& f = m.features[i];
+        features.push_back({{"name", tf.features[i].name},
+                            {"range", {tf.features[i].a, tf.features[i].b}},
+                            {"opacity", m.opacities[i]},
+                            {"visibility", f.visibility},
+                            {"vws", f.vws},
+                            {"vws_brightness", f.vwsBrightness},
+                            {"vws_saturation", f.vwsSaturation}});
+    }
+    return {
+        {"command", "measure"},
+        {"engine", engine},
+        {"volume", jsonFromVolume(volume)},
+        {"features", features},
+        {"visibility_histogram", m.visibilityHistogram},
+        {"seconds", {{"visibility", seconds.visibility}, {"saliency", seconds.saliency}, {"total", seconds.total}}}};
+}
+
+Answer run(const Options& o, Progress& progress) {
+    const Stopwatch total;
+    const VwsOptions vws = o.saliency.vws();
+    o.camera.check();
+    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
+    const Camera camera = o.camera.camera(volume->geometry());
+    const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
+
+    Seconds seconds;
+    const Stopwatch saliency;
+    const WeightFields weights = saliencyFields(*volume, tf, o.saliency.saliency, progress.phase("saliency"));
+    seconds.saliency = saliency.seconds();
+    const Measures m = measure(*engine, camera, tf, weights, vws, progress.phase("visibility"));
+    seconds.visibility = m.visibilitySeconds;
+    seconds.total = total.seconds();
+    return {
+        textOf(tf, m, engine->name(), seconds), jsonOf(*volume, tf, m, engine->name(), seconds), volume->notices, {}};
+}
+
+} // namespace
+
+Command addMeasure(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("measure", "Visibility and visibility-weighted saliency of each feature");
+    const auto o = std::make_shared<Options>();
+    o->volume.add(*app);
+    o->tf.add(*app);
+    o->camera.add(*app);
+    o->engine.add(*app, "high: half the error, more time");
+    o->saliency.add(*app);
+    return {app, [o](Progress& progress) { return run(*o, progress); }};
+}
+
+} // namespace pellucid::cli

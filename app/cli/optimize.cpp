@@ -1,0 +1,157 @@
+// `optimize`: the opacities that give each feature its share of attention.
+#include "commands.h"
+#include "inputs.h"
+#include "optimize/history_io.h"
+#include "optimize/optimizer.h"
+#include "parse.h"
+#include "tf/formats/tf_json.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct Options {
+    VolumeOptions volume;
+    TfOptions tf;
+    CameraOptions camera;
+    EngineOptions engine;
+    SaliencyInput saliency;
+    OptimizeOptions optimize;
+    std::vector<double> targets;
+    std::optional<std::string> outTf;
+    bool requireConverged = false;
+};
+
+struct Seconds {
+    double saliency = 0, search = 0, total = 0;
+};
+
+/// What can be told about the targets before their features are known.
+std::vector<double> parseTargets(const std::string& text, const std::string& option) {
+    auto targets = parseReals(text, option);
+    double sum = 0;
+    for (const double t : targets) {
+        if (t < 0) throw UsageError("the target " + plainText(t) + " is negative", option, "give numbers from 0 on");
+        if (t > 1e9) throw UsageError("the target " + plainText(t) + " is too large", option, "only proportions count");
+        sum += t;
+    }
+    if (sum == 0) throw UsageError("all targets are 0", option, "give at least one above 0");
+    return targets;
+}
+
+std::string textOf(const OptimizeResult& r, const std::string& engine, const Seconds& seconds) {
+    Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after"});
+    const OptimizeState& start = r.history.front();
+    const OptimizeState& best = r.history[r.best];
+    for (std::size_t i = 0; i < r.targets.size(); ++i)
+        table.add({r.tf.features[i].name, fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
+                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4)});
+    return table.text() + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
+           name(r.reason) + " after " + std::to_string(r.iterations()) + " iterations, " +
+           std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
+           secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) + ", total " +
+           secondsText(seconds.total) + "\n";
+}
+
+Json jsonOf(const OptimizeResult& r, const OptimizeOptions& options, const Volume& volume, const std::string& engine,
+            const Seconds& seconds) {
+    Json json(jsonFromOptimization(r, options));
+    json["engine"] = engine;
+    json["volume"] = jsonFromVolume(volume);
+    json["seconds"] = {{"saliency", seconds.saliency}, {"search", seconds.search}, {"total", seconds.total}};
+    return json;
+}
+
+std::optional<Error> failureOf(const Options& o, const OptimizeResult& r) {
+    if (!o.requireConverged || r.converged()) return {};
+    return Error("the targets were not reached (objective " + plainText(r.history[r.best].objective) +
+                     ", wanted below " + plainText(o.optimize.tolerance) + ")",
+                 std::string(name(r.reason)) + " after " + std::to_string(r.iterations()) + " iterations",
+                 "raise --max-iterations or --tolerance, or choose other targets");
+}
+
+Answer run(const Options& o, Progress& progress) {
+    const Stopwatch total;
+    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf");
+    const VwsOptions vws = o.saliency.vws();
+    o.optimize.validate();
+    o.camera.check();
+    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
+    normalizedTargets(o.targets, tf.features.size());
+    const Camera camera = o.camera.camera(volume->geometry());
+    const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
+
+    Seconds seconds;
+    const Stopwatch saliency;
+    const WeightFields weights = saliencyFields(*volume, tf, o.saliency.saliency, progress.phase("saliency"));
+    seconds.saliency = saliency.seconds();
+    const Stopwatch search;
+    const VwsFunction function(*engine, camera, tf, weights, vws);
+    JobControl job = progress.phase("optimizing");
+    job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
+    int moves = -1;
+    const OptimizeResult result = optimize(function, o.targets, o.optimize, job, [&](const OptimizeState& state) {
+        progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
+    });
+    if (result.reason == StopReason::Cancelled) throw Cancelled{};
+    seconds.search = search.seconds();
+    if (o.outTf) writeTf(result.tf, *o.outTf);
+    seconds.total = total.seconds();
+    return {textOf(result, engine->name(), seconds), jsonOf(result, o.optimize, *volume, engine->name(), seconds),
+            volume->notices, failureOf(o, result)};
+}
+
+} // namespace
+
+Command addOptimize(CLI::App& program) {
+    CLI::App* app =
+        program.add_subcommand("optimize", "Finds the opacities that give each feature its target saliency");
+    const auto o = std::make_shared<Options>();
+    o->volume.add(*app);
+    o->tf.add(*app);
+    o->camera.add(*app);
+    o->engine.add(*app, "high: half the error, more time");
+    o->saliency.add(*app);
+    addValue(
+        *app, "--target", "T1,T2,...",
+        [o](const std::string& text, const std::string& option) { o->targets = parseTargets(text, option); },
+        "one number for each feature, from 0 on; scaled to sum 1")
+        ->required();
+    addValue(
+        *app, "--method", "fixed|line|parallel",
+        [o](const std::string& text, const std::string&) { o->optimize.method = searchMethodFromName(text); },
+        "fixed step, line search, or line search with all steps at once (default parallel)");
+    addValue(
+        *app, "--direction", "gradient",
+        [](const std::string& text, const std::string& option) {
+            if (text != "gradient") throw UsageError("unknown direction '" + text + "'", option, "give gradient");
+        },
+        "descent along 2(W - target) (the default)");
+    app->add_flag("--normalize", o->optimize.normalize, "scale the direction to length 1, as section 5.3.4 prints it");
+    addValue(
+        *app, "--step", "S",
+        [o](const std::string& text, const std::string& option) {
+            o->optimize.step = parseRealAbove(text, option, 0, 10);
+        },
+        "base step (default 0.05)");
+    addValue(
+        *app, "--tolerance", "F",
+        [o](const std::string& text, const std::string& option) {
+            o->optimize.tolerance = parseRealAbove(text, option, 0, 1);
+        },
+        "converged below this distance from the targets (default 0.03)");
+    addValue(
+        *app, "--max-iterations", "N",
+        [o](const std::string& text, const std::string& option) {
+            o->optimize.maxIterations = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
+        },
+        "at most so many moves (default 200)");
+    addValue(
+        *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
+        "write the optimized transfer function (the best one seen)");
+    app->add_flag("--require-converged", o->requireConverged,
+                  "exit status 1 where the targets are not reached; the answer is written all the same");
+    return {app, [o](Progress& progress) { return run(*o, progress); }};
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,158 @@
+#include "parse.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "output.h"
+#include "volume/error.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+std::string quoted(const std::string& text) { return "'" + text + "'"; }
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts(1);
+    for (const char c : text)
+        if (c == separator)
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    return parts;
+}
+
+template <class T>
+std::optional<T> numberIn(const std::string& text) {
+    T value{};
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc{} || stop != end) return {};
+    return value;
+}
+
+std::optional<double> finiteIn(const std::string& text) {
+    const auto value = numberIn<double>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+} // namespace
+
+double parseReal(const std::string& text, const std::string& option) {
+    if (const auto value = finiteIn(text)) return *value;
+    throw UsageError(quoted(text) + " is not a number", option, "give a finite decimal number such as 2 or 0.5");
+}
+
+double parseReal(const std::string& text, const std::string& option, double lo, double hi) {
+    const double value = parseReal(text, option);
+    if (value >= lo && value <= hi) return value;
+    throw UsageError(text + " is out of range", option, "give a number from " + plainText(lo) + " to " + plainText(hi));
+}
+
+double parseRealAbove(const std::string& text, const std::string& option, double lo, double hi) {
+    const double value = parseReal(text, option);
+    if (value > lo && value <= hi) return value;
+    throw UsageError(text + " is out of range", option,
+                     "give a number above " + plainText(lo) + ", at most " + plainText(hi));
+}
+
+long long parseInteger(const std::string& text, const std::string& option, long long lo, long long hi) {
+    const auto value = numberIn<long long>(text);
+    if (!value)
+        throw UsageError(quoted(text) + " is not a whole number", option,
+                         "give one from " + std::to_string(lo) + " to " + std::to_string(hi));
+    if (*value < lo || *value > hi)
+        throw UsageError(text + " is out of range", option,
+                         "give a whole number from " + std::to_string(lo) + " to " + std::to_string(hi));
+    return *value;
+}
+
+std::vector<double> parseReals(const std::string& text, const std::string& option) {
+    std::vector<double> values;
+    for (const std::string& part : split(text, ',')) values.push_back(parseReal(part, option));
+    return values;
+}
+
+std::vector<double> parseReals(const std::string& text, const std::string& option, std::size_t count,
+                               const std::string& what) {
+    if (split(text, ',').size() != count)
+        throw UsageError(quoted(text) + " is not " + std::to_string(count) + " numbers with commas between", option,
+                         "give " + what);
+    return parseReals(text, option);
+}
+
+ValueRange parseRange(const std::string& text, const std::string& option) {
+    const auto v = parseReals(text, option, 2, "LO,HI in data units");
+    if (!(v[0] < v[1]))
+        throw UsageError("the lower end of " + text + " is not below the upper one", option, "give LO,HI with LO < HI");
+    return {v[0], v[1]};
+}
+
+ImageSize parseImageSize(const std::string& text, const std::string& option) {
+    const auto parts = split(text, 'x');
+    if (parts.size() != 2)
+        throw UsageError(quoted(text) + " is not an image size", option, "give WxH in pixels, such as 800x600");
+    const auto side = [&](const std::string& part) { return static_cast<int>(parseInteger(part, option, 1, 16384)); };
+    return {side(parts[0]), side(parts[1])};
+}
+
+Rgb parseColor(const std::string& text, const std::string& option) {
+    try {
+        if (!text.empty() && text[0] == '#') return rgbFromHex(text);
+    } catch (const Error& e) {
+        throw UsageError(e.problem(), option, "give #rrggbb or R,G,B with components from 0 to 1");
+    }
+    const auto v = parseReals(text, option, 3, "R,G,B with components from 0 to 1, or #rrggbb");
+    for (const double c : v)
+        if (c < 0 || c > 1)
+            throw UsageError(plainText(c) + " is not a colour component", option,
+                             "give R,G,B with components from 0 to 1");
+    return {v[0], v[1], v[2]};
+}
+
+bool looksLikeClip(const std::string& text) {
+    return text.size() > 1 && text[1] == ':' && text[0] >= 'x' && text[0] <= 'z';
+}
+
+bool looksLikeNumber(const std::string& text) {
+    const auto parts = split(text, ',');
+    return std::all_of(parts.begin(), parts.end(), [](const std::string& p) { return finiteIn(p).has_value(); });
+}
+
+Clip parseClip(const std::string& text, const std::string& option) {
+    const auto parts = split(text, ':');
+    if (parts.size() != 3 || !looksLikeClip(text))
+        throw UsageError(quoted(text) + " is not a clipped axis", option, "give x:A:B, y:A:B or z:A:B");
+    const Clip clip{parts[0][0] - 'x', parseReal(parts[1], option, 0, 1), parseReal(parts[2], option, 0, 1)};
+    if (!(clip.lo < clip.hi)) throw UsageError("nothing is left between the ends of " + text, option, "give A < B");
+    return clip;
+}
+
+CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName,
+                      const std::function<void(const std::string&, const std::string&)>& take, const std::string& help,
+                      const std::string& group) {
+    const std::string option = names.substr(0, names.find(','));
+    return app
+        .add_option_function<std::string>(
+            names, [take, option](const std::string& text) { take(text, option); }, help)
+        ->type_name(valueName)
+        ->group(group);
+}
+
+CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::string& valueName,
+                         const std::function<void(const std::string&, const std::string&)>& take,
+                         const std::string& help, const std::string& group) {
+    return app
+        .add_option_function<std::vector<std::string>>(
+            names,
+            [take, names](const std::vector<std::string>& texts) {
+                for (const std::string& text : texts) take(text, names);
+            },
+            help)
+        ->type_name(valueName)
+        ->allow_extra_args(false)
+        ->group(group);
+}
+
+} // namespace pellucid::cli

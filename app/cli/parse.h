@@ -1,0 +1,57 @@
+// Texts of options → values. Everything here throws UsageError with the option's name as the place.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "tf/color.h"
+#include "volume/volume.h"
+
+namespace pellucid::cli {
+
+/// A finite decimal number in [lo, hi].
+double parseReal(const std::string& text, const std::string& option);
+double parseReal(const std::string& text, const std::string& option, double lo, double hi);
+/// The same, > lo.
+double parseRealAbove(const std::string& text, const std::string& option, double lo, double hi);
+/// A whole number in [lo, hi].
+long long parseInteger(const std::string& text, const std::string& option, long long lo, long long hi);
+/// Numbers with commas between; `what` says in the message what is expected ("LO,HI").
+std::vector<double> parseReals(const std::string& text, const std::string& option);
+std::vector<double> parseReals(const std::string& text, const std::string& option, std::size_t count,
+                               const std::string& what);
+/// "LO,HI" with LO < HI.
+ValueRange parseRange(const std::string& text, const std::string& option);
+
+struct ImageSize {
+    int width = 512, height = 512; ///< pixels, each in [1, 16384]
+};
+/// "WxH".
+ImageSize parseImageSize(const std::string& text, const std::string& option);
+/// "#rrggbb", "#rgb" or "R,G,B" with components in [0,1].
+Rgb parseColor(const std::string& text, const std::string& option);
+
+struct Clip {
+    int axis = 0; ///< 0 x, 1 y, 2 z
+    double lo = 0, hi = 1;
+};
+/// "x:a:b", 0 ≤ a < b ≤ 1.
+Clip parseClip(const std::string& text, const std::string& option);
+/// Whether `text` means to be one: it starts with an axis and a colon.
+bool looksLikeClip(const std::string& text);
+bool looksLikeNumber(const std::string& text);
+
+/// Adds an option with one value, which `take(text, option name)` checks and stores. A throw inside ends the parsing.
+CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName,
+                      const std::function<void(const std::string& text, const std::string& option)>& take,
+                      const std::string& help, const std::string& group = "Options");
+/// The same, may be given several times.
+CLI::Option* addRepeated(CLI::App& app, const std::string& names, const std::string& valueName,
+                         const std::function<void(const std::string& text, const std::string& option)>& take,
+                         const std::string& help, const std::string& group = "Options");
+
+} // namespace pellucid::cli

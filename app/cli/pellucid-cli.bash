@@ -1,0 +1,69 @@
+# bash completion for pellucid-cli
+# Commands, options and samples are asked of the program itself, so that this file never lags behind it.
+
+_pellucid_cli() {
+    local program=${COMP_WORDS[0]}
+    # Bash splits words at ':' and '='; the line as typed has them whole.
+    local line=${COMP_LINE:0:COMP_POINT}
+    local current=${line##*[[:space:]]}
+    local -a words
+    read -r -a words <<<"$line"
+    local count=${#words[@]}
+    [[ -n $current ]] && ((count--))
+    local previous=${words[count-1]}
+    local choices=
+
+    if ((count <= 1)); then
+        choices="$("$program" --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p') --help --version"
+        COMPREPLY=($(compgen -W "$choices" -- "$current"))
+        return
+    fi
+    local command=${words[1]}
+
+    case $previous in
+        --engine) choices="auto gl cpu reference" ;;
+        --quality) choices="normal high" ;;
+        --kernel) choices="thesis narrow" ;;
+        --method) choices="fixed line parallel" ;;
+        --direction) choices="gradient" ;;
+        --step-up) choices="auto" ;;
+        --background) choices="transparent" ;;
+        --tf)
+            COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))
+            compopt -o filenames -o nospace 2>/dev/null
+            ;;
+        --camera | --out | --out-tf)
+            COMPREPLY=($(compgen -f -- "$current"))
+            compopt -o filenames 2>/dev/null
+            return
+            ;;
+        --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --view | --step | \
+            --clip | --feature | --threads | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
+            --max-iterations | --fix | --target | --tolerance)
+            return
+            ;;
+    esac
+
+    if [[ -n $choices ]]; then
+        COMPREPLY=($(compgen -W "$choices" -- "$current"))
+    elif [[ $current == -* ]]; then
+        choices=$("$program" "$command" --help 2>/dev/null | grep -oE -- '--[a-z][a-z0-9-]*' | sort -u)
+        COMPREPLY=($(compgen -W "$choices" -- "$current"))
+    elif [[ $command == generate ]]; then
+        choices=$("$program" samples 2>/dev/null | sed -n 's/^sample:\([^ ]*\) .*/\1/p')
+        COMPREPLY=($(compgen -W "$choices" -- "$current"))
+    elif [[ $command != samples && $previous != --tf ]]; then
+        choices=$("$program" samples 2>/dev/null | sed -n 's/^\(sample:[^ ]*\) .*/\1/p')
+        COMPREPLY=($(compgen -W "$choices" -- "$current") $(compgen -f -- "$current"))
+        compopt -o filenames 2>/dev/null
+    fi
+
+    # What bash has split off before a ':' is not part of the word it replaces.
+    if [[ $current == *:* && $COMP_WORDBREAKS == *:* ]]; then
+        local prefix=${current%"${current##*:}"}
+        local i
+        for i in "${!COMPREPLY[@]}"; do COMPREPLY[i]=${COMPREPLY[i]#"$prefix"}; done
+    fi
+}
+
+complete -F _pellucid_cli pellucid-cli

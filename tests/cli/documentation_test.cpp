@@ -1,0 +1,112 @@
+// --help, the manual and the shell completion know the same options.
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include "cli_runner.h"
+
+using pellucid::test::Outcome;
+using pellucid::test::Workshop;
+
+namespace {
+
+const std::vector<std::string> kCommands{"info",    "samples", "generate", "render",
+                                         "measure", "fields",  "refine",   "optimize"};
+
+std::string sourceFile(const std::string& path) {
+    std::ifstream in(std::string(PELLUCID_SOURCE_DIR) + "/" + path);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+std::set<std::string> optionsIn(const std::string& text) {
+    static const std::regex kOption("--[a-z][a-z0-9-]*");
+    std::set<std::string> options;
+    for (std::sregex_iterator i(text.begin(), text.end(), kOption), end; i != end; ++i) options.insert(i->str());
+    return options;
+}
+
+std::string unescaped(std::string text) {
+    for (std::size_t at = 0; (at = text.find("\\-", at)) != std::string::npos; ++at) text.erase(at, 1);
+    return text;
+}
+
+/// What bash offers after `line`, the completion script being loaded.
+std::set<std::string> completions(const std::string& line) {
+    const std::string script = "PATH=\"$(dirname '" PELLUCID_CLI "')\":$PATH; source '" PELLUCID_SOURCE_DIR
+                               "/app/cli/pellucid-cli.bash'; COMP_LINE='" +
+                               line +
+                               "'; COMP_POINT=${#COMP_LINE}; COMP_WORDS=(pellucid-cli); _pellucid_cli; "
+                               "printf '%s\\n' \"${COMPREPLY[@]}\"";
+    FILE* pipe = popen(("bash -c " +
+                        [&] {
+                            std::string quoted = "'";
+                            for (const char c : script) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+                            return quoted + "'";
+                        }())
+                           .c_str(),
+                       "r");
+    REQUIRE(pipe != nullptr);
+    std::string text;
+    std::array<char, 256> buffer{};
+    while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr) text += buffer.data();
+    pclose(pipe);
+    std::set<std::string> words;
+    std::istringstream lines(text);
+    for (std::string word; std::getline(lines, word);)
+        if (!word.empty()) words.insert(word);
+    return words;
+}
+
+} // namespace
+
+TEST_CASE("help and version are answers", "[cli][documentation]") {
+    const Workshop w;
+    const Outcome version = w.run({"--version"});
+    CHECK(version.status == 0);
+    CHECK(std::regex_match(version.out, std::regex("pellucid-cli [0-9]+\\.[0-9]+\\.[0-9]+\n")));
+    const Outcome help = w.run({"--help"});
+    CHECK(help.status == 0);
+    CHECK(help.err.empty());
+    for (const std::string& command : kCommands) {
+        INFO(command);
+        CHECK(help.out.find("  " + command + " ") != std::string::npos);
+        const Outcome own = w.run({command, "--help"});
+        CHECK(own.status == 0);
+        CHECK(own.err.empty());
+        CHECK(own.out.find("Usage: pellucid-cli " + command) != std::string::npos);
+        CHECK(optionsIn(own.out).count("--json") == 1);
+    }
+}
+
+TEST_CASE("the manual has every command and option, and no others", "[cli][documentation]") {
+    const Workshop w;
+    const std::string manual = unescaped(sourceFile("docs/man/pellucid-cli.1"));
+    REQUIRE_FALSE(manual.empty());
+    std::set<std::string> known{"--version"};
+    for (const std::string& command : kCommands) {
+        INFO(command);
+        CHECK(std::regex_search(manual, std::regex("\n\\.BI? " + command + "\\b")));
+        known.merge(optionsIn(w.run({command, "--help"}).out));
+    }
+    CHECK(optionsIn(manual) == known);
+}
+
+TEST_CASE("bash completes commands, options, values and samples", "[cli][documentation]") {
+    const auto commands = completions("pellucid-cli ");
+    for (const std::string& command : kCommands) CHECK(commands.count(command) == 1);
+    CHECK(completions("pellucid-cli me") == std::set<std::string>{"measure"});
+    CHECK(completions("pellucid-cli optimize sample:shells --req") == std::set<std::string>{"--require-converged"});
+    CHECK(completions("pellucid-cli measure x.nrrd --engine ") ==
+          std::set<std::string>{"auto", "cpu", "gl", "reference"});
+    CHECK(completions("pellucid-cli generate sh") == std::set<std::string>{"shells"});
+    // Bash takes the word after the colon for the one to complete.
+    CHECK(completions("pellucid-cli info sample:sh") == std::set<std::string>{"shells"});
+    CHECK(completions("pellucid-cli refine sample:shells --view").empty());
+}

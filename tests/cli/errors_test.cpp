@@ -1,0 +1,260 @@
+// Whatever is wrong: the right exit status, one line on stderr in three parts, nothing on stdout, no file left behind.
+#include <algorithm>
+
+#include <catch2/catch.hpp>
+
+#include "cli_runner.h"
+
+using pellucid::test::Outcome;
+using pellucid::test::Workshop;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+Words operator+(Words a, const Words& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+/// Runs it and checks everything that all errors have in common.
+void checkFails(const Workshop& w, const Words& arguments, int status, const std::string& part) {
+    std::string line;
+    for (const std::string& a : arguments) line += a + " ";
+    INFO(line);
+    const auto before = w.list();
+    const Outcome o = w.run(arguments);
+    INFO(o.err);
+    CHECK(o.status == status);
+    CHECK(o.out.empty());
+    CHECK(o.err.rfind("pellucid-cli: error: ", 0) == 0);
+    CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+    CHECK(o.err.ends_with("\n"));
+    // WHAT, WHERE, WHAT TO DO
+    std::size_t commas = 0;
+    for (std::size_t at = o.err.find(", "); at != std::string::npos; at = o.err.find(", ", at + 1)) ++commas;
+    CHECK(commas >= 2);
+    CHECK(o.err.find(part) != std::string::npos);
+    CHECK(w.list() == before);
+}
+
+const Words kShells{"sample:shells", "--size", "16"};
+const Words kMeasure = Words{"measure"} + kShells;
+const Words kRefine = Words{"refine"} + kShells;
+const Words kOptimize = Words{"optimize"} + kShells;
+const Words kRender{"render", "sample:shells", "--sample-size", "16", "--out", "x.png"};
+
+/// A NRRD header of a raw-encoded u8 volume with these lines in it, followed by `bytes` zeros.
+std::string nrrd(const std::string& lines, std::size_t bytes) {
+    return "NRRD0004\ntype: uchar\ndimension: 3\n" + lines + "encoding: raw\nendian: little\n\n" +
+           std::string(bytes, '\0');
+}
+
+} // namespace
+
+TEST_CASE("wrong words are wrong usage", "[cli][errors]") {
+    const Workshop w;
+    checkFails(w, {}, 2, "no command");
+    checkFails(w, {"paint"}, 2, "unknown command 'paint'");
+    checkFails(w, {"--paint"}, 2, "unknown option '--paint'");
+    checkFails(w, {"info"}, 2, "VOLUME is required");
+    checkFails(w, {"info", ""}, 2, "VOLUME");
+    checkFails(w, kMeasure + Words{"--paint"}, 2, "unknown option '--paint'");
+    checkFails(w, kMeasure + Words{"more"}, 2, "unexpected argument 'more'");
+    checkFails(w, kMeasure + Words{"--sigma"}, 2, "--sigma has no value");
+    checkFails(w, kMeasure + Words{"--sigma", "1", "--sigma", "2"}, 2, "--sigma is given more than once");
+    // Options of other commands, and of later ones.
+    checkFails(w, kRefine + Words{"--view", "0,0"}, 2, "unknown option '--view'");
+    checkFails(w, kRefine + Words{"--method", "greedy"}, 2, "unknown option '--method'");
+    checkFails(w, kMeasure + Words{"--variable", "y=f"}, 2, "unknown option '--variable'");
+    checkFails(w, {"samples", "--size", "3"}, 2, "unknown option '--size'");
+}
+
+TEST_CASE("wrong values of the volume's options are wrong usage", "[cli][errors]") {
+    const Workshop w;
+    w.write("v.raw", std::string(8, '\1'));
+    checkFails(w, {"info", "sample:cube"}, 2, "disks, shells, knee");
+    checkFails(w, {"info", "sample:shells", "--size", "0"}, 2, "--size");
+    checkFails(w, {"info", "sample:shells", "--size", "1e3"}, 2, "--size");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,u8"}, 2, "--raw");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,0,u8"}, 2, "--raw");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,-2,u8"}, 2, "--raw");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u7"}, 2, "--raw");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8,middle"}, 2, "--raw");
+    checkFails(w, {"info", "v.raw", "--spacing", "1,1,1"}, 2, "give --raw");
+    checkFails(w, {"info", "v.raw", "--skip", "4"}, 2, "give --raw");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--spacing", "1,-1,1"}, 2, "--spacing");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--spacing", "1,1"}, 2, "--spacing");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--spacing", "1,nan,1"}, 2, "--spacing");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--skip", "-1"}, 2, "--skip");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--size", "16"}, 2, "sample");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--component", "-1"}, 2, "--component");
+    for (const char* range : {"5,1", "3,3", "nan,1", "0,inf", "5", ""})
+        checkFails(w, Words{"info"} + kShells + Words{"--range", range}, 2, "--range");
+    checkFails(w, Words{"info"} + kShells + Words{"--missing", "none"}, 2, "--missing");
+    checkFails(w, Words{"info"} + kShells + Words{"--seed", "-1"}, 2, "--seed");
+    for (const char* threads : {"0", "-2", "1.5"})
+        checkFails(w, kMeasure + Words{"--threads", threads}, 2, "--threads");
+}
+
+TEST_CASE("wrong values of views, engines and measures are wrong usage", "[cli][errors]") {
+    const Workshop w;
+    for (const char* view : {"0", "0,0,0", "0,91", "nan,0", "1,2,3,4"})
+        checkFails(w, kMeasure + Words{"--view", view}, 2, "--view");
+    checkFails(w, kMeasure + Words{"--engine", "cuda"}, 2, "cuda");
+    checkFails(w, kMeasure + Words{"--quality", "best"}, 2, "--quality");
+    for (const char* sigma : {"-1", "0", "nan", "1e9"}) checkFails(w, kMeasure + Words{"--sigma", sigma}, 2, "--sigma");
+    checkFails(w, kMeasure + Words{"--kernel", "wide"}, 2, "--kernel");
+    checkFails(w, kMeasure + Words{"--w1", "-1"}, 2, "--w1");
+    checkFails(w, kMeasure + Words{"--u1", "0.5", "--u2", "0.6"}, 2, "sum to 1");
+    checkFails(w, kMeasure + Words{"--saliency-background", "0,0,2"}, 2, "--saliency-background");
+    checkFails(w, kMeasure + Words{"--tf", "tents:0"}, 2, "tents");
+    checkFails(w, kMeasure + Words{"--tf", "tents:3:1.5"}, 2, "tents");
+    checkFails(w, kMeasure + Words{"--tf", "ramp:x"}, 2, "ramp");
+}
+
+TEST_CASE("wrong values of render are wrong usage", "[cli][errors]") {
+    const Workshop w;
+    checkFails(w, {"render", "sample:shells"}, 2, "--out is required");
+    for (const char* size : {"0x0", "64", "-5x5", "16385x10", "axb"})
+        checkFails(w, kRender + Words{"--size", size}, 2, "--size");
+    for (const char* background : {"0,0,1.5", "#12345", "red"})
+        checkFails(w, kRender + Words{"--background", background}, 2, "--background");
+    for (const char* step : {"0", "17", "nan"}) checkFails(w, kRender + Words{"--step", step}, 2, "--step");
+    for (const char* clip : {"x:0.5:0.5", "w:0:1", "x:0", "x:-1:1", "x:a:b"})
+        checkFails(w, kRender + Words{"--clip", clip}, 2, "--clip");
+    checkFails(w, kRender + Words{"--clip", "x:0:0.2", "x:0.5:1"}, 2, "--clip");
+    checkFails(w, kRender + Words{"--feature", "dentine"}, 2, "'core'");
+    // Before any work: the volume would be refused too.
+    checkFails(w, {"render", "missing.nrrd", "--out", "x.bmp"}, 2, "x.bmp");
+    checkFails(w, {"render", "missing.nrrd", "--out", ""}, 2, "--out");
+    checkFails(w, {"render", "missing.nrrd", "--out", "x.jpg", "--background", "transparent"}, 2, "JPEG");
+}
+
+TEST_CASE("wrong values of refine and optimize are wrong usage", "[cli][errors]") {
+    const Workshop w;
+    for (const char* step : {"0", "2", "nan"}) checkFails(w, kRefine + Words{"--step-down", step}, 2, "--step-down");
+    checkFails(w, kRefine + Words{"--step-up", "automatic"}, 2, "--step-up");
+    checkFails(w, kRefine + Words{"--max-iterations", "-1"}, 2, "--max-iterations");
+    checkFails(w, kRefine + Words{"--fix", "1.5"}, 2, "--fix");
+    checkFails(w, kRefine + Words{"--fix", "0.4"}, 2, "0.366667"); // lists the points there are
+    checkFails(w, kOptimize, 2, "--target is required");
+    for (const char* target : {"1,1", "1,1,1,1", "0,0,0", "-1,1,1", "1,nan,1", "1,,1"})
+        checkFails(w, kOptimize + Words{"--target", target}, 2, "--target");
+    const Words targeted = kOptimize + Words{"--target", "1,1,1"};
+    checkFails(w, targeted + Words{"--method", "newton"}, 2, "newton");
+    checkFails(w, targeted + Words{"--direction", "backward"}, 2, "--direction");
+    checkFails(w, targeted + Words{"--step", "0"}, 2, "--step");
+    checkFails(w, targeted + Words{"--tolerance", "-0.1"}, 2, "--tolerance");
+    checkFails(w, targeted + Words{"--max-iterations", "many"}, 2, "--max-iterations");
+}
+
+TEST_CASE("bad volume files fail with their name", "[cli][errors]") {
+    const Workshop w;
+    REQUIRE(w.run({"generate", "shells", "--size", "16", "--out", "good.nrrd"}).status == 0);
+    const std::string good = w.read("good.nrrd");
+    w.write("truncated.nrrd", good.substr(0, good.size() / 2));
+    w.write("empty.nrrd", "");
+    w.write("text.nrrd", "this is a letter\n");
+    w.write("image.nrrd", std::string("\x89PNG\r\n\x1a\n") + std::string(64, '\0'));
+    w.write("absurd.nrrd", nrrd("sizes: 10000 10000 10000\n", 8));
+    w.write("overflow.nrrd", nrrd("sizes: 4294967296 4294967296 4294967296\n", 8));
+    w.write("spacing.nrrd", nrrd("sizes: 2 2 2\nspacings: 1 -1 1\n", 8));
+    w.write("short.nrrd", nrrd("sizes: 2 2 2\n", 7));
+    w.write("absurd.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 10000 10000 10000\nElementType = MET_UCHAR\n"
+                          "ElementDataFile = good.nrrd\n");
+    w.write("orphan.mhd",
+            "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = no.raw\n");
+    w.write("volume.xyz", std::string(8, '\1'));
+    w.write("v.raw", std::string(8, '\1'));
+    w.write("new\nline.nrrd", "x"); // the message is one line all the same
+    std::filesystem::create_directory(w.path("folder"));
+
+    for (const char* file : {"truncated.nrrd", "empty.nrrd", "text.nrrd", "image.nrrd", "absurd.nrrd", "overflow.nrrd",
+                             "spacing.nrrd", "short.nrrd", "volume.xyz", "v.raw", "folder", "missing.nrrd"})
+        checkFails(w, {"info", file}, 1, file);
+    // These name the file with the data.
+    checkFails(w, {"info", "absurd.mhd"}, 1, "good.nrrd");
+    checkFails(w, {"info", "orphan.mhd"}, 1, "no.raw");
+    checkFails(w, {"info", "new\nline.nrrd"}, 1, "new line.nrrd");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,3,u8"}, 1, "v.raw");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,1,u8"}, 1, "v.raw");
+    checkFails(w, {"info", "v.raw", "--raw", "10000,10000,10000,f64"}, 1, "v.raw");
+    checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--skip", "9"}, 1, "v.raw");
+    // The same one line from every command that opens a volume.
+    for (const Words& command :
+         {Words{"measure", "absurd.nrrd"}, Words{"refine", "absurd.nrrd"},
+          Words{"optimize", "absurd.nrrd", "--target", "1,1,1"}, Words{"render", "absurd.nrrd", "--out", "x.png"},
+          Words{"fields", "absurd.nrrd", "--out", "f"}})
+        checkFails(w, command, 1, "absurd.nrrd");
+}
+
+TEST_CASE("bad transfer functions and cameras fail with the place", "[cli][errors]") {
+    const Workshop w;
+    const auto badTf = [&](const std::string& text, const std::string& part) {
+        w.write("bad.tf.json", text);
+        checkFails(w, kMeasure + Words{"--tf", "bad.tf.json"}, 1, part);
+    };
+    const std::string head = R"({"format":"pellucid-tf","version":1,)";
+    badTf("", "bad.tf.json");
+    badTf("{", "bad.tf.json");
+    badTf("[]", "bad.tf.json");
+    badTf(R"({"format":"other","version":1,"points":[]})", "bad.tf.json at /format");
+    badTf(R"({"format":"pellucid-tf","version":99,"points":[]})", "99");
+    badTf(head + R"("pts":[]})", "points");
+    badTf(head + R"("points":[{"x":1.5,"opacity":0,"color":"#ffffff"}]})", "/points/0");
+    badTf(head + R"("points":[{"x":0.5,"opacity":0,"color":"#ffffff"},{"x":0.4,"opacity":0,"color":"#ffffff"}]})",
+          "/points/1");
+    badTf(head + R"("points":[{"x":0.5,"color":"#ffffff"}]})", "opacity");
+    badTf(head + R"("points":[{"x":0.5,"opacity":0,"color":"white"}]})", "/points/0/color");
+    badTf(head + R"("range":[5,5],"points":[]})", "/range");
+    checkFails(w, kMeasure + Words{"--tf", "missing.tf.json"}, 1, "missing.tf.json");
+    checkFails(w, kMeasure + Words{"--tf", ""}, 2, "--tf");
+
+    const auto badCamera = [&](const std::string& text) {
+        w.write("bad.camera.json", text);
+        checkFails(w, kMeasure + Words{"--camera", "bad.camera.json"}, 1, "bad.camera.json");
+    };
+    badCamera("eye");
+    badCamera("{}");
+    badCamera(R"({"projection":"fisheye","eye":[0,-99,0],"center":[0,0,0],"up":[0,0,1],"fov_y":30})");
+    badCamera(R"({"projection":"perspective","eye":[0,-99],"center":[0,0,0],"up":[0,0,1],"fov_y":30})");
+    badCamera(R"({"projection":"perspective","eye":[0,-99,0],"center":[0,0,0],"up":[0,1,0],"fov_y":30})");
+    badCamera(R"({"projection":"perspective","eye":[0,-99,0],"center":[0,-99,0],"up":[0,0,1],"fov_y":30})");
+    badCamera(R"({"projection":"perspective","eye":[0,-99,0],"center":[0,0,0],"up":[0,0,1],"fov_y":200})");
+    badCamera(R"({"projection":"orthographic","eye":[0,-99,0],"center":[0,0,0],"up":[0,0,1],"height":0})");
+    // Inside the box, which reaches from −0.5 to 15.5.
+    badCamera(R"({"projection":"perspective","eye":[7,7,7],"center":[0,0,0],"up":[0,0,1],"fov_y":30})");
+    checkFails(w, kMeasure + Words{"--camera", "missing.json"}, 1, "missing.json");
+    checkFails(w, kMeasure + Words{"--camera", "bad.camera.json", "--view", "0,0"}, 2, "--view");
+    checkFails(w, kMeasure + Words{"--camera", "bad.camera.json", "--orthographic"}, 2, "--orthographic");
+}
+
+TEST_CASE("what cannot be written fails before the work", "[cli][errors]") {
+    const Workshop w;
+    std::filesystem::create_directory(w.path("folder.png"));
+    w.write("file", "x");
+    // "missing.nrrd" would fail too: the complaint about the output comes first.
+    checkFails(w, {"render", "missing.nrrd", "--out", "no/x.png"}, 1, "no");
+    checkFails(w, {"render", "missing.nrrd", "--out", "folder.png"}, 1, "folder.png");
+    checkFails(w, {"render", "missing.nrrd", "--out", "file/x.png"}, 1, "file");
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "no/x.tf.json"}, 1, "no");
+    checkFails(w, {"optimize", "missing.nrrd", "--target", "1,1,1", "--out-tf", "no/x.tf.json"}, 1, "no");
+    checkFails(w, {"fields", "missing.nrrd", "--out", "no/deep"}, 1, "no");
+    checkFails(w, {"fields", "missing.nrrd", "--out", "file"}, 1, "file");
+    checkFails(w, {"fields", "missing.nrrd", "--out", ""}, 2, "--out");
+    checkFails(w, {"generate", "shells", "--out", "no/x.nrrd"}, 1, "no");
+    checkFails(w, {"generate", "shells", "--out", "x.mhd"}, 2, "x.mhd");
+    checkFails(w, {"generate", "cube", "--out", "x.nrrd"}, 2, "shells");
+    checkFails(w, {"generate", "shells"}, 2, "--out is required");
+}
+
+TEST_CASE("a failed command leaves an existing file as it was", "[cli][errors]") {
+    const Workshop w;
+    w.write("x.png", "an older picture");
+    w.write("x.tf.json", "an older transfer function");
+    checkFails(w, kRender + Words{"--feature", "dentine"}, 2, "dentine");
+    checkFails(w, kRefine + Words{"--fix", "0.4", "--out-tf", "x.tf.json"}, 2, "--fix");
+    CHECK(w.read("x.png") == "an older picture");
+    CHECK(w.read("x.tf.json") == "an older transfer function");
+}
