@@ -119,6 +119,38 @@ TEST_CASE("gl and cpu draw the same picture", "[gl]") {
         }
 }
 
+TEST_CASE("pixels that become opaque early look as if all slices had been drawn", "[gl]") {
+    if (!haveGl()) return;
+    // A thick wall of one colour, opaque after a few voxels (0.3^8 < 1e-4), hides one of another; the left half of the
+    // front wall is missing.
+    const Int3 dims(24, 30, 20);
+    std::vector<std::uint8_t> values;
+    for (int k = 0; k < dims.z; ++k)
+        for (int j = 0; j < dims.y; ++j)
+            for (int i = 0; i < dims.x; ++i) {
+                const bool front = j < 12 && i >= 12, back = j >= 18;
+                values.push_back(front ? 255 : back ? 128 : 0);
+            }
+    const auto volume = volumeOf(dims, values);
+    TransferFunction tf;
+    tf.points = {{0.0, 0.0, {0, 0, 1}, false, {}},
+                 {0.2, 0.0, {0, 1, 0}, false, {}},
+                 {0.5, 0.7, {0, 1, 0}, false, {}},
+                 {0.7, 0.7, {1, 0, 0}, false, {}},
+                 {1.0, 0.7, {1, 0, 0}, false, {}}};
+    RenderSettings settings = smallSettings();
+    const Camera camera = orthographic(volume->geometry(), {0, 1, 0}, 26);
+    const Image a = makeGlRenderer(volume)->render(camera, tf, settings);
+    const Difference d = difference(a, makeCpuRenderer(volume)->render(camera, tf, settings));
+    CHECK(d.mean < 1.0 / 255);
+    CHECK(d.largest < 0.03);
+    // x = 18 and 5 are pixels 36 + (x − 11.5)·56/26 = 50 and 22.
+    CHECK(a.pixel(50, 28)[0] > 0.95f);
+    CHECK(a.pixel(50, 28)[1] < 0.05f);
+    CHECK(a.pixel(22, 28)[1] > 0.95f);
+    CHECK(a.pixel(22, 28)[0] < 0.05f);
+}
+
 TEST_CASE("invalid voxels are not drawn", "[gl]") {
     if (!haveGl()) return;
     const Int3 dims(12, 12, 12);

@@ -1,5 +1,6 @@
 #include "render/gl/shader_program.h"
 
+#include "render/gl/gl_resources.h"
 #include "volume/error.h"
 
 namespace pellucid::gl {
@@ -61,11 +62,15 @@ ProgramName makeProgram(const std::vector<std::string>& files, const std::vector
 }
 
 void requireGl43() {
-    const int version = epoxy_gl_version();
-    if (version < 43 || !epoxy_is_desktop_gl())
-        throw Error("OpenGL " + std::to_string(version / 10) + "." + std::to_string(version % 10) +
-                        " is too old, 4.3 is needed",
-                    "OpenGL", "update the graphics driver, or use --engine cpu");
+    // Not epoxy's own questions: they look for EGL, which a machine that falls back to OSMesa may lack.
+    const GLubyte* text = glGetString(GL_VERSION);
+    if (text == nullptr) throw Error("no OpenGL context is current", "OpenGL", "use --engine cpu");
+    const std::string version = reinterpret_cast<const char*>(text);
+    const bool desktop = version.rfind("OpenGL ES", 0) != 0;
+    const int number = 10 * glInteger(GL_MAJOR_VERSION) + glInteger(GL_MINOR_VERSION);
+    if (!desktop || number < 43)
+        throw Error("this is OpenGL \"" + version + "\", 4.3 is needed", "OpenGL",
+                    "update the graphics driver, or use --engine cpu");
 }
 
 } // namespace pellucid::gl

@@ -21,6 +21,9 @@ namespace {
 constexpr int kTableSize = 16384;
 /// Fragments drawn between two looks at JobControl: well under a second even where the CPU does the drawing.
 constexpr double kFragmentsPerBatch = 8e6;
+/// How often, while the slices are drawn, pixels that have become opaque are taken out of the work: each time costs a
+/// pass over the picture.
+constexpr std::size_t kMaskings = 10;
 
 using glm::value_ptr;
 
@@ -90,6 +93,9 @@ struct SliceRaycaster::Impl {
     VertexArrayName emptyArray = VertexArrayName::make();
     BufferName vertexBuffer = BufferName::make();
     ColorTarget accumulated;
+    ProgramName maskProgram = makeProgram({"composite.vert", "opaque_mask.frag"});
+    Texture2d depth;                 ///< of `accumulated`: 1 where the picture is open, 0 where it is opaque
+    FramebufferName maskFramebuffer; ///< depth alone, since a texture must not be read and drawn at once
 
     std::shared_ptr<const Volume> volume;
     VolumeTexture texture;
@@ -139,9 +145,40 @@ struct SliceRaycaster::Impl {
         tableFeature = onlyFeature;
     }
 
+    void resize(glm::ivec2 size);
+    void maskOpaque();
     void accumulate(const Camera& camera, const RenderSettings& settings, const Tile& tile, const JobControl& job);
     void drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile);
 };
+
+void SliceRaycaster::Impl::resize(glm::ivec2 size) {
+    if (accumulated.color.size == size && depth.size == size) return;
+    accumulated = makeColorTarget(size, GL_RGBA32F, GL_LINEAR, "the picture");
+    depth = makeTexture2d(size, GL_DEPTH_COMPONENT24, GL_NEAREST, "the picture's mask");
+    maskFramebuffer = FramebufferName::make();
+    glBindFramebuffer(GL_FRAMEBUFFER, maskFramebuffer.id());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name.id(), 0);
+    glDrawBuffer(GL_NONE);
+    glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name.id(), 0);
+    throwOnGlError("preparing the picture");
+}
+
+/// Later slices fail the depth test where the picture is opaque already. Leaves everything ready for them.
+void SliceRaycaster::Impl::maskOpaque() {
+    glBindFramebuffer(GL_FRAMEBUFFER, maskFramebuffer.id());
+    glUseProgram(maskProgram.id());
+    glBindVertexArray(emptyArray.id());
+    bindTexture(0, GL_TEXTURE_2D, accumulated.color.name);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_ALWAYS);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_FALSE);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    glBindVertexArray(sliceArray.id());
+    glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
+}
 
 void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings& settings, const Tile& tile,
                                       const JobControl& job) {
@@ -174,7 +211,13 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
     glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
     glViewport(0, 0, accumulated.color.size.x, accumulated.color.size.y);
     const std::array<float, 4> nothing{};
+    const float open = 1.0f;
+    glDepthMask(GL_TRUE);
     glClearBufferfv(GL_COLOR, 0, nothing.data());
+    glClearBufferfv(GL_DEPTH, 0, &open);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_LESS);
+    glEnable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     // Under: what comes later lies behind what is there.
     glBlendEquation(GL_FUNC_ADD);
@@ -186,9 +229,14 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
                  GL_STREAM_DRAW);
     // Whole slabs only would be prettier, but any cut is right: triangles of one slab do not overlap.
     const double slabsPerBatch = kFragmentsPerBatch / (static_cast<double>(size.x) * static_cast<double>(size.y));
-    const std::size_t perBatch = 3 * static_cast<std::size_t>(std::max(1.0, 4 * slabsPerBatch));
+    const std::size_t perBatch =
+        3 * std::min(static_cast<std::size_t>(std::max(1.0, 4 * slabsPerBatch)), vertices.size() / 3 / kMaskings + 1);
     for (std::size_t first = 0; first < vertices.size(); first += perBatch) {
         job.throwIfStopped();
+        if (first > 0) {
+            maskOpaque();
+            p.use();
+        }
         const std::size_t count = std::min(perBatch, vertices.size() - first);
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
         // Without waiting the driver would queue everything, and nobody could cancel.
@@ -199,6 +247,7 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
     }
     glBindBuffer(GL_ARRAY_BUFFER, 0);
     glDisable(GL_BLEND);
+    glDisable(GL_DEPTH_TEST);
     throwOnGlError("drawing the slices");
 }
 
@@ -249,8 +298,7 @@ void SliceRaycaster::draw(const Camera& camera, const RenderSettings& settings, 
         return std::max(1, static_cast<int>(std::ceil(pixels * target.resolutionScale)));
     };
     const glm::ivec2 size(scaled(tile.width), scaled(tile.height));
-    if (m_impl->accumulated.color.size != size)
-        m_impl->accumulated = makeColorTarget(size, GL_RGBA32F, GL_LINEAR, "the picture");
+    m_impl->resize(size);
 
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_SCISSOR_TEST);
@@ -260,6 +308,9 @@ void SliceRaycaster::draw(const Camera& camera, const RenderSettings& settings, 
     glDisable(GL_BLEND);
     const auto leaveTidy = [&] {
         glDisable(GL_BLEND);
+        glDisable(GL_DEPTH_TEST);
+        glDepthMask(GL_TRUE);
+        glDepthFunc(GL_LESS);
         glBindVertexArray(0);
         glUseProgram(0);
         glActiveTexture(GL_TEXTURE1);

@@ -27,8 +27,9 @@ struct DrawTarget {
 /// weighted by the true length of its ray within its slice and the box.
 ///
 /// Every member function, the constructor and the destructor need the same OpenGL context, 4.3 core or later, to be
-/// current. GL state afterwards: no program, vertex array or texture bound, blending, depth and scissor test off, the
-/// target framebuffer bound and the viewport over the picture.
+/// current. GL state afterwards: no program, vertex array or texture bound; blending, depth, stencil and scissor test
+/// and face culling off; depth function and all write masks as GL has them at first; the target framebuffer bound and
+/// the viewport over the picture.
 class SliceRaycaster {
 public:
     /// Compiles the shaders. Throws Error where the context is older than 4.3 or a shader does not compile.
