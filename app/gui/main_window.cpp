@@ -87,6 +87,9 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     updateStatus();
 
     resize(1280, 800);
+}
+
+void MainWindow::restoreLayout() {
     const QSettings settings;
     restoreGeometry(settings.value("geometry").toByteArray());
     restoreState(settings.value("windowState").toByteArray());

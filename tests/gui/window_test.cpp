@@ -19,6 +19,7 @@
 #include <QSignalSpy>
 #include <QTemporaryDir>
 #include <QTimer>
+#include <QToolButton>
 #include <QUrl>
 #include <QWheelEvent>
 
@@ -419,6 +420,22 @@ TEST_CASE("opening another volume ends an optimization and starts afresh", "[win
     CHECK(w.document().tf() == tf); // nothing of the old run came after it
     CHECK(w.document().measuresAreCurrent());
     CHECK_FALSE(w.document().undoStack().canUndo());
+}
+
+TEST_CASE("opening can be cancelled, and the old volume stays", "[window]") {
+    OpenWindow w;
+    const auto volume = w.document().volume();
+    VolumeSource source;
+    source.path = "sample:knee"; // takes seconds
+    w.window.openVolume(source);
+    auto& cancel = w.child<QToolButton>("backgroundCancel");
+    CHECK(cancel.isVisible());
+    CHECK_FALSE(w.window.isSettled());
+    QTest::mouseClick(&cancel, Qt::LeftButton);
+    CHECK_FALSE(cancel.isVisible());
+    w.settle();
+    CHECK(w.document().volume() == volume);
+    CHECK(errorDialog(w.window) == nullptr);
 }
 
 TEST_CASE("volumes with nothing to see open and say so", "[window]") {
