@@ -137,17 +137,25 @@ TEST_CASE("the cpu engine gives the same bits for any number of threads", "[visi
     }
 }
 
-TEST_CASE("visibility adds up to no more than 1 along an axis", "[visibility][cpu]") {
+TEST_CASE("no voxel is more visible than it is opaque, nor a solid one behind a solid wall at all",
+          "[visibility][cpu]") {
     std::mt19937 random(11);
     const auto volume = roughVolume(random, {16, 16, 16}, Vec3(1));
-    const Grid<float> v =
-        makeCpuEngine(volume)->field(lookingAlong(volume->geometry(), {0, 1, 0}), tents(3, 0.9)).values;
-    for (int k = 0; k < 16; ++k)
-        for (int i = 0; i < 16; ++i) {
-            double sum = 0;
-            for (int j = 0; j < 16; ++j) sum += v.at(i, j, k);
-            CHECK(sum <= 1.02); // midpoint samples do not add up exactly in a rough volume
+    const TransferFunction tf = tents(3, 0.9);
+    for (const auto projection : {Projection::Perspective, Projection::Orthographic}) {
+        const Camera camera = cameraFromView(volume->geometry(), 25, 40, 1, projection);
+        const Grid<float> v = makeCpuEngine(volume)->field(camera, tf).values;
+        for (std::size_t i = 0; i < v.size(); ++i) {
+            CHECK(v[i] >= 0);
+            CHECK(v[i] <= tf.opacity(volume->intensity(i)) + 1e-4); // codes of 16 bits
         }
+    }
+    const auto wall = volumeFrom(geometryOf({12, 12, 12}), [](int, int j, int) { return j < 3 ? 1.0 : 0.5; });
+    TransferFunction solid = homogeneous(0.5);
+    solid.points.back().opacity = 1.0;
+    const Grid<float> v = makeCpuEngine(wall)->field(lookingAlong(wall->geometry(), {0, 1, 0}), solid).values;
+    CHECK(v.at(5, 0, 5) == Approx(1));
+    for (int j = 4; j < 12; ++j) CHECK(v.at(5, j, 5) < 1e-6);
 }
 
 TEST_CASE("a volume of one voxel, and one of one slice, can be measured", "[visibility]") {

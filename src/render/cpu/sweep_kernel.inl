@@ -443,13 +443,13 @@ private:
         for (int i = 0; i < (u1 - u0 + 1) * K; ++i) m_local.depth[i] = 0.0f;
         if (m_in.ownSlices == 0) return;
         const auto plane = [&](double w) { return voxelPlane(w, k); };
-        const int size = blockSize(1 / (k - m_in.eyeW), u1 - u0 + 1);
-        for (int first = u0; first <= u1; first += size) {
-            const int last = smaller(u1, first + size - 1);
-            const double away = k - m_in.eyeW;
-            const double l = m_in.perspective
-                                 ? lengthOf((0.5 * (first + last) - m_in.eyeU) / away, (v - m_in.eyeV) / away)
-                                 : lengthOf(m_in.slopeU, m_in.slopeV);
+        // Blocks begin at multiples of their size, so that a voxel's line does not depend on what else is seen.
+        const int size = blockSize(1 / (k - m_in.eyeW), m_in.nu);
+        for (int block = u0 / size; block * size <= u1; ++block) {
+            const int first = larger(u0, block * size), last = smaller(u1, (block + 1) * size - 1);
+            const double away = k - m_in.eyeW, middle = (block + 0.5) * size;
+            const double l = m_in.perspective ? lengthOf((middle - m_in.eyeU) / away, (v - m_in.eyeV) / away)
+                                              : lengthOf(m_in.slopeU, m_in.slopeV);
             const float length = static_cast<float>(l);
             const Lines lines{
                 first, last, m_local.depth + (first - u0) * K, m_local.entry, m_local.share, &length, 0, codes + first};
