@@ -155,10 +155,18 @@ TEST_CASE("bars and picture follow each move of an optimization", "[window]") {
     OpenWindow w;
     const TransferFunction tf = w.document().tf();
     startEndlessOptimization(w);
-    CHECK(waitFor([&] { return w.document().isPreviewing() && !(w.document().tf() == tf); }));
-    CHECK(w.document().committedTf() == tf);
-    w.window.cancelOptimization();
+    // Stopped from inside the first change, so that it cannot have come to its end before.
+    int changes = 0;
+    const auto watch = QObject::connect(&w.document(), &Document::tfChanged, [&] {
+        if (changes++ > 0) return;
+        CHECK(w.document().isPreviewing());
+        CHECK(w.document().committedTf() == tf);
+        CHECK_FALSE(w.document().tf() == tf);
+        w.window.cancelOptimization();
+    });
     REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    QObject::disconnect(watch);
+    CHECK(changes > 1); // there, and back again
     CHECK(w.document().tf() == tf);
 }
 
