@@ -13,7 +13,7 @@
     X(glFinish) X(glFramebufferTexture2D) X(glGenBuffers) X(glGenFramebuffers) X(glGenTextures) X(glGenVertexArrays)  \
     X(glGetBufferSubData) X(glGetError) X(glGetIntegerv) X(glGetProgramInfoLog) X(glGetProgramiv)                     \
     X(glGetShaderInfoLog) X(glGetShaderiv) X(glGetString) X(glIsEnabled) X(glIsShader) X(glLinkProgram)               \
-    X(glMapBufferRange) X(glMemoryBarrier) X(glPixelStorei) X(glProgramUniform1f) X(glProgramUniform2f)               \
+    X(glMapBufferRange) X(glMemoryBarrier) X(glPixelStorei) X(glProgramUniform1f) X(glProgramUniform1i) X(glProgramUniform2f)               \
     X(glProgramUniform2fv) X(glProgramUniform2i) X(glProgramUniform2iv) X(glProgramUniform3fv)                        \
     X(glProgramUniform3iv) X(glProgramUniform4f) X(glProgramUniform4fv) X(glProgramUniform4i)                         \
     X(glProgramUniformMatrix3fv) X(glReadPixels) X(glScissor) X(glShaderSource) X(glTexParameteri) X(glTexStorage2D)  \
