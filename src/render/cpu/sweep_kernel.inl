@@ -23,6 +23,22 @@ inline Vec8 gathered(const float* row, Int8 x) {
 #endif
 }
 
+inline Int8 gathered(const int* row, Int8 x) {
+#ifdef __AVX2__
+    return reinterpret_cast<Int8>(_mm256_i32gather_epi32(row, reinterpret_cast<__m256i>(x), 4));
+#else
+    return Int8{row[x[0]], row[x[1]], row[x[2]], row[x[3]], row[x[4]], row[x[5]], row[x[6]], row[x[7]]};
+#endif
+}
+
+inline bool allZero(Int8 v) {
+#ifdef __AVX2__
+    return _mm256_testz_si256(reinterpret_cast<__m256i>(v), reinterpret_cast<__m256i>(v)) != 0;
+#else
+    return (v[0] | v[1] | v[2] | v[3] | v[4] | v[5] | v[6] | v[7]) == 0;
+#endif
+}
+
 template <class V>
 struct Lanes;
 template <>
@@ -323,6 +339,19 @@ private:
         L::store(depth, L::load(depth) + scale * (L::load(plus) - L::load(minus)));
     }
 
+    /// Takes eight lines from `i` on over what is transparent in every candidate, if it is so for all of them.
+    bool crossTransparent(const Tables& tables, const Lines& lines, int i, int next) {
+        const Int8 entries = *reinterpret_cast<const Int8InMemory*>(lines.entry + i);
+        const Int8 now = *reinterpret_cast<const Int8InMemory*>(m_next + next);
+        const Int8 last = entries < 0 ? now : entries;
+        const Int8 low = last < now ? last : now, high = last < now ? now : last;
+        if (!allZero(gathered(tables.opaqueBefore + 1, high) - gathered(tables.opaqueBefore, low))) return false;
+        *reinterpret_cast<Int8InMemory*>(lines.entry + i) = now;
+        if (m_in.valid)
+            for (int k = 0; k < 8; ++k) lines.share[i + k] = m_nextShare[next + k];
+        return true;
+    }
+
     /// Adds to the lines what they meet between two planes. Returns `to`.
     template <class Plane>
     double step(const Plane& plane, double from, double to, int row, const Lines& lines) {
@@ -338,6 +367,11 @@ private:
         }
         for (int a = inside.first; a <= inside.last; ++a) {
             const int i = a - lines.first, now = m_next[a - inside.first];
+            if (((a - inside.first) & 7) == 0 && a + 7 <= inside.last &&
+                crossTransparent(tables, lines, i, a - inside.first)) {
+                a += 7;
+                continue;
+            }
             int last = lines.entry[i];
             lines.entry[i] = now;
             if (lines.codes && m_in.featureOfCode[lines.codes[i]] == kTransparent) continue;
