@@ -1,6 +1,7 @@
 #include "image_convert.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pellucid::gui {
 
@@ -10,7 +11,7 @@ QImage qImageFromImage(const Image& image) {
         uchar* line = result.scanLine(y);
         const float* pixel = image.pixel(0, y);
         for (int i = 0; i < 4 * image.width; ++i) {
-            line[i] = static_cast<uchar>(std::clamp(pixel[i], 0.0f, 1.0f) * 255.0f + 0.5f);
+            line[i] = static_cast<uchar>(std::lround(std::clamp(pixel[i], 0.0f, 1.0f) * 255.0f));
         }
     }
     return result;
