@@ -124,8 +124,7 @@ void TfOptions::add(CLI::App& app) {
             spec = text;
         },
         "transfer function (default: the sample's own, else tents:3); intensities in a file refer to its \"range\", "
-        "which "
-        "becomes the window unless --range says otherwise",
+        "which becomes the window unless --range says otherwise",
         kVolumeGroup);
 }
 
@@ -133,8 +132,6 @@ VolumeAndTf loadVolumeAndTf(const VolumeOptions& volumeOptions, const TfOptions&
     // The transfer function first: it is small, and an error in it should not wait for a large volume.
     std::optional<TransferFunction> tf;
     if (tfOptions.spec) tf = loadTf(*tfOptions.spec);
-    if (tf && tf->range && !(tf->range->lo < tf->range->hi))
-        throw Error("the range of the transfer function is empty", *tfOptions.spec + " at /range", "correct the file");
 
     std::shared_ptr<const Volume> volume = loadVolume(volumeOptions, progress);
     if (tf && tf->range && !volumeOptions.range && *tf->range != volume->range())

@@ -56,6 +56,8 @@ void BackgroundTask::start(const QString& where, Work work) {
                  QString::fromStdString(error.whatToDo()));
         } catch (const std::bad_alloc&) {
             fail(tr("not enough memory"), where, tr("close other programs, or choose something smaller"));
+        } catch (const std::exception& error) { // of a library; it must not end the program
+            fail(tr("unexpected failure (%1)").arg(QString::fromUtf8(error.what())), where, tr("please report it"));
         }
     });
 }

@@ -6,7 +6,6 @@
 #include <QDragEnterEvent>
 #include <QFileDialog>
 #include <QFileInfo>
-#include <QInputDialog>
 #include <QLabel>
 #include <QMenuBar>
 #include <QMessageBox>
@@ -440,14 +439,6 @@ void MainWindow::volumeLoaded(const LoadedVolume& loaded, const TransferFunction
     }
     QStringList notices;
     for (const std::string& notice : loaded.volume->notices) notices << QString::fromStdString(notice);
-    if (!loaded.volume->hasValidVoxels()) {
-        notices << tr(
-            "No voxel of this volume has a value: all are NaN, infinite or marked as missing. There is nothing "
-            "to draw.");
-    } else if (loaded.volume->isConstant()) {
-        notices << tr("All voxels of this volume have the same value, %1.")
-                       .arg(numberText(loaded.volume->dataRange().lo, 0));
-    }
     m_tfPath = tfPath;
     m_notices->setNotices(notices);
     m_document.setVolume(loaded, tf);

@@ -31,6 +31,8 @@ void NoticeBar::setNotices(const QStringList& notices) {
     setVisible(!notices.isEmpty());
 }
 
-void NoticeBar::addNotice(const QString& notice) { setNotices(m_notices + QStringList{notice}); }
+void NoticeBar::addNotice(const QString& notice) {
+    if (!m_notices.contains(notice)) setNotices(m_notices + QStringList{notice});
+}
 
 } // namespace pellucid::gui

@@ -14,7 +14,7 @@ public:
     explicit NoticeBar(QWidget* parent = nullptr);
     /// Replaces what is shown; hidden where there is nothing to say.
     void setNotices(const QStringList& notices);
-    void addNotice(const QString& notice);
+    void addNotice(const QString& notice); ///< one that is shown already is not repeated
     const QStringList& notices() const { return m_notices; }
 
 private:

@@ -17,7 +17,7 @@ SearchMethod searchMethodFromName(const std::string& name); ///< throws UsageErr
 enum class StopReason {
     Converged, ///< F < tolerance
     MaxIterations,
-    NoProgress, ///< no trial step lowers F, or no step moves any opacity
+    NoProgress, ///< a search has not bettered its best F for several moves, or no step moves any opacity
     Cancelled
 };
 const char* name(StopReason reason); ///< "converged", "max-iterations", "no-progress", "cancelled"

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "volume/atomic_file.h"
+#include "tf/formats/json_file.h"
 #include "volume/error.h"
 
 namespace pellucid {
@@ -132,12 +132,6 @@ json jsonFromCamera(const Camera& camera) {
     return j;
 }
 
-Camera readCamera(const std::string& path) {
-    try {
-        return cameraFromJson(json::parse(readText(path)), path);
-    } catch (const json::parse_error& e) {
-        throw FileError("this is not valid JSON (byte " + std::to_string(e.byte) + ")", path, "correct the file");
-    }
-}
+Camera readCamera(const std::string& path) { return cameraFromJson(readJson(path), path); }
 
 } // namespace pellucid

@@ -226,7 +226,8 @@ const std::vector<Sample>& table() {
     return kTable;
 }
 
-/// The default shape scaled to `size` voxels along its longest axis; the physical extent stays.
+/// The default shape scaled to `size` voxels along its longest axis. Where the spacing means millimetres the physical
+/// extent stays; voxels of unit spacing keep it.
 Geometry geometryOf(const Sample& sample, int size) {
     const Int3 d = sample.info.defaultDims;
     Geometry geometry{d, sample.defaultSpacing, {0, 0, 0}};

@@ -113,7 +113,10 @@ double Volume::intensity(std::size_t index) const { return intensityOfValue(valu
 double Volume::intensityOfValue(double v) const {
     if (!valid(v, m_missing)) return std::numeric_limits<double>::quiet_NaN();
     if (m_range.lo == m_range.hi) return 0.0;
-    return std::clamp((v - m_range.lo) / (m_range.hi - m_range.lo), 0.0, 1.0);
+    const double span = m_range.hi - m_range.lo;
+    // The ends may lie further apart than the largest double; halves of them do not.
+    if (std::isinf(span)) return std::clamp((v / 2 - m_range.lo / 2) / (m_range.hi / 2 - m_range.lo / 2), 0.0, 1.0);
+    return std::clamp((v - m_range.lo) / span, 0.0, 1.0);
 }
 
 } // namespace pellucid

@@ -187,6 +187,8 @@ TEST_CASE("notices stay until they are dismissed", "[notices]") {
     CHECK(bar.isHidden());
     bar.setNotices({"the volume was made smaller"});
     bar.addNotice("the axes are turned");
+    bar.addNotice("the axes are turned");
+    CHECK(bar.notices().size() == 2);
     CHECK_FALSE(bar.isHidden());
     CHECK(bar.findChild<QLabel*>("noticeText")->text().contains("axes"));
     bar.findChild<QToolButton*>("noticeClose")->click();

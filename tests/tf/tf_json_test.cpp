@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/temp_folder.h"
 #include "tf/formats/tf_json.h"
 #include "volume/error.h"
 
@@ -53,6 +54,28 @@ TEST_CASE("a file without features gets those of its tents", "[tf][json]") {
     REQUIRE(tf.features.size() == 1);
     CHECK(tf.features[0].a == 0.1);
     CHECK(tf.features[0].b == 0.3);
+}
+
+TEST_CASE("a file that no program should choke on is refused", "[tf][json]") {
+    const test::TempFolder folder;
+    const auto messageOfFile = [&](const std::string& text) {
+        const std::string path = folder.write("a.tf.json", text);
+        try {
+            readTf(path);
+        } catch (const FileError& e) {
+            CHECK(e.where() == path);
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    const std::string head = R"({"format":"pellucid-tf","version":1,)";
+    CHECK_THAT(messageOfFile("{"), Catch::Contains("not valid JSON"));
+    CHECK_THAT(messageOfFile(head + R"("points":[{"x":1e999,"opacity":0,"color":"#000000"}]})"),
+               Catch::Contains("too large"));
+    CHECK_THAT(
+        messageOfFile(head + R"("points":[],"more":)" + std::string(100000, '[') + std::string(100000, ']') + "}"),
+        Catch::Contains("nested"));
+    CHECK(messageOfFile(head + R"("points":[],"more":[[[[1]]]]})").empty());
 }
 
 TEST_CASE("a bad file is refused with the place and the reason", "[tf][json]") {

@@ -35,6 +35,15 @@ TEST_CASE("NaN and infinity are invalid and outside the range", "[volume]") {
     CHECK(!volume.isConstant());
 }
 
+TEST_CASE("values further apart than the largest double have intensities", "[volume]") {
+    // hi − lo = 3.4e308 is infinite in double precision; 0 lies in the middle.
+    const Volume volume(kLine, std::vector<double>{-1.7e308, 0, 0.85e308, 1.7e308});
+    CHECK(volume.intensity(0) == 0.0);
+    CHECK(volume.intensity(1) == 0.5);
+    CHECK(volume.intensity(2) == 0.75);
+    CHECK(volume.intensity(3) == 1.0);
+}
+
 TEST_CASE("another window shares the samples", "[volume]") {
     const Volume volume(kLine, std::vector<double>{1, 2, 3, 4});
     const Volume other = volume.withRange({2, 3});

@@ -66,7 +66,6 @@ void Document::cancelPreview() {
 }
 
 void Document::applyTf(const TransferFunction& tf) {
-    // An undo that comes while a preview is shown ends the preview.
     const bool sameFeatures = tf.features == m_tf.features && m_targets.size() == tf.features.size();
     const bool changed = !(tf == m_tf);
     m_tf = tf;

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tf/formats/json_file.h"
 #include "volume/atomic_file.h"
 #include "volume/error.h"
 
@@ -151,15 +152,7 @@ json jsonFromTf(const TransferFunction& tf) {
     return j;
 }
 
-TransferFunction readTf(const std::string& path) {
-    json j;
-    try {
-        j = json::parse(readText(path));
-    } catch (const json::parse_error& e) {
-        throw FileError("this is not valid JSON (byte " + std::to_string(e.byte) + ")", path, "correct the file");
-    }
-    return tfFromJson(j, path);
-}
+TransferFunction readTf(const std::string& path) { return tfFromJson(readJson(path), path); }
 
 void writeTf(const TransferFunction& tf, const std::string& path) {
     writeTextAtomically(path, jsonFromTf(tf).dump(2) + "\n");

@@ -203,8 +203,7 @@ HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     checkSpacing(header, sizes.size(), path);
 
     const Encoding encoding = encodingIn(header, path);
-    std::string dataFile = header.get("datafile");
-    if (dataFile.empty()) dataFile = header.get("data file");
+    const std::string dataFile = header.get("datafile");
     const bool detached = !dataFile.empty();
     claim.dataPath = path;
     if (detached) {
