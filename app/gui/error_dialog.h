@@ -1,0 +1,14 @@
+// The dialog that says what went wrong, where, and what to do about it.
+#pragma once
+
+#include <QString>
+
+class QWidget;
+
+namespace pellucid::gui {
+
+/// Does not wait for an answer. The parts are labels named errorWhat, errorWhere and errorWhatToDo.
+void showError(QWidget* parent, const QString& title, const QString& what, const QString& where,
+               const QString& whatToDo);
+
+} // namespace pellucid::gui

@@ -1,0 +1,145 @@
+// pellucid: the window.
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include <QApplication>
+#include <QCommandLineParser>
+#include <QFileInfo>
+#include <QIcon>
+
+#include "main_window.h"
+#include "theme.h"
+#include "version.h"
+
+namespace {
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+constexpr int kFailed = 1, kUsage = 2; // as the command line promises
+
+int complain(const QString& message, int status) {
+    std::fprintf(stderr, "pellucid: error: %s\n", qPrintable(message));
+    return status;
+}
+
+// Qt ends the process with an abort where it finds no display; better to say so before.
+bool displayMissing() {
+#ifdef Q_OS_LINUX
+    return qEnvironmentVariableIsEmpty("DISPLAY") && qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY") &&
+           qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM");
+#else
+    return false;
+#endif
+}
+
+bool has(int argc, char** argv, std::initializer_list<const char*> options) {
+    for (int i = 1; i < argc; ++i) {
+        for (const char* option : options) {
+            if (std::strcmp(argv[i], option) == 0) return true;
+        }
+    }
+    return false;
+}
+
+void describe(QCommandLineParser& parser) {
+    parser.setApplicationDescription(
+        "Shows volumes, measures what catches the eye in them, and finds transfer functions.\n"
+        "Without a FILE it opens on the built-in volume sample:shells.");
+    parser.addPositionalArgument("FILE", "volumes, a window each: NRRD, MetaImage, NIfTI, raw data, or sample:NAME",
+                                 "[FILE…]");
+    parser.addOption({"tf", "Transfer function: a *.tf.json file, tents:N[:PEAK] or ramp:N.", "SPEC"});
+    parser.addOption({"renderer", "What draws the picture: auto, gl or cpu.", "NAME", "auto"});
+    parser.addOption({"size", "Size of the window in pixels.", "WxH"});
+    parser.addOption(
+        {"screenshot", "Wait until picture and figures are complete, save the window as PNG FILE, and quit.", "FILE"});
+    parser.addHelpOption();
+    parser.addVersionOption();
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    QCoreApplication::setApplicationName("pellucid");
+    QCoreApplication::setOrganizationName("pellucid");
+    QCoreApplication::setApplicationVersion(kVersion);
+    QCommandLineParser parser;
+    describe(parser);
+    if (has(argc, argv, {"--help", "-h", "--help-all", "--version", "-v"})) { // must work without a display
+        const QCoreApplication application(argc, argv);
+        parser.process(application);
+        return 0;
+    }
+    if (displayMissing())
+        return complain("no display, DISPLAY and WAYLAND_DISPLAY are not set, use pellucid-cli, or xvfb-run pellucid",
+                        kFailed);
+
+    QApplication application(argc, argv);
+    applyTheme(application);
+    if (!parser.parse(QApplication::arguments())) return complain(parser.errorText(), kUsage);
+
+    const QString rendererName = parser.value("renderer");
+    ViewRenderer renderer = ViewRenderer::Auto;
+    if (rendererName == "gl") {
+        renderer = ViewRenderer::Gl;
+    } else if (rendererName == "cpu") {
+        renderer = ViewRenderer::Cpu;
+    } else if (rendererName != "auto") {
+        return complain("no renderer \"" + rendererName + "\", --renderer, use auto, gl or cpu", kUsage);
+    }
+    QSize size;
+    if (parser.isSet("size")) {
+        const QStringList parts = parser.value("size").split('x');
+        if (parts.size() == 2) size = {parts[0].toInt(), parts[1].toInt()};
+        if (size.width() < 1 || size.height() < 1)
+            return complain("bad size \"" + parser.value("size") + "\", --size, write it as 1280x800", kUsage);
+    }
+
+    QString tf = parser.value("tf");
+    QStringList volumes;
+    for (const QString& file : parser.positionalArguments()) {
+        if (file.endsWith(".tf.json", Qt::CaseInsensitive)) {
+            if (!tf.isEmpty()) return complain("more than one transfer function, " + file + ", give one", kUsage);
+            tf = file;
+        } else {
+            volumes << file;
+        }
+    }
+    if (volumes.isEmpty()) volumes << "sample:shells";
+    const QString screenshot = parser.value("screenshot");
+    if (!screenshot.isEmpty() && volumes.size() > 1)
+        return complain("--screenshot takes one window, " + volumes.join(" ") + ", give one FILE", kUsage);
+
+    try {
+        std::vector<std::unique_ptr<MainWindow>> windows;
+        for (const QString& volume : volumes) {
+            windows.push_back(std::make_unique<MainWindow>(renderer));
+            MainWindow& window = *windows.back();
+            if (!size.isEmpty()) window.resize(size);
+            window.show();
+            if (!screenshot.isEmpty()) {
+                QObject::connect(
+                    &window, &MainWindow::settledChanged, &window,
+                    [&window, screenshot] {
+                        if (!window.isSettled()) return;
+                        if (!window.grab().save(screenshot, "PNG"))
+                            return QCoreApplication::exit(complain("cannot write the picture, " + screenshot +
+                                                                       ", choose a folder you can write to",
+                                                                   kFailed));
+                        QCoreApplication::exit(0);
+                    },
+                    Qt::QueuedConnection);
+                QObject::connect(&window, &MainWindow::openFailed, &window, [volume] {
+                    QCoreApplication::exit(complain(
+                        "cannot open the volume, " + volume + ", start without --screenshot to see why", kFailed));
+                });
+            }
+            window.openAtStart(volume, tf);
+        }
+        return QApplication::exec();
+    } catch (const Error& error) {
+        return complain(QString::fromUtf8(error.what()), kFailed);
+    }
+}

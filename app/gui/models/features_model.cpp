@@ -1,0 +1,169 @@
+#include "models/features_model.h"
+
+#include "axis_ticks.h"
+#include "tf_edit.h"
+#include "theme.h"
+
+namespace pellucid::gui {
+
+FeaturesModel::FeaturesModel(Document& document, QObject* parent) : QAbstractTableModel(parent), m_document(document) {
+    connect(&document, &Document::featuresChanged, this, &FeaturesModel::reset);
+    connect(&document, &Document::volumeChanged, this, [this] { refresh(Range, Range); });
+    connect(&document, &Document::tfChanged, this, [this] {
+        m_opacities = featureOpacities(m_document.tf());
+        refresh(Name, Opacity);
+    });
+    connect(&document, &Document::measuresChanged, this, [this] { refresh(Visibility, Vws); });
+    connect(&document, &Document::targetsChanged, this, [this] { refresh(Target, Target); });
+    reset();
+}
+
+void FeaturesModel::reset() {
+    const int rows = static_cast<int>(m_document.tf().features.size());
+    if (rows == m_rows) {
+        m_opacities = featureOpacities(m_document.tf());
+        refresh(Name, Target);
+        return;
+    }
+    beginResetModel();
+    m_rows = rows;
+    m_opacities = featureOpacities(m_document.tf());
+    endResetModel();
+}
+
+void FeaturesModel::refresh(Column first, Column last) {
+    if (m_rows > 0) Q_EMIT dataChanged(index(0, first), index(m_rows - 1, last));
+}
+
+int FeaturesModel::rowCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : m_rows; }
+int FeaturesModel::columnCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : ColumnCount; }
+
+QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
+    if (!checkIndex(index, CheckIndexOption::IndexIsValid)) return {};
+    const auto f = static_cast<std::size_t>(index.row());
+    // Between a change of the document and its signal the rows are those of before.
+    if (f >= m_document.tf().features.size() || f >= m_opacities.size()) return {};
+    const Feature& feature = m_document.tf().features[f];
+    const auto& measures = m_document.measures();
+    const bool measured = measures && f < measures->features.size();
+
+    if (role == Qt::TextAlignmentRole && index.column() > Range) return QVariant(Qt::AlignRight | Qt::AlignVCenter);
+    if (role == Qt::DecorationRole && index.column() == Name) return colorFromRgb(feature.color);
+    if (role == Qt::ToolTipRole) return headerData(index.column(), Qt::Horizontal, Qt::ToolTipRole);
+    if (role != Qt::DisplayRole && role != Qt::EditRole) return {};
+
+    double number = 0;
+    switch (index.column()) {
+    case Name:
+        return QString::fromStdString(feature.name);
+    case Range: {
+        if (!m_document.hasVolume()) return {};
+        const ValueRange range = m_document.volume()->range();
+        const double span = range.hi - range.lo;
+        return QStringLiteral("%1 – %2").arg(numberText(range.lo + feature.a * span, span),
+                                             numberText(range.lo + feature.b * span, span));
+    }
+    case Opacity:
+        number = m_opacities[f];
+        break;
+    case Visibility:
+        if (!measured) return {};
+        number = measures->features[f].visibility;
+        break;
+    case Vws:
+        if (!measured) return {};
+        number = measures->features[f].vws;
+        break;
+    case Target:
+        if (f >= m_document.targets().size()) return {};
+        number = m_document.targets()[f];
+        break;
+    default:
+        return {};
+    }
+    if (role == Qt::EditRole) return number;
+    return QString::number(number, 'f', index.column() == Opacity && number < 0.1 ? 4 : 3);
+}
+
+QVariant FeaturesModel::headerData(int section, Qt::Orientation orientation, int role) const {
+    if (orientation != Qt::Horizontal || section < 0 || section >= ColumnCount)
+        return QAbstractTableModel::headerData(section, orientation, role);
+    if (role == Qt::DisplayRole) {
+        static const std::array<const char*, ColumnCount> names{QT_TR_NOOP("Feature"), QT_TR_NOOP("Values"),
+                                                                QT_TR_NOOP("Opacity"), QT_TR_NOOP("Visibility"),
+                                                                QT_TR_NOOP("VWS"),     QT_TR_NOOP("Target")};
+        return tr(names[static_cast<std::size_t>(section)]);
+    }
+    if (role == Qt::ToolTipRole) {
+        switch (section) {
+        case Name:
+            return tr("Name and colour of the feature; double-click to change either");
+        case Range:
+            return tr("Values of the feature's voxels, in the units of the data");
+        case Opacity:
+            return tr("Highest opacity of the feature: opacity of a path one voxel long (d0)");
+        case Visibility:
+            return tr("Share of the picture that the feature makes, 0 to 1, from this camera");
+        case Vws:
+            return tr("Visibility-weighted saliency: share of what catches the eye that the feature has, 0 to 1");
+        case Target:
+            return tr("The share of saliency that Optimize aims at; all targets add up to 1");
+        default:
+            break;
+        }
+    }
+    return {};
+}
+
+Qt::ItemFlags FeaturesModel::flags(const QModelIndex& index) const {
+    Qt::ItemFlags flags = QAbstractTableModel::flags(index);
+    if (!index.isValid() || m_readOnly) return flags;
+    if (index.column() == Name || index.column() == Opacity || index.column() == Target) flags |= Qt::ItemIsEditable;
+    return flags;
+}
+
+bool FeaturesModel::setData(const QModelIndex& index, const QVariant& value, int role) {
+    if (m_readOnly || !checkIndex(index, CheckIndexOption::IndexIsValid)) return false;
+    if (index.column() == Name && role == Qt::DecorationRole) {
+        const auto color = value.value<QColor>();
+        if (!color.isValid()) return false;
+        m_document.setTf(withFeatureColor(m_document.tf(), index.row(), rgbFromColor(color)), tr("Colour of feature"));
+        return true;
+    }
+    if (role != Qt::EditRole) return false;
+    if (index.column() == Name) {
+        const QString name = value.toString().trimmed();
+        if (name.isEmpty()) return false;
+        m_document.setTf(withFeatureName(m_document.tf(), index.row(), name.toStdString()), tr("Rename feature"));
+        return true;
+    }
+    bool isNumber = false;
+    const double number = value.toDouble(&isNumber);
+    if (!isNumber || !(number >= 0 && number <= 1)) return false;
+    if (index.column() == Target) {
+        m_document.setTarget(index.row(), number);
+        return true;
+    }
+    if (index.column() != Opacity) return false;
+    previewOpacity(index.row(), number);
+    m_document.commitPreview(tr("Opacity of feature"), QStringLiteral("opacity-%1").arg(index.row()));
+    return true;
+}
+
+void FeaturesModel::previewOpacity(int row, double opacity) {
+    // From the shape before the preview every time: a shape that has been scaled to 0 is lost.
+    try {
+        m_document.previewTf(withFeatureOpacity(m_document.committedTf(), row, opacity));
+    } catch (const Error&) {
+        m_document.cancelPreview(); // the feature has no point that could be raised
+    }
+}
+
+void FeaturesModel::endPreview() { m_document.commitPreview(tr("Opacity of feature")); }
+
+void FeaturesModel::setReadOnly(bool on) {
+    m_readOnly = on;
+    refresh(Name, Target);
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,42 @@
+// The features as a table: colour and name, range, opacity, visibility, VWS, target.
+#pragma once
+
+#include <QAbstractTableModel>
+
+#include "models/document.h"
+
+namespace pellucid::gui {
+
+/// One row per feature of the document's transfer function. Name, opacity and target can be edited; opacity and name
+/// become undo steps.
+class FeaturesModel : public QAbstractTableModel {
+    Q_OBJECT
+public:
+    enum Column { Name, Range, Opacity, Visibility, Vws, Target, ColumnCount };
+
+    explicit FeaturesModel(Document& document, QObject* parent = nullptr);
+
+    int rowCount(const QModelIndex& parent = {}) const override;
+    int columnCount(const QModelIndex& parent = {}) const override;
+    /// EditRole gives numbers in [0,1] for Opacity, Visibility, Vws and Target; DecorationRole of Name the colour.
+    QVariant data(const QModelIndex& index, int role = Qt::DisplayRole) const override;
+    QVariant headerData(int section, Qt::Orientation orientation, int role = Qt::DisplayRole) const override;
+    Qt::ItemFlags flags(const QModelIndex& index) const override;
+    bool setData(const QModelIndex& index, const QVariant& value, int role = Qt::EditRole) override;
+
+    /// While a slider is held: shows the opacity without an undo step. setData() or endPreview() end it.
+    void previewOpacity(int row, double opacity);
+    void endPreview();
+    void setReadOnly(bool on);
+
+private:
+    void reset();
+    void refresh(Column first, Column last);
+
+    Document& m_document;
+    int m_rows = 0;
+    std::vector<double> m_opacities;
+    bool m_readOnly = false;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,46 @@
+// What each feature shows and what it should show: bars beside a target handle.
+#pragma once
+
+#include <QWidget>
+
+#include "models/document.h"
+
+namespace pellucid::gui {
+
+/// Per feature a bar of its VWS and one of its visibility, with numbers, and a handle at its target that is dragged or
+/// moved by keys (Up/Down choose the feature, Left/Right change its target).
+class TargetBars : public QWidget {
+    Q_OBJECT
+public:
+    explicit TargetBars(Document& document, QWidget* parent = nullptr);
+
+    /// Centre of a feature's handle, and where on its bar a share in [0,1] lies; widget pixels.
+    QPointF handlePosition(int feature) const;
+    double pixelOfShare(double share) const;
+    void setReadOnly(bool on);
+    int currentFeature() const { return m_current; }
+
+    QSize sizeHint() const override;
+    QSize minimumSizeHint() const override;
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    bool event(QEvent* event) override;
+
+private:
+    int count() const;
+    QRectF rowRect(int feature) const;
+    QRectF trackRect(int feature) const; ///< where the bars lie
+    int featureAtPosition(const QPointF& position) const;
+    double shareAt(double pixelX) const;
+
+    Document& m_document;
+    int m_current = 0, m_dragged = -1, m_hovered = -1;
+    bool m_readOnly = false;
+};
+
+} // namespace pellucid::gui

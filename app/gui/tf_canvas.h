@@ -1,0 +1,81 @@
+// The curve of the transfer function over the histogram, edited with the mouse.
+#pragma once
+
+#include <optional>
+
+#include <QWidget>
+
+#include "models/document.h"
+
+namespace pellucid::gui {
+
+/// Every finished drag is one step of the document's undo stack; while the mouse is down the document previews.
+class TfCanvas : public QWidget {
+    Q_OBJECT
+public:
+    explicit TfCanvas(Document& document, QWidget* parent = nullptr);
+
+    void setLogHistogram(bool on);
+    /// The opacity axis shows √α: room for the small opacities that matter most in a volume.
+    void setRootOpacityAxis(bool on);
+    void setReadOnly(bool on);
+
+    int selectedPoint() const { return m_selected; } ///< −1: none
+    void selectPoint(int index);
+    void addPoint(double x, double opacity);
+    void removeSelected();
+    void toggleFixed();
+    void chooseColor();
+
+    /// Where a point of the plane (intensity, opacity) is drawn, widget pixels.
+    QPointF positionOf(double x, double opacity) const;
+
+    QSize sizeHint() const override { return {640, 190}; }
+    QSize minimumSizeHint() const override { return {300, 130}; }
+
+Q_SIGNALS:
+    void selectionChanged(int index);
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void contextMenuEvent(QContextMenuEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    bool event(QEvent* event) override;
+
+private:
+    struct Drag {
+        TransferFunction start;
+        int index = 0;
+        QPointF pressed, grip; ///< grip: from the mouse to the point's centre
+        bool moved = false;
+    };
+
+    QRectF plot() const;
+    double heightOfOpacity(double opacity) const; ///< [0,1] up the axis
+    double opacityOfHeight(double height) const;
+    double intensityAt(double pixelX) const;
+    double opacityAt(double pixelY) const;
+    int pointAt(const QPointF& position) const; ///< −1: none
+    int featureBarAt(const QPointF& position) const;
+    QString valueText(double x) const;
+    void tfChanged();
+    void nudge(double dx, double dHeight);
+
+    void paintHistogram(QPainter& painter) const;
+    void paintVisibility(QPainter& painter) const;
+    void paintCurve(QPainter& painter) const;
+    void paintFeatures(QPainter& painter) const;
+    void paintAxes(QPainter& painter) const;
+    void paintPoints(QPainter& painter) const;
+
+    Document& m_document;
+    bool m_logHistogram = true, m_rootOpacity = false, m_readOnly = false;
+    int m_selected = -1, m_hovered = -1;
+    std::optional<Drag> m_drag;
+};
+
+} // namespace pellucid::gui

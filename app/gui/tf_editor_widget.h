@@ -1,0 +1,40 @@
+// The dock of the transfer function: the curve, and the selected point in numbers.
+#pragma once
+
+#include <QWidget>
+
+#include "models/document.h"
+#include "tf_canvas.h"
+
+class QCheckBox;
+class QDoubleSpinBox;
+class QLabel;
+class QToolButton;
+
+namespace pellucid::gui {
+
+class TfEditorWidget : public QWidget {
+    Q_OBJECT
+public:
+    explicit TfEditorWidget(Document& document, QWidget* parent = nullptr);
+
+    TfCanvas& canvas() { return *m_canvas; }
+    void setReadOnly(bool on);
+
+private:
+    void showPoint();
+    void editPoint();
+
+    Document& m_document;
+    TfCanvas* m_canvas;
+    QLabel* m_which;
+    QDoubleSpinBox* m_value;
+    QDoubleSpinBox* m_opacity;
+    QToolButton* m_color;
+    QCheckBox* m_fixed;
+    QToolButton* m_remove;
+    bool m_readOnly = false, m_showing = false;
+    int m_editSession = 0; ///< so that the steps of one stay at a point become one undo step
+};
+
+} // namespace pellucid::gui

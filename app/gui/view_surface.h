@@ -1,0 +1,58 @@
+// What draws the picture inside the volume view: OpenGL where there is one, else the CPU.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include <QString>
+
+#include "render/camera.h"
+#include "render/render_settings.h"
+#include "tf/transfer_function.h"
+#include "volume/error.h"
+
+class QWidget;
+
+namespace pellucid::gui {
+
+/// All that a picture depends on, besides its size.
+struct ViewScene {
+    std::shared_ptr<const Volume> volume; ///< empty: nothing but the background
+    TransferFunction tf;
+    Camera camera;
+    bool operator==(const ViewScene&) const = default;
+};
+
+/// How good the picture on the screen is.
+struct FrameInfo {
+    int width = 0, height = 0;  ///< pixels of the screen
+    double resolutionScale = 1; ///< rays per pixel along each axis
+    double stepInD0 = 0.5;      ///< distance of samples along a ray
+    bool complete = false;      ///< the best that will come of this scene
+};
+
+/// A child widget of the view that shows a scene: a coarse picture at once, a better one when the scene has stayed
+/// the same for a moment. What is complete depends on the scene and the size alone, never on timing.
+class ViewSurface {
+public:
+    virtual ~ViewSurface() = default;
+    virtual QWidget* widget() = 0;
+    virtual void setScene(const ViewScene& scene) = 0;
+    virtual const FrameInfo& frame() const = 0;
+    virtual QString rendererName() const = 0; ///< for the status line
+
+    std::function<void()> onFrame;               ///< after each new picture
+    std::function<void(const Error&)> onFailure; ///< it cannot draw; called from the event loop
+};
+
+/// How long the scene must stay the same before it is drawn well, milliseconds.
+inline constexpr int kIdleBeforeRefining = 200;
+
+/// Part of the image that the box covers, pixels from the top left corner, and how deep the box is along the view.
+struct BoxInImage {
+    int x = 0, y = 0, width = 0, height = 0; ///< width 0: the box is outside the image
+    double depthInD0 = 0;
+};
+BoxInImage boxInImage(const Camera& camera, const Geometry& geometry, int width, int height);
+
+} // namespace pellucid::gui

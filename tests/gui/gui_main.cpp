@@ -1,0 +1,32 @@
+// Catch's main with a QApplication around it. Listing the tests, which the build does, must work without a display.
+#define CATCH_CONFIG_RUNNER
+#include <catch2/catch.hpp>
+
+#include <cstdio>
+
+#include <QApplication>
+#include <QSettings>
+#include <QTemporaryDir>
+
+#include "theme.h"
+
+int main(int argc, char** argv) {
+    Catch::Session session;
+    if (const int wrong = session.applyCommandLine(argc, argv); wrong != 0) return wrong;
+    const Catch::ConfigData& data = session.configData();
+    if (data.listTests || data.listTestNamesOnly || data.listTags || data.listReporters || data.showHelp)
+        return session.run();
+    if (qEnvironmentVariableIsEmpty("DISPLAY") && qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY")) {
+        std::fprintf(stderr, "skipped: no display; run ctest under xvfb-run\n");
+        return 77; // SKIP_RETURN_CODE
+    }
+    QApplication application(argc, argv);
+    // The settings of whoever runs the tests stay theirs.
+    const QTemporaryDir settings;
+    QSettings::setDefaultFormat(QSettings::IniFormat);
+    QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, settings.path());
+    QCoreApplication::setOrganizationName("pellucid-test");
+    QCoreApplication::setApplicationName("pellucid-test");
+    pellucid::gui::applyTheme(application);
+    return session.run();
+}

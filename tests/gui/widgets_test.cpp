@@ -1,0 +1,194 @@
+#include "gui_support.h"
+
+#include <cmath>
+#include <fstream>
+
+#include <QDialogButtonBox>
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QPushButton>
+#include <QSlider>
+#include <QSpinBox>
+#include <QTemporaryDir>
+#include <QToolButton>
+
+#include "cpu_surface.h"
+#include "opacity_editor.h"
+#include "raw_dialog.h"
+#include "target_bars.h"
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+namespace {
+
+struct Canvas {
+    Document document;
+    TfCanvas canvas{document};
+    Canvas() {
+        document.setVolume(loadedSample("shells", 12, tents(3)));
+        canvas.resize(600, 200);
+        canvas.show();
+        REQUIRE(QTest::qWaitForWindowExposed(&canvas, kPatience));
+    }
+    QPointF at(int index) const {
+        const ControlPoint& p = document.tf().points[static_cast<std::size_t>(index)];
+        return canvas.positionOf(p.x, p.opacity);
+    }
+};
+
+} // namespace
+
+TEST_CASE("one drag of a point is one undo step", "[canvas]") {
+    Canvas c;
+    const TransferFunction start = c.document.tf();
+    const QPointF to = c.canvas.positionOf(0.5, 0.9);
+    drag(c.canvas, c.at(4), to);
+    CHECK(c.document.tf().points[4].opacity == Approx(0.9).margin(0.01)); // a pixel is 1/140
+    CHECK(c.document.undoStack().count() == 1);
+    CHECK(c.canvas.selectedPoint() == 4);
+    c.document.undoStack().undo();
+    CHECK(c.document.tf() == start);
+}
+
+TEST_CASE("the fine opacity axis spreads the small opacities", "[canvas]") {
+    Canvas c;
+    const double plain = c.canvas.positionOf(0.5, 0).y() - c.canvas.positionOf(0.5, 0.01).y();
+    c.canvas.setRootOpacityAxis(true);
+    const double fine = c.canvas.positionOf(0.5, 0).y() - c.canvas.positionOf(0.5, 0.01).y();
+    CHECK(fine == Approx(10 * plain)); // √0.01 = 0.1
+    drag(c.canvas, c.at(4), c.canvas.positionOf(0.5, 0.01));
+    CHECK(c.document.tf().points[4].opacity == Approx(0.01).margin(0.002));
+}
+
+TEST_CASE("a press that hardly moves selects and changes nothing", "[canvas]") {
+    Canvas c;
+    const TransferFunction start = c.document.tf();
+    drag(c.canvas, c.at(4), c.at(4) + QPointF(1, 1));
+    CHECK(c.document.tf() == start);
+    CHECK(c.canvas.selectedPoint() == 4);
+    drag(c.canvas, {300, 40}, {300, 40}); // beside all points
+    CHECK(c.canvas.selectedPoint() == -1);
+}
+
+TEST_CASE("points are added by a double-click and removed by Delete", "[canvas]") {
+    Canvas c;
+    const TransferFunction start = c.document.tf();
+    const QPointF place = c.canvas.positionOf(0.3, 0.7);
+    QTest::mouseDClick(&c.canvas, Qt::LeftButton, {}, place.toPoint());
+    REQUIRE(c.document.tf().points.size() == start.points.size() + 1);
+    const int index = c.canvas.selectedPoint();
+    REQUIRE(index >= 0);
+    CHECK(c.document.tf().points[static_cast<std::size_t>(index)].x == Approx(0.3).margin(0.005));
+    QTest::keyClick(&c.canvas, Qt::Key_Delete);
+    CHECK(c.document.tf() == start);
+    CHECK(c.document.undoStack().count() == 2);
+}
+
+TEST_CASE("keys move, fix and choose points", "[canvas]") {
+    Canvas c;
+    c.canvas.selectPoint(4);
+    const double before = c.document.tf().points[4].opacity;
+    QTest::keyClick(&c.canvas, Qt::Key_Up);
+    QTest::keyClick(&c.canvas, Qt::Key_Up);
+    CHECK(c.document.tf().points[4].opacity == Approx(before + 2.0 / 128));
+    CHECK(c.document.undoStack().count() == 1);
+    QTest::keyClick(&c.canvas, Qt::Key_Space);
+    CHECK(c.document.tf().points[4].fixed);
+    QTest::keyClick(&c.canvas, Qt::Key_PageDown);
+    CHECK(c.canvas.selectedPoint() == 5);
+    QTest::keyClick(&c.canvas, Qt::Key_Escape);
+    CHECK(c.canvas.selectedPoint() == -1);
+}
+
+TEST_CASE("Escape takes a drag back", "[canvas]") {
+    Canvas c;
+    const TransferFunction start = c.document.tf();
+    const QPointF from = c.at(4);
+    QTest::mousePress(&c.canvas, Qt::LeftButton, {}, from.toPoint());
+    QMouseEvent move(QEvent::MouseMove, from + QPointF(0, -30), c.canvas.mapToGlobal(from + QPointF(0, -30)),
+                     Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(&c.canvas, &move);
+    CHECK_FALSE(c.document.tf() == start);
+    QTest::keyClick(&c.canvas, Qt::Key_Escape);
+    CHECK(c.document.tf() == start);
+    QTest::mouseRelease(&c.canvas, Qt::LeftButton, {}, from.toPoint());
+    CHECK(c.document.tf() == start);
+    CHECK_FALSE(c.document.undoStack().canUndo());
+}
+
+TEST_CASE("target handles follow the mouse and the keys", "[bars]") {
+    Document document;
+    document.setVolume(loadedSample("shells", 12, tents(3)));
+    TargetBars bars(document);
+    bars.resize(400, 200);
+    bars.show();
+    REQUIRE(QTest::qWaitForWindowExposed(&bars, kPatience));
+    const QPointF handle = bars.handlePosition(2);
+    drag(bars, handle, {bars.pixelOfShare(0.75), handle.y()});
+    CHECK(document.targets()[2] == Approx(0.75).margin(0.01));
+    CHECK(document.targets()[0] == Approx(document.targets()[1]));
+    CHECK(bars.currentFeature() == 2);
+    const double before = document.targets()[2];
+    QTest::keyClick(&bars, Qt::Key_Left);
+    CHECK(document.targets()[2] == Approx(before - 0.01));
+    QTest::keyClick(&bars, Qt::Key_Up);
+    QTest::keyClick(&bars, Qt::Key_Right, Qt::ShiftModifier);
+    CHECK(bars.currentFeature() == 1);
+    CHECK(document.targets()[1] > document.targets()[0]);
+    bars.setReadOnly(true);
+    const auto targets = document.targets();
+    drag(bars, bars.handlePosition(0), {bars.pixelOfShare(0.9), bars.handlePosition(0).y()});
+    CHECK(document.targets() == targets);
+}
+
+TEST_CASE("the opacity slider is finer near zero and tells drags from edits", "[opacity]") {
+    OpacityEditor editor;
+    auto* slider = editor.findChild<QSlider*>("opacitySlider");
+    auto* spin = editor.findChild<QDoubleSpinBox*>("opacitySpin");
+    REQUIRE(slider != nullptr);
+    REQUIRE(spin != nullptr);
+    double dragged = -1, edited = -1;
+    bool released = false;
+    QObject::connect(&editor, &OpacityEditor::dragged, &editor, [&](double v) { dragged = v; });
+    QObject::connect(&editor, &OpacityEditor::edited, &editor, [&](double v) { edited = v; });
+    QObject::connect(&editor, &OpacityEditor::released, &editor, [&] { released = true; });
+    editor.setOpacity(0.25);
+    CHECK(slider->value() == 500); // √0.25 of 1000
+    CHECK(dragged == -1);
+    CHECK(edited == -1);
+    slider->setSliderDown(true);
+    slider->setSliderPosition(100);
+    CHECK(dragged == Approx(0.01));
+    CHECK(edited == -1);
+    slider->setSliderDown(false);
+    CHECK(released);
+    spin->setValue(0.5);
+    CHECK(edited == Approx(0.5));
+    CHECK(editor.opacity() == Approx(0.5));
+}
+
+TEST_CASE("the raw dialog opens only what fits the file", "[raw]") {
+    const QTemporaryDir folder;
+    const QString path = folder.filePath("data_8x4x2_uint16.raw");
+    std::ofstream(path.toStdString(), std::ios::binary) << std::string(8 * 4 * 2 * 2, 'x');
+    RawDialog dialog(path);
+    auto* open = dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
+    CHECK(open->isEnabled());
+    CHECK(dialog.layoutOfFile().dims == Int3(8, 4, 2));
+    CHECK(dialog.layoutOfFile().type == SampleType::U16);
+    dialog.findChild<QSpinBox*>("rawDimz")->setValue(3);
+    CHECK_FALSE(open->isEnabled());
+    CHECK(dialog.findChild<QLabel*>("rawVerdict")->text().contains("64")); // one more plane: 8·4·2 bytes
+}
+
+TEST_CASE("notices stay until they are dismissed", "[notices]") {
+    NoticeBar bar;
+    CHECK(bar.isHidden());
+    bar.setNotices({"the volume was made smaller"});
+    bar.addNotice("the axes are turned");
+    CHECK_FALSE(bar.isHidden());
+    CHECK(bar.findChild<QLabel*>("noticeText")->text().contains("axes"));
+    bar.findChild<QToolButton*>("noticeClose")->click();
+    CHECK(bar.isHidden());
+}

@@ -1,0 +1,460 @@
+// The whole window, with the mouse and the keys that people use.
+#include "gui_support.h"
+
+#include <cmath>
+#include <fstream>
+
+#include <glm/geometric.hpp>
+
+#include <QAction>
+#include <QComboBox>
+#include <QDialog>
+#include <QDoubleSpinBox>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QLabel>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QPushButton>
+#include <QSignalSpy>
+#include <QTemporaryDir>
+#include <QTimer>
+#include <QUrl>
+#include <QWheelEvent>
+
+#include "camera_motion.h"
+#include "optimize/refine.h"
+#include "render/image.h"
+#include "tf/formats/tf_json.h"
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+namespace {
+
+std::vector<double> shownVws(Document& document) {
+    REQUIRE(document.measures());
+    std::vector<double> vws;
+    for (const FeatureMeasures& m : document.measures()->features) vws.push_back(m.vws);
+    return vws;
+}
+
+QDialog* errorDialog(MainWindow& window) { return window.findChild<QDialog*>("errorDialog"); }
+
+void drop(QWidget& widget, const QString& path) {
+    QMimeData data;
+    data.setUrls({QUrl::fromLocalFile(path)});
+    QDragEnterEvent enter(QPoint(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(&widget, &enter);
+    CHECK(enter.isAccepted());
+    QDropEvent event(QPointF(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(&widget, &event);
+    CHECK(event.isAccepted());
+}
+
+// An optimization that goes on until it is stopped: nothing comes as near as that.
+void startEndlessOptimization(OpenWindow& w) {
+    w.child<QDoubleSpinBox>("toleranceSpin").setValue(0.0001);
+    auto& method = w.child<QComboBox>("methodCombo");
+    method.setCurrentIndex(method.findData(static_cast<int>(SearchMethod::Fixed)));
+    w.document().setTargets({0.05, 0.05, 0.9});
+    QTest::mouseClick(&w.child<QPushButton>("optimizeButton"), Qt::LeftButton);
+    REQUIRE(w.window.isOptimizing());
+}
+
+} // namespace
+
+TEST_CASE("dragging a control point changes the picture, and undo brings it back", "[window]") {
+    OpenWindow w;
+    const TransferFunction tf = w.document().tf();
+    const QImage before = w.picture();
+    // The picture shows the volume: not one colour only.
+    QSet<QRgb> colors;
+    for (int x = 0; x < before.width(); x += 3) {
+        for (int y = 0; y < before.height(); y += 3) colors.insert(before.pixel(x, y));
+    }
+    CHECK(colors.size() > 20);
+
+    const ControlPoint& peak = tf.points[1];
+    drag(w.canvas(), w.canvas().positionOf(peak.x, peak.opacity), w.canvas().positionOf(peak.x, 0.02));
+    CHECK(w.document().tf().points[1].opacity < 0.1);
+    const QImage after = w.picture();
+    CHECK(after != before);
+    CHECK(w.window.isWindowModified());
+
+    w.child<QAction>("undoAction").trigger();
+    CHECK(w.document().tf() == tf);
+    CHECK(w.picture() == before);
+    CHECK_FALSE(w.window.isWindowModified());
+}
+
+TEST_CASE("the picture follows while the mouse is still down", "[window]") {
+    OpenWindow w;
+    const QImage before = w.picture();
+    const ControlPoint peak = w.document().tf().points[1];
+    const QPointF from = w.canvas().positionOf(peak.x, peak.opacity), to = w.canvas().positionOf(peak.x, 0.01);
+    QTest::mousePress(&w.canvas(), Qt::LeftButton, {}, from.toPoint());
+    QMouseEvent move(QEvent::MouseMove, to, w.canvas().mapToGlobal(to), Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(&w.canvas(), &move);
+    CHECK(w.document().isPreviewing());
+    CHECK(waitFor([&] { return w.view().grab().toImage().convertToFormat(QImage::Format_RGB32) != before; }));
+    CHECK(w.document().isPreviewing());
+    QTest::mouseRelease(&w.canvas(), Qt::LeftButton, {}, to.toPoint());
+    CHECK_FALSE(w.document().isPreviewing());
+}
+
+TEST_CASE("optimizing brings the VWS bars to the targets, and undo everything back", "[window]") {
+    OpenWindow w;
+    const TransferFunction tf = w.document().tf();
+    const QImage before = w.picture();
+    auto& bars = w.child<TargetBars>("targetBars");
+    const QPointF handle = bars.handlePosition(2);
+    drag(bars, handle, {bars.pixelOfShare(0.6), handle.y()});
+    const std::vector<double> targets = w.document().targets();
+    CHECK(targets[2] == Approx(0.6).margin(0.01));
+    REQUIRE(objectiveOf(shownVws(w.document()), targets) > 0.03); // else there would be nothing to do
+
+    int ticks = 0;
+    QTimer heart;
+    QObject::connect(&heart, &QTimer::timeout, [&] { ++ticks; });
+    heart.start(1);
+    QTest::mouseClick(&w.child<QPushButton>("optimizeButton"), Qt::LeftButton);
+    CHECK(w.window.isOptimizing());
+    CHECK_FALSE(w.child<QPushButton>("optimizeButton").isVisible());
+    CHECK(w.child<QPushButton>("cancelButton").isVisible());
+    CHECK_FALSE(w.child<QAction>("undoAction").isEnabled());
+    REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    CHECK(ticks > 0); // the window went on living meanwhile
+    w.settle();
+    REQUIRE(w.document().measuresAreCurrent());
+    // Measured anew, from the present transfer function.
+    CHECK(objectiveOf(shownVws(w.document()), targets) < 0.03);
+    CHECK(w.document().undoStack().count() == 1);
+    CHECK(w.picture() != before);
+
+    w.child<QAction>("undoAction").trigger();
+    CHECK(w.document().tf() == tf);
+    CHECK(w.picture() == before);
+}
+
+TEST_CASE("a cancelled optimization changes nothing", "[window]") {
+    OpenWindow w(40);
+    const TransferFunction tf = w.document().tf();
+    startEndlessOptimization(w);
+    QTest::mouseClick(&w.child<QPushButton>("cancelButton"), Qt::LeftButton);
+    REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    CHECK(w.document().tf() == tf);
+    CHECK(w.document().undoStack().count() == 0);
+    CHECK(w.child<QPushButton>("optimizeButton").isVisible());
+    w.settle();
+    CHECK(w.document().measuresAreCurrent());
+}
+
+TEST_CASE("bars and picture follow each move of an optimization", "[window]") {
+    OpenWindow w;
+    const TransferFunction tf = w.document().tf();
+    startEndlessOptimization(w);
+    CHECK(waitFor([&] { return w.document().isPreviewing() && !(w.document().tf() == tf); }));
+    CHECK(w.document().committedTf() == tf);
+    w.window.cancelOptimization();
+    REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    CHECK(w.document().tf() == tf);
+}
+
+TEST_CASE("refining is one undo step", "[window]") {
+    OpenWindow w;
+    const TransferFunction tf = w.document().tf();
+    const Histogram& histogram = w.document().histogram();
+    QTest::mouseClick(&w.child<QPushButton>("refineButton"), Qt::LeftButton);
+    CHECK_FALSE(w.document().tf() == tf);
+    CHECK(edgeEnergy(edgeWeights(histogram, w.document().tf())) < edgeEnergy(edgeWeights(histogram, tf)));
+    CHECK(w.document().undoStack().count() == 1);
+    QTest::mouseClick(&w.child<QPushButton>("undoButton"), Qt::LeftButton);
+    CHECK(w.document().tf() == tf);
+    QTest::mouseClick(&w.child<QPushButton>("redoButton"), Qt::LeftButton);
+    CHECK_FALSE(w.document().tf() == tf);
+}
+
+TEST_CASE("a file that cannot be opened gives a dialog in three parts, and the old volume stays", "[window]") {
+    OpenWindow w;
+    const auto volume = w.document().volume();
+    const TransferFunction tf = w.document().tf();
+    const QString missing = "/nonexistent/brain.nrrd";
+    w.window.openPath(missing);
+    REQUIRE(waitFor([&] { return errorDialog(w.window) != nullptr; }));
+    QDialog* dialog = errorDialog(w.window);
+    for (const char* part : {"errorWhat", "errorWhere", "errorWhatToDo"}) {
+        auto* label = dialog->findChild<QLabel*>(part);
+        INFO(part);
+        REQUIRE(label != nullptr);
+        CHECK_FALSE(label->text().isEmpty());
+    }
+    CHECK(dialog->findChild<QLabel*>("errorWhere")->text().contains("brain.nrrd"));
+    dialog->accept();
+    CHECK(w.document().volume() == volume);
+    CHECK(w.document().tf() == tf);
+    w.settle();
+}
+
+TEST_CASE("a transfer function that cannot be read leaves the present one", "[window]") {
+    OpenWindow w;
+    const QTemporaryDir folder;
+    const QString path = folder.filePath("bad.tf.json");
+    std::ofstream(path.toStdString()) << "{\"format\":\"pellucid-tf\",\"version\":99}";
+    const TransferFunction tf = w.document().tf();
+    w.window.openPath(path);
+    REQUIRE(errorDialog(w.window) != nullptr);
+    errorDialog(w.window)->accept();
+    CHECK(w.document().tf() == tf);
+    CHECK(w.document().undoStack().count() == 0);
+}
+
+TEST_CASE("a wrong transfer function at the start does not keep the volume from opening", "[window]") {
+    OpenWindow w;
+    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    VolumeSource source;
+    source.path = "sample:disks";
+    source.sampleSize = 16;
+    w.window.openVolume(source, "/nonexistent/a.tf.json");
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    REQUIRE(errorDialog(w.window) != nullptr);
+    errorDialog(w.window)->accept();
+    CHECK(w.document().volume()->title.find("disks") != std::string::npos);
+    CHECK(w.document().tf() == w.document().loaded().defaultTf);
+}
+
+TEST_CASE("files that are dropped on the window are opened", "[window]") {
+    OpenWindow w;
+    const QTemporaryDir folder;
+    const QString volumePath = folder.filePath("small.nrrd"), tfPath = folder.filePath("two.tf.json");
+    writeNrrd(makeSample("disks", 16), volumePath.toStdString());
+    TransferFunction two = tents(2, 0.25);
+    two.range = ValueRange{-1000, 3000}; // made for other data than this
+    writeTf(two, tfPath.toStdString());
+    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    drop(w.window, volumePath);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    CHECK(w.document().volume()->title == "small.nrrd");
+    CHECK(w.window.windowTitle().startsWith("small.nrrd"));
+    drop(w.window, tfPath);
+    REQUIRE(waitFor([&] { return w.document().tf().features.size() == 2; }));
+    CHECK(featureOpacities(w.document().tf()) == std::vector<double>{0.25, 0.25});
+    CHECK(w.document().undoStack().canUndo());                     // opening a transfer function can be undone
+    CHECK_FALSE(w.window.isWindowModified());                      // and it is saved already
+    CHECK(w.child<QLabel>("noticeText").text().contains("-1000")); // whoever looks is told that it was stretched
+    w.settle();
+}
+
+TEST_CASE("the mouse turns, pans and zooms, and R restores the view", "[window]") {
+    OpenWindow w;
+    VolumeView& view = w.view();
+    const Camera start = w.document().camera();
+    const QPointF middle(view.width() / 2.0, view.height() / 2.0);
+    const auto& geometry = w.document().volume()->geometry();
+
+    drag(view, middle, middle + QPointF(60, 25));
+    const Camera turned = w.document().camera();
+    CHECK_FALSE(turned == start);
+    CHECK(turned.center == start.center);
+    // Dragged to the right and down the front goes there, so the eye goes left and up.
+    CHECK(viewAngles(turned, geometry).azimuth < viewAngles(start, geometry).azimuth);
+    CHECK(viewAngles(turned, geometry).elevation > viewAngles(start, geometry).elevation);
+
+    drag(view, middle, middle + QPointF(20, 0), Qt::MiddleButton);
+    CHECK_FALSE(w.document().camera().center == turned.center);
+    const Camera panned = w.document().camera();
+    drag(view, middle, middle + QPointF(-20, 0), Qt::LeftButton, Qt::ShiftModifier);
+    CHECK(glm::length(w.document().camera().center - turned.center) < 1e-6);
+    CHECK_FALSE(w.document().camera() == panned);
+
+    const double zoom = viewAngles(w.document().camera(), geometry).zoom;
+    QWheelEvent wheel(middle, view.mapToGlobal(middle), {}, {0, 120}, Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase,
+                      false);
+    QCoreApplication::sendEvent(&view, &wheel);
+    CHECK(viewAngles(w.document().camera(), geometry).zoom > zoom);
+    const double closer = viewAngles(w.document().camera(), geometry).zoom;
+    drag(view, middle, middle + QPointF(0, 80), Qt::RightButton);
+    CHECK(viewAngles(w.document().camera(), geometry).zoom < closer);
+
+    QTest::mouseDClick(&view, Qt::LeftButton, {}, middle.toPoint());
+    const Camera fit = w.document().camera();
+    CHECK(glm::length(fit.forward() - turned.forward()) < 1e-9);
+    CHECK(glm::length(fit.center - geometry.boxCenter()) < 1e-9);
+
+    view.setFocus();
+    QTest::keyClick(&view, Qt::Key_Left);
+    CHECK_FALSE(w.document().camera() == fit);
+    w.window.activateWindow(); // shortcuts belong to the active window
+    REQUIRE(QTest::qWaitForWindowActive(&w.window, kPatience));
+    QTest::keyClick(&view, Qt::Key_R);
+    CHECK(w.document().camera() == start);
+    QTest::keyClick(&view, Qt::Key_5); // from above
+    CHECK(viewAngles(w.document().camera(), geometry).elevation == Approx(90));
+    QTest::keyClick(&view, Qt::Key_P);
+    CHECK(w.document().camera().projection == Projection::Orthographic);
+    QTest::keyClick(&view, Qt::Key_P);
+    CHECK(w.document().camera().projection == Projection::Perspective);
+    w.settle();
+}
+
+TEST_CASE("turning the view changes the picture and measures anew", "[window]") {
+    OpenWindow w;
+    const QImage before = w.picture();
+    const Measures measures = *w.document().measures();
+    const QPointF middle(w.view().width() / 2.0, w.view().height() / 2.0);
+    drag(w.view(), middle, middle + QPointF(150, 40));
+    CHECK_FALSE(w.document().measuresAreCurrent());
+    w.settle();
+    CHECK(w.document().measuresAreCurrent());
+    CHECK(w.document().measures()->visibilityHistogram != measures.visibilityHistogram);
+    CHECK(w.picture() != before);
+}
+
+TEST_CASE("a saved image can be read, in its size and with its background", "[window]") {
+    OpenWindow w;
+    const QTemporaryDir folder;
+    QSignalSpy saved(&w.window, &MainWindow::imageSaved);
+    for (const bool transparent : {false, true}) {
+        const QString path = folder.filePath(transparent ? "clear.png" : "seen.png");
+        w.window.saveImage({path, {160, 100}, transparent});
+        REQUIRE(waitFor([&] { return saved.count() == (transparent ? 2 : 1); }));
+        const Image image = readImage(path.toStdString());
+        CHECK(image.width == 160);
+        CHECK(image.height == 100);
+        CHECK(image.pixel(0, 0)[3] == (transparent ? 0.0f : 1.0f)); // the corner sees past the volume
+        CHECK(image.pixel(80, 50)[3] > 0.1f);
+    }
+    w.window.saveImage({folder.filePath("picture.xyz"), {160, 100}, false});
+    REQUIRE(errorDialog(w.window) != nullptr);
+    errorDialog(w.window)->accept();
+    w.window.saveImage({"/nonexistent/folder/a.png", {32, 32}, false});
+    REQUIRE(waitFor([&] {
+        const auto dialogs = w.window.findChildren<QDialog*>("errorDialog");
+        return std::any_of(dialogs.begin(), dialogs.end(), [](QDialog* d) { return d->isVisible(); });
+    }));
+    for (QDialog* dialog : w.window.findChildren<QDialog*>("errorDialog")) dialog->accept();
+}
+
+TEST_CASE("a saved transfer function is the one that is shown", "[window]") {
+    OpenWindow w;
+    const QTemporaryDir folder;
+    const QString path = folder.filePath("mine.tf.json");
+    w.document().setTf(tents(3, 0.2), "Tents"); // of colours that 8 bits hold exactly
+    CHECK(w.window.isWindowModified());
+    REQUIRE(w.window.saveTf(path));
+    CHECK_FALSE(w.window.isWindowModified());
+    TransferFunction read = readTf(path.toStdString());
+    REQUIRE(read.range);
+    CHECK(*read.range == w.document().volume()->range());
+    CHECK(read.points == w.document().tf().points);
+    CHECK(read.features == w.document().tf().features);
+    CHECK_FALSE(w.window.saveTf("/nonexistent/folder/mine.tf.json"));
+    REQUIRE(errorDialog(w.window) != nullptr);
+    errorDialog(w.window)->accept();
+}
+
+TEST_CASE("closing asks about unsaved changes", "[window]") {
+    OpenWindow w;
+    w.document().setTf(tents(2), "Tents");
+    const auto answer = [](QMessageBox::StandardButton button, bool& asked) {
+        auto* timer = new QTimer;
+        QObject::connect(timer, &QTimer::timeout, [timer, button, &asked] {
+            auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+            if (box == nullptr) return;
+            asked = true;
+            timer->deleteLater();
+            timer->stop();
+            QTest::mouseClick(box->button(button), Qt::LeftButton);
+        });
+        timer->start(10);
+    };
+    bool asked = false;
+    answer(QMessageBox::Cancel, asked);
+    CHECK_FALSE(w.window.close());
+    CHECK(asked);
+    CHECK(w.window.isVisible());
+    asked = false;
+    answer(QMessageBox::Discard, asked);
+    CHECK(w.window.close());
+    CHECK(asked);
+    CHECK_FALSE(w.window.isVisible());
+}
+
+TEST_CASE("a window may be closed and go while its jobs run", "[window]") {
+    for (const bool optimizing : {true, false}) {
+        auto w = std::make_unique<OpenWindow>(48);
+        if (optimizing) {
+            startEndlessOptimization(*w);
+        } else {
+            w->window.refineTf(); // a measurement follows; the picture is being drawn
+            w->document().undoStack().undo();
+            VolumeSource source;
+            source.path = "sample:knee";
+            w->window.openVolume(source);
+            w->window.saveImage({QDir::tempPath() + "/never.tiff", {4000, 3000}, false});
+        }
+        CHECK(w->window.close());
+        w.reset();
+        QCoreApplication::processEvents();
+    }
+    QFile::remove(QDir::tempPath() + "/never.tiff");
+}
+
+TEST_CASE("opening another volume ends an optimization and starts afresh", "[window]") {
+    OpenWindow w;
+    startEndlessOptimization(w);
+    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    VolumeSource source;
+    source.path = "sample:disks";
+    source.sampleSize = 20;
+    w.window.openVolume(source);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    const TransferFunction tf = w.document().tf();
+    CHECK(tf == w.document().loaded().defaultTf);
+    REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    w.settle();
+    CHECK(w.document().tf() == tf); // nothing of the old run came after it
+    CHECK(w.document().measuresAreCurrent());
+    CHECK_FALSE(w.document().undoStack().canUndo());
+}
+
+TEST_CASE("volumes with nothing to see open and say so", "[window]") {
+    OpenWindow w;
+    const QTemporaryDir folder;
+    const Geometry geometry{{6, 5, 4}, {1, 1, 1}, {0, 0, 0}};
+    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    auto& notice = w.child<QLabel>("noticeText");
+
+    const QString constant = folder.filePath("constant.nrrd"), empty = folder.filePath("empty.nrrd");
+    writeNrrd(Volume(geometry, std::vector<float>(120, 7.0f)), constant.toStdString());
+    writeNrrd(Volume(geometry, std::vector<float>(120, std::nanf(""))), empty.toStdString());
+    w.window.openPath(constant);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    CHECK(notice.text().contains("same value"));
+    w.settle();
+    w.window.openPath(empty);
+    REQUIRE(waitFor([&] { return opened.count() == 2; }));
+    CHECK(notice.text().contains("No voxel"));
+    w.settle();
+    w.window.refineTf(); // nothing to do, and no harm
+    w.settle();
+}
+
+TEST_CASE("without OpenGL the CPU draws the same scene", "[window]") {
+    OpenWindow gl;
+    OpenWindow cpu(24, ViewRenderer::Cpu);
+    CHECK(cpu.view().rendererName() == "CPU");
+    const QImage a = gl.picture(), b = cpu.picture();
+    REQUIRE(a.size() == b.size());
+    double difference = 0;
+    for (int y = 0; y < a.height(); ++y) {
+        for (int x = 0; x < a.width(); ++x) {
+            const QColor p = a.pixelColor(x, y), q = b.pixelColor(x, y);
+            difference += std::abs(p.red() - q.red()) + std::abs(p.green() - q.green()) + std::abs(p.blue() - q.blue());
+        }
+    }
+    // Two renderers of one integral: on average within 2 of 255 per channel.
+    CHECK(difference / (3.0 * a.width() * a.height()) < 2.0);
+    drag(cpu.view(), {200, 200}, {300, 220});
+    CHECK(cpu.picture() != b);
+}
