@@ -30,7 +30,7 @@ echo "No display: the same job without a window, on $volume"
     echo "## Before: what each feature shows"
     "$cli" measure "$volume"
     echo
-    echo "## Optimized to equal shares of the target saliency"
+    echo "## Optimized: each feature more salient than the one before it"
 } >"$out/report.txt"
 features=$("$cli" measure "$volume" --json | grep -o '"vws":' | wc -l)
 target=$(seq -s, 1 "$features") # the innermost feature is to be seen most

@@ -1,10 +1,9 @@
 // slice_raycast.frag: what one slab adds to one pixel, front to back
 //   in   v_slab    depth range of the slab
-//   out  o_color   premultiplied sRGB and opacity of the ray's part inside slab and box; blended under what is there
 //   out  o_color   premultiplied sRGB and opacity of the part of the ray in slab and box; blended under what is there
 #include "include/opacity.glsl"
 #include "include/volume.glsl"
-#include "include/tf.glsl"
+#include "include/tf_segment.glsl"
 
 layout(location = 1) uniform vec4 u_pictureFromFragment; // normalized picture coordinates: xy scale, zw offset
 // The ray of a pixel: t(depth) = origin + depth * direction, t in [0,1] over the volume's box.
@@ -35,14 +34,19 @@ void main() {
     float to = min(min(leave.x, leave.y), min(leave.z, v_slab.y));
     if (!(to > from)) discard;
 
-    vec3 t = origin + 0.5 * (from + to) * direction;
-    vec2 sampled = codeAndWeight(t);
-    vec4 entry = tfEntry(sampled.x); // rgb, optical depth of d0
+    // The intensity goes linearly from one end to the other: then what the slab absorbs and emits is exact, and thin
+    // tents leave no bands.
+    vec2 front = codeAndWeight(origin + from * direction), back = codeAndWeight(origin + to * direction);
+    float share = 0.5 * (front.y + back.y);
+    if (front.y == 0.0) front.x = back.x;
+    if (back.y == 0.0) back.x = front.x;
+    vec4 mean = tfMean(front.x, back.x);
+    if (!(mean.a * share > 0.0)) discard;
     float steps = (to - from) * u_perD0 * length(vec3(1.0, u_tangents * picture.xy));
-    float alpha = opacityOfStep(entry.a * sampled.y, steps);
-    vec3 color = entry.rgb;
+    float alpha = opacityOfStep(mean.a * share, steps);
+    vec3 color = mean.rgb / mean.a;
 #ifdef SHADING
-    color = shaded(color, t, direction);
+    color = shaded(color, origin + 0.5 * (from + to) * direction, direction);
 #endif
     o_color = vec4(color * alpha, alpha);
 }

@@ -96,7 +96,11 @@ std::string dimsText(const Int3& d) {
 }
 std::string vectorText(const Vec3& v) { return plainText(v.x) + " x " + plainText(v.y) + " x " + plainText(v.z); }
 std::string rangeText(double lo, double hi) { return plainText(lo) + " .. " + plainText(hi); }
-std::string secondsText(double seconds) { return fixedText(seconds, seconds < 1 ? 3 : 2) + " s"; }
+std::string secondsText(double seconds) {
+    if (seconds < 1e-3) return fixedText(seconds * 1e6, 1) + " µs";
+    if (seconds < 1) return fixedText(seconds * 1e3, 1) + " ms";
+    return fixedText(seconds, 2) + " s";
+}
 
 Json jsonFromVector(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 Json jsonFromDims(const Int3& d) { return Json::array({d.x, d.y, d.z}); }

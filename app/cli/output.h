@@ -43,7 +43,7 @@ std::string bytesText(std::size_t bytes);        ///< "12.3 MiB"
 std::string dimsText(const Int3& dims);          ///< "41 x 41 x 41"
 std::string vectorText(const Vec3& v);           ///< "0.5 x 0.5 x 1"
 std::string rangeText(double lo, double hi);     ///< "0 .. 255"
-std::string secondsText(double seconds);         ///< "0.21 s"
+std::string secondsText(double seconds);         ///< "2.10 s", "210.0 ms", "21.0 µs"
 
 Json jsonFromVector(const Vec3& v);
 Json jsonFromDims(const Int3& d);

@@ -78,7 +78,8 @@ int main(int argc, char** argv) {
 
     QApplication application(argc, argv);
     applyTheme(application);
-    if (!parser.parse(QApplication::arguments())) return complain(parser.errorText(), kUsage);
+    if (!parser.parse(QApplication::arguments()))
+        return complain("wrong option, " + parser.errorText().chopped(1) + ", see pellucid --help", kUsage);
 
     const QString rendererName = parser.value("renderer");
     ViewRenderer renderer = ViewRenderer::Auto;
@@ -117,6 +118,7 @@ int main(int argc, char** argv) {
         for (const QString& volume : volumes) {
             windows.push_back(std::make_unique<MainWindow>(renderer));
             MainWindow& window = *windows.back();
+            if (screenshot.isEmpty()) window.restoreLayout(); // a picture is the same on every machine
             if (!size.isEmpty()) window.resize(size);
             window.show();
             if (!screenshot.isEmpty()) {

@@ -87,6 +87,9 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     updateStatus();
 
     resize(1280, 800);
+}
+
+void MainWindow::restoreLayout() {
     const QSettings settings;
     restoreGeometry(settings.value("geometry").toByteArray());
     restoreState(settings.value("windowState").toByteArray());
@@ -113,7 +116,7 @@ void MainWindow::makeDocks() {
     m_featuresDock = new QDockWidget(tr("Features"), this);
     m_featuresDock->setObjectName("featuresDock");
     m_features = new FeaturesPanel(m_document, m_featuresDock);
-    m_features->setMinimumWidth(360);
+    m_features->setMinimumWidth(340);
     m_featuresDock->setWidget(m_features);
     addDockWidget(Qt::RightDockWidgetArea, m_featuresDock);
     m_tfDock = new QDockWidget(tr("Transfer function"), this);

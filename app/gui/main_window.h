@@ -33,6 +33,8 @@ public:
     TfEditorWidget& tfEditor() { return *m_tfEditor; }
     FeaturesPanel& featuresPanel() { return *m_features; }
 
+    /// Size, place and docks as the last window was closed with.
+    void restoreLayout();
     /// Opens a volume in the background; an error shows a dialog and leaves everything as it is. `tfSpec` (a file,
     /// tents:N[:PEAK], ramp:N) replaces the volume's default transfer function; empty: keep the default.
     void openVolume(const VolumeSource& source, const QString& tfSpec = {});

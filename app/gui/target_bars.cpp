@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kRow = 42;                           // height of a feature, pixels
 constexpr int kHead = 20;                          // height of the legend
-constexpr double kName = 112, kNumbers = 100;      // width left and right of the bars
+constexpr double kName = 104, kNumbers = 100;      // width left and right of the bars
 constexpr double kVwsBar = 13, kVisibilityBar = 6; // heights
 
 QString share(double value) { return QString::number(value, 'f', 3); }
@@ -164,9 +164,8 @@ void TargetBars::paintEvent(QPaintEvent*) {
     painter.setPen(theme::kFaint);
     const QRectF head(0, 2, width(), kHead - 4);
     const QRectF numbers(width() - kNumbers + 8, head.top(), (kNumbers - 14) / 2, head.height());
-    painter.drawText(
-        head.adjusted(kName, 0, -kNumbers, 0), Qt::AlignLeft | Qt::AlignVCenter,
-        metrics.elidedText(tr("VWS (thick), visibility (thin)"), Qt::ElideRight, width() - kName - kNumbers));
+    painter.drawText(head.adjusted(kName, 0, -kNumbers, 0), Qt::AlignLeft | Qt::AlignVCenter,
+                     metrics.elidedText(tr("VWS; thin: visibility"), Qt::ElideRight, width() - kName - kNumbers));
     painter.drawText(numbers, Qt::AlignRight | Qt::AlignVCenter, tr("now"));
     painter.drawText(numbers.translated(numbers.width(), 0), Qt::AlignRight | Qt::AlignVCenter, tr("target"));
     if (count() == 0) {

@@ -405,7 +405,7 @@ void TfCanvas::paintFeatures(QPainter& painter) const {
         painter.setPen(Qt::NoPen);
         painter.setBrush(translucent(color, 0.85));
         painter.drawRoundedRect(bar, 3, 3);
-        painter.setPen(color.lightnessF() > 0.45F || color.green() > 150 ? QColor(20, 20, 20) : Qt::white);
+        painter.setPen(qGray(color.rgb()) > 110 ? QColor(20, 20, 20) : QColor(Qt::white));
         const QString name =
             QFontMetricsF(small).elidedText(QString::fromStdString(f.name), Qt::ElideRight, bar.width() - 4);
         painter.drawText(bar, Qt::AlignCenter, name);

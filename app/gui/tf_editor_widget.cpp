@@ -37,7 +37,7 @@ TfEditorWidget::TfEditorWidget(Document& document, QWidget* parent)
     m_which->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred); // gives way in a narrow window
     m_value->setObjectName("pointValue");
     // Of one width whatever the range: a selection must not change the layout, and with it the picture's size.
-    m_value->setFixedWidth(QFontMetrics(font()).horizontalAdvance("-00000.0000") + 36);
+    m_value->setFixedWidth(QFontMetrics(font()).horizontalAdvance("-00000.00") + 34);
     m_value->setKeyboardTracking(false);
     m_value->setToolTip(tr("Where the point lies, in the units of the data"));
     m_opacity->setObjectName("pointOpacity");
@@ -72,14 +72,12 @@ TfEditorWidget::TfEditorWidget(Document& document, QWidget* parent)
     row->addWidget(m_which, 1);
     row->addWidget(new QLabel(tr("Value"), this));
     row->addWidget(m_value);
-    row->addSpacing(6);
     row->addWidget(new QLabel(tr("Opacity"), this));
     row->addWidget(m_opacity);
-    row->addSpacing(6);
     row->addWidget(m_color);
     row->addWidget(m_fixed);
     row->addWidget(m_remove);
-    row->addSpacing(14);
+    row->addSpacing(6);
     row->addWidget(logHistogram);
     row->addWidget(rootAxis);
     auto* column = new QVBoxLayout(this);

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     if (data.listTests || data.listTestNamesOnly || data.listTags || data.listReporters || data.showHelp)
         return session.run();
     if (qEnvironmentVariableIsEmpty("DISPLAY") && qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY")) {
-        std::fprintf(stderr, "skipped: no display; run ctest under xvfb-run\n");
+        std::fprintf(stderr, "SKIPPED: no display; run ctest under xvfb-run\n");
         return 77; // SKIP_RETURN_CODE
     }
     QApplication application(argc, argv);

@@ -1,8 +1,12 @@
-// A ray per pixel: midpoint samples of the emission-absorption integral (MEASURES §4, last point).
+// A ray per pixel: the emission-absorption integral (MEASURES §4, last point) over segments on which the intensity goes
+// linearly from one end to the other. What a segment absorbs and emits then is exact, by running integrals over the
+// transfer function, so that thin tents and steps leave no bands.
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
 #include "render/image_renderer.h"
 #include "render/ray_box.h"
@@ -21,12 +25,35 @@ constexpr double kDark = 1e-4; ///< transmittance below which a ray ends: a quar
 // Light from the eye; the same numbers stand in shaders/include/shading.glsl.
 constexpr double kAmbient = 0.35, kDiffuse = 0.65, kSpecular = 0.25, kShininess = 24;
 
-/// Opacities of all but one feature's intensities set to 0.
-void keepOnly(TfTable& table, const Feature& feature) {
-    for (std::size_t i = 0; i < table.rgba.size(); ++i)
-        if (!feature.contains(static_cast<double>(i) / (table.size - 1)))
-            table.rgba[i][3] = table.opticalDepth[i] = 0.0f;
-}
+/// Means over an interval of intensity: optical depth per d0, and colour weighted by it.
+class SegmentTable {
+public:
+    SegmentTable(const TransferFunction& tf, const Feature* only) : m_entries(kTableSize), m_integrals(kTableSize) {
+        const TfTable table = makeTfTable(tf, kTableSize);
+        for (std::size_t i = 0; i < m_entries.size(); ++i) {
+            const bool drawn = !only || only->contains(static_cast<double>(i) / (kTableSize - 1));
+            const double tau = drawn ? static_cast<double>(table.opticalDepth[i]) : 0.0;
+            const auto& c = table.rgba[i];
+            m_entries[i] = glm::dvec4(tau * Vec3(c[0], c[1], c[2]), tau);
+            if (i > 0) m_integrals[i] = m_integrals[i - 1] + 0.5 * (m_entries[i - 1] + m_entries[i]);
+        }
+    }
+
+    /// Mean of (τ·rgb, τ) while the intensity goes linearly from `s0` to `s1`, each in [0,1].
+    glm::dvec4 mean(double s0, double s1) const {
+        const double low = std::min(s0, s1) * (kTableSize - 1), high = std::max(s0, s1) * (kTableSize - 1);
+        if (high - low < 1e-3) return m_entries[static_cast<std::size_t>((low + high) / 2 + 0.5)];
+        return (integralTo(high) - integralTo(low)) / (high - low);
+    }
+
+private:
+    glm::dvec4 integralTo(double entry) const {
+        const auto i = std::min(static_cast<std::size_t>(entry), m_entries.size() - 2);
+        const double f = entry - static_cast<double>(i);
+        return m_integrals[i] + f * (m_entries[i] + 0.5 * f * (m_entries[i + 1] - m_entries[i]));
+    }
+    std::vector<glm::dvec4> m_entries, m_integrals; ///< (τ·rgb, τ); integrals from entry 0
+};
 
 class CpuRenderer final : public ImageRenderer {
 public:
@@ -39,8 +66,9 @@ public:
                  const JobControl& job) override {
         settings.validate();
         camera.validate(m_volume->geometry(), "camera");
-        TfTable table = makeTfTable(tf, kTableSize);
-        if (settings.onlyFeature >= 0) keepOnly(table, tf.features.at(static_cast<std::size_t>(settings.onlyFeature)));
+        const Feature* only =
+            settings.onlyFeature < 0 ? nullptr : &tf.features.at(static_cast<std::size_t>(settings.onlyFeature));
+        const SegmentTable table(tf, only);
 
         Image image(settings.width, settings.height);
         std::atomic<int> done = 0;
@@ -62,7 +90,7 @@ private:
         double transmittance = 1;
     };
 
-    Light trace(const Ray& ray, const Camera& camera, const TfTable& table, const RenderSettings& settings) const {
+    Light trace(const Ray& ray, const Camera& camera, const SegmentTable& table, const RenderSettings& settings) const {
         const Geometry& g = m_volume->geometry();
         const Vec3 lo = g.boxMin(), size = g.boxMax() - lo;
         RayInterval t = intersectBox(ray, lo + size * settings.clipLo, lo + size * settings.clipHi);
@@ -72,17 +100,22 @@ private:
         const int steps = std::max(1, static_cast<int>(std::ceil((t.exit - t.enter) / (settings.stepInD0 * g.d0()))));
         const double step = (t.exit - t.enter) / steps;
         const double stepInD0 = step / g.d0();
-        for (int n = 0; n < steps && light.transmittance > kDark; ++n) {
-            const Vec3 at = g.voxelFromWorld(ray.origin + ray.direction * (t.enter + (n + 0.5) * step));
-            const Interpolated code = interpolate(m_grid.codes, m_grid.valid, at);
-            if (code.validShare == 0) continue;
-            const std::size_t entry = table.index(code.value / m_grid.maxCode);
-            const double depth = static_cast<double>(table.opticalDepth[entry]) * code.validShare * stepInD0;
-            if (depth == 0) continue;
-            const double alpha = -std::expm1(-depth);
-            const auto& c = table.rgba[entry];
-            Vec3 color(c[0], c[1], c[2]);
-            if (settings.shading) color = shaded(color, at, ray.direction);
+        const auto voxelAt = [&](double n) {
+            return g.voxelFromWorld(ray.origin + ray.direction * (t.enter + n * step));
+        };
+        Interpolated from = interpolate(m_grid.codes, m_grid.valid, voxelAt(0));
+        for (int n = 1; n <= steps && light.transmittance > kDark; ++n) {
+            const Interpolated to = interpolate(m_grid.codes, m_grid.valid, voxelAt(n));
+            const Interpolated last = std::exchange(from, to);
+            const double share = 0.5 * (last.validShare + to.validShare);
+            if (share == 0) continue;
+            const double s0 = (last.validShare > 0 ? last : to).value / m_grid.maxCode,
+                         s1 = (to.validShare > 0 ? to : last).value / m_grid.maxCode;
+            const glm::dvec4 mean = table.mean(s0, s1);
+            if (mean.w <= 0) continue;
+            const double alpha = -std::expm1(-mean.w * share * stepInD0);
+            Vec3 color = Vec3(mean) / mean.w;
+            if (settings.shading) color = shaded(color, voxelAt(n - 0.5), ray.direction);
             light.rgb += light.transmittance * alpha * color;
             light.transmittance *= 1 - alpha;
         }

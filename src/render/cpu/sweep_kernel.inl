@@ -1,5 +1,9 @@
 // The sweep itself (see sweep.h). Included by one .cpp per instruction set; everything here is in an unnamed namespace
 // and uses no templates of the standard library, so that no code compiled for a newer processor leaks into the rest.
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "render/cpu/sweep.h"
 
 namespace pellucid {
@@ -8,6 +12,16 @@ namespace {
 typedef float Vec8 __attribute__((vector_size(32)));
 typedef float Vec8InMemory __attribute__((vector_size(32), aligned(4), may_alias)); // rows of floats, not aligned to 32
 typedef int Int8 __attribute__((vector_size(32)));
+typedef int Int8InMemory __attribute__((vector_size(32), aligned(4), may_alias));
+
+/// row[x[0]], …, row[x[7]].
+inline Vec8 gathered(const float* row, Int8 x) {
+#ifdef __AVX2__
+    return reinterpret_cast<Vec8>(_mm256_i32gather_ps(row, reinterpret_cast<__m256i>(x), 4));
+#else
+    return Vec8{row[x[0]], row[x[1]], row[x[2]], row[x[3]], row[x[4]], row[x[5]], row[x[6]], row[x[7]]};
+#endif
+}
 
 template <class V>
 struct Lanes;
@@ -111,6 +125,12 @@ private:
         const std::uint16_t* codes = nullptr; ///< of the voxels whose lines these are; null for rays
     };
 
+    /// Of SweepInput, where the compiler sees that stores leave them alone.
+    struct Tables {
+        const float *depth, *integral;
+        const int* opaqueBefore;
+    };
+
     // ---- The ray grid --------------------------------------------------------------------------------------------
 
     RayPlane rayPlane(double w) const {
@@ -158,8 +178,7 @@ private:
         m_rays.entry = m_scratch.ints(1, rays());
         m_gatherRow = m_scratch.floats(6, rowRays() * K);
         m_length = m_scratch.floats(7, rays());
-        const std::size_t longest =
-            rowRays() > static_cast<std::size_t>(m_in.nu) ? rowRays() : static_cast<std::size_t>(m_in.nu);
+        const std::size_t longest = 8 + static_cast<std::size_t>(larger(m_a1 - m_a0 + 1, m_in.nu));
         m_next = m_scratch.ints(2, longest);
         m_nextShare = m_scratch.floats(8, longest);
         for (int b = m_b0; b <= m_b1; ++b)
@@ -248,33 +267,30 @@ private:
     }
 
     /// Samples the lines `inside` where they meet the row that was read last: table entries into m_next, and where
-    /// voxels may be invalid the shares of valid corners into m_nextShare.
+    /// voxels may be invalid the shares of valid corners into m_nextShare. Eight at a time; both have room for the last
+    /// eight.
     void sampleRow(const RayPlane& p, const Inside& inside) {
         const int count = inside.last - inside.first + 1;
-        const float first = static_cast<float>(p.baseU + inside.first * p.scale), scale = static_cast<float>(p.scale);
-        const float limit = static_cast<float>(m_in.nu - 1);
-        const int top = m_in.tableSize - 1;
-        const float* row = m_row;
-        int* next = m_next;
-        if (m_in.valid) {
-            const float* shares = m_row + m_in.nu + 1;
-            for (int i = 0; i < count; ++i) {
-                float u = first + static_cast<float>(i) * scale;
-                u = u < 0 ? 0 : (u > limit ? limit : u);
-                const int x = static_cast<int>(u);
-                const float f = u - static_cast<float>(x), share = shares[x] + f * (shares[x + 1] - shares[x]);
-                const float entry = row[x] + f * (row[x + 1] - row[x]);
-                m_nextShare[i] = share;
-                next[i] = share > kNoShare ? smaller(top, static_cast<int>(entry / share + 0.5f)) : 0;
+        const Vec8 zero{}, scale = zero + static_cast<float>(p.scale), limit = zero + static_cast<float>(m_in.nu - 1);
+        const Int8 top = Int8{} + (m_in.tableSize - 1);
+        const Vec8 first = Vec8{0, 1, 2, 3, 4, 5, 6, 7} * scale + static_cast<float>(p.baseU + inside.first * p.scale);
+        for (int i = 0; i < count; i += 8) {
+            Vec8 u = first + static_cast<float>(i) * scale;
+            u = u < zero ? zero : u;
+            u = u > limit ? limit : u;
+            const Int8 x = __builtin_convertvector(u, Int8);
+            const Vec8 f = u - __builtin_convertvector(x, Vec8);
+            Vec8 entry = gathered(m_row, x);
+            entry += f * (gathered(m_row + 1, x) - entry);
+            if (m_in.valid) {
+                const float* shares = m_row + m_in.nu + 1;
+                Vec8 share = gathered(shares, x);
+                share += f * (gathered(shares + 1, x) - share);
+                entry = share > zero + kNoShare ? entry / share : zero;
+                *reinterpret_cast<Vec8InMemory*>(m_nextShare + i) = share;
             }
-            return;
-        }
-        for (int i = 0; i < count; ++i) {
-            float u = first + static_cast<float>(i) * scale;
-            u = u < 0 ? 0 : (u > limit ? limit : u);
-            const int x = static_cast<int>(u);
-            const float f = u - static_cast<float>(x);
-            next[i] = smaller(top, static_cast<int>(row[x] + f * (row[x + 1] - row[x]) + 0.5f));
+            const Int8 next = __builtin_convertvector(entry + 0.5f, Int8);
+            *reinterpret_cast<Int8InMemory*>(m_next + i) = next < top ? next : top;
         }
     }
 
@@ -293,20 +309,18 @@ private:
 
     /// Adds `path` times the mean of τ while the intensity goes linearly from one table entry to another: exact, by the
     /// table's running integral.
-    void addDepth(float* depth, int from, int to, float path) const {
+    static void addDepth(const Tables& tables, float* depth, int from, int to, float path) {
         const int low = smaller(from, to), high = larger(from, to);
-        if (m_in.opaqueBefore[high + 1] == m_in.opaqueBefore[low]) return; // transparent in every candidate
-        const int distance = high - low;
+        if (tables.opaqueBefore[high + 1] == tables.opaqueBefore[low]) return; // transparent in every candidate
         // Entries next to each other are averaged by their middle: their integrals differ by less than floats can tell.
-        const bool near = distance < kNear;
-        const float* plus = near ? m_in.depthTable + static_cast<std::ptrdiff_t>((low + high) / 2) * K
-                                 : m_in.integralTable + static_cast<std::ptrdiff_t>(high) * K;
-        if (near) {
-            L::store(depth, L::load(depth) + path * L::load(plus));
-            return;
-        }
-        const float* minus = m_in.integralTable + static_cast<std::ptrdiff_t>(low) * K;
-        L::store(depth, L::load(depth) + (path / static_cast<float>(distance)) * (L::load(plus) - L::load(minus)));
+        // Selected, not branched: in noisy data nobody could foretell which it will be.
+        static constexpr float kNothing[K] = {};
+        const bool near = high - low < kNear;
+        const float* plus = near ? tables.depth + static_cast<std::ptrdiff_t>((low + high) / 2) * K
+                                 : tables.integral + static_cast<std::ptrdiff_t>(high) * K;
+        const float* minus = near ? kNothing : tables.integral + static_cast<std::ptrdiff_t>(low) * K;
+        const float scale = path / static_cast<float>(near ? 1 : high - low);
+        L::store(depth, L::load(depth) + scale * (L::load(plus) - L::load(minus)));
     }
 
     /// Adds to the lines what they meet between two planes. Returns `to`.
@@ -316,6 +330,8 @@ private:
         Inside inside = insideAt(p, row, lines);
         if (inside.first > inside.last) inside = {lines.last + 1, lines.last};
         const float slices = static_cast<float>(to - from);
+        const Tables tables{m_in.depthTable, m_in.integralTable, m_in.opaqueBefore};
+        const bool someInvalid = m_in.valid != nullptr;
         if (inside.first <= inside.last) {
             readRow(p, to, row, inside);
             sampleRow(p, inside);
@@ -332,21 +348,21 @@ private:
                 last = now;
             }
             int end = now;
-            if (m_in.valid) {
+            if (someInvalid) {
                 const float share = m_nextShare[a - inside.first], lastShare = cameIn ? share : lines.share[i];
                 lines.share[i] = share;
                 if (lastShare <= kNoShare) last = now;
                 if (share <= kNoShare) end = last;
                 path *= 0.5f * (lastShare + share);
             }
-            addDepth(lines.depth + i * K, last, end, path);
+            addDepth(tables, lines.depth + i * K, last, end, path);
         }
         const auto leave = [&](int a) { // through a side
             const int i = a - lines.first;
             if (lines.entry[i] == kOutside) return;
             float path = lines.length[i * lines.lengthStep] * slices * insideShare(before, p, a, row);
-            if (m_in.valid) path *= lines.share[i];
-            addDepth(lines.depth + i * K, lines.entry[i], lines.entry[i], path);
+            if (someInvalid) path *= lines.share[i];
+            addDepth(tables, lines.depth + i * K, lines.entry[i], lines.entry[i], path);
             lines.entry[i] = kOutside;
         };
         for (int a = lines.first; a < inside.first; ++a) leave(a);

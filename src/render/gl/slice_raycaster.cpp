@@ -6,6 +6,7 @@
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
 
 #include "render/gl/gl_resources.h"
 #include "render/gl/shader_program.h"
@@ -35,6 +36,7 @@ public:
 
     void use() const { glUseProgram(m_id); }
     void setEntriesPerCode(float v) const { glProgramUniform1f(m_id, 0, v); }
+    void setIntegralStart(int v) const { glProgramUniform1i(m_id, 12, v); }
     void setPictureFromFragment(const glm::vec4& v) const { glProgramUniform4fv(m_id, 1, 1, value_ptr(v)); }
     void setRays(const glm::mat3& origin, const glm::mat3& direction) const {
         glProgramUniformMatrix3fv(m_id, 2, 1, GL_FALSE, value_ptr(origin));
@@ -126,19 +128,28 @@ struct SliceRaycaster::Impl {
         return *slot;
     }
 
-    /// rgb and optical depth per entry; `onlyFeature` leaves the other intensities transparent.
+    /// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); `onlyFeature` leaves the
+    /// other intensities transparent.
     void fillTable(int onlyFeature) {
         if (tableFeature == onlyFeature) return;
         if (onlyFeature >= static_cast<int>(tf->features.size()))
             throw Error("there is no feature number " + std::to_string(onlyFeature), "transfer function",
                         "it has " + std::to_string(tf->features.size()));
         const TfTable made = makeTfTable(*tf, kTableSize);
-        std::vector<float> values(static_cast<std::size_t>(4 * kTableSize));
+        std::vector<float> values(static_cast<std::size_t>(8 * kTableSize));
+        glm::dvec4 integral(0), before(0);
         for (std::size_t i = 0; i < made.rgba.size(); ++i) {
             const double s = static_cast<double>(i) / (kTableSize - 1);
             const bool drawn = onlyFeature < 0 || tf->features[static_cast<std::size_t>(onlyFeature)].contains(s);
-            for (std::size_t c = 0; c < 3; ++c) values[4 * i + c] = made.rgba[i][c];
-            values[4 * i + 3] = drawn ? made.opticalDepth[i] : 0.0f;
+            const double tau = drawn ? static_cast<double>(made.opticalDepth[i]) : 0.0;
+            const auto& c = made.rgba[i];
+            const glm::dvec4 entry(tau * Vec3(c[0], c[1], c[2]), tau);
+            if (i > 0) integral += 0.5 * (before + entry);
+            before = entry;
+            for (int k = 0; k < 4; ++k) {
+                values[4 * i + static_cast<std::size_t>(k)] = static_cast<float>(entry[k]);
+                values[4 * (kTableSize + i) + static_cast<std::size_t>(k)] = static_cast<float>(integral[k]);
+            }
         }
         tableFeature.reset();
         table.fill(values, 4);
@@ -196,6 +207,7 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
     const SliceProgram& p = program(settings.shading);
     p.use();
     p.setEntriesPerCode(static_cast<float>(65535.0 / texture.maxCode * (kTableSize - 1)));
+    p.setIntegralStart(kTableSize);
     p.setPictureFromFragment({tileSize / size, tileLow});
     p.setTileFromPicture({2.0f / tileSize, -2.0f * tileLow / tileSize - 1.0f});
     p.setRays(glm::mat3(view.rayOrigin(g)), glm::mat3(view.rayDirection(g)));

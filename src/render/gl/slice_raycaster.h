@@ -14,7 +14,7 @@ namespace pellucid::gl {
 /// Where a picture goes.
 struct DrawTarget {
     unsigned framebuffer = 0; ///< GL name of the framebuffer drawn into (QOpenGLWidget::defaultFramebufferObject())
-    int x = 0, y = 0;         ///< lower left corner of the picture in that framebuffer, pixels
+    int x = 0, y = 0;         ///< where the lower left corner of the picture, or of the tile, goes, pixels
     /// The part of the RenderSettings' width × height image that is drawn, pixels from its top left corner; width and
     /// height 0: all of it. Lets a large image be drawn in tiles.
     int tileX = 0, tileY = 0, tileWidth = 0, tileHeight = 0;

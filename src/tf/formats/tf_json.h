@@ -9,8 +9,8 @@
 
 namespace pellucid {
 
-/// Throws Error naming the place (`/points/3/x`) and the reason: wrong JSON, unknown `format`, newer `version`, x outside
-/// [0,1], unsorted points, NaN, a missing key. `where` is the file's name for the message. A file without
+/// Throws Error naming the place (`/points/3/x`) and the reason: wrong JSON, unknown `format`, newer `version`, x
+/// outside [0,1], unsorted points, NaN, a missing key. `where` is the file's name for the message. A file without
 /// features gets deriveFeatures().
 TransferFunction tfFromJson(const nlohmann::json& json, const std::string& where);
 nlohmann::json jsonFromTf(const TransferFunction& tf);
