@@ -106,8 +106,10 @@ private:
                 candidates.push_back(stepped(at, d, m_options.step * std::exp2(i + shift)));
             const auto states = evaluate(candidates);
             // Of equal ones the shorter step: min_element keeps the first. A NaN never wins.
-            const auto best = std::min_element(states.begin(), states.end(),
-                                               [](const auto& a, const auto& b) { return a.objective < b.objective; });
+            const auto better = [](const auto& a, const auto& b) {
+                return a.objective < b.objective || (std::isnan(b.objective) && !std::isnan(a.objective));
+            };
+            const auto best = std::min_element(states.begin(), states.end(), better);
             if (best->objective < at.objective) return *best;
             if (shift == 0) leastBad = *best;
         }

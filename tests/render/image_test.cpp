@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "render/image_renderer.h"
+#include "support/temp_folder.h"
 #include "support/volumes.h"
 #include "volume/error.h"
 
@@ -10,14 +11,6 @@ using namespace pellucid;
 using namespace pellucid::test;
 
 namespace {
-
-/// A folder that is gone after the test.
-struct TemporaryFolder {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("pellucid-image-" + std::to_string(std::random_device{}()));
-    TemporaryFolder() { std::filesystem::create_directory(path); }
-    ~TemporaryFolder() { std::filesystem::remove_all(path); }
-};
 
 RenderSettings small() {
     RenderSettings settings;
@@ -98,12 +91,12 @@ TEST_CASE("shading changes colours, never alpha", "[image]") {
 }
 
 TEST_CASE("images survive a file in the precision of its format", "[image]") {
-    const TemporaryFolder folder;
+    const TempFolder folder;
     Image image(5, 3);
     for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = static_cast<float>(i % 16) / 15;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 0.2f + 0.8f * static_cast<float>(i) / 60;
     for (const auto& [suffix, tolerance] : {std::pair{"png", 0.002}, {"tif", 1e-5}, {"exr", 5e-3}}) {
-        const std::string path = (folder.path / ("image." + std::string(suffix))).string();
+        const std::string path = folder.path("image." + std::string(suffix));
         writeImage(image, path);
         const Image back = readImage(path);
         REQUIRE(back.width == 5);
@@ -114,18 +107,18 @@ TEST_CASE("images survive a file in the precision of its format", "[image]") {
         INFO(suffix);
         CHECK(worst <= tolerance);
     }
-    writeImage(image, (folder.path / "image.jpg").string());
-    CHECK(readImage((folder.path / "image.jpg").string()).width == 5);
+    writeImage(image, folder.path("image.jpg"));
+    CHECK(readImage(folder.path("image.jpg")).width == 5);
 }
 
 TEST_CASE("an image that cannot be written leaves nothing behind", "[image]") {
-    const TemporaryFolder folder;
+    const TempFolder folder;
     CHECK_THROWS_AS(checkImageSuffix("x.gif"), UsageError);
-    CHECK_THROWS_AS(writeImage(Image(2, 2), (folder.path / "no" / "x.png").string()), FileError);
-    std::filesystem::create_directory(folder.path / "x.png");
-    CHECK_THROWS_AS(writeImage(Image(2, 2), (folder.path / "x.png").string()), FileError);
-    CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 1);
-    CHECK_THROWS_AS(readImage((folder.path / "none.png").string()), FileError);
+    CHECK_THROWS_AS(writeImage(Image(2, 2), folder.path("no/x.png")), FileError);
+    std::filesystem::create_directory(folder.path("x.png"));
+    CHECK_THROWS_AS(writeImage(Image(2, 2), folder.path("x.png")), FileError);
+    CHECK(folder.fileCount() == 1);
+    CHECK_THROWS_AS(readImage(folder.path("none.png")), FileError);
 }
 
 TEST_CASE("impossible settings are refused", "[image]") {
