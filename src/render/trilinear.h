@@ -31,6 +31,18 @@ Interpolated interpolate(const Grid<T>& grid, const std::vector<std::uint8_t>& v
         if (n[a] == 1) step[a] = 0;
     }
     const std::size_t corner = grid.index(base[0], base[1], base[2]);
+    if (valid.empty()) { // nearly always: no weights to keep
+        const auto alongX = [&](std::size_t i) {
+            const auto low = static_cast<double>(grid[i]), high = static_cast<double>(grid[i + step[0]]);
+            return low + fraction[0] * (high - low);
+        };
+        const auto alongY = [&](std::size_t i) {
+            const double low = alongX(i), high = alongX(i + step[1]);
+            return low + fraction[1] * (high - low);
+        };
+        const double low = alongY(corner), high = alongY(corner + step[2]);
+        return {low + fraction[2] * (high - low), 1.0};
+    }
     Interpolated result;
     for (int c = 0; c < 8; ++c) {
         double w = 1;
@@ -40,11 +52,11 @@ Interpolated interpolate(const Grid<T>& grid, const std::vector<std::uint8_t>& v
             w *= upper ? fraction[a] : 1 - fraction[a];
             if (upper) i += step[a];
         }
-        if (w == 0 || (!valid.empty() && !valid[i])) continue;
+        if (w == 0 || !valid[i]) continue;
         result.value += w * static_cast<double>(grid[i]);
         result.validShare += w;
     }
-    if (!valid.empty() && result.validShare > 0) result.value /= result.validShare;
+    if (result.validShare > 0) result.value /= result.validShare;
     return result;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "render/cpu/sweep.h"
@@ -90,31 +91,31 @@ private:
 
     static Vec3 permuted(const Vec3& p, const Axes& x) { return {p[x.u], p[x.v], p[x.w]}; }
 
-    /// The sweep axis: the one nearest the view direction; for a perspective eye the one whose rays stay steepest.
+    /// The sweep axis: the one along which a ray crosses most voxels; for a perspective eye the one whose rays stay
+    /// steepest. Counted in voxels, so that rays cross about one voxel per slice however unequal the spacing is.
     Axes chooseAxes(const Camera& camera) const {
         const Geometry& g = m_volume->geometry();
         int w = 0;
         bool flipped = false;
         if (camera.projection == Projection::Orthographic) {
-            const Vec3 d = camera.forward();
+            const Vec3 d = camera.forward() / g.spacing;
             for (int a = 1; a < 3; ++a)
                 if (std::abs(d[a]) > std::abs(d[w])) w = a;
             flipped = d[w] < 0;
         } else {
-            const Vec3 lo = g.boxMin(), hi = g.boxMax();
-            double best = 1e300;
+            const Vec3 lo(-0.5), hi = Vec3(g.dims) - 0.5, eye = g.voxelFromWorld(camera.eye);
+            double best = std::numeric_limits<double>::infinity();
             for (int a = 0; a < 3; ++a) {
-                const double outside = std::max(lo[a] - camera.eye[a], camera.eye[a] - hi[a]);
+                const double outside = std::max(lo[a] - eye[a], eye[a] - hi[a]);
                 if (outside < 0) continue;
                 double lateral = 0;
                 for (int b = 0; b < 3; ++b)
-                    if (b != a)
-                        lateral = std::max({lateral, std::abs(lo[b] - camera.eye[b]), std::abs(hi[b] - camera.eye[b])});
+                    if (b != a) lateral = std::max({lateral, std::abs(lo[b] - eye[b]), std::abs(hi[b] - eye[b])});
                 const double slope = lateral / (outside + (hi[a] - lo[a]) / 2);
                 if (slope >= best) continue;
                 best = slope;
                 w = a;
-                flipped = camera.eye[a] >= hi[a];
+                flipped = eye[a] >= hi[a];
             }
         }
         return {w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped};
@@ -128,7 +129,7 @@ private:
         const bool high = m_quality == Quality::High;
         in.maxStep = high ? 0.5 : 1.0;
         in.raySpacing = in.maxRaySpacing = high ? 0.4 : 0.75;
-        in.ownSlices = high ? 3 : 1;
+        in.ownSlices = high ? 3 : 2;
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);

@@ -257,10 +257,20 @@ private:
         const double end = k - 0.5 / length;
         double from = k == 0 ? -0.5 : end - 1;
         if (k > 0) from = step(plane, from, k - 1, row, lines);
-        const int steps = larger(1, ceilInt((end - from) * length / m_in.maxStep - 1e-6));
+        const int steps = stepsOver(end - from, length);
         const double start = from;
         if (end - start < 1e-6) return;
         for (int n = 1; n <= steps; ++n) from = step(plane, from, start + (end - start) * n / steps, row, lines);
+    }
+
+    /// Samples over a part of a slice distance: no further apart than maxStep, but no more than tell the voxels apart
+    /// that a line crosses there, since between them its intensity is smooth (long voxels seen along their length).
+    int stepsOver(double slices, double length) const {
+        const double lateral = length * length - m_in.hw * m_in.hw; // squared, in d0
+        const double narrow = m_in.hu < m_in.hv ? m_in.hu : m_in.hv;
+        const double crossed = lateral > 0 ? 1.5 * slices * __builtin_sqrt(lateral) / narrow : 0.0;
+        const double wanted = slices * length / m_in.maxStep - 1e-6, enough = 1 + 2 * crossed / m_in.maxStep;
+        return larger(1, ceilInt(wanted < enough ? wanted : enough));
     }
 
     /// The lines of `row` that are inside the box at this plane; empty where first > last.
