@@ -1,4 +1,7 @@
-# What `cmake --install` places and what CPack packs.
+# What `cmake --install` places besides the programs, and what CPack packs.
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES app/gui/pellucid.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+
 set(CPACK_PACKAGE_NAME pellucid)
 set(CPACK_PACKAGE_VENDOR "Pellucid")
 set(CPACK_PACKAGE_CONTACT "the Pellucid maintainers")

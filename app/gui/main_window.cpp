@@ -244,11 +244,12 @@ void MainWindow::makeMenus() {
 
     QMenu* viewMenu = menuBar()->addMenu(tr("&View"));
     QList<QAction*> viewActions;
-    viewActions << action(viewMenu, tr("&Fit"), "fitAction", QKeySequence("F"), [this] {
+    viewActions << action(viewMenu, tr("&Fit"), "fitAction", QKeySequence("R"), [this] {
         m_view->fit();
-    }) << action(viewMenu, tr("&Reset"), "resetViewAction", QKeySequence("R"), [this] { m_view->resetView(); });
-    viewActions[0]->setToolTip(tr("The whole volume from the same direction (F or double-click)"));
-    viewActions[1]->setToolTip(tr("The view that the volume opened with (R)"));
+    }) << action(viewMenu, tr("&Reset"), "resetViewAction", QKeySequence("Home"), [this] { m_view->resetView(); });
+    viewActions[0]->setShortcuts({QKeySequence("R"), QKeySequence("F")});
+    viewActions[0]->setToolTip(tr("The whole volume from the same direction (R, F or double-click)"));
+    viewActions[1]->setToolTip(tr("The view that the volume opened with (Home)"));
     viewMenu->addSeparator();
     const std::pair<QString, StandardView> views[] = {
         {tr("Front"), StandardView::Front}, {tr("Back"), StandardView::Back}, {tr("Left"), StandardView::Left},

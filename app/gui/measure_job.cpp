@@ -78,6 +78,12 @@ void MeasureJob::start() {
                 Q_EMIT failed(tr("not enough memory to measure the volume"), m_document.title(),
                               tr("close other programs, or open a smaller volume"));
             });
+        } catch (const std::exception& error) { // ours to mend, but no reason to end the program
+            QMetaObject::invokeMethod(this, [this, run, what = QString::fromLocal8Bit(error.what())] {
+                if (run != m_run) return;
+                finish(run);
+                Q_EMIT failed(tr("unexpected failure: %1").arg(what), m_document.title(), tr("please report this"));
+            });
         }
     });
 }

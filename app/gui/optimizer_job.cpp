@@ -60,6 +60,8 @@ void OptimizerJob::start(const std::shared_ptr<const Volume>& volume, const Tran
         } catch (const std::bad_alloc&) {
             fail(tr("not enough memory for the optimization"), {},
                  tr("close other programs, or open a smaller volume"));
+        } catch (const std::exception& error) { // ours to mend, but no reason to end the program
+            fail(tr("unexpected failure: %1").arg(QString::fromLocal8Bit(error.what())), {}, tr("please report this"));
         }
     });
 }

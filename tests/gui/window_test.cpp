@@ -298,7 +298,12 @@ TEST_CASE("the mouse turns, pans and zooms, and R restores the view", "[window]"
     CHECK_FALSE(w.document().camera() == fit);
     w.window.activateWindow(); // shortcuts belong to the active window
     REQUIRE(QTest::qWaitForWindowActive(&w.window, kPatience));
+    const Vec3 direction = w.document().camera().forward();
+    QTest::keyClick(&view, Qt::Key_Plus);
     QTest::keyClick(&view, Qt::Key_R);
+    CHECK(glm::length(w.document().camera().forward() - direction) < 1e-9);
+    CHECK(viewAngles(w.document().camera(), geometry).zoom == Approx(viewAngles(fit, geometry).zoom));
+    QTest::keyClick(&view, Qt::Key_Home);
     CHECK(w.document().camera() == start);
     QTest::keyClick(&view, Qt::Key_5); // from above
     CHECK(viewAngles(w.document().camera(), geometry).elevation == Approx(90));

@@ -22,7 +22,7 @@ struct Expected {
 TEST_CASE("real files open with the sizes, types and ranges of their documentation", "[real]") {
     const std::string folder = std::string(PELLUCID_SHARED_DIR) + "/data/real/";
     if (!std::filesystem::is_directory(folder)) {
-        WARN("skipped: there is no folder " << folder);
+        WARN("SKIPPED: there is no folder " << folder);
         return;
     }
     const Expected table[] = {
@@ -42,7 +42,7 @@ TEST_CASE("real files open with the sizes, types and ranges of their documentati
         VolumeSource source;
         source.path = folder + e.file;
         if (!std::filesystem::exists(source.path)) {
-            WARN("skipped: there is no " << e.file);
+            WARN("SKIPPED: there is no " << e.file);
             continue;
         }
         const Volume volume = loadVolume(source);
@@ -58,7 +58,7 @@ TEST_CASE("real files open with the sizes, types and ranges of their documentati
 TEST_CASE("the nucleon is the same through its two headers and as raw data", "[real]") {
     const std::string folder = std::string(PELLUCID_SHARED_DIR) + "/data/real/nucleon/";
     if (!std::filesystem::exists(folder + "nucleon.raw")) {
-        WARN("skipped: there is no nucleon.raw in " << folder);
+        WARN("SKIPPED: there is no nucleon.raw in " << folder);
         return;
     }
     VolumeSource mhd, nhdr, raw;
