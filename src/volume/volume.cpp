@@ -113,7 +113,11 @@ double Volume::intensity(std::size_t index) const { return intensityOfValue(valu
 double Volume::intensityOfValue(double v) const {
     if (!valid(v, m_missing)) return std::numeric_limits<double>::quiet_NaN();
     if (m_range.lo == m_range.hi) return 0.0;
-    return std::clamp((v - m_range.lo) / (m_range.hi - m_range.lo), 0.0, 1.0);
+    const double span = m_range.hi - m_range.lo;
+    // Halves where the window spans more than the largest double.
+    const double s =
+        std::isfinite(span) ? (v - m_range.lo) / span : (v / 2 - m_range.lo / 2) / (m_range.hi / 2 - m_range.lo / 2);
+    return std::clamp(s, 0.0, 1.0);
 }
 
 } // namespace pellucid
