@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "render/cpu/sweep.h"
@@ -15,6 +16,8 @@ namespace pellucid {
 
 namespace {
 
+/// In voxels. The rays of an eye farther off are parallel: over 4096 voxels they diverge by less than 0.2.
+constexpr double kFarEye = 1e8;
 constexpr int kDepthTableSize = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
 
 /// The tables of up to kSweepLanes transfer functions side by side.
@@ -90,27 +93,31 @@ private:
 
     static Vec3 permuted(const Vec3& p, const Axes& x) { return {p[x.u], p[x.v], p[x.w]}; }
 
-    /// The sweep axis: the one nearest the view direction; for a perspective eye the one whose rays stay steepest.
+    /// The sweep axis: the one whose slices rays cross most often; for a perspective eye the one whose rays stay
+    /// steepest. In voxels, not world units: where slices lie far apart, rays steep in the world would cross thousands
+    /// of voxels from one slice to the next.
     Axes chooseAxes(const Camera& camera) const {
         const Geometry& g = m_volume->geometry();
         int w = 0;
         bool flipped = false;
         if (camera.projection == Projection::Orthographic) {
-            const Vec3 d = camera.forward();
+            const Vec3 d = camera.forward() / g.spacing;
             for (int a = 1; a < 3; ++a)
                 if (std::abs(d[a]) > std::abs(d[w])) w = a;
             flipped = d[w] < 0;
         } else {
             const Vec3 lo = g.boxMin(), hi = g.boxMax();
-            double best = 1e300;
+            double best = std::numeric_limits<double>::infinity();
             for (int a = 0; a < 3; ++a) {
                 const double outside = std::max(lo[a] - camera.eye[a], camera.eye[a] - hi[a]);
                 if (outside < 0) continue;
                 double lateral = 0;
                 for (int b = 0; b < 3; ++b)
                     if (b != a)
-                        lateral = std::max({lateral, std::abs(lo[b] - camera.eye[b]), std::abs(hi[b] - camera.eye[b])});
-                const double slope = lateral / (outside + (hi[a] - lo[a]) / 2);
+                        lateral = std::max(lateral,
+                                           std::max(std::abs(lo[b] - camera.eye[b]), std::abs(hi[b] - camera.eye[b])) /
+                                               g.spacing[b]);
+                const double slope = lateral * g.spacing[a] / (outside + (hi[a] - lo[a]) / 2);
                 if (slope >= best) continue;
                 best = slope;
                 w = a;
@@ -174,6 +181,18 @@ private:
                                    const WeightFields* weights, Grid<float>* field, const JobControl& job) {
         const Geometry& g = m_volume->geometry();
         camera.validate(g, "camera");
+        if (camera.projection == Projection::Perspective) {
+            const Vec3 eye = camera.eye - g.boxCenter();
+            if (std::max({std::abs(eye.x / g.spacing.x), std::abs(eye.y / g.spacing.y),
+                          std::abs(eye.z / g.spacing.z)}) > kFarEye) {
+                Camera parallel = camera;
+                parallel.projection = Projection::Orthographic;
+                parallel.center = g.boxCenter();
+                parallel.up = std::abs(eye.z) > std::hypot(eye.x, eye.y) ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+                parallel.height = 1; // of the image; no ray depends on it
+                return sweep(parallel, tfs, weights, field, job);
+            }
+        }
         const std::size_t features = tfs[0].features.size();
         for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features.size() == features);
         if (features >= kTransparent)
