@@ -17,6 +17,7 @@ TEST_CASE("reference, cpu and gl agree on the nucleon", "[gl][real]") {
         WARN("SKIPPED: there is no " << path);
         return;
     }
+    if (!testing::haveGl()) return;
     VolumeSource source;
     source.path = path;
     const auto volume = std::make_shared<const Volume>(loadVolume(source));

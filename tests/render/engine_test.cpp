@@ -194,3 +194,26 @@ TEST_CASE("an engine hears a stop and refuses a camera inside the box", "[visibi
     for (const auto& engine : {makeReferenceEngine(volume), makeCpuEngine(volume)})
         CHECK_THROWS_AS(engine->field(camera, tents(3)), Error);
 }
+
+TEST_CASE("slices far apart, and eyes far off, are no obstacle to the cpu engine", "[visibility][cpu]") {
+    std::mt19937 random(7);
+    const auto check = [](const std::shared_ptr<const Volume>& volume, const Camera& camera) {
+        const TransferFunction tf = tents(3, 0.3);
+        const auto a = makeCpuEngine(volume)->sums(camera, {&tf, 1}, nullptr, {});
+        const auto b = makeReferenceEngine(volume)->sums(camera, {&tf, 1}, nullptr, {});
+        for (std::size_t f = 0; f < 3; ++f)
+            CHECK(a[0].visibility[f] / a[0].allVisibility ==
+                  Approx(b[0].visibility[f] / b[0].allVisibility).margin(0.01));
+    };
+    for (const Vec3 spacing : {Vec3(1, 1, 1000), Vec3(1, 1000, 1), Vec3(1, 1000, 1000)}) {
+        const auto volume = roughVolume(random, {8, 8, 8}, spacing);
+        for (const auto projection : {Projection::Perspective, Projection::Orthographic})
+            check(volume, cameraFromView(volume->geometry(), 40, 40, 1, projection));
+    }
+    const auto volume = roughVolume(random, {8, 8, 8}, Vec3(1));
+    Camera camera = cameraFromView(volume->geometry(), 40, 40, 1, Projection::Perspective);
+    for (const double distance : {1e10, 1e30}) {
+        camera.eye = camera.center + Vec3(1, -2, 1) * distance;
+        check(volume, camera);
+    }
+}

@@ -1,4 +1,5 @@
 // What the fast engines read: intensity codes and histograms.
+#include <limits>
 #include <numeric>
 
 #include <catch2/catch.hpp>
@@ -103,4 +104,12 @@ TEST_CASE("histogram and codes are the same with one thread and with three", "[h
     CHECK(one.counts == three.counts);
     CHECK(one.total == volume.size());
     CHECK(std::equal(gridOne.codes.begin(), gridOne.codes.end(), gridThree.codes.begin()));
+}
+
+TEST_CASE("a window wider than the largest double has finite intensities", "[volume]") {
+    const double most = std::numeric_limits<double>::max(); // hi − lo overflows
+    const Volume volume(Geometry{{3, 1, 1}}, Samples(std::vector<double>{-most, 0, most}));
+    CHECK(volume.intensity(0) == 0.0);
+    CHECK(volume.intensity(1) == 0.5);
+    CHECK(volume.intensity(2) == 1.0);
 }

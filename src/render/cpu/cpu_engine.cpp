@@ -16,6 +16,8 @@ namespace pellucid {
 
 namespace {
 
+/// In voxels. The rays of an eye farther off are parallel: over 4096 voxels they diverge by less than 0.2.
+constexpr double kFarEye = 1e8;
 constexpr int kDepthTableSize = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
 
 /// The tables of up to kSweepLanes transfer functions side by side.
@@ -175,6 +177,18 @@ private:
                                    const WeightFields* weights, Grid<float>* field, const JobControl& job) {
         const Geometry& g = m_volume->geometry();
         camera.validate(g, "camera");
+        if (camera.projection == Projection::Perspective) {
+            const Vec3 eye = camera.eye - g.boxCenter();
+            if (std::max({std::abs(eye.x / g.spacing.x), std::abs(eye.y / g.spacing.y),
+                          std::abs(eye.z / g.spacing.z)}) > kFarEye) {
+                Camera parallel = camera;
+                parallel.projection = Projection::Orthographic;
+                parallel.center = g.boxCenter();
+                parallel.up = std::abs(eye.z) > std::hypot(eye.x, eye.y) ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+                parallel.height = 1; // of the image; no ray depends on it
+                return sweep(parallel, tfs, weights, field, job);
+            }
+        }
         const std::size_t features = tfs[0].features.size();
         for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features.size() == features);
         if (features >= kTransparent)
