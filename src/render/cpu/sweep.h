@@ -1,11 +1,12 @@
 // One front-to-back sweep over the volume that carries several candidate transfer functions in SIMD lanes: what the
 // cpu engine hands to its kernel. Plain data, so that the kernel can be compiled once per instruction set.
 //
-// Slices are the voxel planes along the axis nearest the view direction, k = 0 the nearest to the eye. (u, v, w) are
-// voxel coordinates with w across the slices, growing away from the eye. Rays are fixed through the slices: ray (a, b)
-// meets the plane w at u = baseU(w) + a·scale(w), v = baseV(w) + b·scale(w). Each ray keeps the optical depth ∫τ per
-// candidate, up to d0/2 in front of slice k, where voxels take it from (MEASURES §4); that is interpolated once per
-// voxel, so that nothing is resampled from slice to slice.
+// Slices are the voxel planes across the axis along which rays cross most voxels, k = 0 the nearest to the eye. (u, v,
+// w) are voxel coordinates with w across the slices, growing away from the eye. Rays are fixed through the slices: ray
+// (a, b) meets the plane w at u = baseU(w) + a·scale(w), v = baseV(w) + b·scale(w). Each ray keeps the optical depth ∫τ
+// per candidate. A voxel of slice k needs it d0/2 in front of its centre (MEASURES §4): it follows the last slice
+// distances along a line of its own and takes what lies before from the rays, interpolated once, so that nothing is
+// resampled from slice to slice.
 #pragma once
 
 #include <cstddef>

@@ -73,7 +73,7 @@ private:
 } // namespace
 
 std::unique_ptr<ImageRenderer> makeGlRenderer(std::shared_ptr<const Volume> volume) {
-    return std::make_unique<GlRenderer>(volume);
+    return std::make_unique<GlRenderer>(std::move(volume));
 }
 
 } // namespace pellucid

@@ -75,7 +75,7 @@ std::unique_ptr<OsMesaContext> OsMesaContext::tryMake(std::string& why) {
                                      0};
     made->m_context = create(wanted.data(), nullptr);
     constexpr int kSide = 16;
-    made->m_pixels.assign(static_cast<std::size_t>(4 * kSide * kSide), 0);
+    made->m_pixels.assign(4 * kSide * kSide, 0);
     if (made->m_context == nullptr ||
         makeCurrent(made->m_context, made->m_pixels.data(), GL_UNSIGNED_BYTE, kSide, kSide) == 0) {
         why = "no OpenGL 4.3";

@@ -36,7 +36,8 @@ void compileInto(GLuint program, const std::string& file, const std::vector<std:
         glGetShaderiv(shader.id, GL_INFO_LOG_LENGTH, &length);
         std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
         glGetShaderInfoLog(shader.id, length, nullptr, log.data());
-        throw Error("a shader does not compile: " + mapShaderLog(log.c_str(), source), file,
+        throw Error("a shader does not compile: " + mapShaderLog(log.c_str(), source),
+                    file, // NOLINT: up to its first 0
                     "use --engine cpu and report this with your driver's version");
     }
     glAttachShader(program, shader.id);
@@ -55,7 +56,8 @@ ProgramName makeProgram(const std::vector<std::string>& files, const std::vector
         glGetProgramiv(program.id(), GL_INFO_LOG_LENGTH, &length);
         std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
         glGetProgramInfoLog(program.id(), length, nullptr, log.data());
-        throw Error(std::string("a shader program does not link: ") + log.c_str(), files.front(),
+        throw Error(std::string("a shader program does not link: ") + log.c_str(),
+                    files.front(), // NOLINT: up to its first 0
                     "use --engine cpu and report this with your driver's version");
     }
     return program;

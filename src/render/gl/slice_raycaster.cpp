@@ -108,6 +108,7 @@ struct SliceRaycaster::Impl {
     Impl() {
         glBindVertexArray(sliceArray.id());
         glBindBuffer(GL_ARRAY_BUFFER, vertexBuffer.id());
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): GL takes offsets into buffers as pointers
         const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
         glEnableVertexAttribArray(0);
         glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, sizeof(SlabVertex), offset(0));
