@@ -72,8 +72,9 @@ private:
 
 } // namespace
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): as the other makers of renderers take it
 std::unique_ptr<ImageRenderer> makeGlRenderer(std::shared_ptr<const Volume> volume) {
-    return std::make_unique<GlRenderer>(std::move(volume));
+    return std::make_unique<GlRenderer>(volume);
 }
 
 } // namespace pellucid

@@ -1,4 +1,5 @@
 #include "render/gl/shader_program.h"
+#include <cstring>
 
 #include "render/gl/gl_resources.h"
 #include "volume/error.h"
@@ -36,8 +37,8 @@ void compileInto(GLuint program, const std::string& file, const std::vector<std:
         glGetShaderiv(shader.id, GL_INFO_LOG_LENGTH, &length);
         std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
         glGetShaderInfoLog(shader.id, length, nullptr, log.data());
-        throw Error("a shader does not compile: " + mapShaderLog(log.c_str(), source),
-                    file, // NOLINT: up to its first 0
+        log.resize(std::strlen(log.c_str())); // drivers count the 0 at the end
+        throw Error("a shader does not compile: " + mapShaderLog(log, source), file,
                     "use --engine cpu and report this with your driver's version");
     }
     glAttachShader(program, shader.id);
@@ -56,8 +57,8 @@ ProgramName makeProgram(const std::vector<std::string>& files, const std::vector
         glGetProgramiv(program.id(), GL_INFO_LOG_LENGTH, &length);
         std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
         glGetProgramInfoLog(program.id(), length, nullptr, log.data());
-        throw Error(std::string("a shader program does not link: ") + log.c_str(),
-                    files.front(), // NOLINT: up to its first 0
+        log.resize(std::strlen(log.c_str())); // drivers count the 0 at the end
+        throw Error(std::string("a shader program does not link: ") + log, files.front(),
                     "use --engine cpu and report this with your driver's version");
     }
     return program;
