@@ -50,8 +50,7 @@ double sumOfProducts(const Grid<float>& a, const Grid<float>& b) {
 Grid<float> vwsField(const Grid<float>& visibility, const WeightFields& weights, const VwsOptions& options) {
     const double brightness = sumOfProducts(visibility, weights.brightness);
     const double saturation = sumOfProducts(visibility, weights.saturation);
-    const double u1 = saturation > 0 ? options.u1 : 1.0;
-    const double u2 = brightness > 0 ? options.u2 : 1.0;
+    const auto [u1, u2] = attributeWeights({brightness, saturation}, options);
     const double b = brightness > 0 ? u1 / brightness : 0.0;
     const double s = saturation > 0 ? u2 / saturation : 0.0;
     Grid<float> field(visibility.dims());

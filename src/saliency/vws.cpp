@@ -32,13 +32,14 @@ void add(FeatureSums& total, const FeatureSums& part) {
 
 } // namespace
 
-std::vector<FeatureMeasures> featureMeasures(const FeatureSums& sums, const VwsOptions& options) {
-    // An attribute that is nowhere salient has no say: the other one then carries weight 1.
-    double u1 = sums.allWeighted[0] > 0 ? options.u1 : 0.0;
-    double u2 = sums.allWeighted[1] > 0 ? options.u2 : 0.0;
-    if (sums.allWeighted[0] <= 0 && sums.allWeighted[1] > 0) u2 = 1.0;
-    if (sums.allWeighted[1] <= 0 && sums.allWeighted[0] > 0) u1 = 1.0;
+std::array<double, 2> attributeWeights(const std::array<double, 2>& allWeighted, const VwsOptions& options) {
+    const bool brightness = allWeighted[0] > 0, saturation = allWeighted[1] > 0;
+    if (brightness && saturation) return {options.u1, options.u2};
+    return {brightness ? 1.0 : 0.0, saturation ? 1.0 : 0.0};
+}
 
+std::vector<FeatureMeasures> featureMeasures(const FeatureSums& sums, const VwsOptions& options) {
+    const auto [u1, u2] = attributeWeights(sums.allWeighted, options);
     std::vector<FeatureMeasures> all(sums.visibility.size());
     for (std::size_t f = 0; f < all.size(); ++f) {
         FeatureMeasures& m = all[f];

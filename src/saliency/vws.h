@@ -25,6 +25,10 @@ struct VwsOptions {
     bool operator==(const VwsOptions&) const = default;
 };
 
+/// The weights that count (MEASURES §6): an attribute whose sum over all voxels is 0 is nowhere salient and has no say,
+/// the other one then carries weight 1; both are 0 where both sums are.
+std::array<double, 2> attributeWeights(const std::array<double, 2>& allWeighted, const VwsOptions& options);
+
 /// One feature's figures, each in [0,1].
 struct FeatureMeasures {
     double visibility = 0; ///< FV_F
