@@ -8,6 +8,7 @@
 #include <QOpenGLFramebufferObject>
 #include <QOpenGLFunctions>
 
+#include "render/gl/engines.h"
 #include "render/gl/slice_raycaster.h"
 #include "theme.h"
 
@@ -89,8 +90,7 @@ void GlSurface::initializeGL() {
     connect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &GlSurface::releaseGl);
     QOpenGLFunctions* gl = context()->functions();
     const QString renderer = glText(gl, GL_RENDERER);
-    m_software = renderer.contains("llvmpipe") || renderer.contains("softpipe") || renderer.contains("SWR") ||
-                 renderer.contains("Software");
+    m_software = isSoftwareRenderer(renderer.toStdString());
     m_nanosecondsPerSample = m_software ? 40.0 : 0.5;
     const auto version = context()->format().version();
     m_rendererName = tr("OpenGL %1.%2, %3")

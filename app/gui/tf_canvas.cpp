@@ -155,8 +155,8 @@ int TfCanvas::featureBarAt(const QPointF& position) const {
 
 QString TfCanvas::valueText(double x) const {
     if (!m_document.hasVolume()) return {};
-    const ValueRange range = m_document.volume()->range();
-    return numberText(range.lo + x * (range.hi - range.lo), range.hi - range.lo);
+    const Volume& volume = *m_document.volume();
+    return numberText(volume.valueOfIntensity(x), volume.range().hi - volume.range().lo);
 }
 
 void TfCanvas::mousePressEvent(QMouseEvent* event) {

@@ -125,7 +125,7 @@ void TfEditorWidget::showPoint() {
     m_value->setDecimals(decimalsFor(span));
     m_value->setRange(range.lo, range.hi);
     m_value->setSingleStep(span > 0 ? span / 200 : 1.0);
-    m_value->setValue(range.lo + point.x * span);
+    m_value->setValue(m_document.volume()->valueOfIntensity(point.x));
     m_opacity->setValue(point.opacity);
     m_fixed->setChecked(point.fixed);
     m_showing = false;

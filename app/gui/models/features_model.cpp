@@ -58,10 +58,10 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
         return QString::fromStdString(feature.name);
     case Range: {
         if (!m_document.hasVolume()) return {};
-        const ValueRange range = m_document.volume()->range();
-        const double span = range.hi - range.lo;
-        return QStringLiteral("%1 – %2").arg(numberText(range.lo + feature.a * span, span),
-                                             numberText(range.lo + feature.b * span, span));
+        const Volume& volume = *m_document.volume();
+        const double span = volume.range().hi - volume.range().lo;
+        return QStringLiteral("%1 – %2").arg(numberText(volume.valueOfIntensity(feature.a), span),
+                                             numberText(volume.valueOfIntensity(feature.b), span));
     }
     case Opacity:
         number = m_opacities[f];

@@ -130,7 +130,7 @@ private:
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
         in.maxStep = high ? 0.5 : 1.0;
-        in.raySpacing = in.maxRaySpacing = high ? 0.4 : 0.75;
+        in.raySpacing = high ? 0.4 : 0.75;
         in.ownSlices = high ? 3 : 2;
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
@@ -149,7 +149,7 @@ private:
         in.eyeW = axes.flipped ? in.nw - 1 - eye.z : eye.z;
         const double near = 0 - in.eyeW, far = in.nw - 1 - in.eyeW;
         const double halvings = std::floor(std::log2(far / near));
-        in.firstSlopeStep = in.maxRaySpacing / far * std::exp2(halvings);
+        in.firstSlopeStep = in.raySpacing / far * std::exp2(halvings);
     }
 
     /// Codes laid out so that neighbours along u are neighbours in memory.

@@ -50,9 +50,8 @@ struct SweepInput {
     bool perspective = false;
     double slopeU = 0, slopeV = 0;       ///< orthographic: du/dw, dv/dw of every ray
     double eyeU = 0, eyeV = 0, eyeW = 0; ///< perspective: the eye, eyeW < −1/2
-    double raySpacing = 1;               ///< orthographic: of the rays, in voxels
+    double raySpacing = 1;               ///< of the rays, in voxels; perspective: at most
     double firstSlopeStep = 1;     ///< perspective: slope between neighbouring rays at slice 0; halved further away
-    double maxRaySpacing = 1;      ///< perspective: in voxels
     double hu = 1, hv = 1, hw = 1; ///< spacing in d0
     double maxStep = 1.0;          ///< distance of samples along a ray between voxel planes, in d0
     int ownSlices = 1;             ///< slice distances right in front of voxels followed along lines of their own

@@ -113,7 +113,7 @@ public:
         for (int begin = 0; begin < m_in.nw;) {
             int end = m_in.nw;
             if (m_in.perspective) {
-                end = smaller(end, floorInt(m_in.eyeW + m_in.maxRaySpacing / m_slopeStep * (1 + 1e-9)) + 1);
+                end = smaller(end, floorInt(m_in.eyeW + m_in.raySpacing / m_slopeStep * (1 + 1e-9)) + 1);
                 if (end <= begin) end = begin; // not dense enough for a single slice
             }
             if (end > begin) sweepSlices(begin, end);
@@ -169,8 +169,7 @@ private:
     /// Takes rays from the front of the box to the slices [begin, end), whose voxels ask for them.
     void sweepSlices(int begin, int end) {
         startRays(begin, end);
-        for (int k = 0; k < begin - m_in.ownSlices; ++k) advanceRays(k);
-        int next = larger(0, begin - m_in.ownSlices); // where the rays go next
+        int next = 0; // where the rays go next
         for (int k = begin; k < end; ++k) {
             for (; next <= k - m_in.ownSlices; ++next) advanceRays(next);
             gather(k);

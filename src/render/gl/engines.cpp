@@ -1,9 +1,19 @@
 #include "render/gl/engines.h"
 
+#include <algorithm>
+#include <cctype>
+
 #include "render/gl/headless_context.h"
 #include "volume/error.h"
 
 namespace pellucid {
+
+bool isSoftwareRenderer(std::string renderer) {
+    std::transform(renderer.begin(), renderer.end(), renderer.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const char* name : {"llvmpipe", "softpipe", "swrast", "software", "swiftshader", "swr"})
+        if (renderer.find(name) != std::string::npos) return true;
+    return false;
+}
 
 EngineChoice engineChoiceFromName(const std::string& name) {
     if (name == "auto") return EngineChoice::Auto;

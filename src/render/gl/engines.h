@@ -20,11 +20,14 @@ EngineChoice engineChoiceFromName(const std::string& name);
 std::unique_ptr<VisibilityEngine> makeGlEngine(std::shared_ptr<const Volume> volume, Quality quality = Quality::Normal);
 std::unique_ptr<ImageRenderer> makeGlRenderer(std::shared_ptr<const Volume> volume);
 
+/// Whether GL_RENDERER names a software rasterizer: llvmpipe, softpipe, SwiftShader or the like.
+bool isSoftwareRenderer(std::string renderer);
+
 /// What a headless context finds here; empty where none can be made.
 struct GlInfo {
     std::string vendor, renderer, version;
     std::string platform;  ///< "EGL surfaceless", "OSMesa", …
-    bool software = false; ///< llvmpipe, softpipe or the like
+    bool software = false; ///< isSoftwareRenderer(renderer)
 };
 std::optional<GlInfo> probeGl();
 

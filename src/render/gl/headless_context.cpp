@@ -1,8 +1,6 @@
 #include "render/gl/headless_context.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -22,20 +20,13 @@ namespace pellucid::gl {
 
 namespace {
 
-bool isSoftware(std::string renderer) {
-    std::transform(renderer.begin(), renderer.end(), renderer.begin(), [](unsigned char c) { return std::tolower(c); });
-    for (const char* name : {"llvmpipe", "softpipe", "swrast", "software", "swiftshader", "swr"})
-        if (renderer.find(name) != std::string::npos) return true;
-    return false;
-}
-
 GlInfo describe(const std::string& platform) {
     const auto text = [](GLenum what) {
         const GLubyte* s = glGetString(what);
         return std::string(s ? reinterpret_cast<const char*>(s) : "");
     };
     GlInfo info{text(GL_VENDOR), text(GL_RENDERER), text(GL_VERSION), platform, false};
-    info.software = isSoftware(info.renderer);
+    info.software = isSoftwareRenderer(info.renderer);
     return info;
 }
 
