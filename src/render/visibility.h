@@ -36,6 +36,10 @@ public:
     /// Throws Cancelled where `job` was asked to stop, Error where the device fails.
     virtual std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
                                           const WeightFields* weights, const JobControl& job = {}) = 0;
+    /// The sums of `tf` and their exact derivatives with respect to the features' peak opacities, in one sweep
+    /// (docs/method.md, "Derivatives").
+    virtual SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+                                  const JobControl& job = {}) = 0;
     /// The field itself, for those who want to look at it.
     virtual VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job = {}) = 0;
 };

@@ -40,6 +40,10 @@ public:
         return all;
     }
 
+    SumsJacobian jacobian(const Camera&, const TransferFunction&, const WeightFields*, const JobControl&) override {
+        throw Error("the reference engine has no derivatives yet", "", "");
+    }
+
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
         const Geometry& geometry = m_volume->geometry();
         camera.validate(geometry, "camera");

@@ -57,6 +57,24 @@ std::vector<double> vwsOf(const FeatureSums& sums, const VwsOptions& options) {
     return vws;
 }
 
+std::vector<std::vector<double>> vwsJacobian(const SumsJacobian& jacobian, const VwsOptions& options) {
+    const FeatureSums& sums = jacobian.sums;
+    const auto u = attributeWeights(sums.allWeighted, options);
+    const std::size_t n = sums.visibility.size();
+    std::vector<std::vector<double>> derivatives(n, std::vector<double>(n, 0.0));
+    for (std::size_t a = 0; a < 2; ++a) {
+        const double all = sums.allWeighted[a];
+        if (!(all > 0)) continue;
+        for (std::size_t j = 0; j < n; ++j) {
+            const FeatureSums& d = jacobian.byOpacity[j];
+            for (std::size_t i = 0; i < n; ++i)
+                derivatives[i][j] +=
+                    u[a] * (d.weighted[a][i] - sums.weighted[a][i] / all * d.allWeighted[a]) / all;
+        }
+    }
+    return derivatives;
+}
+
 FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& features, const Grid<float>& visibility,
                         const WeightFields* weights) {
     PELLUCID_CHECK(visibility.dims() == volume.dims());

@@ -20,6 +20,13 @@ struct FeatureSums {
     std::array<double, 2> allWeighted{0, 0};
 };
 
+/// How `sums` change with the features' peak opacities x_j, everything else held: what an exact optimizer step needs.
+/// Saliency does not depend on opacity (MEASURES §5), so that the weights are constants here.
+struct SumsJacobian {
+    FeatureSums sums;
+    std::vector<FeatureSums> byOpacity; ///< [j]: every sum's derivative with respect to x_j
+};
+
 struct VwsOptions {
     double u1 = 0.5, u2 = 0.5; ///< weights of brightness and saturation, ≥ 0, sum 1
     bool operator==(const VwsOptions&) const = default;
@@ -38,6 +45,9 @@ struct FeatureMeasures {
 
 std::vector<FeatureMeasures> featureMeasures(const FeatureSums& sums, const VwsOptions& options = {});
 std::vector<double> vwsOf(const FeatureSums& sums, const VwsOptions& options = {});
+
+/// ∂W_i/∂x_j as [i][j], by the quotient rule (docs/method.md, "Derivatives").
+std::vector<std::vector<double>> vwsJacobian(const SumsJacobian& jacobian, const VwsOptions& options = {});
 
 /// Sums of a stored visibility field (shape of the volume). `weights` may be null: then `weighted` stays 0.
 FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& features, const Grid<float>& visibility,

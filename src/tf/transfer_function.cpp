@@ -248,4 +248,15 @@ TransferFunction withFeatureOpacities(const TransferFunction& tf, const std::vec
     return result;
 }
 
+TransferFunction withFullPeaks(const TransferFunction& tf) {
+    const auto raisable = [&](const Feature& f) {
+        return peakOf(tf, f) > 0 || std::any_of(tf.points.begin(), tf.points.end(), [&](const ControlPoint& p) {
+                   return p.x > f.a && p.x < f.b && !p.fixed;
+               });
+    };
+    std::vector<double> peaks;
+    for (const Feature& f : tf.features) peaks.push_back(raisable(f) ? 1.0 : 0.0);
+    return withFeatureOpacities(tf, peaks);
+}
+
 } // namespace pellucid

@@ -79,4 +79,8 @@ std::vector<double> featureOpacities(const TransferFunction& tf);
 /// Scale from the same start every time: a shape that has been scaled to 0 is lost.
 TransferFunction withFeatureOpacities(const TransferFunction& tf, const std::vector<double>& x);
 
+/// The shapes that the parameters x_F scale: `tf` with every peak at 1, so that inside feature F ∂α/∂x_F is its α here.
+/// A feature that nothing can raise stays at 0.
+TransferFunction withFullPeaks(const TransferFunction& tf);
+
 } // namespace pellucid

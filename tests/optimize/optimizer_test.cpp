@@ -36,6 +36,19 @@ public:
         }
         return all;
     }
+    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+                          const JobControl& job) override {
+        SumsJacobian result{sums(camera, {&tf, 1}, weights, job)[0], {}};
+        for (std::size_t j = 0; j < m_gains.size(); ++j) {
+            FeatureSums d;
+            d.visibility.assign(m_gains.size(), 0.0);
+            d.visibility[j] = d.allVisibility = m_gains[j];
+            d.weighted = {d.visibility, d.visibility};
+            d.allWeighted = {m_gains[j], m_gains[j]};
+            result.byOpacity.push_back(d);
+        }
+        return result;
+    }
     VisibilityField field(const Camera&, const TransferFunction&, const JobControl&) override {
         return {Grid<float>(m_volume->dims())};
     }

@@ -79,6 +79,10 @@ public:
         return all;
     }
 
+    SumsJacobian jacobian(const Camera&, const TransferFunction&, const WeightFields*, const JobControl&) override {
+        throw Error("the cpu engine has no derivatives yet", "", "");
+    }
+
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
         VisibilityField field{Grid<float>(m_volume->dims())};
         sweep(camera, {&tf, 1}, nullptr, &field.values, job);

@@ -226,6 +226,11 @@ public:
 
     std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
                                   const WeightFields* weights, const JobControl& job) override;
+    /// The device has no derivative sweep: the cpu engine answers, on the same volume.
+    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+                          const JobControl& job) override {
+        return makeCpuEngine(m_volume, m_quality)->jacobian(camera, tf, weights, job);
+    }
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override;
 
 private:
