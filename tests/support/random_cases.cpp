@@ -140,12 +140,14 @@ Density rods(Random& random, const Int3& dims) {
     };
 }
 
+/// Cubes of a few voxels, alternately low and high, on a slope: without it only intensities 0 and 1 would occur.
 Density checker(Random& random) {
     const int size = 2 + random.below(5);
-    const double low = random.between(0, 0.4), high = random.between(0.6, 1);
+    const double low = random.between(0, 0.2), high = random.between(0.5, 0.8);
+    const Vec3 slope = randomDirection(random) * 0.006;
     return [=](const Vec3& p) {
         const auto cell = glm::ivec3(p) / size;
-        return (cell.x + cell.y + cell.z) % 2 == 0 ? low : high;
+        return ((cell.x + cell.y + cell.z) % 2 == 0 ? low : high) + glm::dot(slope, p);
     };
 }
 
