@@ -217,10 +217,13 @@ private:
             in.codeStrides.w = -in.codeStrides.w;
         }
         if (!m_grid.valid.empty()) in.valid = m_grid.valid.data() + start;
+        std::vector<Grid<float>> unpacked;
         if (weights) {
-            PELLUCID_CHECK(weights->brightness.dims() == g.dims && weights->saturation.dims() == g.dims);
-            in.weights[0] = weights->brightness.data() + start;
-            in.weights[1] = weights->saturation.data() + start;
+            PELLUCID_CHECK(weights->dims() == g.dims);
+            for (int attribute = 0; attribute < 2; ++attribute) {
+                unpacked.push_back(gridOf(*weights, attribute));
+                in.weights[attribute] = unpacked.back().data() + start;
+            }
         }
         if (field) in.field = field->data() + start;
         in.tableSize = kDepthTableSize;
