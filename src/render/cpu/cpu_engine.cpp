@@ -413,15 +413,10 @@ private:
             in.codeStrides.w = -in.codeStrides.w;
         }
         std::array<double, 3> units{1, 1, 1};
-        std::vector<std::uint32_t> packed;
         if (weights) {
-            PELLUCID_CHECK(weights->brightness.dims() == g.dims && weights->saturation.dims() == g.dims);
-            packed.resize(m_volume->size());
-            for (std::size_t i = 0; i < packed.size(); ++i)
-                packed[i] = static_cast<std::uint32_t>(weights->brightness[i] / 1.4f * 65535 + 0.5f) |
-                            (static_cast<std::uint32_t>(weights->saturation[i] / 1.4f * 65535 + 0.5f) << 16);
-            in.weights = packed.data() + start;
-            units[1] = units[2] = 1.4 / 65535;
+            PELLUCID_CHECK(weights->dims() == g.dims);
+            in.weights = weights->data() + start;
+            for (int a = 0; a < 2; ++a) units[asSize(a + 1)] = weights->scale(a);
         }
         if (field) in.field = field->data() + start;
         setRays(in, camera, axes);
