@@ -115,7 +115,7 @@ private:
 
     static std::array<double, 2> weightsAt(const WeightFields* weights, std::size_t i) {
         if (!weights) return {0, 0};
-        return {weights->brightness[i], weights->saturation[i]};
+        return {weights->brightness(i), weights->saturation(i)};
     }
 
     /// body(voxel) for each valid voxel; slices on different threads.

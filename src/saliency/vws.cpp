@@ -96,7 +96,7 @@ FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& featur
         for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
             const double v = visibility[i];
             if (v == 0) continue;
-            const double lb = weights ? weights->brightness[i] : 0.0, ls = weights ? weights->saturation[i] : 0.0;
+            const double lb = weights ? weights->brightness(i) : 0.0, ls = weights ? weights->saturation(i) : 0.0;
             addVoxel(sums, featureAt(features, volume.intensity(i)), v, lb, ls);
         }
     });
