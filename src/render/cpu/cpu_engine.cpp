@@ -363,6 +363,8 @@ private:
         in.ownSlices = high ? 2 : 1;
         if (getenv("PS")) in.raySpacing = atof(getenv("PS"));
         if (getenv("PO")) in.ownSlices = atoi(getenv("PO"));
+        if (getenv("PD")) in.tolerance = atof(getenv("PD"));
+        if (getenv("PF")) in.ownSteps = atoi(getenv("PF"));
         if (getenv("PT")) in.stepsPerSlice = atoi(getenv("PT"));
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
