@@ -19,7 +19,8 @@ namespace {
 
 /// In voxels. The rays of an eye farther off are parallel: over 4096 voxels they diverge by less than 0.2.
 constexpr double kFarEye = 1e8;
-constexpr int kMostTableEntries = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
+constexpr std::size_t kSmallVolume = 128 * 128 * 128; ///< voxels
+constexpr int kMostTableEntries = 4096;               ///< 128 KiB with 8 lanes: stays in the second-level cache
 
 /// Rays are given up at this optical depth: what lies behind is seen by less than 1e-4 (high quality and derivatives,
 /// which have no bound: 6e-6).
@@ -244,7 +245,7 @@ private:
     /// Of a whole sweep: [features + 1][3][lanes], the last feature being "in none".
     struct Sums {
         std::vector<double> values;
-        std::size_t features, lanes;
+        std::size_t features = 0, lanes = 0;
         std::array<double, 3> units; ///< what 1 stands for in Σv and the two weighted sums
 
         FeatureSums ofLane(std::size_t lane) const {
@@ -358,14 +359,11 @@ private:
         in.hu = h.x, in.hv = h.y, in.hw = h.z;
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
-        in.stepsPerSlice = high ? 2 : 1;
-        in.raySpacing = high ? 0.6 : 1.0;
-        in.ownSlices = high ? 2 : 1;
-        if (getenv("PS")) in.raySpacing = atof(getenv("PS"));
-        if (getenv("PO")) in.ownSlices = atoi(getenv("PO"));
-        if (getenv("PD")) in.tolerance = atof(getenv("PD"));
-        if (getenv("PF")) in.ownSteps = atoi(getenv("PF"));
-        if (getenv("PT")) in.stepsPerSlice = atoi(getenv("PT"));
+        // What is off averages out over many voxels, which small volumes do not have; but they have the time.
+        const bool small = m_volume->size() < kSmallVolume;
+        in.stepsPerSlice = high ? (small ? 4 : 2) : (small ? 3 : 1);
+        in.ownSteps = high ? (small ? 16 : 4) : 6;
+        in.tolerance = high ? (small ? 0.01f : 0.3f) : (small ? 0.2f : std::numeric_limits<float>::infinity());
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
