@@ -14,13 +14,13 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kStepsPerD0 = 16;
 constexpr double kDark = 40; ///< optical depth from which on T < 5e-18: nothing behind is seen
 
 class ReferenceEngine final : public VisibilityEngine {
 public:
-    explicit ReferenceEngine(std::shared_ptr<const Volume> volume)
-        : m_volume(std::move(volume)), m_intensity(m_volume->dims()) {
+    ReferenceEngine(std::shared_ptr<const Volume> volume, int stepsPerD0)
+        : m_volume(std::move(volume)), m_intensity(m_volume->dims()), m_stepsPerD0(stepsPerD0) {
+        PELLUCID_CHECK(stepsPerD0 >= 1);
         if (m_volume->invalidCount() > 0) m_valid.assign(m_volume->size(), 1);
         for (std::size_t i = 0; i < m_volume->size(); ++i) {
             const double s = m_volume->intensity(i);
@@ -160,7 +160,7 @@ private:
         if (camera.projection == Projection::Perspective) end = std::min(end, glm::length(camera.eye - centre));
         const double length = end - d0 / 2;
         if (!(length > 0)) return;
-        const int steps = static_cast<int>(std::ceil(length / d0 * kStepsPerD0));
+        const int steps = static_cast<int>(std::ceil(length / d0 * m_stepsPerD0));
         const double step = length / steps;
         for (int n = 0; n < steps; ++n) {
             const Vec3 p = ray.origin + ray.direction * (d0 / 2 + (n + 0.5) * step);
@@ -172,12 +172,13 @@ private:
     std::shared_ptr<const Volume> m_volume;
     Grid<double> m_intensity;
     std::vector<std::uint8_t> m_valid; ///< empty where all are
+    int m_stepsPerD0;
 };
 
 } // namespace
 
-std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume) {
-    return std::make_unique<ReferenceEngine>(std::move(volume));
+std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume, int stepsPerD0) {
+    return std::make_unique<ReferenceEngine>(std::move(volume), stepsPerD0);
 }
 
 } // namespace pellucid

@@ -1,36 +1,14 @@
 // ∂Σ/∂x_j of the engines: closed forms, and differences of the reference's sums.
 #include <catch2/catch.hpp>
 
-#include "support/gradient_check.h"
-#include "support/random_cases.h"
-#include "support/volumes.h"
+#include "support/jacobian_check.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
 
-namespace {
-
-/// Case `n` with opacities of its own: one of each two cases has a feature at exactly 1, one of each three one at 0.
-RandomCase gradientCase(std::uint32_t n) {
-    RandomCase c = randomCase(200 + n, 0.4);
-    Random random(n);
-    std::vector<double> x;
-    for (std::size_t f = 0; f < c.tf.features.size(); ++f) x.push_back(std::pow(100.0, random.unit() - 1));
-    if (n % 2 == 0) x.front() = 1;
-    if (n % 3 == 0 && x.size() > 1) x.back() = 0;
-    c.tf = withFullPeaks(c.tf);
-    const std::vector<double> raisable = featureOpacities(c.tf);
-    for (std::size_t f = 0; f < x.size(); ++f)
-        if (raisable[f] == 0) x[f] = 0;
-    c.tf = withFeatureOpacities(c.tf, x);
-    return c;
-}
-
-} // namespace
-
 TEST_CASE("the reference's derivatives match differences of its sums", "[visibility][reference][jacobian]") {
     for (std::uint32_t n = 0; n < 20; ++n) {
-        const RandomCase c = gradientCase(n);
+        const RandomCase c = gradientCase(n, 0.4);
         const WeightFields weights = saliencyFields(*c.volume, c.tf);
         const auto engine = makeReferenceEngine(c.volume);
         const SumsJacobian jacobian = engine->jacobian(c.camera, c.tf, &weights);
@@ -107,4 +85,12 @@ TEST_CASE("derivatives of two slabs are those of their closed form", "[visibilit
     CHECK(byFront[0] == Approx(-4 * m * std::pow(1 - p, m - 1) * (1 - std::pow(1 - q, n))));
     CHECK(byBack[1] == Approx(0).margin(1e-12));
     CHECK(byBack[0] == Approx(4 * through * n * std::pow(1 - q, n - 1)));
+}
+
+TEST_CASE("the cpu engine's derivatives match the reference's along axes", "[visibility][cpu][jacobian]") {
+    checkJacobianAlongAxes([](auto volume) { return makeCpuEngine(volume); });
+}
+
+TEST_CASE("the cpu engine's derivatives match the reference's from anywhere", "[visibility][cpu][jacobian]") {
+    checkJacobianFromAnywhere([](auto volume) { return makeCpuEngine(volume); }, 0.03, 0.01);
 }

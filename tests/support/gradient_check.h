@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/visibility.h"
+#include "support/random_cases.h"
 
 namespace pellucid::test {
 
@@ -76,21 +77,43 @@ inline FigureJacobians differencesOfSums(VisibilityEngine& engine, const Camera&
     return result;
 }
 
+/// Random case 200 + `n`, with opacities of its own: every second case has a feature at exactly 1, every third one at
+/// 0.
+inline RandomCase gradientCase(std::uint32_t n, double size) {
+    RandomCase c = randomCase(200 + n, size);
+    Random random(n);
+    std::vector<double> x;
+    for (std::size_t f = 0; f < c.tf.features.size(); ++f) x.push_back(std::pow(100.0, random.unit() - 1));
+    if (n % 2 == 0) x.front() = 1;
+    if (n % 3 == 0 && x.size() > 1) x.back() = 0;
+    c.tf = withFullPeaks(c.tf);
+    const std::vector<double> raisable = featureOpacities(c.tf);
+    for (std::size_t f = 0; f < x.size(); ++f)
+        if (raisable[f] == 0) x[f] = 0;
+    c.tf = withFeatureOpacities(c.tf, x);
+    return c;
+}
+
 struct JacobianError {
-    double ofLargest = 0; ///< largest |difference|, divided by the largest |expected entry| (at least kNoDerivative)
+    double ofLargest = 0; ///< largest |difference|, divided by the largest |expected entry| or `least`
     double entrywise = 0; ///< largest relative difference of entries above 1 % of the largest
 };
 
 /// Below this an entry is 0 but for rounding: figures lie in [0,1], and so do opacities.
 inline constexpr double kNoDerivative = 1e-3;
 
-inline JacobianError compareJacobians(const Jacobian& found, const Jacobian& expected) {
-    double largest = kNoDerivative;
+/// Only the columns j with `columns`[j], or all where it is empty.
+inline JacobianError compareJacobians(const Jacobian& found, const Jacobian& expected,
+                                      const std::vector<bool>& columns = {}, double least = kNoDerivative) {
+    const auto counts = [&](std::size_t j) { return columns.empty() || columns[j]; };
+    double largest = least;
     for (const auto& row : expected)
-        for (const double v : row) largest = std::max(largest, std::abs(v));
+        for (std::size_t j = 0; j < row.size(); ++j)
+            if (counts(j)) largest = std::max(largest, std::abs(row[j]));
     JacobianError error;
     for (std::size_t i = 0; i < expected.size(); ++i)
         for (std::size_t j = 0; j < expected[i].size(); ++j) {
+            if (!counts(j)) continue;
             const double difference = std::abs(found[i][j] - expected[i][j]);
             error.ofLargest = std::max(error.ofLargest, difference / largest);
             if (std::abs(expected[i][j]) > 0.01 * largest)
