@@ -30,7 +30,7 @@ inline void checkSumsOfJacobian(const SumsJacobian& jacobian, const FeatureSums&
               Approx(sums.visibility[f]).epsilon(1e-4).margin(1e-5 * sums.allVisibility + 1e-6));
 }
 
-/// Along each axis, where rays run through voxel centres and nothing but the integral along them can differ: 1e-3 of
+/// Along each axis, where rays run through voxel centres and nothing but the integral along them can differ: 2e-3 of
 /// the largest entry. The reference takes finer steps than usual: its own 16 per d0 are off by 5e-3 at vertical sides.
 template <class MakeEngine>
 void checkJacobianAlongAxes(const MakeEngine& makeEngine) {
@@ -44,7 +44,7 @@ void checkJacobianAlongAxes(const MakeEngine& makeEngine) {
         const std::unique_ptr<VisibilityEngine> engine = makeEngine(c.volume);
         const SumsJacobian found = engine->jacobian(camera, c.tf, &weights);
         INFO(c.describe() << ", but along axis " << n % 3);
-        CHECK(compareJacobians(vwsJacobian(found), expected, regularColumns(c.tf)).ofLargest < 1e-3);
+        CHECK(compareJacobians(vwsJacobian(found), expected, regularColumns(c.tf)).ofLargest < 2e-3);
         checkSumsOfJacobian(found, engine->sums(camera, {&c.tf, 1}, &weights)[0]);
     }
 }

@@ -120,7 +120,8 @@ class Sweeper {
 public:
     Sweeper(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums)
         : m_in(in), m_piece(piece), m_scratch(scratch), m_sums(sums), m_b0(piece.firstRow), m_b1(piece.lastRow),
-          m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5), m_start(floorInt(m_startW * in.stepsPerSlice)) {
+          m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5), m_start(floorInt(m_startW * in.stepsPerSlice)),
+          m_follows(in.tolerance < 1e30f) {
         m_accumulator = scratch.get<float>(SweepScratch::Accumulator, accumulatorSize());
         for (std::size_t i = 0; i < accumulatorSize(); ++i) m_accumulator[i] = 0.0f;
         for (int lane = 0; lane < K; ++lane) m_limit[lane] = in.exhaustedDepth / in.depthUnit[lane];
@@ -632,7 +633,7 @@ private:
         const Vec8 near = near0 + block.fraction * (near1 - near0), far = far0 + block.fraction * (far1 - far0);
         Vec8 depth = near + block.fractionV * (far - near);
         const auto follow = [&](Vec8& sum) {
-            return [&](const Stretch& s) {
+            return [&sum, this](const Stretch& s) {
                 sum += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
             };
         };
@@ -640,11 +641,9 @@ private:
         if (m_follows) {
             Int8 listed = {};
             for (int i = 0; i < block.listed; ++i) listed[block.list[i]] = -1;
-            const Int8 apart = disagree(near0, near1, far0, far1, Vec8{} + m_in.depthUnit[0]) & listed;
-            if (!none(apart)) {
-                Vec8 own = {};
-                alongOwnLines(block, farLines(block), follow(own));
-                depth = apart ? own : depth;
+            if (!none(disagree(near0, near1, far0, far1, Vec8{} + m_in.depthUnit[0]) & listed)) {
+                depth = Vec8{};
+                alongOwnLines(block, farLines(block), follow(depth));
             }
         }
         Vec8 alpha = {}, weights[2] = {};
@@ -675,13 +674,19 @@ private:
         }
     }
 
+    /// Lanes in which a voxel of this code is seen at all.
+    Int8 opaqueLanes(std::uint16_t code) const {
+        if (kMode == SweepMode::Jacobian) return Int8{} - (m_in.alphaTable[static_cast<std::size_t>(code) * 2] > 0);
+        return load(m_in.alphaTable + static_cast<std::size_t>(code) * K) > Vec8{};
+    }
+
     void gatherLanes(const VoxelBlock& block) {
         // The four rays around each voxel.
         const Vec8 f = block.fraction;
         const float fv = block.fractionV;
         const Vec8 near0 = (1.0f - f) * (1.0f - fv), near1 = f * (1.0f - fv), far0 = (1.0f - f) * fv, far1 = f * fv;
         Vec8 depth[kWide][kVectors], own[kWide][kVectors];
-        Int8 apart[kWide], anyApart = {};
+        Int8 apart = {}; // lanes in which any voxel's rays disagree
         for (int i = 0; i < block.listed; ++i) {
             const int n = block.list[i];
             const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(block.ray[n]) * K;
@@ -691,9 +696,7 @@ private:
                 const Vec8 d0 = load(near), d1 = load(near + K), d2 = load(far), d3 = load(far + K);
                 depth[n][part] = near0[n] * d0 + near1[n] * d1 + far0[n] * d2 + far1[n] * d3;
                 if (part > 0 || !m_follows) continue;
-                apart[n] = disagree(d0, d1, d2, d3, load(m_lightUnit));
-                if (kMode == SweepMode::Jacobian) apart[n] = Int8{} + apart[n][0]; // derivatives go with their depth
-                anyApart |= apart[n];
+                apart |= disagree(d0, d1, d2, d3, load(m_lightUnit)) & opaqueLanes(block.codes[n]);
             }
         }
         const auto follow = [&](Vec8(*sum)[kVectors]) {
@@ -706,14 +709,15 @@ private:
             };
         };
         alongOwnLines(block, m_near, follow(depth));
-        if (m_follows && !none(anyApart)) {
+        if (m_follows && !none(apart)) {
+            if (kMode == SweepMode::Jacobian) apart = Int8{} - 1; // derivatives go with their depth
             for (auto& voxel : own)
                 for (Vec8& part : voxel) part = Vec8{};
             alongOwnLines(block, farLines(block), follow(own));
             for (int i = 0; i < block.listed; ++i)
                 for (int part = 0; part < kVectors; ++part) {
                     const int n = block.list[i];
-                    depth[n][part] = apart[n] ? own[n][part] : depth[n][part];
+                    depth[n][part] = apart ? own[n][part] : depth[n][part];
                 }
         }
         for (int i = 0; i < block.listed; ++i) {
