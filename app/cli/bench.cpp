@@ -116,16 +116,17 @@ public:
             const auto [volume, tf] = loadVolumeAndTf(knee, tents, m_progress);
             measure(volume, knee.path, densities(m_options, *volume, tf, *tents.spec));
         }
+        const std::set<BenchRow> rows = both(m_options.only, {BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian});
+        if (rows.empty()) return;
         VolumeOptions block;
         block.path = "sample:shells";
         block.sampleSize = kCubeSize;
         auto [volume, tf] = loadVolumeAndTf(block, m_options.tf, m_progress);
         const std::string tfName = m_options.tf.spec.value_or(kDense);
         if (!m_options.tf.spec) tf = denseTf();
-        const std::set<BenchRow> rows{BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian};
         for (int n = 1; n <= (m_options.full ? 4 : 2); n *= 2)
             measure(n == 1 ? volume : tiled(*volume, n), cubeName(n * kCubeSize),
-                    {{tfName, tf, both(m_options.only, rows), false, m_options.tf.spec ? 1 : kDenseStepScale}});
+                    {{tfName, tf, rows, false, m_options.tf.spec ? 1 : kDenseStepScale}});
     }
 
     Answer answer() const {
