@@ -303,8 +303,8 @@ std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const Tr
                         const auto i = static_cast<std::size_t>(voxel);
                         const std::uint16_t f = featureOf[m_grid.codes[i]];
                         auto* slot = &sum[(f == kNoFeature ? slots - 1 : f) * lanes];
-                        const double w0 = weights ? static_cast<double>(weights->brightness[i]) : 0.0;
-                        const double w1 = weights ? static_cast<double>(weights->saturation[i]) : 0.0;
+                        const double w0 = weights ? static_cast<double>(weights->brightness(i)) : 0.0;
+                        const double w1 = weights ? static_cast<double>(weights->saturation(i)) : 0.0;
                         for (std::size_t lane = 0; lane < lanes; ++lane) {
                             const double x = static_cast<double>(v[lane]);
                             slot[lane][0] += x;
