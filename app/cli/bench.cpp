@@ -215,7 +215,7 @@ private:
     }
 
     std::string textOfRows() const {
-        Table table({"row", "volume", "TF", "engine", "threads", "time", "ns/voxel", "GB/s", "of memcpy"});
+        Table table({"row", "volume", "TF", "engine", "threads", "time", "CPU time", "ns/voxel", "GB/s", "of memcpy"});
         for (const BenchResult& r : m_results.rows) {
             const Json j = jsonOfRow(r);
             std::string label = name(r.row);
@@ -224,7 +224,7 @@ private:
             if (r.row == BenchRow::Jacobian) label += ", " + std::to_string(*r.features) + " features";
             if (r.row == BenchRow::Optimize) label += ", " + j["iterations"].dump() + " moves";
             table.add({label, r.volume, r.tf.value_or(""), r.engine, std::to_string(r.threads), secondsText(r.seconds),
-                       fixedText(j["ns_per_voxel"], 2), fixedText(j["gb_per_s"], 2),
+                       secondsText(r.cpuSeconds), fixedText(j["ns_per_voxel"], 2), fixedText(j["gb_per_s"], 2),
                        fixedText(100 * j["memcpy_share"].get<double>(), 1) + " %"});
         }
         return table.text();
@@ -248,6 +248,7 @@ private:
         if (r.features) j["features"] = *r.features;
         const double seconds = std::max(r.seconds, 1e-9); // of the clock's resolution
         j["seconds"] = r.seconds;
+        j["cpu_seconds"] = r.cpuSeconds;
         j["ns_per_voxel"] = 1e9 * r.seconds / voxels;
         j["gb_per_s"] = r.bytes / seconds / 1e9;
         j["bytes_per_voxel"] = r.bytes / voxels;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <functional>
 #include <numeric>
 
@@ -24,6 +25,13 @@ double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const std::size_t half = values.size() / 2;
     return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+/// Processor time of all threads of this process.
+double cpuSeconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 /// What is asked of an optimization: 0.1, 0.3, 0.6 for three features; for n of them in proportion to 1, 3, 6, 10, …
@@ -49,15 +57,14 @@ std::vector<TransferFunction> searchCandidates(const TransferFunction& tf, const
 }
 
 double bytesPerVoxel(const WeightFields& weights) {
-    const double bytes = sizeof(float) * static_cast<double>(weights.brightness.size() + weights.saturation.size());
-    return bytes / static_cast<double>(weights.brightness.size());
+    return weights.empty() ? 0.0 : static_cast<double>(sizeof(*weights.data()));
 }
 
 /// One row while it is being measured.
 struct Measurement {
     BenchResult result;
     std::function<void(BenchResult& result, const JobControl& job)> work; ///< may add to `bytes` and `extra`
-    std::vector<double> seconds;
+    std::vector<double> seconds, cpuSeconds;
     bool failed = false;
 };
 
@@ -97,6 +104,7 @@ public:
         for (Measurement& m : m_measurements) {
             if (m.failed) continue;
             m.result.seconds = median(m.seconds);
+            m.result.cpuSeconds = median(m.cpuSeconds);
             results.rows.push_back(std::move(m.result));
         }
     }
@@ -112,8 +120,11 @@ private:
         job.throwIfStopped();
         try {
             const Stopwatch watch;
+            const double cpuStart = cpuSeconds();
             m.work(m.result, job);
-            if (counts) m.seconds.push_back(watch.seconds());
+            if (!counts) return;
+            m.seconds.push_back(watch.seconds());
+            m.cpuSeconds.push_back(cpuSeconds() - cpuStart);
         } catch (const Error& e) {
             m.failed = true;
             const std::string row = std::string("row ") + name(m.result.row) + " of " + m.result.volume;
@@ -127,7 +138,7 @@ private:
              const std::function<void(BenchResult&, const JobControl&)>& work) {
         for (const int threads : m_options.threads) {
             if (result.engine == "gl" && threads != m_options.threads.back()) continue;
-            Measurement m{result, work, {}, false};
+            Measurement m{result, work, {}, {}, false};
             m.result.threads = threads;
             m.result.bytes = bytes;
             m_measurements.push_back(std::move(m));

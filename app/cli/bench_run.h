@@ -31,9 +31,10 @@ struct BenchResult {
     Int3 dims{0, 0, 0};
     int threads = 1;
     std::optional<int> candidates, features;
-    double seconds = 0; ///< median of the warm runs
-    double bytes = 0;   ///< that have to be read or written at least once, see docs/performance.md
-    Json extra;         ///< further fields of this row, an object
+    double seconds = 0;    ///< median of the warm runs
+    double cpuSeconds = 0; ///< of all threads together, median too: hardly changes where others use the machine
+    double bytes = 0;      ///< that have to be read or written at least once, see docs/performance.md
+    Json extra;            ///< further fields of this row, an object
 };
 
 /// A transfer function and what is to be measured under it.

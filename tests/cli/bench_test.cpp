@@ -52,6 +52,7 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
         REQUIRE((threads == 1 || threads == 2));
         const double seconds = row["seconds"], bytes = row["bytes_per_voxel"], rate = row["gb_per_s"];
         CHECK(seconds > 0);
+        CHECK(row["cpu_seconds"].get<double>() > 0);
         CHECK(row["ns_per_voxel"].get<double>() == Approx(1e9 * seconds / kVoxels));
         CHECK(rate == Approx(bytes * kVoxels / seconds / 1e9));
         const double memcpyRate = j["memcpy"][static_cast<std::size_t>(threads - 1)]["gb_per_s"];
