@@ -25,7 +25,8 @@ struct Options {
 
 constexpr const char* kDense = "dense";
 constexpr const char* kSparse = "sparse";
-constexpr int kCubeSize = 128;
+constexpr const char* kCube = "cube:"; ///< followed by the number of voxels along each side
+constexpr int kCubeSize = 128;         ///< of the smallest
 
 /// One name per comma.
 std::set<BenchRow> parseRows(const std::string& text, const std::string& option) {
@@ -125,7 +126,7 @@ public:
         const std::string tfName = m_options.tf.spec.value_or(kDense);
         if (!m_options.tf.spec) tf = denseTf();
         for (int n = 1; n <= (m_options.full ? 4 : 2); n *= 2)
-            measure(n == 1 ? volume : tiled(*volume, n), cubeName(n * kCubeSize),
+            measure(n == 1 ? volume : tiled(*volume, n), kCube + std::to_string(n * kCubeSize),
                     {{tfName, tf, rows, false, m_options.tf.spec ? 1 : kDenseStepScale}});
     }
 
@@ -134,10 +135,12 @@ public:
     }
 
 private:
-    static std::string cubeName(int size) { return "cube:" + std::to_string(size); }
-
     void measure(const std::shared_ptr<const Volume>& volume, const std::string& name, std::vector<BenchTf> tfs) {
         const Camera camera = m_options.camera.camera(volume->geometry());
+        if (m_mainVolume.empty()) {
+            m_mainVolume = name;
+            m_mainTf = tfs.front().name;
+        }
         std::erase_if(tfs, [](const BenchTf& tf) { return tf.rows.empty(); });
         BenchResults results = benchVolume(volume, name, camera, tfs, m_bench, m_progress);
         m_results.rows.insert(m_results.rows.end(), results.rows.begin(), results.rows.end());
@@ -157,51 +160,50 @@ private:
         std::string wanted;
     };
 
-    /// ns per voxel of the first such row; empty where there is none.
-    std::optional<double> nsPerVoxel(BenchRow row, const std::string& volume, int threads, int candidates = 1,
-                                     std::optional<int> features = {}) const {
+    /// The first row of this kind; null where there is none.
+    const BenchResult* find(BenchRow row, const std::string& volume, const std::string& tf, int threads,
+                            int candidates = 1) const {
         for (const BenchResult& r : m_results.rows)
-            if (r.row == row && r.volume == volume && r.threads == threads && r.candidates == candidates &&
-                (!features || r.features == features))
-                return 1e9 * r.seconds / static_cast<double>(voxelCount(r.dims));
-        return {};
+            if (r.row == row && r.volume == volume && r.tf == tf && r.threads == threads && r.candidates == candidates)
+                return &r;
+        return nullptr;
     }
 
-    /// Of the first volume and transfer function, with the most threads.
+    /// Of the first volume and transfer function, with the most threads; see docs/performance.md.
     std::vector<Ratio> ratios() const {
         std::vector<Ratio> all;
-        if (m_results.rows.empty()) return all;
-        const std::string& volume = m_results.rows.front().volume;
-        const int threads = m_bench.threads.back(), fewest = m_bench.threads.front();
-        const auto add = [&](const char* key, std::optional<double> a, std::optional<double> b, const char* wanted) {
-            if (a && b && *b > 0) all.push_back({key, *a / *b, wanted});
+        const int threads = m_bench.threads.back();
+        const auto add = [&](const char* key, const BenchResult* a, const BenchResult* b, double times,
+                             const char* wanted) {
+            if (a && b && b->seconds * times > 0) all.push_back({key, a->seconds / (b->seconds * times), wanted});
         };
-        const auto sweep1 = nsPerVoxel(BenchRow::Sweep, volume, threads, 1);
-        const auto sweep8 = nsPerVoxel(BenchRow::Sweep, volume, threads, 8);
-        const auto saliency = nsPerVoxel(BenchRow::Saliency, volume, threads);
-        add("sweep8_over_8_singles", sweep8, sweep1 ? std::optional(8 * *sweep1) : sweep1, "<= 0.35");
-        if (fewest == 1 && threads == 2) {
-            add("threads_speedup", nsPerVoxel(BenchRow::Sweep, volume, 1, 8), sweep8, ">= 1.7");
-            add("threads_speedup_saliency", nsPerVoxel(BenchRow::Saliency, volume, 1), saliency, "");
+        const auto main = [&](BenchRow row, int threadCount, int candidates = 1) {
+            return find(row, m_mainVolume, m_mainTf, threadCount, candidates);
+        };
+        const BenchResult* const sweep8 = main(BenchRow::Sweep, threads, 8);
+        const BenchResult* const saliency = main(BenchRow::Saliency, threads);
+        add("sweep8_over_8_singles", sweep8, main(BenchRow::Sweep, threads, 1), 8, "<= 0.35");
+        if (m_bench.threads == std::vector{1, 2}) {
+            add("threads_speedup", main(BenchRow::Sweep, 1, 8), sweep8, 1, ">= 1.7");
+            add("threads_speedup_saliency", main(BenchRow::Saliency, 1), saliency, 1, "");
         }
-        add("jacobian_over_sweep8", nsPerVoxel(BenchRow::Jacobian, volume, threads, 1, 9), sweep8, "<= 2");
-        add("saliency_over_sweep8", saliency, sweep8, "<= 3");
-        for (const BenchResult& r : m_results.rows)
-            if (r.row == BenchRow::Optimize && r.volume == volume && r.threads == threads && sweep8) {
-                const double iterations = r.extra.at("iterations").get<double>();
-                add("optimize_over_sweeps", 1e9 * r.seconds / static_cast<double>(voxelCount(r.dims)),
-                    iterations * *sweep8, "<= 3");
-                break;
-            }
-        double least = 0, most = 0;
-        int cubes = 0;
-        for (int size = kCubeSize; const auto ns = nsPerVoxel(BenchRow::Sweep, cubeName(size), threads, 8); size *= 2) {
-            least = cubes == 0 ? *ns : std::min(least, *ns);
-            most = std::max(most, *ns);
-            ++cubes;
-        }
-        if (cubes > 1) add("flatness", most, least, "<= 1.25");
+        add("jacobian_over_sweep8", find(BenchRow::Jacobian, m_mainVolume, kNineTents, threads), sweep8, 1, "<= 2");
+        add("saliency_over_sweep8", saliency, sweep8, 1, "<= 3");
+        if (const BenchResult* const optimized = main(BenchRow::Optimize, threads, 8))
+            add("optimize_over_sweeps", optimized, sweep8, optimized->extra.at("iterations").get<double>(), "<= 3");
+        if (const auto flat = flatness(threads)) all.push_back({"flatness", *flat, "<= 1.25"});
         return all;
+    }
+
+    /// Largest time per voxel over the smallest, of the cubes; empty where there are not two.
+    std::optional<double> flatness(int threads) const {
+        std::vector<double> perVoxel;
+        for (const BenchResult& r : m_results.rows)
+            if (r.row == BenchRow::Sweep && r.volume.starts_with(kCube) && r.threads == threads && r.candidates == 8)
+                perVoxel.push_back(r.seconds / static_cast<double>(voxelCount(r.dims)));
+        if (perVoxel.size() < 2) return {};
+        const auto [least, most] = std::minmax_element(perVoxel.begin(), perVoxel.end());
+        return *most / *least;
     }
 
     // ---- The answer ------------------------------------------------------------------------------------------------
@@ -273,6 +275,7 @@ private:
     BenchOptions m_bench;
     std::vector<double> m_memcpy; ///< GB/s, per number of threads
     BenchResults m_results;
+    std::string m_mainVolume, m_mainTf; ///< the first ones, which the ratios are about
 };
 
 Answer run(const Options& o, bool threadsGiven, Progress& progress) {

@@ -37,7 +37,7 @@ double cpuSeconds() {
 /// What is asked of an optimization: 0.1, 0.3, 0.6 for three features; for n of them in proportion to 1, 3, 6, 10, …
 std::vector<double> benchTargets(std::size_t features) {
     std::vector<double> targets;
-    for (std::size_t i = 0; i < features; ++i) targets.push_back(static_cast<double>((i + 1) * (i + 2) / 2));
+    for (std::size_t i = 0; i < features; ++i) targets.push_back(0.5 * static_cast<double>((i + 1) * (i + 2)));
     return normalizedTargets(std::move(targets), features);
 }
 
@@ -64,6 +64,7 @@ double bytesPerVoxel(const WeightFields& weights) {
 struct Measurement {
     BenchResult result;
     std::function<void(BenchResult& result, const JobControl& job)> work; ///< may add to `bytes` and `extra`
+    int times = 1;                                                        ///< that `work` does the same
     std::vector<double> seconds, cpuSeconds;
     bool failed = false;
 };
@@ -123,8 +124,8 @@ private:
             const double cpuStart = cpuSeconds();
             m.work(m.result, job);
             if (!counts) return;
-            m.seconds.push_back(watch.seconds());
-            m.cpuSeconds.push_back(cpuSeconds() - cpuStart);
+            m.seconds.push_back(watch.seconds() / m.times);
+            m.cpuSeconds.push_back((cpuSeconds() - cpuStart) / m.times);
         } catch (const Error& e) {
             m.failed = true;
             const std::string row = std::string("row ") + name(m.result.row) + " of " + m.result.volume;
@@ -134,11 +135,11 @@ private:
     }
 
     /// Adds the row once per number of threads; once in all where the work is not done by our threads.
-    void add(const BenchResult& result, double bytes,
-             const std::function<void(BenchResult&, const JobControl&)>& work) {
+    void add(const BenchResult& result, double bytes, const std::function<void(BenchResult&, const JobControl&)>& work,
+             int times = 1) {
         for (const int threads : m_options.threads) {
             if (result.engine == "gl" && threads != m_options.threads.back()) continue;
-            Measurement m{result, work, {}, {}, false};
+            Measurement m{result, work, times, {}, {}, false};
             m.result.threads = threads;
             m.result.bytes = bytes;
             m_measurements.push_back(std::move(m));
@@ -178,16 +179,20 @@ private:
     }
 
     void addSweeps(const JobControl& job) {
-        m_candidates = {m_tf.tf};
-        const auto sums = m_engine->sums(m_camera, m_candidates, &m_weights, {job.stop, {}});
-        for (TransferFunction& c : searchCandidates(m_tf.tf, vwsOf(sums[0]), m_tf.stepScale))
-            m_candidates.push_back(std::move(c));
-        add(row(BenchRow::Sweep, m_engine->name(), 1), sweepBytes(), [this](BenchResult&, const JobControl& j) {
-            m_engine->sums(m_camera, std::span(m_candidates).first(1), &m_weights, j);
-        });
-        add(row(BenchRow::Sweep, m_engine->name(), 8), sweepBytes(), [this](BenchResult&, const JobControl& j) {
-            m_engine->sums(m_camera, std::span(m_candidates).subspan(1), &m_weights, j);
-        });
+        const auto sums = m_engine->sums(m_camera, {&m_tf.tf, 1}, &m_weights, {job.stop, {}});
+        m_candidates = searchCandidates(m_tf.tf, vwsOf(sums[0]), m_tf.stepScale);
+        // One by one the same eight, since more opaque ones are done sooner. Where nothing is opaque one stands for
+        // all.
+        const int singles = m_tf.stepScale < 1 ? 1 : static_cast<int>(m_candidates.size());
+        add(
+            row(BenchRow::Sweep, m_engine->name(), 1), sweepBytes(),
+            [this, singles](BenchResult&, const JobControl& j) {
+                for (int i = 0; i < singles; ++i)
+                    m_engine->sums(m_camera, {&m_candidates[static_cast<std::size_t>(i)], 1}, &m_weights, j);
+            },
+            singles);
+        add(row(BenchRow::Sweep, m_engine->name(), 8), sweepBytes(),
+            [this](BenchResult&, const JobControl& j) { m_engine->sums(m_camera, m_candidates, &m_weights, j); });
     }
 
     void addJacobians(const JobControl& job) {
@@ -197,7 +202,7 @@ private:
         if (!m_tf.nineFeatures) return;
         m_nine = tents(9);
         m_nineWeights = saliencyFields(*m_volume, m_nine, {}, job);
-        add(row(BenchRow::Jacobian, m_engine->name(), 1, m_nine, "tents:9"), sweepBytes(),
+        add(row(BenchRow::Jacobian, m_engine->name(), 1, m_nine, kNineTents), sweepBytes(),
             [this](BenchResult&, const JobControl& j) { m_engine->jacobian(m_camera, m_nine, &m_nineWeights, j); });
     }
 
@@ -242,7 +247,7 @@ private:
     VisibilityEngine* m_engine; ///< null where no row needs one
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;
-    std::vector<TransferFunction> m_candidates; ///< the transfer function itself, then eight of a search
+    std::vector<TransferFunction> m_candidates; ///< the eight of a search
     std::vector<Measurement> m_measurements;
 };
 

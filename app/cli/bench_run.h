@@ -42,10 +42,12 @@ struct BenchTf {
     std::string name;
     TransferFunction tf;
     std::set<BenchRow> rows;
-    bool nineFeatures = false; ///< a Jacobian of tents:9 too
+    bool nineFeatures = false; ///< a Jacobian of kNineTents too
     /// Length of the steps of the eight candidates in those of a line search, (0, 1].
     double stepScale = 1;
 };
+
+inline constexpr const char* kNineTents = "tents:9";
 
 /// Every voxel has an opacity, so low that no ray is exhausted: nothing can be left out. Three features.
 TransferFunction denseTf();
