@@ -5,7 +5,8 @@ Prints how long vtkFixedPointVolumeRayCastMapper takes for a picture in the stea
 says an 8-candidate sweep takes, and the ratio of the two. Run it on a display, real or virtual, with the Python that
 has VTK (see README.md here):
 
-    xvfb-run -a -s "-screen 0 1024x1024x24" /usr/bin/python3 benchmarks/vtk_raycast.py --cli build/release/bin/pellucid-cli
+    xvfb-run -a -s "-screen 0 1024x1024x24" /usr/bin/python3 benchmarks/vtk_raycast.py \\
+        --cli build/release/bin/pellucid-cli
 
 What is the same on both sides: the voxels, the view, the transfer function, the number of threads. VTK draws without
 shading, with linear interpolation, one ray per pixel, samples one d0 apart; opacities are those of a path of d0.
@@ -123,18 +124,20 @@ class Picture:
         self.volume.GetProperty().SetColor(color)
 
     def times(self, sample_distance, frames, view):
-        """Seconds per picture, medians: what the mapper counts (rays and the textured rectangle they are shown on), and
-        the whole of Render(). The camera turns by half a degree each time."""
+        """Per picture what the mapper counts (rays, and handing the picture over), the whole of Render(), and the time
+        of all processors for it; lists of seconds. The camera turns by half a degree each time."""
         self.mapper.SetSampleDistance(sample_distance)
-        mapper, whole = [], []
+        times = {"mapper": [], "render": [], "cpu": []}
         for frame in range(frames + 2):
             self.look(view[0] + 0.5 * frame, view[1])
-            start = time.perf_counter()
+            start, cpu = time.perf_counter(), time.process_time()
             self.window.Render()
-            if frame >= 2:  # the first ones prepare tables
-                whole.append(time.perf_counter() - start)
-                mapper.append(self.mapper.GetTimeToDraw())
-        return statistics.median(mapper), statistics.median(whole)
+            if frame < 2:  # these prepare tables
+                continue
+            times["render"].append(time.perf_counter() - start)
+            times["cpu"].append(time.process_time() - cpu)
+            times["mapper"].append(self.mapper.GetTimeToDraw())
+        return times
 
     def display_time(self, frames, view):
         """The same of a scene without the volume: what showing costs."""
@@ -165,6 +168,41 @@ def pellucid(cli, *arguments):
     return json.loads(answer.stdout)
 
 
+def compare(options, file, picture, peak, view):
+    """Both programs in turn, so that a machine that changes its speed changes that of both."""
+    drawn = {"d0": {}, "1 world unit": {}}
+    swept = {1: {}, 8: {}}
+    for _ in range(options.rounds):
+        for label, distance in (("d0", picture.d0), ("1 world unit", 1.0)):
+            for key, values in picture.times(distance, options.frames, view).items():
+                drawn[label].setdefault(key, []).extend(values)
+        for row in pellucid(options.cli, "bench", file, "--tf", f"tents:3:{peak:g}", "--only", "sweep", "--threads",
+                            str(options.threads), "--view", options.view, "--engine", "cpu", "--repeat", "3")["rows"]:
+            for key in ("seconds", "cpu_seconds"):
+                swept[row["candidates"]].setdefault(key, []).append(row[key])
+    median = statistics.median
+    print(f"\ntents:3:{peak:g}                          time    CPU time  [ms]")
+    for label, times in drawn.items():
+        mapper, render, cpu = (1e3 * median(times[key]) for key in ("mapper", "render", "cpu"))
+        print(f"  VTK, samples every {label:12}  {mapper:9.1f}   {cpu:9.1f}   (whole Render(): {render:.1f})")
+    print(f"  VTK, no volume                   {1e3 * picture.display_time(options.frames, view):9.1f}")
+    for candidates, times in swept.items():
+        print(f"  Pellucid, sweep of {candidates}             {1e3 * median(times['seconds']):9.1f}   "
+              f"{1e3 * median(times['cpu_seconds']):9.1f}")
+    print(f"  sweep of 8 / picture (d0)        {median(swept[8]['seconds']) / median(drawn['d0']['mapper']):9.2f}   "
+          f"{median(swept[8]['cpu_seconds']) / median(drawn['d0']['cpu']):9.2f}")
+
+
+def write_pictures(options, file, picture, peak, view):
+    target = Path(options.pictures)
+    target.mkdir(parents=True, exist_ok=True)
+    picture.mapper.SetSampleDistance(picture.d0)
+    picture.write(target / f"vtk_{peak:g}.png", view)
+    subprocess.run([options.cli, "render", file, "--tf", f"tents:3:{peak:g}", "--view", options.view, "--engine", "cpu",
+                    "--size", f"{options.image_size}x{options.image_size}", "--out",
+                    str(target / f"pellucid_{peak:g}.png")], check=True, stdout=subprocess.DEVNULL)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cli", required=True, help="the pellucid-cli to measure")
@@ -172,7 +210,8 @@ def main():
     parser.add_argument("--size", type=int, default=0, help="voxels along its longest axis (default: its own)")
     parser.add_argument("--peaks", default="0.5,0.1,0.02", help="peaks of tents:3 (default 0.5,0.1,0.02)")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--frames", type=int, default=9, help="pictures of which the median is taken (default 9)")
+    parser.add_argument("--frames", type=int, default=9, help="pictures in a row (default 9)")
+    parser.add_argument("--rounds", type=int, default=3, help="turns of both programs (default 3)")
     parser.add_argument("--image-size", type=int, default=512)
     parser.add_argument("--view", default="30,20", help="AZIMUTH,ELEVATION in degrees (default 30,20)")
     parser.add_argument("--pictures", help="write pictures of both into this folder, to look at")
@@ -188,33 +227,14 @@ def main():
         low, high = pellucid(options.cli, "info", file)["range"]
         picture = Picture(voxels, spacing, type_name, options.threads, options.image_size)
         nz, ny, nx = voxels.shape
-        print(f"VTK {vtk.vtkVersion.GetVTKVersion()}, {options.sample} {nx} x {ny} x {nz}, {options.image_size}² pixels, "
-              f"{options.threads} threads, median of {options.frames} pictures, {picture.mapper.GetNumberOfThreads()} "
-              f"threads of the mapper; d0 = {picture.d0:g}")
+        print(f"VTK {vtk.vtkVersion.GetVTKVersion()}, {options.sample} {nx} x {ny} x {nz}, {options.image_size}² "
+              f"pixels, {picture.mapper.GetNumberOfThreads()} threads, medians of {options.rounds} x {options.frames} "
+              f"pictures; d0 = {picture.d0:g}")
         for peak in (float(p) for p in options.peaks.split(",")):
             picture.show(*tents(3, peak, low, high))
-            print(f"\ntents:3:{peak:g}")
-            drawn = {}
-            for label, distance in (("d0", picture.d0), ("1 world unit", 1.0)):
-                drawn[label] = picture.times(distance, options.frames, view)
-                print(f"  VTK, samples every {label:12}  mapper {1e3 * drawn[label][0]:7.1f} ms, whole Render() "
-                      f"{1e3 * drawn[label][1]:7.1f} ms")
-            print(f"  VTK, Render() without the volume          {1e3 * picture.display_time(options.frames, view):7.1f} ms")
-            rows = pellucid(options.cli, "bench", file, "--tf", f"tents:3:{peak:g}", "--only", "sweep", "--threads",
-                            str(options.threads), "--view", options.view, "--engine", "cpu", "--repeat", "5")["rows"]
-            for row in rows:
-                print(f"  Pellucid, sweep of {row['candidates']} TFs                     {1e3 * row['seconds']:7.1f} ms")
-            sweep8 = next(row["seconds"] for row in rows if row["candidates"] == 8)
-            print(f"  sweep of 8 / picture (d0): {sweep8 / drawn['d0'][0]:.2f} of the mapper's time, "
-                  f"{sweep8 / drawn['d0'][1]:.2f} of Render()")
+            compare(options, file, picture, peak, view)
             if options.pictures:
-                target = Path(options.pictures)
-                target.mkdir(parents=True, exist_ok=True)
-                picture.mapper.SetSampleDistance(picture.d0)
-                picture.write(target / f"vtk_{peak:g}.png", view)
-                subprocess.run([options.cli, "render", file, "--tf", f"tents:3:{peak:g}", "--view", options.view,
-                                "--engine", "cpu", "--size", f"{options.image_size}x{options.image_size}", "--out",
-                                str(target / f"pellucid_{peak:g}.png")], check=True, stdout=subprocess.DEVNULL)
+                write_pictures(options, file, picture, peak, view)
 
 
 if __name__ == "__main__":
