@@ -22,6 +22,15 @@ AppearanceReader::Pair pairOf(const Appearance& a) {
         std::array<float, 2>{static_cast<float>(a.brightness), static_cast<float>(a.saturation)});
 }
 
+/// Whether leaving out `p`, between `a` and `b`, changes no colour.
+bool onLine(const ControlPoint& a, const ControlPoint& p, const ControlPoint& b) {
+    if (a.x == p.x || p.x == b.x) return (a.x == p.x && a.color == p.color) || (p.x == b.x && p.color == b.color);
+    const double t = (p.x - a.x) / (b.x - a.x);
+    const auto close = [t](double from, double v, double to) { return std::abs(from + t * (to - from) - v) < 1e-12; };
+    return close(a.color.r, p.color.r, b.color.r) && close(a.color.g, p.color.g, b.color.g) &&
+           close(a.color.b, p.color.b, b.color.b);
+}
+
 /// Whether all values of a type fit into a table.
 template <class T>
 constexpr bool kTabulated = sizeof(T) <= 2;
@@ -43,7 +52,15 @@ Appearance AppearanceReader::atIntensity(double s) const {
     return appearanceOf(m_sampler.color(s));
 }
 
-AppearanceReader::Pair AppearanceReader::pairAt(double s) const { return pairOf(atIntensity(s)); }
+AppearanceReader::Pair AppearanceReader::pairAt(double s, Latest& latest) const {
+    if (s == latest.intensity) return latest.ofIntensity;
+    latest.intensity = s;
+    if (featureAt(m_features, s) < 0) return latest.ofIntensity = pairOf(m_background);
+    const Rgb color = m_sampler.color(s);
+    if (!(color == latest.color)) latest.ofColor = pairOf(appearanceOf(color));
+    latest.color = color;
+    return latest.ofIntensity = latest.ofColor;
+}
 
 void AppearanceReader::tabulateSamples() {
     std::visit(
@@ -52,15 +69,12 @@ void AppearanceReader::tabulateSamples() {
             if constexpr (kTabulated<T>) {
                 constexpr int kLowest = std::numeric_limits<T>::min(), kHighest = std::numeric_limits<T>::max();
                 m_ofSample.resize(static_cast<std::size_t>(kHighest - kLowest + 1));
-                // Colours change slowly or not at all from value to value: the last one is often this one.
-                double last = std::numeric_limits<double>::quiet_NaN();
-                Pair pair = pairAt(last);
-                for (int v = kLowest; v <= kHighest; ++v) {
-                    const double s = m_volume.intensityOfValue(v);
-                    if (s != last) pair = pairAt(s);
-                    last = s;
-                    m_ofSample[static_cast<std::size_t>(v - kLowest)] = pair;
-                }
+                constexpr int kPiece = 256;
+                parallelFor(m_ofSample.size() / kPiece, [&](std::size_t piece) {
+                    Latest latest;
+                    for (std::size_t i = piece * kPiece; i < (piece + 1) * kPiece; ++i)
+                        m_ofSample[i] = pairAt(m_volume.intensityOfValue(kLowest + static_cast<int>(i)), latest);
+                });
             }
         },
         m_volume.samples());
@@ -107,23 +121,18 @@ void AppearanceReader::readRow(std::size_t first, int count, Pair* out) const {
                 constexpr int kLowest = std::numeric_limits<T>::min();
                 for (int x = 0; x < count; ++x) out[x] = table[row[x] - kLowest];
             } else {
-                double last = std::numeric_limits<double>::quiet_NaN();
-                Pair pair = pairAt(last);
-                const auto evaluated = [&](double s) {
-                    if (s != last) pair = pairAt(last = s);
-                    return pair;
-                };
+                Latest latest;
                 for (int x = 0; x < count; ++x) {
                     const double s = m_volume.intensityOfValue(static_cast<double>(row[x]));
                     if (m_ofIntensity.empty() || std::isnan(s)) {
-                        out[x] = evaluated(s);
+                        out[x] = pairAt(s, latest);
                         continue;
                     }
                     const double scaled = s * kBins;
                     const int index = std::min(static_cast<int>(scaled), kBins - 1);
                     const Bin& bin = m_ofIntensity[static_cast<std::size_t>(index)];
                     if (std::isnan(bin.brightnessStep)) {
-                        out[x] = evaluated(s);
+                        out[x] = pairAt(s, latest);
                         continue;
                     }
                     const float t = static_cast<float>(scaled - index);
@@ -158,6 +167,19 @@ void validate(const SaliencyOptions& o) {
         throw UsageError("sigma lies in (0, 8] reference lengths", "saliency", "give --sigma such a value");
     if (!std::isfinite(o.w1) || !std::isfinite(o.w2) || o.w1 < 0 || o.w2 < 0)
         throw UsageError("w1 and w2 are finite and not negative", "saliency", "correct --w1, --w2");
+}
+
+TransferFunction colorsOf(const TransferFunction& tf) {
+    const std::vector<ControlPoint> points = tf.pointsWithEnds();
+    TransferFunction colors;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const ControlPoint p{points[i].x, 0.0, points[i].color, false, {}};
+        const bool inner = i > 0 && i + 1 < points.size();
+        if (inner && onLine(colors.points.back(), p, points[i + 1])) continue;
+        colors.points.push_back(p);
+    }
+    for (const Feature& f : tf.features) colors.features.push_back({{}, f.a, f.b, {}, {}});
+    return colors;
 }
 
 WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options) {

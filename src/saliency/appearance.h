@@ -27,8 +27,14 @@ private:
         float brightness, saturation;         ///< at the bin's lower end
         float brightnessStep, saturationStep; ///< over the bin; NaN: not linear there, evaluate
     };
+    /// The latest intensity and colour that were asked for: neighbouring values often have the same.
+    struct Latest {
+        double intensity = -1;
+        Rgb color{-1, -1, -1};
+        Pair ofIntensity = 0, ofColor = 0;
+    };
     Appearance atIntensity(double s) const;
-    Pair pairAt(double s) const;
+    Pair pairAt(double s, Latest& latest) const;
     void tabulateSamples();
     void tabulateIntensities();
     Bin binAt(int index) const;

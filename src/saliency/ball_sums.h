@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace pellucid {
 
@@ -77,8 +78,9 @@ struct BallSumsKernel {
                           std::uint32_t* out);
 };
 
-/// The best for this processor.
-const BallSumsKernel& ballSumsKernel();
+/// Those that this processor can run, the best first.
+std::span<const BallSumsKernel* const> ballSumsKernels();
+const BallSumsKernel& ballSumsKernel(); ///< the best
 
 // One per instruction set (ball_sums_*.cpp).
 extern const BallSumsKernel kBallSumsGeneric;

@@ -6,15 +6,19 @@ namespace pellucid {
 
 const BallSumsKernel kBallSumsGeneric{sumRangeAlongZ, packRow, packRowDirect};
 
-const BallSumsKernel& ballSumsKernel() {
+std::span<const BallSumsKernel* const> ballSumsKernels() {
 #ifdef PELLUCID_HAVE_X86_BALL_SUMS
+    static constexpr const BallSumsKernel* kAll[] = {&kBallSumsAvx512, &kBallSumsAvx2, &kBallSumsGeneric};
     static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     static const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                                __builtin_cpu_supports("avx512vl");
-    if (avx512) return kBallSumsAvx512;
-    if (avx2) return kBallSumsAvx2;
+    return std::span(kAll).subspan(avx512 ? 0 : avx2 ? 1 : 2);
+#else
+    static constexpr const BallSumsKernel* kAll[] = {&kBallSumsGeneric};
+    return kAll;
 #endif
-    return kBallSumsGeneric;
 }
+
+const BallSumsKernel& ballSumsKernel() { return *ballSumsKernels().front(); }
 
 } // namespace pellucid
