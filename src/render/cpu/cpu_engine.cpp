@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
 
@@ -18,53 +19,184 @@ namespace {
 
 /// In voxels. The rays of an eye farther off are parallel: over 4096 voxels they diverge by less than 0.2.
 constexpr double kFarEye = 1e8;
-constexpr int kDepthTableSize = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
+constexpr int kMostTableEntries = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
 
-/// The tables of up to kSweepLanes transfer functions side by side.
-struct SweepTables {
-    SweepTables(std::span<const TransferFunction> tfs, int laneCount, int maxCode) : lanes(laneCount) {
-        const auto n = static_cast<std::size_t>(lanes), codes = static_cast<std::size_t>(maxCode) + 1;
-        depth.assign(static_cast<std::size_t>(kDepthTableSize) * n, 0.0f);
-        integral.assign(depth.size(), 0.0f);
-        alpha.assign(codes * n, 0.0f);
-        featureOfCode.assign(codes, kTransparent);
-        for (std::size_t lane = 0; lane < tfs.size(); ++lane) {
-            const TfSampler sampler(tfs[lane]);
-            double sum = 0, before = 0;
-            for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i) {
-                const double tau =
-                    opticalDepthOfOpacity(sampler.opacity(static_cast<double>(i) / (kDepthTableSize - 1)));
-                if (i > 0) sum += (before + tau) / 2;
-                before = tau;
-                depth[i * n + lane] = static_cast<float>(tau);
-                integral[i * n + lane] = static_cast<float>(sum);
+/// Rays are given up at this optical depth: what lies behind is seen by less than 1e-4 (high quality and derivatives,
+/// which have no bound: 6e-6).
+constexpr double kExhausted = 9.3, kExhaustedHigh = 12;
+
+std::size_t asSize(int n) { return static_cast<std::size_t>(n); }
+
+/// Calls body(first, last) for pieces of [0, count).
+void inPieces(std::size_t count, const std::function<void(std::size_t, std::size_t)>& body) {
+    constexpr std::size_t kPiece = 1024;
+    parallelFor((count + kPiece - 1) / kPiece,
+                [&](std::size_t i) { body(i * kPiece, std::min(count, (i + 1) * kPiece)); });
+}
+
+/// How the codes of a volume are to be read: intensity is code / max.
+struct Codes {
+    int max = 65535;
+    int step = 1;             ///< codes are multiples of this
+    bool someInvalid = false; ///< kInvalidCode is no intensity
+};
+
+/// The transfer functions of one sweep as its kernel reads them, side by side in lanes. Lanes without a transfer
+/// function of their own repeat the last one, so that they keep no ray alive.
+class SweepTables {
+public:
+    /// Up to kSweepLanes candidates.
+    SweepTables(std::span<const TransferFunction> tfs, const Codes& codes)
+        : SweepTables(tfs.size() == 1 ? SweepMode::Single : SweepMode::Batch, tfs[0].features, codes) {
+        std::vector<TfSampler> samplers(tfs.begin(), tfs.end());
+        while (samplers.size() < m_lanes) samplers.push_back(samplers.back());
+        fillIntegral([&](double s, double* tau) {
+            for (std::size_t lane = 0; lane < m_lanes; ++lane)
+                tau[lane] = opticalDepthOfOpacity(samplers[lane].opacity(s));
+        });
+        m_alpha.assign(m_codes * m_lanes, 0.0f);
+        fillCodes([&](std::size_t code, double s) {
+            bool opaque = false;
+            for (std::size_t lane = 0; lane < m_lanes; ++lane) {
+                const double a = samplers[lane].opacity(s);
+                m_alpha[code * m_lanes + lane] = static_cast<float>(a);
+                opaque |= a > 0;
             }
-            for (std::size_t c = 0; c < codes; ++c) {
-                const double s = static_cast<double>(c) / maxCode;
-                const double a = sampler.opacity(s);
-                alpha[c * n + lane] = static_cast<float>(a);
-                if (a <= 0 || featureOfCode[c] != kTransparent) continue;
-                const int f = featureAt(tfs[0].features, s);
-                featureOfCode[c] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(tfs[0].features.size()) : f);
+            return opaque;
+        });
+    }
+    /// One transfer function and the derivatives of its depth by the peaks of features from `firstDerivative` on.
+    /// A voxel that is transparent now but not under a higher peak counts: its visibility has a derivative.
+    SweepTables(const TransferFunction& tf, int firstDerivative, const Codes& codes)
+        : SweepTables(SweepMode::Jacobian, tf.features, codes) {
+        const TfSampler sampler(tf), shapes(withFullPeaks(tf));
+        fillIntegral([&](double s, double* tau) {
+            const double a = sampler.opacity(s);
+            tau[0] = opticalDepthOfOpacity(a);
+            const int lane = featureAt(tf.features, s) - firstDerivative + 1;
+            if (lane >= 1 && lane < kJacobianLanes && a < kMaxOpacity) tau[lane] = shapes.opacity(s) / (1 - a);
+        });
+        m_alpha.assign(m_codes * 2, 0.0f);
+        fillCodes([&](std::size_t code, double s) {
+            m_alpha[2 * code] = static_cast<float>(sampler.opacity(s));
+            if (featureAt(tf.features, s) >= 0) m_alpha[2 * code + 1] = static_cast<float>(shapes.opacity(s));
+            return m_alpha[2 * code] > 0 || m_alpha[2 * code + 1] > 0;
+        });
+    }
+
+    /// Per block of kBlockSize³ voxels, of the given ranges of codes: 1 where any lane is opaque anywhere in the range.
+    std::vector<std::uint8_t> opaqueBlocks(const std::vector<std::array<std::uint16_t, 2>>& ranges) const {
+        std::vector<std::uint8_t> opaque(ranges.size());
+        for (std::size_t i = 0; i < ranges.size(); ++i) {
+            const auto [low, high] = ranges[i];
+            if (low > high) continue; // nothing valid
+            const auto first = static_cast<std::size_t>(static_cast<float>(low) * m_entryOfCode),
+                       last = static_cast<std::size_t>(static_cast<float>(high) * m_entryOfCode) + 1;
+            opaque[i] = m_opaqueCodes[asSize(high) + 1] != m_opaqueCodes[low] ||
+                        m_opaqueEntries[std::min(last + 1, m_entries)] != m_opaqueEntries[first];
+        }
+        return opaque;
+    }
+
+    void giveTo(SweepInput& in) const {
+        in.mode = m_mode;
+        in.tableEntryOfCode = m_entryOfCode;
+        in.integralTable = m_integral.data();
+        in.alphaTable = m_alpha.data();
+        in.featureOfCode = m_featureOfCode.data();
+        in.features = static_cast<int>(m_features->size());
+        std::copy(m_units.begin(), m_units.end(), in.depthUnit);
+    }
+
+private:
+    SweepTables(SweepMode mode, const std::vector<Feature>& features, const Codes& codes)
+        : m_mode(mode), m_features(&features), m_lanes(asSize(lanesOf(mode))), m_codes(asSize(codes.max) + 1),
+          m_codeStep(asSize(codes.step)), m_someInvalid(codes.someInvalid) {
+        // Where codes are exact every value has an entry of its own, so that what is constant is measured exactly.
+        const int values = codes.max / codes.step;
+        const int steps = codes.step > 1 || values < kMostTableEntries
+                              ? values * std::max(1, (kMostTableEntries - 1) / values)
+                              : kMostTableEntries - 1;
+        m_entries = asSize(std::min(steps, kMostTableEntries - 1)) + 1;
+        m_entryOfCode = static_cast<float>(m_entries - 1) / static_cast<float>(codes.max);
+    }
+
+    /// `taus(s, tau)` sets the lanes that are not 0.
+    template <class Taus>
+    void fillIntegral(const Taus& taus) {
+        std::vector<double> tau(m_entries * m_lanes, 0.0);
+        inPieces(m_entries, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i)
+                taus(static_cast<double>(i) / static_cast<double>(m_entries - 1), &tau[i * m_lanes]);
+        });
+        // 32-bit integers, since differences of floats that large would drown a small τ.
+        m_integral.assign((m_entries + 1) * m_lanes, 0);
+        m_opaqueEntries.assign(m_entries + 1, 0);
+        for (std::size_t lane = 0; lane < m_lanes; ++lane) {
+            double all = 0;
+            for (std::size_t i = 0; i < m_entries; ++i) all += tau[i * m_lanes + lane];
+            const double unit = all > 0 ? all / (1 << 30) : 1;
+            m_units[lane] = static_cast<float>(unit);
+            double sum = 0;
+            for (std::size_t i = 0; i < m_entries; ++i) {
+                sum += tau[i * m_lanes + lane];
+                m_integral[(i + 1) * m_lanes + lane] = static_cast<std::int32_t>(std::lround(sum / unit));
             }
         }
-        opaqueBefore.assign(static_cast<std::size_t>(kDepthTableSize) + 1, 0);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i) {
-            const auto entry = depth.begin() + static_cast<std::ptrdiff_t>(i * n);
-            const bool opaque = std::any_of(entry, entry + lanes, [](float tau) { return tau > 0; });
-            opaqueBefore[i + 1] = opaqueBefore[i] + (opaque ? 1 : 0);
+        for (std::size_t i = 0; i < m_entries; ++i) {
+            const auto row = tau.begin() + static_cast<std::ptrdiff_t>(i * m_lanes);
+            const bool opaque =
+                std::any_of(row, row + static_cast<std::ptrdiff_t>(m_lanes), [](double t) { return t > 0; });
+            m_opaqueEntries[i + 1] = m_opaqueEntries[i] + (opaque ? 1 : 0);
         }
     }
-    int lanes;
-    std::vector<int> opaqueBefore;
-    std::vector<float> depth, integral, alpha;
-    std::vector<std::uint8_t> featureOfCode;
+
+    /// `fill(code, s)` fills α and tells whether voxels of that code count.
+    template <class Fill>
+    void fillCodes(const Fill& fill) {
+        m_featureOfCode.assign(65536, kTransparent);
+        const std::size_t used = (m_codes - 1) / m_codeStep + 1;
+        inPieces(used, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const std::size_t code = i * m_codeStep;
+                const double s = static_cast<double>(code) / static_cast<double>(m_codes - 1);
+                if (!fill(code, s)) continue;
+                const int f = featureAt(*m_features, s);
+                m_featureOfCode[code] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(m_features->size()) : f);
+            }
+        });
+        if (m_someInvalid) m_featureOfCode[kInvalidCode] = kTransparent;
+        m_opaqueCodes.assign(m_codes + 1, 0);
+        for (std::size_t c = 0; c < m_codes; ++c)
+            m_opaqueCodes[c + 1] = m_opaqueCodes[c] + (m_featureOfCode[c] != kTransparent ? 1 : 0);
+    }
+
+    SweepMode m_mode;
+    const std::vector<Feature>* m_features;
+    std::size_t m_lanes, m_codes, m_codeStep, m_entries = 0;
+    bool m_someInvalid;
+    float m_entryOfCode = 0;
+    std::vector<std::int32_t> m_integral;
+    std::vector<float> m_alpha;
+    std::array<float, kJacobianLanes> m_units{};
+    std::vector<std::uint8_t> m_featureOfCode;
+    std::vector<int> m_opaqueEntries, m_opaqueCodes; ///< how many before
 };
 
 class CpuEngine final : public VisibilityEngine {
 public:
-    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality)
-        : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)) {}
+    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality) : m_volume(std::move(volume)), m_quality(quality) {
+        IntensityGrid grid = makeIntensityGrid(*m_volume);
+        m_codeSpace = {grid.maxCode, grid.codeStep, !grid.valid.empty()};
+        m_codes = std::move(grid.codes).release();
+        if (m_codeSpace.someInvalid)
+            inPieces(m_codes.size(), [&](std::size_t first, std::size_t last) {
+                for (std::size_t i = first; i < last; ++i)
+                    m_codes[i] = grid.valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
+            });
+        m_codes.resize(m_codes.size() + kCodePadding);
+        findRanges();
+    }
 
     std::string name() const override { return "cpu"; }
     const Volume& volume() const override { return *m_volume; }
@@ -74,18 +206,32 @@ public:
         std::vector<FeatureSums> all;
         for (std::size_t first = 0; first < tfs.size(); first += kSweepLanes) {
             const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
-            for (FeatureSums& s : sweep(camera, batch, weights, nullptr, job)) all.push_back(std::move(s));
+            checkFeatures(batch[0]);
+            for (const TransferFunction& tf : batch) PELLUCID_CHECK(tf.features.size() == tfs[0].features.size());
+            const Sums sums = sweep(camera, SweepTables(batch, m_codeSpace), weights, nullptr, job);
+            for (std::size_t lane = 0; lane < batch.size(); ++lane) all.push_back(sums.ofLane(lane));
         }
         return all;
     }
 
-    SumsJacobian jacobian(const Camera&, const TransferFunction&, const WeightFields*, const JobControl&) override {
-        throw Error("the cpu engine has no derivatives yet", "", "");
+    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+                          const JobControl& job) override {
+        checkFeatures(tf);
+        SumsJacobian result;
+        for (std::size_t first = 0; first == 0 || first < tf.features.size(); first += kJacobianLanes - 1) {
+            const SweepTables tables(tf, static_cast<int>(first), m_codeSpace);
+            const Sums sums = sweep(camera, tables, weights, nullptr, job);
+            if (first == 0) result.sums = sums.ofLane(0);
+            for (std::size_t lane = 1; lane < kJacobianLanes && first + lane <= tf.features.size(); ++lane)
+                result.byOpacity.push_back(sums.ofLane(lane));
+        }
+        return result;
     }
 
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
+        checkFeatures(tf);
         VisibilityField field{Grid<float>(m_volume->dims())};
-        sweep(camera, {&tf, 1}, nullptr, &field.values, job);
+        sweep(camera, SweepTables({&tf, 1}, m_codeSpace), nullptr, &field.values, job);
         return field;
     }
 
@@ -95,65 +241,144 @@ private:
         bool flipped; ///< the nearest slice is the one of the highest index
     };
 
-    static Vec3 permuted(const Vec3& p, const Axes& x) { return {p[x.u], p[x.v], p[x.w]}; }
+    /// Of a whole sweep: [features + 1][3][lanes], the last feature being "in none".
+    struct Sums {
+        std::vector<double> values;
+        std::size_t features, lanes;
+        std::array<double, 3> units; ///< what 1 stands for in Σv and the two weighted sums
 
-    /// The sweep axis: the one along which a ray crosses most voxels; for a perspective eye the one whose rays stay
-    /// steepest. Counted in voxels, so that rays cross about one voxel per slice however unequal the spacing is.
-    Axes chooseAxes(const Camera& camera) const {
-        const Geometry& g = m_volume->geometry();
-        int w = 0;
-        bool flipped = false;
-        if (camera.projection == Projection::Orthographic) {
-            const Vec3 d = camera.forward() / g.spacing;
-            for (int a = 1; a < 3; ++a)
-                if (std::abs(d[a]) > std::abs(d[w])) w = a;
-            flipped = d[w] < 0;
-        } else {
-            const Vec3 lo(-0.5), hi = Vec3(g.dims) - 0.5, eye = g.voxelFromWorld(camera.eye);
-            double best = std::numeric_limits<double>::infinity();
-            for (int a = 0; a < 3; ++a) {
-                const double outside = std::max(lo[a] - eye[a], eye[a] - hi[a]);
-                if (outside < 0) continue;
-                double lateral = 0;
-                for (int b = 0; b < 3; ++b)
-                    if (b != a) lateral = std::max({lateral, std::abs(lo[b] - eye[b]), std::abs(hi[b] - eye[b])});
-                const double slope = lateral / (outside + (hi[a] - lo[a]) / 2);
-                if (slope >= best) continue;
-                best = slope;
-                w = a;
-                flipped = eye[a] >= hi[a];
+        FeatureSums ofLane(std::size_t lane) const {
+            FeatureSums sums;
+            sums.visibility.assign(features, 0.0);
+            for (auto& w : sums.weighted) w.assign(features, 0.0);
+            for (std::size_t f = 0; f <= features; ++f) {
+                const double* v = &values[f * 3 * lanes + lane];
+                const double part[3] = {v[0] * units[0], v[lanes] * units[1], v[2 * lanes] * units[2]};
+                sums.allVisibility += part[0];
+                for (std::size_t w = 0; w < 2; ++w) sums.allWeighted[w] += part[w + 1];
+                if (f == features) continue;
+                sums.visibility[f] = part[0];
+                for (std::size_t w = 0; w < 2; ++w) sums.weighted[w][f] = part[w + 1];
             }
+            return sums;
         }
-        return {w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped};
+    };
+
+    static void checkFeatures(const TransferFunction& tf) {
+        if (tf.features.size() >= kTransparent)
+            throw Error("at most 254 features can be measured", "transfer function", "join some");
     }
 
-    void setRays(SweepInput& in, const Camera& camera, const Axes& axes) const {
+    /// The codes that occur in each block of voxels and one voxel around it: what interpolation there can give.
+    void findRanges() {
+        const Int3 n = m_volume->dims();
+        m_blocks = (n + (kBlockSize - 1)) / kBlockSize;
+        m_ranges.assign(voxelCount(m_blocks), {kInvalidCode, 0});
+        parallelFor(asSize(m_blocks.z), [&](std::size_t bz) {
+            const int z0 = static_cast<int>(bz) * kBlockSize;
+            for (int by = 0; by < m_blocks.y; ++by) {
+                auto* row = &m_ranges[asSize(m_blocks.x) * (asSize(by) + asSize(m_blocks.y) * bz)];
+                for (int z = std::max(0, z0 - 1); z <= std::min(n.z - 1, z0 + kBlockSize); ++z)
+                    for (int y = std::max(0, by * kBlockSize - 1); y <= std::min(n.y - 1, (by + 1) * kBlockSize); ++y)
+                        widen(row, &m_codes[asSize(n.x) * (asSize(y) + asSize(n.y) * asSize(z))]);
+            }
+        });
+    }
+    void widen(std::array<std::uint16_t, 2>* ranges, const std::uint16_t* codes) const {
+        const int nx = m_volume->dims().x;
+        for (int block = 0; block < m_blocks.x; ++block) {
+            auto [low, high] = ranges[block];
+            const int last = std::min(nx - 1, (block + 1) * kBlockSize);
+            for (int x = std::max(0, block * kBlockSize - 1); x <= last; ++x) {
+                if (codes[x] == kInvalidCode && m_codeSpace.someInvalid) continue;
+                low = std::min(low, codes[x]);
+                high = std::max(high, codes[x]);
+            }
+            ranges[block] = {low, high};
+        }
+    }
+
+    static Vec3 permuted(const Vec3& p, const Axes& x) { return {p[x.u], p[x.v], p[x.w]}; }
+
+    /// One sweep of those that together visit every voxel once.
+    struct View {
+        Axes axes;
+        bool pyramid; ///< visits only the voxels that the eye sees along this axis rather than another
+    };
+
+    /// Rays that make more than this many voxels along a slice for one across are left to another sweep.
+    static constexpr double kSteepest = 1.25;
+
+    /// Axes are compared in voxels, so that rays cross about one voxel per slice however unequal the spacing is.
+    std::vector<View> viewsOf(const Camera& camera) const {
+        const auto axesOf = [](int w, bool flipped) { return Axes{w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped}; };
+        const Geometry& g = m_volume->geometry();
+        if (camera.projection == Projection::Orthographic) {
+            const Vec3 d = camera.forward() / g.spacing;
+            int w = 0;
+            for (int a = 1; a < 3; ++a)
+                if (std::abs(d[a]) > std::abs(d[w])) w = a;
+            return {{axesOf(w, d[w] < 0), false}};
+        }
+        const Vec3 eye = eyeInVoxels(camera), last = Vec3(g.dims - 1);
+        int best = -1;
+        double slope = kSteepest;
+        for (int w = 0; w < 3; ++w) {
+            const double away = std::max(0 - eye[w], eye[w] - last[w]); // of the nearest slice
+            if (away <= 0) continue;
+            double lateral = 0;
+            for (int a = 0; a < 3; ++a)
+                if (a != w) lateral = std::max({lateral, eye[a], last[a] - eye[a]});
+            if (lateral / away > slope) continue;
+            slope = lateral / away;
+            best = w;
+        }
+        if (best >= 0) return {{axesOf(best, eye[best] > 0), false}};
+        std::vector<View> views;
+        for (int w = 0; w < 3; ++w)
+            for (const bool flipped : {false, true}) {
+                const double away = flipped ? eye[w] : last[w] - eye[w]; // of the farthest slice
+                bool any = away > 0;
+                for (int a = 0; a < 3; ++a)
+                    if (a != w) any = any && eye[a] + away >= 0 && eye[a] - away <= last[a];
+                if (any) views.push_back({axesOf(w, flipped), true});
+            }
+        return views;
+    }
+
+    /// Rounded, so that differences from voxels are exact and each voxel is on one side of a pyramid's face.
+    Vec3 eyeInVoxels(const Camera& camera) const {
+        return glm::round(m_volume->geometry().voxelFromWorld(camera.eye) * 1048576.0) / 1048576.0;
+    }
+
+    void setRays(SweepInput& in, const Camera& camera, const View& view) const {
+        const Axes& axes = view.axes;
         const Geometry& g = m_volume->geometry();
         const Vec3 h = permuted(g.spacing, axes) / g.d0();
         in.hu = h.x, in.hv = h.y, in.hw = h.z;
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
-        in.maxStep = high ? 0.5 : 1.0;
-        in.raySpacing = high ? 0.4 : 0.75;
-        in.ownSlices = high ? 3 : 2;
+        in.stepsPerSlice = high ? 2 : 1;
+        in.raySpacing = high ? 0.6 : 1.0;
+        in.ownSlices = high ? 2 : 1;
+        if (getenv("PS")) in.raySpacing = atof(getenv("PS"));
+        if (getenv("PO")) in.ownSlices = atoi(getenv("PO"));
+        if (getenv("PT")) in.stepsPerSlice = atoi(getenv("PT"));
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
             in.slopeU = d.x / (sign * d.z);
             in.slopeV = d.y / (sign * d.z);
-            if (in.slopeU == 0 && in.slopeV == 0) { // every ray is a voxel's own line
-                in.raySpacing = 1;
-                in.ownSlices = 0;
-            }
+            if (in.slopeU == 0 && in.slopeV == 0) in.raySpacing = 1; // every ray is a voxel's own line
             return;
         }
-        const Vec3 eye = permuted(g.voxelFromWorld(camera.eye), axes);
+        const Vec3 eye = permuted(eyeInVoxels(camera), axes);
         in.eyeU = eye.x;
         in.eyeV = eye.y;
         in.eyeW = axes.flipped ? in.nw - 1 - eye.z : eye.z;
-        const double near = 0 - in.eyeW, far = in.nw - 1 - in.eyeW;
-        const double halvings = std::floor(std::log2(far / near));
-        in.firstSlopeStep = in.raySpacing / far * std::exp2(halvings);
+        in.pyramid = view.pyramid;
+        in.ownsTieU = axes.w < axes.u;
+        in.ownsTieV = axes.w < axes.v;
     }
 
     /// Codes laid out so that neighbours along u are neighbours in memory.
@@ -162,23 +387,28 @@ private:
         const std::ptrdiff_t nx = n.x, ny = n.y, nz = n.z;
         if (axes.w != 0) {
             strides = axes.w == 2 ? SweepStrides{1, nx, nx * ny} : SweepStrides{1, nx * ny, nx};
-            return m_grid.codes.data();
+            return m_codes.data();
         }
         if (m_codesYZX.empty()) {
-            m_codesYZX.resize(m_grid.codes.size());
-            parallelFor(static_cast<std::size_t>(nz), [&](std::size_t k) {
-                for (int j = 0; j < n.y; ++j)
-                    for (int i = 0; i < n.x; ++i)
-                        m_codesYZX[static_cast<std::size_t>(j + ny * (static_cast<std::ptrdiff_t>(k) + nz * i))] =
-                            m_grid.codes.at(i, j, static_cast<int>(k));
+            m_codesYZX.resize(m_codes.size());
+            parallelFor(asSize(n.z), [&](std::size_t k) {
+                for (std::size_t i = 0; i < asSize(n.x); ++i)
+                    for (std::size_t j = 0; j < asSize(n.y); ++j)
+                        m_codesYZX[j + asSize(n.y) * (k + asSize(n.z) * i)] =
+                            m_codes[i + asSize(n.x) * (j + asSize(n.y) * k)];
             });
         }
         strides = {1, ny, ny * nz};
         return m_codesYZX.data();
     }
 
-    std::vector<FeatureSums> sweep(const Camera& camera, std::span<const TransferFunction> tfs,
-                                   const WeightFields* weights, Grid<float>* field, const JobControl& job) {
+    static SweepStrides stridesOf(const Int3& dims, const Axes& axes) {
+        const std::array<std::ptrdiff_t, 3> natural{1, dims.x, static_cast<std::ptrdiff_t>(dims.x) * dims.y};
+        return {natural[asSize(axes.u)], natural[asSize(axes.v)], natural[asSize(axes.w)]};
+    }
+
+    Sums sweep(const Camera& camera, const SweepTables& tables, const WeightFields* weights, Grid<float>* field,
+               const JobControl& job) {
         const Geometry& g = m_volume->geometry();
         camera.validate(g, "camera");
         if (camera.projection == Projection::Perspective) {
@@ -190,25 +420,36 @@ private:
                 parallel.center = g.boxCenter();
                 parallel.up = std::abs(eye.z) > std::hypot(eye.x, eye.y) ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
                 parallel.height = 1; // of the image; no ray depends on it
-                return sweep(parallel, tfs, weights, field, job);
+                return sweep(parallel, tables, weights, field, job);
             }
         }
-        const std::size_t features = tfs[0].features.size();
-        for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features.size() == features);
-        if (features >= kTransparent)
-            throw Error("at most 254 features can be measured", "transfer function", "join some");
+        const std::vector<std::uint8_t> opaque = tables.opaqueBlocks(m_ranges);
+        Sums sums;
+        for (const View& view : viewsOf(camera)) {
+            Sums part = sweep(camera, view, tables, opaque, weights, field, job);
+            if (sums.values.empty()) {
+                sums = std::move(part);
+                continue;
+            }
+            for (std::size_t i = 0; i < sums.values.size(); ++i) sums.values[i] += part.values[i];
+        }
+        return sums;
+    }
 
-        const int lanes = tfs.size() == 1 ? 1 : kSweepLanes;
-        const SweepTables tables(tfs, lanes, m_grid.maxCode);
-        const Axes axes = chooseAxes(camera);
-
+    Sums sweep(const Camera& camera, const View& view, const SweepTables& tables,
+               const std::vector<std::uint8_t>& opaque, const WeightFields* weights, Grid<float>* field,
+               const JobControl& job) {
+        const Geometry& g = m_volume->geometry();
+        const Axes& axes = view.axes;
         SweepInput in;
-        in.lanes = lanes;
+        tables.giveTo(in);
         in.nu = g.dims[axes.u], in.nv = g.dims[axes.v], in.nw = g.dims[axes.w];
         in.codes = codesFor(axes, in.codeStrides);
-        const std::array<std::ptrdiff_t, 3> natural{1, g.dims.x, static_cast<std::ptrdiff_t>(g.dims.x) * g.dims.y};
-        in.fieldStrides = {natural[static_cast<std::size_t>(axes.u)], natural[static_cast<std::size_t>(axes.v)],
-                           natural[static_cast<std::size_t>(axes.w)]};
+        in.someInvalid = m_codeSpace.someInvalid;
+        in.fieldStrides = stridesOf(g.dims, axes);
+        in.opaqueStrides = stridesOf(m_blocks, axes);
+        in.opaque = opaque.data();
+        in.flipped = axes.flipped;
         std::ptrdiff_t start = 0;
         if (axes.flipped) {
             start = (in.nw - 1) * in.fieldStrides.w;
@@ -216,60 +457,36 @@ private:
             in.fieldStrides.w = -in.fieldStrides.w;
             in.codeStrides.w = -in.codeStrides.w;
         }
-        if (!m_grid.valid.empty()) in.valid = m_grid.valid.data() + start;
-        std::vector<Grid<float>> unpacked;
+        std::array<double, 3> units{1, 1, 1};
         if (weights) {
             PELLUCID_CHECK(weights->dims() == g.dims);
-            for (int attribute = 0; attribute < 2; ++attribute) {
-                unpacked.push_back(gridOf(*weights, attribute));
-                in.weights[attribute] = unpacked.back().data() + start;
-            }
+            in.weights = weights->data() + start;
+            for (int a = 0; a < 2; ++a) units[asSize(a + 1)] = weights->scale(a);
         }
         if (field) in.field = field->data() + start;
-        in.tableSize = kDepthTableSize;
-        in.tableEntryOfCode = static_cast<float>(kDepthTableSize - 1) / static_cast<float>(m_grid.maxCode);
-        in.depthTable = tables.depth.data();
-        in.opaqueBefore = tables.opaqueBefore.data();
-        in.integralTable = tables.integral.data();
-        in.alphaTable = tables.alpha.data();
-        in.featureOfCode = tables.featureOfCode.data();
-        in.features = static_cast<int>(features);
-        setRays(in, camera, axes);
-        return run(in, tfs.size(), job);
+        setRays(in, camera, view);
+        const bool exact = m_quality == Quality::High || in.mode == SweepMode::Jacobian;
+        in.exhaustedDepth = static_cast<float>(exact ? kExhaustedHigh : kExhausted);
+        return {run(in, job), asSize(in.features), asSize(lanesOf(in.mode)), units};
     }
 
-    std::vector<FeatureSums> run(const SweepInput& in, std::size_t candidates, const JobControl& job) {
-        const auto bands = sweepBands(in);
-        const auto lanes = static_cast<std::size_t>(in.lanes), features = static_cast<std::size_t>(in.features);
-        std::vector<std::vector<double>> partial(bands.size());
+    std::vector<double> run(const SweepInput& in, const JobControl& job) {
+        const auto pieces = sweepPieces(in);
+        const std::size_t size = (asSize(in.features) + 1) * 3 * asSize(lanesOf(in.mode));
+        std::vector<std::vector<double>> partial(pieces.size());
         std::atomic<std::size_t> done = 0;
-        parallelFor(bands.size(), [&](std::size_t i) {
+        parallelFor(pieces.size(), [&](std::size_t i) {
             job.throwIfStopped();
-            partial[i].assign((features + 1) * 3 * lanes, 0.0);
+            partial[i].assign(size, 0.0);
             const auto scratch = borrowScratch();
-            sweepKernel(in.lanes)(in, bands[i], *scratch, partial[i].data());
+            sweepKernel()(in, pieces[i], *scratch, partial[i].data());
             returnScratch(scratch);
-            job.report(static_cast<double>(++done) / static_cast<double>(bands.size()));
+            job.report(static_cast<double>(++done) / static_cast<double>(pieces.size()));
         });
-
-        std::vector<FeatureSums> all(candidates);
-        for (std::size_t lane = 0; lane < candidates; ++lane) {
-            FeatureSums& sums = all[lane];
-            sums.visibility.assign(features, 0.0);
-            for (auto& w : sums.weighted) w.assign(features, 0.0);
-            for (const auto& part : partial) // in the order of the bands, whatever thread made them
-                for (std::size_t f = 0; f <= features; ++f) {
-                    const double* v = &part[f * 3 * lanes + lane];
-                    sums.allVisibility += v[0];
-                    sums.allWeighted[0] += v[lanes];
-                    sums.allWeighted[1] += v[2 * lanes];
-                    if (f == features) continue;
-                    sums.visibility[f] += v[0];
-                    sums.weighted[0][f] += v[lanes];
-                    sums.weighted[1][f] += v[2 * lanes];
-                }
-        }
-        return all;
+        std::vector<double> sums(size, 0.0);
+        for (const auto& part : partial) // in the order of the pieces, whatever thread made them
+            for (std::size_t i = 0; i < size; ++i) sums[i] += part[i];
+        return sums;
     }
 
     std::shared_ptr<SweepScratch> borrowScratch() {
@@ -286,8 +503,11 @@ private:
 
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
-    IntensityGrid m_grid;
-    std::vector<std::uint16_t> m_codesYZX; ///< made when a sweep along x first needs it
+    Codes m_codeSpace;
+    std::vector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more
+    Int3 m_blocks{0, 0, 0};
+    std::vector<std::array<std::uint16_t, 2>> m_ranges; ///< per block: the lowest and highest code
+    std::vector<std::uint16_t> m_codesYZX;              ///< made when a sweep along x first needs it
     std::mutex m_scratchMutex;
     std::vector<std::shared_ptr<SweepScratch>> m_scratch;
 };
