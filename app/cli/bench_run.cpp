@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
+#include "saliency/saliency_direct.h"
 #include "volume/histogram.h"
 #include "volume/parallel.h"
 
@@ -80,7 +81,8 @@ public:
     void prepare(const JobControl& job) {
         const bool weighted = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize);
         if (wanted(BenchRow::Setup)) addSetup();
-        if (wanted(BenchRow::Saliency)) addSaliency();
+        if (wanted(BenchRow::Saliency)) addSaliency(BenchRow::Saliency, saliencyFields);
+        if (wanted(BenchRow::SaliencyDirect)) addSaliency(BenchRow::SaliencyDirect, saliencyFieldsDirect);
         if (weighted) m_weights = saliencyFields(*m_volume, m_tf.tf, {}, job);
         if (wanted(BenchRow::Sweep)) addSweeps(job);
         if (wanted(BenchRow::Jacobian)) addJacobians(job);
@@ -172,9 +174,9 @@ private:
             [this](BenchResult&, const JobControl&) { makeEngine(m_options.engine, m_volume, m_options.quality); });
     }
 
-    void addSaliency() {
-        add(row(BenchRow::Saliency, "cpu"), 0, [this](BenchResult& r, const JobControl& job) {
-            r.bytes = sampleBytes() + voxels() * bytesPerVoxel(saliencyFields(*m_volume, m_tf.tf, {}, job));
+    void addSaliency(BenchRow which, decltype(saliencyFields)* make) {
+        add(row(which, "cpu"), 0, [this, make](BenchResult& r, const JobControl& job) {
+            r.bytes = sampleBytes() + voxels() * bytesPerVoxel(make(*m_volume, m_tf.tf, {}, job));
         });
     }
 
@@ -266,6 +268,8 @@ const char* name(BenchRow row) {
         return "setup";
     case BenchRow::Saliency:
         return "saliency";
+    case BenchRow::SaliencyDirect:
+        return "saliency-direct";
     case BenchRow::Sweep:
         return "sweep";
     case BenchRow::Jacobian:

@@ -27,7 +27,7 @@ _pellucid_cli() {
         --method) choices="fixed line parallel" ;;
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
-        --only) choices="setup saliency sweep jacobian optimize refine render" ;;
+        --only) choices="setup saliency saliency-direct sweep jacobian optimize refine render" ;;
         --background) choices="transparent" ;;
         --tf)
             COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))

@@ -58,7 +58,8 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
         const double memcpyRate = j["memcpy"][static_cast<std::size_t>(threads - 1)]["gb_per_s"];
         CHECK(row["memcpy_share"].get<double>() == Approx(rate / memcpyRate));
     }
-    CHECK(names == std::set<std::string>{"setup", "saliency", "sweep", "jacobian", "optimize", "refine", "render"});
+    CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
+                                         "refine", "render"});
 
     // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.
     const auto sweeps = rowsNamed(j, "sweep");
@@ -112,6 +113,7 @@ TEST_CASE("bench measures only the rows and threads that are asked for", "[cli][
     const json saliency = bench(w, {"--only", "saliency"});
     REQUIRE(saliency["rows"].size() == 2);
     for (const json& row : saliency["rows"]) CHECK(row["name"] == "saliency");
+    CHECK(saliency["ratios"].contains("threads_speedup_saliency"));
     CHECK_FALSE(saliency["ratios"].contains("sweep8_over_8_singles"));
 
     const json sweep = bench(w, {"--only", "sweep", "--tf", "tents:2", "--threads", "3"});

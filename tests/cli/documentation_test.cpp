@@ -109,5 +109,6 @@ TEST_CASE("bash completes commands, options, values and samples", "[cli][documen
     // Bash takes the word after the colon for the one to complete.
     CHECK(completions("pellucid-cli info sample:sh") == std::set<std::string>{"shells"});
     CHECK(completions("pellucid-cli refine sample:shells --view").empty());
-    CHECK(completions("pellucid-cli bench --only s") == std::set<std::string>{"saliency", "setup", "sweep"});
+    CHECK(completions("pellucid-cli bench --only s") ==
+          std::set<std::string>{"saliency", "saliency-direct", "setup", "sweep"});
 }
