@@ -45,9 +45,22 @@ inline Int8 gathered(const int* from, Int8 x) {
     return Int8{from[x[0]], from[x[1]], from[x[2]], from[x[3]], from[x[4]], from[x[5]], from[x[6]], from[x[7]]};
 #endif
 }
-/// codes[x] and codes[x + 1] for each x.
-inline void gatheredPairs(const std::uint16_t* codes, Int8 x, Vec8& near, Vec8& far) {
+/// codes[x] and codes[x + 1] for each x; x ascends.
+inline void pairsAt(const std::uint16_t* codes, Int8 x, Vec8& near, Vec8& far) {
 #ifdef __AVX2__
+    if (x[kWide - 1] - x[0] < 2 * kWide - 1) { // sixteen neighbours hold them all: cheaper than gathering
+        const Vec8 low = toFloat(load(codes + x[0])), high = toFloat(load(codes + x[0] + kWide));
+        const auto pick = [&](Int8 index) {
+            const __m256i i = reinterpret_cast<__m256i>(index);
+            const Vec8 fromLow = reinterpret_cast<Vec8>(_mm256_permutevar8x32_ps(reinterpret_cast<__m256>(low), i)),
+                       fromHigh = reinterpret_cast<Vec8>(_mm256_permutevar8x32_ps(reinterpret_cast<__m256>(high), i));
+            return index < kWide ? fromLow : fromHigh;
+        };
+        const Int8 index = x - x[0];
+        near = pick(index);
+        far = pick(index + 1);
+        return;
+    }
     const Int8 both = reinterpret_cast<Int8>(
         _mm256_i32gather_epi32(reinterpret_cast<const int*>(codes), reinterpret_cast<__m256i>(x), 2));
     near = toFloat(both & 0xffff);
@@ -300,7 +313,7 @@ private:
             x = x < lastPair ? x : lastPair;
             const Vec8 f = u - toFloat(x);
             for (int row = 0; row < rows.count; ++row) {
-                gatheredPairs(rows.codes[row], x, near, far);
+                pairsAt(rows.codes[row], x, near, far);
                 add(row, f);
             }
         }
@@ -574,6 +587,23 @@ private:
         return length;
     }
 
+    /// The stretch from the sample plane of the rays, one slice in front, to d0/2 in front of the voxels: intensity
+    /// goes linearly to theirs, as it does from slice to slice along rays.
+    Stretch lastStretch(const VoxelBlock& block) const {
+        const OwnPlane& p = m_near.planes[0];
+        const Vec8 length = voxelLengths(block), zero = {};
+        const float slices = static_cast<float>(block.k - p.w);
+        const Samples from = sample(p.rows, p.lines.u(block.u), p.lines.scale);
+        Vec8 path = length * slices - 0.5f;
+        path = path > zero ? path : zero;
+        const Vec8 part = path / (length * slices);
+        const Vec8 own = toFloat(load(block.codes)) * m_in.tableEntryOfCode, before = toFloat(from.entry);
+        const Samples to{toInt(before + part * (own - before) + 0.5f), from.share + part * (1.0f - from.share)};
+        if (!p.insideV || !insideU(p.lines.u(block.u), p.lines.u(block.u + kWide - 1)))
+            path *= insideShare(p.lines, voxelPlane(block.k, block.k), block.u, block.v);
+        return stretch(from, to, path);
+    }
+
     /// Calls body(stretch) for each stretch of the voxels' own lines that is not transparent.
     template <class Body>
     void alongOwnLines(const VoxelBlock& block, const OwnLines& own, const Body& body) const {
@@ -637,7 +667,10 @@ private:
                 sum += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
             };
         };
-        alongOwnLines(block, m_near, follow(depth));
+        if (m_in.stepsPerSlice == 1 && m_in.ownSlices == 1)
+            follow(depth)(lastStretch(block));
+        else
+            alongOwnLines(block, m_near, follow(depth));
         if (m_follows) {
             Int8 listed = {};
             for (int i = 0; i < block.listed; ++i) listed[block.list[i]] = -1;
@@ -708,7 +741,10 @@ private:
                 }
             };
         };
-        alongOwnLines(block, m_near, follow(depth));
+        if (m_in.stepsPerSlice == 1 && m_in.ownSlices == 1)
+            follow(depth)(lastStretch(block));
+        else
+            alongOwnLines(block, m_near, follow(depth));
         if (m_follows && !none(apart)) {
             if (kMode == SweepMode::Jacobian) apart = Int8{} - 1; // derivatives go with their depth
             for (auto& voxel : own)
