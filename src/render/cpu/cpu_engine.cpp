@@ -23,9 +23,9 @@ constexpr std::size_t kSmallVolume = 128 * 128 * 128; ///< voxels
 constexpr int kTableEntries = 4096; ///< at most; 128 KiB with 8 lanes: stays in the second-level cache
 constexpr int kFineTableEntries = 16384;
 
-/// Rays are given up at this optical depth: what lies behind is seen by less than 1e-4 (high quality and derivatives,
-/// which have no bound: 6e-6).
-constexpr double kExhausted = 9.3, kExhaustedHigh = 12;
+/// Rays are given up at this optical depth: what lies behind is seen by less than 1e-3 (small volumes, high quality,
+/// and derivatives, which have no bound: 6e-6).
+constexpr double kExhausted = 6.9, kExhaustedExact = 12;
 
 std::size_t asSize(int n) { return static_cast<std::size_t>(n); }
 
@@ -39,7 +39,6 @@ void inPieces(std::size_t count, const std::function<void(std::size_t, std::size
 /// How the codes of a volume are to be read: intensity is code / max.
 struct Codes {
     int max = 65535;
-    int step = 1;             ///< codes are multiples of this
     bool someInvalid = false; ///< kInvalidCode is no intensity
     bool fine = false;        ///< tables are to have more entries
 };
@@ -114,12 +113,11 @@ public:
 private:
     SweepTables(SweepMode mode, const std::vector<Feature>& features, const Codes& codes)
         : m_mode(mode), m_features(&features), m_lanes(asSize(lanesOf(mode))), m_codes(asSize(codes.max) + 1),
-          m_codeStep(asSize(codes.step)), m_someInvalid(codes.someInvalid) {
+          m_someInvalid(codes.someInvalid) {
         // Where codes are exact every value has an entry of its own, so that what is constant is measured exactly.
-        const int values = codes.max / codes.step;
         const int most = codes.fine ? kFineTableEntries : kTableEntries;
-        const int perValue = std::max(1, (most - 1) / values);
-        m_entries = asSize(std::min(values * perValue, most - 1)) + 1;
+        const int perValue = std::max(1, (most - 1) / codes.max);
+        m_entries = asSize(std::min(codes.max * perValue, most - 1)) + 1;
         m_entryOfCode = static_cast<float>(m_entries - 1) / static_cast<float>(codes.max);
     }
 
@@ -157,10 +155,8 @@ private:
     template <class Fill>
     void fillCodes(const Fill& fill) {
         m_featureOfCode.assign(65536, kTransparent);
-        const std::size_t used = (m_codes - 1) / m_codeStep + 1;
-        inPieces(used, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                const std::size_t code = i * m_codeStep;
+        inPieces(m_codes, [&](std::size_t first, std::size_t last) {
+            for (std::size_t code = first; code < last; ++code) {
                 const double s = static_cast<double>(code) / static_cast<double>(m_codes - 1);
                 if (!fill(code, s)) continue;
                 const int f = featureAt(*m_features, s);
@@ -175,7 +171,7 @@ private:
 
     SweepMode m_mode;
     const std::vector<Feature>* m_features;
-    std::size_t m_lanes, m_codes, m_codeStep, m_entries = 0;
+    std::size_t m_lanes, m_codes, m_entries = 0;
     bool m_someInvalid;
     float m_entryOfCode = 0;
     std::vector<std::int32_t> m_integral;
@@ -189,12 +185,18 @@ class CpuEngine final : public VisibilityEngine {
 public:
     CpuEngine(std::shared_ptr<const Volume> volume, Quality quality) : m_volume(std::move(volume)), m_quality(quality) {
         IntensityGrid grid = makeIntensityGrid(*m_volume);
-        m_codeSpace = {grid.maxCode, grid.codeStep, !grid.valid.empty(), quality == Quality::High || isSmall()};
+        const bool someInvalid = !grid.valid.empty();
+        // Without gaps, so that tables are short; and with one code for all that is invalid.
+        m_codeSpace = {grid.maxCode / grid.codeStep, someInvalid, quality == Quality::High || isSmall()};
         m_codes = std::move(grid.codes).release();
-        if (m_codeSpace.someInvalid)
+        if (grid.codeStep > 1 || someInvalid)
             inPieces(m_codes.size(), [&](std::size_t first, std::size_t last) {
-                for (std::size_t i = first; i < last; ++i)
-                    m_codes[i] = grid.valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
+                for (std::size_t i = first; i < last; ++i) {
+                    m_codes[i] = static_cast<std::uint16_t>(m_codes[i] / grid.codeStep);
+                    if (someInvalid)
+                        m_codes[i] =
+                            grid.valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
+                }
             });
         m_codes.resize(m_codes.size() + kCodePadding);
         findRanges();
@@ -469,7 +471,7 @@ private:
         if (field) in.field = field->data() + start;
         setRays(in, camera, view);
         const bool exact = m_quality == Quality::High || in.mode == SweepMode::Jacobian || isSmall();
-        in.exhaustedDepth = static_cast<float>(exact ? kExhaustedHigh : kExhausted);
+        in.exhaustedDepth = static_cast<float>(exact ? kExhaustedExact : kExhausted);
         return {run(in, job), asSize(in.features), asSize(lanesOf(in.mode)), units};
     }
 

@@ -507,11 +507,11 @@ private:
         const std::uint16_t* codes = m_in.codes + v * m_in.codeStrides.v + k * m_in.codeStrides.w;
         const std::ptrdiff_t field = v * m_in.fieldStrides.v + k * m_in.fieldStrides.w;
         m_near.ready = m_far.ready = false;
+        const double perVoxel = 1 / p.scale;
         for (int i = extent.u0 / kWide; i <= extent.u1 / kWide; ++i) {
             if (!opaque[i * m_in.opaqueStrides.u]) continue;
             block.u = i * kWide;
-            const double a = (block.u - p.baseU) / p.scale - m_a0;
-            const double perVoxel = 1 / p.scale;
+            const double a = (block.u - p.baseU) * perVoxel - m_a0;
             const int firstRay = clampTo(static_cast<int>(a), 0, m_a1 - m_a0 - 1),
                       lastRay = clampTo(static_cast<int>(a + perVoxel * (kWide - 1)) + 1, 0, m_a1 - m_a0);
             bool open = false;
