@@ -412,6 +412,22 @@ private:
         return {natural[asSize(axes.u)], natural[asSize(axes.v)], natural[asSize(axes.w)]};
     }
 
+    static std::vector<SweepSpan> spansOf(const std::vector<std::uint8_t>& opaque, const SweepStrides& strides,
+                                          const Int3& blocks) {
+        std::vector<SweepSpan> spans(asSize(blocks.y) * asSize(blocks.z));
+        for (int w = 0; w < blocks.z; ++w)
+            for (int v = 0; v < blocks.y; ++v) {
+                SweepSpan& span = spans[asSize(v + blocks.y * w)];
+                span = {blocks.x, -1};
+                for (int u = 0; u < blocks.x; ++u) {
+                    if (!opaque[asSize(static_cast<int>(u * strides.u + v * strides.v + w * strides.w))]) continue;
+                    span.first = std::min(span.first, u);
+                    span.last = u;
+                }
+            }
+        return spans;
+    }
+
     Sums sweep(const Camera& camera, const SweepTables& tables, const WeightFields* weights, Grid<float>* field,
                const JobControl& job) {
         const Geometry& g = m_volume->geometry();
@@ -454,6 +470,8 @@ private:
         in.fieldStrides = stridesOf(g.dims, axes);
         in.opaqueStrides = stridesOf(m_blocks, axes);
         in.opaque = opaque.data();
+        const std::vector<SweepSpan> spans = spansOf(opaque, in.opaqueStrides, permuted(Vec3(m_blocks), axes));
+        in.opaqueSpans = spans.data();
         in.flipped = axes.flipped;
         std::ptrdiff_t start = 0;
         if (axes.flipped) {

@@ -36,6 +36,11 @@ struct SweepStrides {
     std::ptrdiff_t u = 1, v = 0, w = 0;
 };
 
+/// The blocks first … last of a row; none where last < first.
+struct SweepSpan {
+    int first = 0, last = -1;
+};
+
 /// Pointers are to the voxel u = v = 0 of the nearest slice.
 struct SweepInput {
     SweepMode mode = SweepMode::Batch; ///< sets the innermost dimension of the tables, `lanes` below
@@ -51,6 +56,8 @@ struct SweepInput {
     const std::uint8_t* opaque =
         nullptr; ///< per block, 0: transparent in every lane up to a voxel around; opaqueStrides
     SweepStrides opaqueStrides;
+    const SweepSpan* opaqueSpans =
+        nullptr;          ///< per row of blocks, of the blocks that are opaque; opaqueSpans[row + rows·slice]
     bool flipped = false; ///< w runs against the blocks: `opaque` points to the block of voxel 0 of the last slice
 
     // The transfer functions.

@@ -18,7 +18,8 @@ typedef unsigned UInt8InMemory __attribute__((vector_size(32), aligned(4), may_a
 typedef std::uint16_t UShort8 __attribute__((vector_size(16)));
 typedef std::uint16_t UShort8InMemory __attribute__((vector_size(16), aligned(2), may_alias));
 
-constexpr int kWide = 8; ///< lines, voxels or lanes in one vector
+constexpr int kWide = 8;            ///< lines, voxels or lanes in one vector
+static_assert(kWide == kBlockSize); // a vector of voxels lies in one block of the opaque map
 constexpr Vec8 kIota = {0, 1, 2, 3, 4, 5, 6, 7};
 
 inline Vec8 load(const float* p) { return *reinterpret_cast<const Vec8InMemory*>(p); }
@@ -371,11 +372,17 @@ private:
 
     enum Flag : std::uint8_t { kActive = 1, kExhausted = 2 };
 
-    const std::uint8_t* opaqueRow(double v, double w) const {
-        const int row = clampTo(floorInt(v + 0.5), 0, m_in.nv - 1) / kBlockSize,
-                  k = clampTo(floorInt(w + 0.5), 0, m_in.nw - 1),
+    /// Of the blocks around (v, w), along u.
+    struct OpaqueRow {
+        const std::uint8_t* blocks;
+        SweepSpan span;
+    };
+    OpaqueRow opaqueRow(double v, double w) const {
+        const int k = clampTo(floorInt(w + 0.5), 0, m_in.nw - 1),
+                  row = clampTo(floorInt(v + 0.5), 0, m_in.nv - 1) / kBlockSize,
                   slice = (m_in.flipped ? m_in.nw - 1 - k : k) / kBlockSize;
-        return m_in.opaque + row * m_in.opaqueStrides.v + slice * m_in.opaqueStrides.w;
+        return {m_in.opaque + row * m_in.opaqueStrides.v + slice * m_in.opaqueStrides.w,
+                m_in.opaqueSpans[row + ((m_in.nv - 1) / kBlockSize + 1) * slice]};
     }
     bool opaqueBetween(const std::uint8_t* row, double first, double last) const {
         const int end = clampTo(static_cast<int>(last + 0.5), 0, m_in.nu - 1) / kBlockSize;
@@ -405,14 +412,29 @@ private:
             const double v0 = p0.v(b), v1 = p1.v(b);
             const bool bothInside = insideV(v0) && insideV(v1);
             if (!bothInside && (larger(v0<-0.5, v0> m_in.nv - 0.5) & larger(v1<-0.5, v1> m_in.nv - 0.5))) continue;
-            const std::uint8_t* opaque = opaqueRow(v1, w1);
+            const OpaqueRow opaque = opaqueRow(v1, w1);
+            int first = m_blocks, last = -1; // blocks of rays that meet something opaque on either plane
+            const auto widen = [&](const SweepSpan& span, const RayPlane& p) {
+                if (span.last < span.first || !(p.scale > 0)) return;
+                // Half a voxel beyond the blocks; what is clamped to the edge belongs to the outermost block.
+                const double lowU = span.first == 0 ? -1e30 : span.first * kBlockSize - 1,
+                             highU = (span.last + 1) * kBlockSize >= m_in.nu ? 1e30 : (span.last + 1) * kBlockSize;
+                const double low = (lowU - p.baseU) / p.scale, high = (highU - p.baseU) / p.scale;
+                first = smaller(first, low <= m_a0 ? 0 : low > m_a1 ? m_blocks : (floorInt(low) - m_a0) / kWide);
+                last = larger(last, high >= m_a1 ? m_blocks - 1 : high < m_a0 ? -1 : (ceilInt(high) - m_a0) / kWide);
+            };
+            widen(opaqueRow(v0, w0).span, p0);
+            widen(opaque.span, p1);
+            first = larger(first, firstBlock);
+            last = smaller(last, lastBlock);
+            if (first > last) continue;
             const Rows before = rowsAt(v0, w0), now = rowsAt(v1, w1);
-            for (int block = firstBlock; block <= lastBlock; ++block) {
+            for (int block = first; block <= last; ++block) {
                 const std::size_t at = rowOf(b) * static_cast<std::size_t>(m_blocks) + static_cast<std::size_t>(block);
                 if (m_flags[at] & kExhausted) continue;
                 const int a = m_a0 + block * kWide;
                 const double u1 = p1.u(a), end1 = p1.u(a + kWide - 1);
-                const bool active = opaqueBetween(opaque, u1, end1);
+                const bool active = opaqueBetween(opaque.blocks, u1, end1);
                 const bool wasActive = m_flags[at] & kActive;
                 m_flags[at] = active ? kActive : 0;
                 if (!active && !wasActive) continue;
@@ -496,7 +518,10 @@ private:
 
     void gatherRow(int k, int v, const Extent& extent, const RayPlane& p, double b, int at) {
         const int row = clampTo(floorInt(b), m_b0, m_b1 - 1);
-        const std::uint8_t* opaque = opaqueRow(v, k);
+        const OpaqueRow opaque = opaqueRow(v, k);
+        const int firstBlock = larger(extent.u0 / kWide, opaque.span.first),
+                  lastBlock = smaller(extent.u1 / kWide, opaque.span.last);
+        if (firstBlock > lastBlock) return;
         VoxelBlock block;
         block.v = v;
         block.k = k;
@@ -508,8 +533,8 @@ private:
         const std::ptrdiff_t field = v * m_in.fieldStrides.v + k * m_in.fieldStrides.w;
         m_near.ready = m_far.ready = false;
         const double perVoxel = 1 / p.scale;
-        for (int i = extent.u0 / kWide; i <= extent.u1 / kWide; ++i) {
-            if (!opaque[i * m_in.opaqueStrides.u]) continue;
+        for (int i = firstBlock; i <= lastBlock; ++i) {
+            if (!opaque.blocks[i * m_in.opaqueStrides.u]) continue;
             block.u = i * kWide;
             const double a = (block.u - p.baseU) * perVoxel - m_a0;
             const int firstRay = clampTo(static_cast<int>(a), 0, m_a1 - m_a0 - 1),
@@ -556,7 +581,7 @@ private:
     OwnPlane ownPlane(double w, int v, int k) const {
         const RayPlane lines = voxelPlane(w, k);
         const double vThere = lines.v(v);
-        return {w, lines, rowsAt(vThere, w), insideV(vThere), opaqueRow(vThere, w)};
+        return {w, lines, rowsAt(vThere, w), insideV(vThere), opaqueRow(vThere, w).blocks};
     }
     /// From where the rays are.
     void startNear(int v, int k, int at) {
