@@ -5,9 +5,9 @@
 // clang-format off
 #define PELLUCID_GL_FUNCTIONS(X)                                                                                      \
     X(glActiveTexture) X(glAttachShader) X(glBindBuffer) X(glBindBufferBase) X(glBindFramebuffer)                     \
-    X(glBindImageTexture) X(glBindTexture) X(glBindVertexArray) X(glBlendEquation) X(glBlendFunc) X(glBufferData)     \
+    X(glBindImageTexture) X(glBindTexture) X(glBindVertexArray) X(glBlendEquation) X(glBlendFunc) X(glBufferData) X(glBufferSubData)    \
     X(glCheckFramebufferStatus) X(glClear) X(glClearBufferfv) X(glClearColor) X(glColorMask) X(glCompileShader)       \
-    X(glCopyImageSubData) X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers) X(glDeleteFramebuffers)             \
+    X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers) X(glDeleteFramebuffers)             \
     X(glDeleteProgram) X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthFunc) X(glDepthMask)    \
     X(glDisable) X(glDispatchCompute) X(glDrawArrays) X(glDrawBuffer) X(glEnable) X(glEnableVertexAttribArray)        \
     X(glFinish) X(glFramebufferTexture2D) X(glGenBuffers) X(glGenFramebuffers) X(glGenTextures) X(glGenVertexArrays)  \

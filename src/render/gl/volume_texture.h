@@ -25,6 +25,14 @@ struct VolumeTexture {
 /// Linear filtering. Throws Error: an axis longer than the device's textures, out of memory.
 VolumeTexture uploadVolume(const IntensityGrid& grid);
 
+/// Copies a box of the volume, the voxels [first, first + size), into a part of a texture that begins at `to`. Codes go
+/// into R16 or, where some voxels are invalid, RG16 as above; weights (one word per voxel of a volume of `dims`, x
+/// fastest) into R32UI.
+void uploadCodes(const Texture3d& texture, const IntensityGrid& grid, const Int3& first, const Int3& size,
+                 const Int3& to);
+void uploadWeights(const Texture3d& texture, const std::uint32_t* weights, const Int3& dims, const Int3& first,
+                   const Int3& size, const Int3& to);
+
 /// A table for tfEntry() of include/tf.glsl: rows of 256 entries, unfiltered. Refilled in place while its size stays.
 class TableTexture {
 public:
