@@ -39,23 +39,24 @@ void createFolder(const std::string& path) {
         throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
 }
 
-double sumOfProducts(const Grid<float>& a, const Grid<float>& b) {
+double sumOfProducts(const Grid<float>& visibility, const WeightFields& weights, int attribute) {
     double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>(a[i]) * b[i];
+    for (std::size_t i = 0; i < visibility.size(); ++i)
+        sum += static_cast<double>(visibility[i]) * weights.at(attribute, i);
     return sum;
 }
 
 /// Each voxel's share of the visibility-weighted saliency: u1·v·L_b / Σ v·L_b + u2·v·L_s / Σ v·L_s, so that the sum
 /// over the voxels of a feature is its W_F (MEASURES §6, with its rule for an attribute whose sum is 0).
 Grid<float> vwsField(const Grid<float>& visibility, const WeightFields& weights, const VwsOptions& options) {
-    const double brightness = sumOfProducts(visibility, weights.brightness);
-    const double saturation = sumOfProducts(visibility, weights.saturation);
+    const double brightness = sumOfProducts(visibility, weights, 0);
+    const double saturation = sumOfProducts(visibility, weights, 1);
     const auto [u1, u2] = attributeWeights({brightness, saturation}, options);
     const double b = brightness > 0 ? u1 / brightness : 0.0;
     const double s = saturation > 0 ? u2 / saturation : 0.0;
     Grid<float> field(visibility.dims());
     for (std::size_t i = 0; i < field.size(); ++i)
-        field[i] = static_cast<float>(visibility[i] * (b * weights.brightness[i] + s * weights.saturation[i]));
+        field[i] = static_cast<float>(visibility[i] * (b * weights.brightness(i) + s * weights.saturation(i)));
     return field;
 }
 
@@ -73,11 +74,11 @@ Answer run(const Options& o, Progress& progress) {
     const Grid<float> shares = vwsField(visibility.values, weights, vws);
 
     createFolder(o.out);
-    const std::vector<std::pair<const char*, const Grid<float>*>> files{
-        {"visibility.nrrd", &visibility.values},
-        {"saliency_brightness.nrrd", &weights.brightness},
-        {"saliency_saturation.nrrd", &weights.saturation},
-        {"vws.nrrd", &shares}};
+    const Grid<float> brightness = gridOf(weights, 0), saturation = gridOf(weights, 1);
+    const std::vector<std::pair<const char*, const Grid<float>*>> files{{"visibility.nrrd", &visibility.values},
+                                                                        {"saliency_brightness.nrrd", &brightness},
+                                                                        {"saliency_saturation.nrrd", &saturation},
+                                                                        {"vws.nrrd", &shares}};
     const JobControl writing = progress.phase("writing");
     std::string text;
     Json names = Json::array();

@@ -63,4 +63,9 @@ void validate(const SaliencyOptions& o) {
         throw UsageError("w1 and w2 are finite and not negative", "saliency", "correct --w1, --w2");
 }
 
+WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options) {
+    const double w = std::max(options.w1, options.w2);
+    return {dims, w, 1.34 * w};
+}
+
 } // namespace pellucid

@@ -180,10 +180,13 @@ private:
                               run.weight, m_dims.x);
                 }
             }
-            Grid<float>& out = attribute == 0 ? fields.brightness : fields.saturation;
-            centreMinusSurround(&out.at(0, y, z), m_mean[0].data(), m_mean[1].data(), centreScale, surroundScale,
-                                m_dims.x);
+            std::vector<float>& out = m_out[static_cast<std::size_t>(attribute)];
+            out.resize(m_nx);
+            centreMinusSurround(out.data(), m_mean[0].data(), m_mean[1].data(), centreScale, surroundScale, m_dims.x);
         }
+        const std::size_t first =
+            m_nx * (static_cast<std::size_t>(y) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(z));
+        for (std::size_t x = 0; x < m_nx; ++x) fields.set(first + x, m_out[0][x], m_out[1][x]);
     }
 
     const Plan& m_plan;
@@ -193,7 +196,7 @@ private:
     int m_y0, m_y1, m_firstRow, m_lastRow;
     std::size_t m_nx, m_rowFloats = 0, m_sliceFloats = 0;
     std::vector<float> m_ring;
-    std::array<std::vector<float>, 2> m_padded, m_mean, m_scratch;
+    std::array<std::vector<float>, 2> m_padded, m_mean, m_scratch, m_out;
 };
 
 } // namespace
@@ -206,7 +209,7 @@ WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, co
     const AppearanceReader reader(volume, tf, options.background);
     const Normalizer normalizer(plan, dims, options.w1, options.w2);
 
-    WeightFields fields{Grid<float>(dims), Grid<float>(dims)};
+    WeightFields fields = emptyWeightFields(dims, options);
     // Wide kernels need rings of many slices: thinner bands keep them in memory (and in cache).
     const double bytesPerRow = 8.0 * (2 * plan.reachZ + 1) * static_cast<double>(plan.sums.size()) * dims.x;
     const int bandRows = std::clamp(static_cast<int>(64e6 / bytesPerRow) - 2 * plan.reachY, 1, kBandRows);

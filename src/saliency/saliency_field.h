@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "saliency/weight_fields.h"
 #include "tf/transfer_function.h"
-#include "volume/grid.h"
 #include "volume/job.h"
 #include "volume/volume.h"
 
@@ -23,11 +23,10 @@ struct SaliencyOptions {
     bool operator==(const SaliencyOptions&) const = default;
 };
 
-/// Per voxel weights L(O_b), L(O_s): shape of the volume, ≥ 0, no unit. What visibility is weighted by.
-struct WeightFields {
-    Grid<float> brightness;
-    Grid<float> saturation;
-};
+/// All 0, with room for the largest weights possible: L ≤ max(w1, w2)·O (4.8), and no sRGB colour has O_b above 1 or
+/// O_s above 1.34. These bounds do not depend on the colours at hand, so that greys, whose chroma is 0 but for
+/// rounding, get weights of exactly 0.
+WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options);
 
 /// Depends on the colours and features of `tf`, never on its opacities. Throws Error for options out of range.
 WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options = {},

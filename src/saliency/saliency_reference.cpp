@@ -39,17 +39,16 @@ WeightFields saliencyFieldsReference(const Volume& volume, const TransferFunctio
     const BallKernel centre(volume.geometry(), options.sigma, options.kernel);
     const BallKernel surround(volume.geometry(), 2 * options.sigma, options.kernel);
 
-    WeightFields fields{Grid<float>(volume.dims()), Grid<float>(volume.dims())};
+    WeightFields fields = emptyWeightFields(volume.dims(), options);
     parallelFor(static_cast<std::size_t>(volume.dims().z), [&](std::size_t slice) {
         job.throwIfStopped();
         const int k = static_cast<int>(slice);
         for (int j = 0; j < volume.dims().y; ++j)
             for (int i = 0; i < volume.dims().x; ++i) {
                 const Appearance c = meanOver(centre, o, {i, j, k}), s = meanOver(surround, o, {i, j, k});
-                fields.brightness.at(i, j, k) =
-                    static_cast<float>(std::abs(options.w1 * c.brightness - options.w2 * s.brightness));
-                fields.saturation.at(i, j, k) =
-                    static_cast<float>(std::abs(options.w1 * c.saturation - options.w2 * s.saturation));
+                fields.set(o.index(i, j, k),
+                           static_cast<float>(std::abs(options.w1 * c.brightness - options.w2 * s.brightness)),
+                           static_cast<float>(std::abs(options.w1 * c.saturation - options.w2 * s.saturation)));
             }
     });
     return fields;

@@ -68,8 +68,7 @@ std::vector<std::vector<double>> vwsJacobian(const SumsJacobian& jacobian, const
         for (std::size_t j = 0; j < n; ++j) {
             const FeatureSums& d = jacobian.byOpacity[j];
             for (std::size_t i = 0; i < n; ++i)
-                derivatives[i][j] +=
-                    u[a] * (d.weighted[a][i] - sums.weighted[a][i] / all * d.allWeighted[a]) / all;
+                derivatives[i][j] += u[a] * (d.weighted[a][i] - sums.weighted[a][i] / all * d.allWeighted[a]) / all;
         }
     }
     return derivatives;
@@ -86,7 +85,7 @@ FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& featur
         for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
             const double v = visibility[i];
             if (v == 0) continue;
-            const double lb = weights ? weights->brightness[i] : 0.0, ls = weights ? weights->saturation[i] : 0.0;
+            const double lb = weights ? weights->brightness(i) : 0.0, ls = weights ? weights->saturation(i) : 0.0;
             sums.allVisibility += v;
             sums.allWeighted[0] += v * lb;
             sums.allWeighted[1] += v * ls;

@@ -15,7 +15,10 @@ IntensityCoder::IntensityCoder(const Volume& volume) {
     const double span = r.hi - r.lo;
     const bool wholeEnds = r.lo == std::floor(r.lo) && r.hi == std::floor(r.hi);
     m_exact = integers && wholeEnds && span >= 1 && span <= 65535;
-    if (m_exact) m_maxCode = static_cast<int>(span) * (65535 / static_cast<int>(span));
+    if (m_exact) {
+        m_codeStep = 65535 / static_cast<int>(span);
+        m_maxCode = static_cast<int>(span) * m_codeStep;
+    }
 }
 
 IntensityGrid makeIntensityGrid(const Volume& volume) {
@@ -23,6 +26,7 @@ IntensityGrid makeIntensityGrid(const Volume& volume) {
     IntensityGrid grid;
     grid.codes = Grid<std::uint16_t>(volume.dims());
     grid.maxCode = coder.maxCode();
+    grid.codeStep = coder.codeStep();
     if (volume.invalidCount() > 0) grid.valid.assign(volume.size(), 1);
     std::visit(
         [&](const auto& values) {

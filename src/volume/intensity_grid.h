@@ -17,18 +17,22 @@ public:
     /// True for integer data whose window spans at most 65 535 values: then code / maxCode is s itself, because codes
     /// are a whole multiple of value − lo. Otherwise it is s rounded to 1/65535.
     bool exact() const noexcept { return m_exact; }
+    /// Codes in use are multiples of this: the codes from one value to the next where exact, else 1.
+    int codeStep() const noexcept { return m_codeStep; }
     /// Code of an intensity in [0,1].
     std::uint16_t code(double s) const { return static_cast<std::uint16_t>(s * m_maxCode + 0.5); }
     double intensity(int code) const { return static_cast<double>(code) / m_maxCode; }
 
 private:
     int m_maxCode = 65535;
+    int m_codeStep = 1;
     bool m_exact = false;
 };
 
 struct IntensityGrid {
     Grid<std::uint16_t> codes;       ///< shape of the volume; 0 where invalid
     int maxCode = 65535;             ///< intensity is code / maxCode
+    int codeStep = 1;                ///< codes are multiples of this
     std::vector<std::uint8_t> valid; ///< one byte per voxel, 1 = valid; empty where every voxel is valid
 };
 

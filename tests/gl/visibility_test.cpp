@@ -177,11 +177,9 @@ TEST_CASE("the disk in front has the greatest feature visibility, from either si
 TEST_CASE("sums of a batch are those of the single fields", "[gl]") {
     if (!haveGl()) return;
     const auto volume = noise({14, 11, 9}, {1, 1.3, 0.8}, 9);
-    WeightFields weights{Grid<float>(volume->dims()), Grid<float>(volume->dims())};
-    for (std::size_t i = 0; i < volume->size(); ++i) {
-        weights.brightness[i] = static_cast<float>(i % 7) / 7;
-        weights.saturation[i] = static_cast<float>(i % 11) / 11;
-    }
+    WeightFields weights(volume->dims(), 1, 1);
+    for (std::size_t i = 0; i < volume->size(); ++i)
+        weights.set(i, static_cast<float>(i % 7) / 7, static_cast<float>(i % 11) / 11);
     std::vector<TransferFunction> tfs; // six: one full group of lanes and a part of the next
     for (int i = 0; i < 6; ++i) tfs.push_back(withFeatureOpacities(tents(3, 0.4), {0.1 * i, 0.3, 0.9 - 0.1 * i}));
     const auto engine = makeGlEngine(volume);

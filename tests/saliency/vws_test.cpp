@@ -43,7 +43,8 @@ TEST_CASE("sums of a stored field go to the features of their intensities", "[vw
     const auto volume = volumeFrom(geometryOf({5, 1, 1}), [](int i, int, int) { return i / 4.0; });
     const std::vector<Feature> features{{"low", 0, 0.5, {}, {}}, {"high", 0.5, 1, {}, {}}};
     Grid<float> visibility({5, 1, 1}, std::vector<float>{1, 2, 3, 4, 5});
-    const WeightFields weights{Grid<float>({5, 1, 1}, 0.5f), Grid<float>({5, 1, 1}, 0.25f)};
+    WeightFields weights({5, 1, 1}, 65535 / 65536.0, 65535 / 65536.0); // units of 2^-16: ½ and ¼ are exact
+    for (std::size_t i = 0; i < 5; ++i) weights.set(i, 0.5f, 0.25f);
     const FeatureSums sums = sumsOfField(*volume, features, visibility, &weights);
     CHECK(sums.visibility == std::vector<double>{3, 12});
     CHECK(sums.weighted[0] == std::vector<double>{1.5, 6});

@@ -4,35 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "render/visibility.h"
+#include "support/disagreement.h"
 #include "support/volumes.h"
 
 namespace pellucid::test {
-
-/// How far two engines lie apart: figures of MEASURES §10.
-struct Disagreement {
-    double visibilityRms = 0; ///< of the reference's largest visibility
-    double visibility = 0;    ///< largest |ΔFV_F|
-    double vws = 0;           ///< largest |ΔW_F|
-};
-
-inline Disagreement compare(VisibilityEngine& reference, VisibilityEngine& engine, const Camera& camera,
-                            const TransferFunction& tf, const WeightFields& weights) {
-    Disagreement d;
-    const Grid<float> a = reference.field(camera, tf).values, b = engine.field(camera, tf).values;
-    double largest = 0, squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        largest = std::max(largest, static_cast<double>(a[i]));
-        squares += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2);
-    }
-    if (largest > 0) d.visibilityRms = std::sqrt(squares / static_cast<double>(a.size())) / largest;
-    const auto ma = featureMeasures(sumsOfField(reference.volume(), tf.features, a, &weights));
-    const auto mb = featureMeasures(engine.sums(camera, {&tf, 1}, &weights)[0]);
-    for (std::size_t f = 0; f < ma.size(); ++f) {
-        d.visibility = std::max(d.visibility, std::abs(ma[f].visibility - mb[f].visibility));
-        d.vws = std::max(d.vws, std::abs(ma[f].vws - mb[f].vws));
-    }
-    return d;
-}
 
 /// v_k = α(1 − α)^k for the k-th voxel plane, along each axis from both ends (MEASURES §4), to 1e-4 per voxel.
 template <class MakeEngine>

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
 
@@ -18,53 +19,176 @@ namespace {
 
 /// In voxels. The rays of an eye farther off are parallel: over 4096 voxels they diverge by less than 0.2.
 constexpr double kFarEye = 1e8;
-constexpr int kDepthTableSize = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
+constexpr int kMostTableEntries = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
 
-/// The tables of up to kSweepLanes transfer functions side by side.
-struct SweepTables {
-    SweepTables(std::span<const TransferFunction> tfs, int laneCount, int maxCode) : lanes(laneCount) {
-        const auto n = static_cast<std::size_t>(lanes), codes = static_cast<std::size_t>(maxCode) + 1;
-        depth.assign(static_cast<std::size_t>(kDepthTableSize) * n, 0.0f);
-        integral.assign(depth.size(), 0.0f);
-        alpha.assign(codes * n, 0.0f);
-        featureOfCode.assign(codes, kTransparent);
-        for (std::size_t lane = 0; lane < tfs.size(); ++lane) {
-            const TfSampler sampler(tfs[lane]);
-            double sum = 0, before = 0;
-            for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i) {
-                const double tau =
-                    opticalDepthOfOpacity(sampler.opacity(static_cast<double>(i) / (kDepthTableSize - 1)));
-                if (i > 0) sum += (before + tau) / 2;
-                before = tau;
-                depth[i * n + lane] = static_cast<float>(tau);
-                integral[i * n + lane] = static_cast<float>(sum);
+/// Rays are given up at this optical depth: what lies behind is seen by less than 1e-4 (high quality and derivatives,
+/// which have no bound: 6e-6).
+constexpr double kExhausted = 9.3, kExhaustedHigh = 12;
+
+std::size_t asSize(int n) { return static_cast<std::size_t>(n); }
+
+/// Calls body(first, last) for pieces of [0, count).
+void inPieces(std::size_t count, const std::function<void(std::size_t, std::size_t)>& body) {
+    constexpr std::size_t kPiece = 1024;
+    parallelFor((count + kPiece - 1) / kPiece,
+                [&](std::size_t i) { body(i * kPiece, std::min(count, (i + 1) * kPiece)); });
+}
+
+/// The transfer functions of one sweep as its kernel reads them, side by side in lanes. Lanes without a transfer
+/// function of their own repeat the last one, so that they keep no ray alive.
+class SweepTables {
+public:
+    /// Up to kSweepLanes candidates.
+    SweepTables(std::span<const TransferFunction> tfs, const IntensityGrid& grid)
+        : SweepTables(tfs.size() == 1 ? SweepMode::Single : SweepMode::Batch, tfs[0].features, grid) {
+        std::vector<TfSampler> samplers(tfs.begin(), tfs.end());
+        while (samplers.size() < m_lanes) samplers.push_back(samplers.back());
+        fillIntegral([&](double s, double* tau) {
+            for (std::size_t lane = 0; lane < m_lanes; ++lane)
+                tau[lane] = opticalDepthOfOpacity(samplers[lane].opacity(s));
+        });
+        m_alpha.assign(m_codes * m_lanes, 0.0f);
+        fillCodes([&](std::size_t code, double s) {
+            bool opaque = false;
+            for (std::size_t lane = 0; lane < m_lanes; ++lane) {
+                const double a = samplers[lane].opacity(s);
+                m_alpha[code * m_lanes + lane] = static_cast<float>(a);
+                opaque |= a > 0;
             }
-            for (std::size_t c = 0; c < codes; ++c) {
-                const double s = static_cast<double>(c) / maxCode;
-                const double a = sampler.opacity(s);
-                alpha[c * n + lane] = static_cast<float>(a);
-                if (a <= 0 || featureOfCode[c] != kTransparent) continue;
-                const int f = featureAt(tfs[0].features, s);
-                featureOfCode[c] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(tfs[0].features.size()) : f);
+            return opaque;
+        });
+    }
+    /// One transfer function and the derivatives of its depth by the peaks of features from `firstDerivative` on.
+    /// A voxel that is transparent now but not under a higher peak counts: its visibility has a derivative.
+    SweepTables(const TransferFunction& tf, int firstDerivative, const IntensityGrid& grid)
+        : SweepTables(SweepMode::Jacobian, tf.features, grid) {
+        const TfSampler sampler(tf), shapes(withFullPeaks(tf));
+        fillIntegral([&](double s, double* tau) {
+            const double a = sampler.opacity(s);
+            tau[0] = opticalDepthOfOpacity(a);
+            const int lane = featureAt(tf.features, s) - firstDerivative + 1;
+            if (lane >= 1 && lane < kJacobianLanes && a < kMaxOpacity) tau[lane] = shapes.opacity(s) / (1 - a);
+        });
+        m_alpha.assign(m_codes * 2, 0.0f);
+        fillCodes([&](std::size_t code, double s) {
+            m_alpha[2 * code] = static_cast<float>(sampler.opacity(s));
+            if (featureAt(tf.features, s) >= 0) m_alpha[2 * code + 1] = static_cast<float>(shapes.opacity(s));
+            return m_alpha[2 * code] > 0 || m_alpha[2 * code + 1] > 0;
+        });
+    }
+
+    /// Per block of kBlockSize³ voxels, of the given ranges of codes: 1 where any lane is opaque anywhere in the range.
+    std::vector<std::uint8_t> opaqueBlocks(const std::vector<std::array<std::uint16_t, 2>>& ranges) const {
+        std::vector<std::uint8_t> opaque(ranges.size());
+        for (std::size_t i = 0; i < ranges.size(); ++i) {
+            const auto [low, high] = ranges[i];
+            if (low > high) continue; // nothing valid
+            const auto first = static_cast<std::size_t>(static_cast<float>(low) * m_entryOfCode),
+                       last = static_cast<std::size_t>(static_cast<float>(high) * m_entryOfCode) + 1;
+            opaque[i] = m_opaqueCodes[asSize(high) + 1] != m_opaqueCodes[low] ||
+                        m_opaqueEntries[std::min(last + 1, m_entries)] != m_opaqueEntries[first];
+        }
+        return opaque;
+    }
+
+    void giveTo(SweepInput& in) const {
+        in.mode = m_mode;
+        in.tableEntryOfCode = m_entryOfCode;
+        in.integralTable = m_integral.data();
+        in.alphaTable = m_alpha.data();
+        in.featureOfCode = m_featureOfCode.data();
+        in.features = static_cast<int>(m_features->size());
+        std::copy(m_units.begin(), m_units.end(), in.depthUnit);
+    }
+
+private:
+    SweepTables(SweepMode mode, const std::vector<Feature>& features, const IntensityGrid& grid)
+        : m_mode(mode), m_features(&features), m_lanes(asSize(lanesOf(mode))), m_codes(asSize(grid.maxCode) + 1),
+          m_codeStep(asSize(grid.codeStep)) {
+        // Where codes are exact every value has an entry of its own, so that what is constant is measured exactly.
+        const int values = grid.maxCode / grid.codeStep;
+        const int steps = grid.codeStep > 1 || values < kMostTableEntries
+                              ? values * std::max(1, (kMostTableEntries - 1) / values)
+                              : kMostTableEntries - 1;
+        m_entries = asSize(std::min(steps, kMostTableEntries - 1)) + 1;
+        m_entryOfCode = static_cast<float>(m_entries - 1) / static_cast<float>(grid.maxCode);
+    }
+
+    /// `taus(s, tau)` sets the lanes that are not 0.
+    template <class Taus>
+    void fillIntegral(const Taus& taus) {
+        std::vector<double> tau(m_entries * m_lanes, 0.0);
+        inPieces(m_entries, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i)
+                taus(static_cast<double>(i) / static_cast<double>(m_entries - 1), &tau[i * m_lanes]);
+        });
+        // 32-bit integers, since differences of floats that large would drown a small τ.
+        m_integral.assign((m_entries + 1) * m_lanes, 0);
+        m_opaqueEntries.assign(m_entries + 1, 0);
+        for (std::size_t lane = 0; lane < m_lanes; ++lane) {
+            double all = 0;
+            for (std::size_t i = 0; i < m_entries; ++i) all += tau[i * m_lanes + lane];
+            const double unit = all > 0 ? all / (1 << 30) : 1;
+            m_units[lane] = static_cast<float>(unit);
+            double sum = 0;
+            for (std::size_t i = 0; i < m_entries; ++i) {
+                sum += tau[i * m_lanes + lane];
+                m_integral[(i + 1) * m_lanes + lane] = static_cast<std::int32_t>(std::lround(sum / unit));
             }
         }
-        opaqueBefore.assign(static_cast<std::size_t>(kDepthTableSize) + 1, 0);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(kDepthTableSize); ++i) {
-            const auto entry = depth.begin() + static_cast<std::ptrdiff_t>(i * n);
-            const bool opaque = std::any_of(entry, entry + lanes, [](float tau) { return tau > 0; });
-            opaqueBefore[i + 1] = opaqueBefore[i] + (opaque ? 1 : 0);
+        for (std::size_t i = 0; i < m_entries; ++i) {
+            const auto row = tau.begin() + static_cast<std::ptrdiff_t>(i * m_lanes);
+            const bool opaque =
+                std::any_of(row, row + static_cast<std::ptrdiff_t>(m_lanes), [](double t) { return t > 0; });
+            m_opaqueEntries[i + 1] = m_opaqueEntries[i] + (opaque ? 1 : 0);
         }
     }
-    int lanes;
-    std::vector<int> opaqueBefore;
-    std::vector<float> depth, integral, alpha;
-    std::vector<std::uint8_t> featureOfCode;
+
+    /// `fill(code, s)` fills α and tells whether voxels of that code count.
+    template <class Fill>
+    void fillCodes(const Fill& fill) {
+        m_featureOfCode.assign(65536, kTransparent);
+        const std::size_t used = (m_codes - 1) / m_codeStep + 1;
+        inPieces(used, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const std::size_t code = i * m_codeStep;
+                const double s = static_cast<double>(code) / static_cast<double>(m_codes - 1);
+                if (!fill(code, s)) continue;
+                const int f = featureAt(*m_features, s);
+                m_featureOfCode[code] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(m_features->size()) : f);
+            }
+        });
+        m_opaqueCodes.assign(m_codes + 1, 0);
+        for (std::size_t c = 0; c < m_codes; ++c)
+            m_opaqueCodes[c + 1] = m_opaqueCodes[c] + (m_featureOfCode[c] != kTransparent ? 1 : 0);
+    }
+
+    SweepMode m_mode;
+    const std::vector<Feature>* m_features;
+    std::size_t m_lanes, m_codes, m_codeStep, m_entries = 0;
+    float m_entryOfCode = 0;
+    std::vector<std::int32_t> m_integral;
+    std::vector<float> m_alpha;
+    std::array<float, kJacobianLanes> m_units{};
+    std::vector<std::uint8_t> m_featureOfCode;
+    std::vector<int> m_opaqueEntries, m_opaqueCodes; ///< how many before
 };
 
 class CpuEngine final : public VisibilityEngine {
 public:
     CpuEngine(std::shared_ptr<const Volume> volume, Quality quality)
-        : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)) {}
+        : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)) {
+        const std::vector<std::uint8_t> valid = std::move(m_grid.valid);
+        m_codes = std::move(m_grid.codes).release();
+        m_someInvalid = !valid.empty();
+        if (m_someInvalid)
+            inPieces(m_codes.size(), [&](std::size_t first, std::size_t last) {
+                for (std::size_t i = first; i < last; ++i)
+                    m_codes[i] = valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
+            });
+        m_codes.resize(m_codes.size() + kCodePadding);
+        findRanges();
+    }
 
     std::string name() const override { return "cpu"; }
     const Volume& volume() const override { return *m_volume; }
@@ -74,18 +198,32 @@ public:
         std::vector<FeatureSums> all;
         for (std::size_t first = 0; first < tfs.size(); first += kSweepLanes) {
             const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
-            for (FeatureSums& s : sweep(camera, batch, weights, nullptr, job)) all.push_back(std::move(s));
+            checkFeatures(batch[0]);
+            for (const TransferFunction& tf : batch) PELLUCID_CHECK(tf.features.size() == tfs[0].features.size());
+            const Sums sums = sweep(camera, SweepTables(batch, m_grid), weights, nullptr, job);
+            for (std::size_t lane = 0; lane < batch.size(); ++lane) all.push_back(sums.ofLane(lane));
         }
         return all;
     }
 
-    SumsJacobian jacobian(const Camera&, const TransferFunction&, const WeightFields*, const JobControl&) override {
-        throw Error("the cpu engine has no derivatives yet", "", "");
+    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+                          const JobControl& job) override {
+        checkFeatures(tf);
+        SumsJacobian result;
+        for (std::size_t first = 0; first == 0 || first < tf.features.size(); first += kJacobianLanes - 1) {
+            const SweepTables tables(tf, static_cast<int>(first), m_grid);
+            const Sums sums = sweep(camera, tables, weights, nullptr, job);
+            if (first == 0) result.sums = sums.ofLane(0);
+            for (std::size_t lane = 1; lane < kJacobianLanes && first + lane <= tf.features.size(); ++lane)
+                result.byOpacity.push_back(sums.ofLane(lane));
+        }
+        return result;
     }
 
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
+        checkFeatures(tf);
         VisibilityField field{Grid<float>(m_volume->dims())};
-        sweep(camera, {&tf, 1}, nullptr, &field.values, job);
+        sweep(camera, SweepTables({&tf, 1}, m_grid), nullptr, &field.values, job);
         return field;
     }
 
@@ -94,6 +232,63 @@ private:
         int u, v, w;
         bool flipped; ///< the nearest slice is the one of the highest index
     };
+
+    /// Of a whole sweep: [features + 1][3][lanes], the last feature being "in none".
+    struct Sums {
+        std::vector<double> values;
+        std::size_t features, lanes;
+        std::array<double, 3> units; ///< what 1 stands for in Σv and the two weighted sums
+
+        FeatureSums ofLane(std::size_t lane) const {
+            FeatureSums sums;
+            sums.visibility.assign(features, 0.0);
+            for (auto& w : sums.weighted) w.assign(features, 0.0);
+            for (std::size_t f = 0; f <= features; ++f) {
+                const double* v = &values[f * 3 * lanes + lane];
+                const double part[3] = {v[0] * units[0], v[lanes] * units[1], v[2 * lanes] * units[2]};
+                sums.allVisibility += part[0];
+                for (std::size_t w = 0; w < 2; ++w) sums.allWeighted[w] += part[w + 1];
+                if (f == features) continue;
+                sums.visibility[f] = part[0];
+                for (std::size_t w = 0; w < 2; ++w) sums.weighted[w][f] = part[w + 1];
+            }
+            return sums;
+        }
+    };
+
+    static void checkFeatures(const TransferFunction& tf) {
+        if (tf.features.size() >= kTransparent)
+            throw Error("at most 254 features can be measured", "transfer function", "join some");
+    }
+
+    /// The codes that occur in each block of voxels and one voxel around it: what interpolation there can give.
+    void findRanges() {
+        const Int3 n = m_volume->dims();
+        m_blocks = (n + (kBlockSize - 1)) / kBlockSize;
+        m_ranges.assign(voxelCount(m_blocks), {kInvalidCode, 0});
+        parallelFor(asSize(m_blocks.z), [&](std::size_t bz) {
+            const int z0 = static_cast<int>(bz) * kBlockSize;
+            for (int by = 0; by < m_blocks.y; ++by) {
+                auto* row = &m_ranges[asSize(m_blocks.x) * (asSize(by) + asSize(m_blocks.y) * bz)];
+                for (int z = std::max(0, z0 - 1); z <= std::min(n.z - 1, z0 + kBlockSize); ++z)
+                    for (int y = std::max(0, by * kBlockSize - 1); y <= std::min(n.y - 1, (by + 1) * kBlockSize); ++y)
+                        widen(row, &m_codes[asSize(n.x) * (asSize(y) + asSize(n.y) * asSize(z))]);
+            }
+        });
+    }
+    void widen(std::array<std::uint16_t, 2>* ranges, const std::uint16_t* codes) const {
+        const int nx = m_volume->dims().x;
+        for (int block = 0; block < m_blocks.x; ++block) {
+            auto [low, high] = ranges[block];
+            const int last = std::min(nx - 1, (block + 1) * kBlockSize);
+            for (int x = std::max(0, block * kBlockSize - 1); x <= last; ++x) {
+                if (codes[x] == kInvalidCode && m_someInvalid) continue;
+                low = std::min(low, codes[x]);
+                high = std::max(high, codes[x]);
+            }
+            ranges[block] = {low, high};
+        }
+    }
 
     static Vec3 permuted(const Vec3& p, const Axes& x) { return {p[x.u], p[x.v], p[x.w]}; }
 
@@ -133,9 +328,9 @@ private:
         in.hu = h.x, in.hv = h.y, in.hw = h.z;
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
-        in.maxStep = high ? 0.5 : 1.0;
-        in.raySpacing = high ? 0.4 : 0.75;
-        in.ownSlices = high ? 3 : 2;
+        in.stepsPerSlice = high ? 2 : 1;
+        in.raySpacing = high ? 0.6 : 1.0;
+        in.ownSlices = high ? 2 : 1;
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
@@ -162,23 +357,28 @@ private:
         const std::ptrdiff_t nx = n.x, ny = n.y, nz = n.z;
         if (axes.w != 0) {
             strides = axes.w == 2 ? SweepStrides{1, nx, nx * ny} : SweepStrides{1, nx * ny, nx};
-            return m_grid.codes.data();
+            return m_codes.data();
         }
         if (m_codesYZX.empty()) {
-            m_codesYZX.resize(m_grid.codes.size());
-            parallelFor(static_cast<std::size_t>(nz), [&](std::size_t k) {
-                for (int j = 0; j < n.y; ++j)
-                    for (int i = 0; i < n.x; ++i)
-                        m_codesYZX[static_cast<std::size_t>(j + ny * (static_cast<std::ptrdiff_t>(k) + nz * i))] =
-                            m_grid.codes.at(i, j, static_cast<int>(k));
+            m_codesYZX.resize(m_codes.size());
+            parallelFor(asSize(n.z), [&](std::size_t k) {
+                for (std::size_t i = 0; i < asSize(n.x); ++i)
+                    for (std::size_t j = 0; j < asSize(n.y); ++j)
+                        m_codesYZX[j + asSize(n.y) * (k + asSize(n.z) * i)] =
+                            m_codes[i + asSize(n.x) * (j + asSize(n.y) * k)];
             });
         }
         strides = {1, ny, ny * nz};
         return m_codesYZX.data();
     }
 
-    std::vector<FeatureSums> sweep(const Camera& camera, std::span<const TransferFunction> tfs,
-                                   const WeightFields* weights, Grid<float>* field, const JobControl& job) {
+    static SweepStrides stridesOf(const Int3& dims, const Axes& axes) {
+        const std::array<std::ptrdiff_t, 3> natural{1, dims.x, static_cast<std::ptrdiff_t>(dims.x) * dims.y};
+        return {natural[asSize(axes.u)], natural[asSize(axes.v)], natural[asSize(axes.w)]};
+    }
+
+    Sums sweep(const Camera& camera, const SweepTables& tables, const WeightFields* weights, Grid<float>* field,
+               const JobControl& job) {
         const Geometry& g = m_volume->geometry();
         camera.validate(g, "camera");
         if (camera.projection == Projection::Perspective) {
@@ -190,25 +390,21 @@ private:
                 parallel.center = g.boxCenter();
                 parallel.up = std::abs(eye.z) > std::hypot(eye.x, eye.y) ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
                 parallel.height = 1; // of the image; no ray depends on it
-                return sweep(parallel, tfs, weights, field, job);
+                return sweep(parallel, tables, weights, field, job);
             }
         }
-        const std::size_t features = tfs[0].features.size();
-        for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features.size() == features);
-        if (features >= kTransparent)
-            throw Error("at most 254 features can be measured", "transfer function", "join some");
-
-        const int lanes = tfs.size() == 1 ? 1 : kSweepLanes;
-        const SweepTables tables(tfs, lanes, m_grid.maxCode);
         const Axes axes = chooseAxes(camera);
+        const std::vector<std::uint8_t> opaque = tables.opaqueBlocks(m_ranges);
 
         SweepInput in;
-        in.lanes = lanes;
+        tables.giveTo(in);
         in.nu = g.dims[axes.u], in.nv = g.dims[axes.v], in.nw = g.dims[axes.w];
         in.codes = codesFor(axes, in.codeStrides);
-        const std::array<std::ptrdiff_t, 3> natural{1, g.dims.x, static_cast<std::ptrdiff_t>(g.dims.x) * g.dims.y};
-        in.fieldStrides = {natural[static_cast<std::size_t>(axes.u)], natural[static_cast<std::size_t>(axes.v)],
-                           natural[static_cast<std::size_t>(axes.w)]};
+        in.someInvalid = m_someInvalid;
+        in.fieldStrides = stridesOf(g.dims, axes);
+        in.opaqueStrides = stridesOf(m_blocks, axes);
+        in.opaque = opaque.data();
+        in.flipped = axes.flipped;
         std::ptrdiff_t start = 0;
         if (axes.flipped) {
             start = (in.nw - 1) * in.fieldStrides.w;
@@ -216,57 +412,36 @@ private:
             in.fieldStrides.w = -in.fieldStrides.w;
             in.codeStrides.w = -in.codeStrides.w;
         }
-        if (!m_grid.valid.empty()) in.valid = m_grid.valid.data() + start;
+        std::array<double, 3> units{1, 1, 1};
         if (weights) {
-            PELLUCID_CHECK(weights->brightness.dims() == g.dims && weights->saturation.dims() == g.dims);
-            in.weights[0] = weights->brightness.data() + start;
-            in.weights[1] = weights->saturation.data() + start;
+            PELLUCID_CHECK(weights->dims() == g.dims);
+            in.weights = weights->data() + start;
+            for (int a = 0; a < 2; ++a) units[asSize(a + 1)] = weights->scale(a);
         }
         if (field) in.field = field->data() + start;
-        in.tableSize = kDepthTableSize;
-        in.tableEntryOfCode = static_cast<float>(kDepthTableSize - 1) / static_cast<float>(m_grid.maxCode);
-        in.depthTable = tables.depth.data();
-        in.opaqueBefore = tables.opaqueBefore.data();
-        in.integralTable = tables.integral.data();
-        in.alphaTable = tables.alpha.data();
-        in.featureOfCode = tables.featureOfCode.data();
-        in.features = static_cast<int>(features);
         setRays(in, camera, axes);
-        return run(in, tfs.size(), job);
+        const bool exact = m_quality == Quality::High || in.mode == SweepMode::Jacobian;
+        in.exhaustedDepth = static_cast<float>(exact ? kExhaustedHigh : kExhausted);
+        return {run(in, job), asSize(in.features), asSize(lanesOf(in.mode)), units};
     }
 
-    std::vector<FeatureSums> run(const SweepInput& in, std::size_t candidates, const JobControl& job) {
+    std::vector<double> run(const SweepInput& in, const JobControl& job) {
         const auto bands = sweepBands(in);
-        const auto lanes = static_cast<std::size_t>(in.lanes), features = static_cast<std::size_t>(in.features);
+        const std::size_t size = (asSize(in.features) + 1) * 3 * asSize(lanesOf(in.mode));
         std::vector<std::vector<double>> partial(bands.size());
         std::atomic<std::size_t> done = 0;
         parallelFor(bands.size(), [&](std::size_t i) {
             job.throwIfStopped();
-            partial[i].assign((features + 1) * 3 * lanes, 0.0);
+            partial[i].assign(size, 0.0);
             const auto scratch = borrowScratch();
-            sweepKernel(in.lanes)(in, bands[i], *scratch, partial[i].data());
+            sweepKernel()(in, bands[i], *scratch, partial[i].data());
             returnScratch(scratch);
             job.report(static_cast<double>(++done) / static_cast<double>(bands.size()));
         });
-
-        std::vector<FeatureSums> all(candidates);
-        for (std::size_t lane = 0; lane < candidates; ++lane) {
-            FeatureSums& sums = all[lane];
-            sums.visibility.assign(features, 0.0);
-            for (auto& w : sums.weighted) w.assign(features, 0.0);
-            for (const auto& part : partial) // in the order of the bands, whatever thread made them
-                for (std::size_t f = 0; f <= features; ++f) {
-                    const double* v = &part[f * 3 * lanes + lane];
-                    sums.allVisibility += v[0];
-                    sums.allWeighted[0] += v[lanes];
-                    sums.allWeighted[1] += v[2 * lanes];
-                    if (f == features) continue;
-                    sums.visibility[f] += v[0];
-                    sums.weighted[0][f] += v[lanes];
-                    sums.weighted[1][f] += v[2 * lanes];
-                }
-        }
-        return all;
+        std::vector<double> sums(size, 0.0);
+        for (const auto& part : partial) // in the order of the bands, whatever thread made them
+            for (std::size_t i = 0; i < size; ++i) sums[i] += part[i];
+        return sums;
     }
 
     std::shared_ptr<SweepScratch> borrowScratch() {
@@ -283,8 +458,12 @@ private:
 
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
-    IntensityGrid m_grid;
-    std::vector<std::uint16_t> m_codesYZX; ///< made when a sweep along x first needs it
+    IntensityGrid m_grid;               ///< without its codes: how they are to be read
+    std::vector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more
+    bool m_someInvalid = false;
+    Int3 m_blocks{0, 0, 0};
+    std::vector<std::array<std::uint16_t, 2>> m_ranges; ///< per block: the lowest and highest code
+    std::vector<std::uint16_t> m_codesYZX;              ///< made when a sweep along x first needs it
     std::mutex m_scratchMutex;
     std::vector<std::shared_ptr<SweepScratch>> m_scratch;
 };

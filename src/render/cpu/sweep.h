@@ -4,9 +4,9 @@
 // Slices are the voxel planes across the axis along which rays cross most voxels, k = 0 the nearest to the eye. (u, v,
 // w) are voxel coordinates with w across the slices, growing away from the eye. Rays are fixed through the slices: ray
 // (a, b) meets the plane w at u = baseU(w) + a·scale(w), v = baseV(w) + b·scale(w). Each ray keeps the optical depth ∫τ
-// per candidate. A voxel of slice k needs it d0/2 in front of its centre (MEASURES §4): it follows the last slice
-// distances along a line of its own and takes what lies before from the rays, interpolated once, so that nothing is
-// resampled from slice to slice.
+// per lane. A voxel of slice k needs it d0/2 in front of its centre (MEASURES §4): it follows the last slice distances
+// along a line of its own and takes what lies before from the rays, interpolated once, so that nothing is resampled
+// from slice to slice.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,20 @@
 namespace pellucid {
 
 inline constexpr int kSweepLanes = 8;             ///< candidates of one sweep
+inline constexpr int kJacobianLanes = 16;         ///< of a sweep for derivatives: the depth itself and up to 15 of them
 inline constexpr std::uint8_t kTransparent = 255; ///< in SweepInput::featureOfCode: opacity 0 in every candidate
+inline constexpr std::uint16_t kInvalidCode = 65535;
+inline constexpr int kCodePadding = 16; ///< codes that may be read behind the last voxel
+inline constexpr int kBlockSize = 8;    ///< voxels along each edge of a block of the opaque map
+
+enum class SweepMode {
+    Single,  ///< one lane, one transfer function; writes the field if asked to
+    Batch,   ///< kSweepLanes transfer functions
+    Jacobian ///< lane 0: the depth D of one transfer function; lane 1 + j: ∂D/∂x_j
+};
+inline constexpr int lanesOf(SweepMode mode) {
+    return mode == SweepMode::Single ? 1 : mode == SweepMode::Batch ? kSweepLanes : kJacobianLanes;
+}
 
 /// How far the elements of neighbouring voxels lie apart.
 struct SweepStrides {
@@ -25,26 +38,30 @@ struct SweepStrides {
 
 /// Pointers are to the voxel u = v = 0 of the nearest slice.
 struct SweepInput {
-    int lanes = kSweepLanes; ///< kSweepLanes or 1: the innermost dimension of the tables
+    SweepMode mode = SweepMode::Batch; ///< sets the innermost dimension of the tables, `lanes` below
 
     // The volume.
     int nu = 0, nv = 0, nw = 0;
-    const std::uint16_t* codes = nullptr; ///< codeStrides.u is 1
+    const std::uint16_t* codes = nullptr; ///< codeStrides.u is 1; kInvalidCode where invalid
     SweepStrides codeStrides;
-    const std::uint8_t* valid = nullptr;          ///< null where every voxel is valid; fieldStrides
-    const float* weights[2] = {nullptr, nullptr}; ///< null: no weighted sums; fieldStrides
-    float* field = nullptr;                       ///< one lane only: where v goes, zero before; null: not wanted
+    bool someInvalid = false;
+    const std::uint32_t* weights = nullptr; ///< low half L_b, high half L_s; null: no weighted sums; fieldStrides
+    float* field = nullptr;                 ///< Single only: where v goes, zero before; null: not wanted; fieldStrides
     SweepStrides fieldStrides;
+    const std::uint8_t* opaque =
+        nullptr; ///< per block, 0: transparent in every lane up to a voxel around; opaqueStrides
+    SweepStrides opaqueStrides;
+    bool flipped = false; ///< w runs against the blocks: `opaque` points to the block of voxel 0 of the last slice
 
     // The transfer functions.
-    int tableSize = 0;                           ///< of depthTable
-    float tableEntryOfCode = 0;                  ///< (tableSize − 1) / maxCode
-    const float* depthTable = nullptr;           ///< [tableSize][lanes], −ln(1 − α)
-    const float* integralTable = nullptr;        ///< [tableSize][lanes], its integral from entry 0
-    const int* opaqueBefore = nullptr;           ///< [tableSize + 1], entries before this one with any τ > 0
-    const float* alphaTable = nullptr;           ///< [maxCode + 1][lanes], α
-    const std::uint8_t* featureOfCode = nullptr; ///< [maxCode + 1]; `features` for "in none", or kTransparent
+    float tableEntryOfCode = 0;                  ///< entries of integralTable per code
+    const std::int32_t* integralTable = nullptr; ///< [entries + 1][lanes], Σ of τ·d0 before the entry, in units below
+    const float* alphaTable = nullptr; ///< [maxCode + 1][lanes], α; Jacobian: [maxCode + 1][2], α and ∂α/∂x
+    const std::uint8_t* featureOfCode = nullptr; ///< [65536]; `features` for "in none", or kTransparent
     int features = 0;
+    float depthUnit[kJacobianLanes] = {}; ///< optical depth of one unit of integralTable
+    float exhaustedDepth = 0;             ///< a ray is given up where every lane's depth exceeds this
+    int firstDerivative = 0;              ///< Jacobian: the feature of lane 1
 
     // The rays.
     bool perspective = false;
@@ -53,7 +70,7 @@ struct SweepInput {
     double raySpacing = 1;               ///< of the rays, in voxels; perspective: at most
     double firstSlopeStep = 1;     ///< perspective: slope between neighbouring rays at slice 0; halved further away
     double hu = 1, hv = 1, hw = 1; ///< spacing in d0
-    double maxStep = 1.0;          ///< distance of samples along a ray between voxel planes, in d0
+    int stepsPerSlice = 1;         ///< samples of a line per slice distance
     int ownSlices = 1;             ///< slice distances right in front of voxels followed along lines of their own
 };
 
@@ -64,30 +81,33 @@ struct SweepBand {
     bool outermostLow = false, outermostHigh = false;
 };
 
-/// Memory that a band works in, kept between bands.
+/// Memory that a band works in, kept between bands; aligned to 64 bytes.
 class SweepScratch {
 public:
-    float* floats(int slot, std::size_t count); ///< at least `count`, contents kept only while it need not grow
-    int* ints(int slot, std::size_t count);
+    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Flags, kSlots };
+    /// At least `bytes`; contents are kept only while it need not grow.
+    template <class T>
+    T* get(Slot slot, std::size_t count) {
+        return static_cast<T*>(bytes(slot, count * sizeof(T)));
+    }
 
 private:
-    std::vector<float> m_floats[9];
-    std::vector<int> m_ints[3];
+    void* bytes(Slot slot, std::size_t count);
+    std::vector<unsigned char> m_memory[kSlots];
 };
 
 /// Sums of one band: double[features + 1][3][lanes], the last feature being "in none"; added to.
+/// [..][0] Σv, [1] and [2] Σ v times the 16-bit weights. Jacobian: lane 0 Σv…, lane 1 + j their derivatives.
 using SweepKernel = void (*)(const SweepInput& input, const SweepBand& band, SweepScratch& scratch, double* sums);
 
 /// The bands of a sweep: depends on the input alone, never on threads.
 std::vector<SweepBand> sweepBands(const SweepInput& input);
 
 /// The best kernel for this processor.
-SweepKernel sweepKernel(int lanes);
+SweepKernel sweepKernel();
 
 // One per instruction set (sweep_generic.cpp, sweep_avx2.cpp).
-void sweepGeneric8(const SweepInput&, const SweepBand&, SweepScratch&, double*);
-void sweepGeneric1(const SweepInput&, const SweepBand&, SweepScratch&, double*);
-void sweepAvx2x8(const SweepInput&, const SweepBand&, SweepScratch&, double*);
-void sweepAvx2x1(const SweepInput&, const SweepBand&, SweepScratch&, double*);
+void sweepGeneric(const SweepInput&, const SweepBand&, SweepScratch&, double*);
+void sweepAvx2(const SweepInput&, const SweepBand&, SweepScratch&, double*);
 
 } // namespace pellucid

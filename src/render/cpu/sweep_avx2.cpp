@@ -3,11 +3,8 @@
 
 namespace pellucid {
 
-void sweepAvx2x8(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
-    Band<Vec8>(in, band, scratch, sums).run();
-}
-void sweepAvx2x1(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
-    Band<float>(in, band, scratch, sums).run();
+void sweepAvx2(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
+    sweepBand(in, band, scratch, sums);
 }
 
 } // namespace pellucid

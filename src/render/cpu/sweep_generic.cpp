@@ -1,21 +1,19 @@
 // The sweep for any processor, and what all instruction sets share.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "render/cpu/sweep_kernel.inl"
 
 namespace pellucid {
 
-float* SweepScratch::floats(int slot, std::size_t count) {
-    auto& v = m_floats[slot];
-    if (v.size() < count) v.resize(count);
-    return v.data();
-}
-
-int* SweepScratch::ints(int slot, std::size_t count) {
-    auto& v = m_ints[slot];
-    if (v.size() < count) v.resize(count);
-    return v.data();
+void* SweepScratch::bytes(Slot slot, std::size_t count) {
+    constexpr std::size_t kAlignment = 64;
+    auto& v = m_memory[slot];
+    if (v.size() < count + kAlignment) v.resize(count + kAlignment);
+    void* p = v.data();
+    std::size_t space = v.size();
+    return std::align(kAlignment, count, p, space);
 }
 
 std::vector<SweepBand> sweepBands(const SweepInput& in) {
@@ -37,19 +35,16 @@ std::vector<SweepBand> sweepBands(const SweepInput& in) {
     return bands;
 }
 
-void sweepGeneric8(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
-    Band<Vec8>(in, band, scratch, sums).run();
-}
-void sweepGeneric1(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
-    Band<float>(in, band, scratch, sums).run();
+void sweepGeneric(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
+    sweepBand(in, band, scratch, sums);
 }
 
-SweepKernel sweepKernel(int lanes) {
+SweepKernel sweepKernel() {
 #ifdef PELLUCID_HAVE_AVX2_SWEEP
     static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (avx2) return lanes == 1 ? sweepAvx2x1 : sweepAvx2x8;
+    if (avx2) return sweepAvx2;
 #endif
-    return lanes == 1 ? sweepGeneric1 : sweepGeneric8;
+    return sweepGeneric;
 }
 
 } // namespace pellucid

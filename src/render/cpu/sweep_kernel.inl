@@ -13,25 +13,55 @@ typedef float Vec8 __attribute__((vector_size(32)));
 typedef float Vec8InMemory __attribute__((vector_size(32), aligned(4), may_alias)); // rows of floats, not aligned to 32
 typedef int Int8 __attribute__((vector_size(32)));
 typedef int Int8InMemory __attribute__((vector_size(32), aligned(4), may_alias));
+typedef unsigned UInt8 __attribute__((vector_size(32)));
+typedef unsigned UInt8InMemory __attribute__((vector_size(32), aligned(4), may_alias));
+typedef std::uint16_t UShort8 __attribute__((vector_size(16)));
+typedef std::uint16_t UShort8InMemory __attribute__((vector_size(16), aligned(2), may_alias));
 
-/// row[x[0]], …, row[x[7]].
-inline Vec8 gathered(const float* row, Int8 x) {
+constexpr int kWide = 8; ///< lines, voxels or lanes in one vector
+constexpr Vec8 kIota = {0, 1, 2, 3, 4, 5, 6, 7};
+
+inline Vec8 load(const float* p) { return *reinterpret_cast<const Vec8InMemory*>(p); }
+inline Int8 load(const int* p) { return *reinterpret_cast<const Int8InMemory*>(p); }
+inline void store(float* p, Vec8 v) { *reinterpret_cast<Vec8InMemory*>(p) = v; }
+inline void store(int* p, Int8 v) { *reinterpret_cast<Int8InMemory*>(p) = v; }
+inline UShort8 load(const std::uint16_t* p) { return *reinterpret_cast<const UShort8InMemory*>(p); }
+inline Vec8 toFloat(Int8 v) { return __builtin_convertvector(v, Vec8); }
+inline Int8 toInt(Vec8 v) { return __builtin_convertvector(v, Int8); }
+inline Vec8 toFloat(UShort8 v) { return __builtin_convertvector(__builtin_convertvector(v, Int8), Vec8); }
+
+/// from[x[0]], …, from[x[7]].
+inline Vec8 gathered(const float* from, Int8 x) {
 #ifdef __AVX2__
-    return reinterpret_cast<Vec8>(_mm256_i32gather_ps(row, reinterpret_cast<__m256i>(x), 4));
+    return reinterpret_cast<Vec8>(_mm256_i32gather_ps(from, reinterpret_cast<__m256i>(x), 4));
 #else
-    return Vec8{row[x[0]], row[x[1]], row[x[2]], row[x[3]], row[x[4]], row[x[5]], row[x[6]], row[x[7]]};
+    return Vec8{from[x[0]], from[x[1]], from[x[2]], from[x[3]], from[x[4]], from[x[5]], from[x[6]], from[x[7]]};
+#endif
+}
+inline Int8 gathered(const int* from, Int8 x) {
+#ifdef __AVX2__
+    return reinterpret_cast<Int8>(_mm256_i32gather_epi32(from, reinterpret_cast<__m256i>(x), 4));
+#else
+    return Int8{from[x[0]], from[x[1]], from[x[2]], from[x[3]], from[x[4]], from[x[5]], from[x[6]], from[x[7]]};
+#endif
+}
+/// codes[x] and codes[x + 1] for each x.
+inline void gatheredPairs(const std::uint16_t* codes, Int8 x, Vec8& near, Vec8& far) {
+#ifdef __AVX2__
+    const Int8 both = reinterpret_cast<Int8>(
+        _mm256_i32gather_epi32(reinterpret_cast<const int*>(codes), reinterpret_cast<__m256i>(x), 2));
+    near = toFloat(both & 0xffff);
+    far = toFloat(reinterpret_cast<Int8>(reinterpret_cast<UInt8>(both) >> 16));
+#else
+    for (int n = 0; n < kWide; ++n) {
+        near[n] = codes[x[n]];
+        far[n] = codes[x[n] + 1];
+    }
 #endif
 }
 
-inline Int8 gathered(const int* row, Int8 x) {
-#ifdef __AVX2__
-    return reinterpret_cast<Int8>(_mm256_i32gather_epi32(row, reinterpret_cast<__m256i>(x), 4));
-#else
-    return Int8{row[x[0]], row[x[1]], row[x[2]], row[x[3]], row[x[4]], row[x[5]], row[x[6]], row[x[7]]};
-#endif
-}
-
-inline bool allZero(Int8 v) {
+/// True where no bit of a comparison's result is set.
+inline bool none(Int8 v) {
 #ifdef __AVX2__
     return _mm256_testz_si256(reinterpret_cast<__m256i>(v), reinterpret_cast<__m256i>(v)) != 0;
 #else
@@ -39,72 +69,63 @@ inline bool allZero(Int8 v) {
 #endif
 }
 
-template <class V>
-struct Lanes;
-template <>
-struct Lanes<Vec8> {
-    static constexpr int kCount = 8;
-    static Vec8 load(const float* p) { return *reinterpret_cast<const Vec8InMemory*>(p); }
-    static void store(float* p, Vec8 v) { *reinterpret_cast<Vec8InMemory*>(p) = v; }
-    static Vec8 zero() { return Vec8{}; }
-    static Int8 toInt(Vec8 v) { return __builtin_convertvector(v, Int8); }
-    static Vec8 toFloat(Int8 v) { return __builtin_convertvector(v, Vec8); }
-    static Vec8 bits(Int8 v) { return reinterpret_cast<Vec8>(v); }
-    static Vec8 atMost(Vec8 v, float limit) { return v < limit ? v : Vec8{} + limit; }
-};
-template <>
-struct Lanes<float> {
-    static constexpr int kCount = 1;
-    static float load(const float* p) { return *p; }
-    static void store(float* p, float v) { *p = v; }
-    static float zero() { return 0.0f; }
-    static int toInt(float v) { return static_cast<int>(v); }
-    static float toFloat(int v) { return static_cast<float>(v); }
-    static float bits(int v) { return __builtin_bit_cast(float, v); }
-    static float atMost(float v, float limit) { return v < limit ? v : limit; }
-};
-
-/// exp(−x) for x ≥ 0, relative error below 3e-7; 0 is approached at x = 87.
-template <class V>
-inline V expMinus(V x) {
-    using L = Lanes<V>;
-    x = L::atMost(x, 87.0f);
-    const V t = x * 1.44269504f;                       // −log2 of the result
-    const auto whole = L::toInt(t + 0.5f);             // t ≥ 0: truncation rounds to nearest
-    const V f = (L::toFloat(whole) - t) * 0.69314718f; // in [−0.35, 0.35]
-    // Taylor to degree 6: the next term is 0.35^7/5040 = 1.3e-7.
-    const V p = 1.0f + f * (1.0f + f * (0.5f + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720))))));
-    return p * L::bits((127 - whole) << 23);
+/// exp(−x) for x ≥ 0, relative error below 2e-6; 0 is approached at x = 87.
+inline Vec8 expMinus(Vec8 x) {
+    const Vec8 limit = Vec8{} + 87.0f;
+    x = x < limit ? x : limit;
+    const Vec8 t = x * 1.44269504f;                    // −log2 of the result
+    const Int8 whole = toInt(t + 0.5f);                // t ≥ 0: truncation rounds to nearest
+    const Vec8 f = (toFloat(whole) - t) * 0.69314718f; // in [−0.35, 0.35]
+    // Taylor to degree 5: the next term is 0.35^6/720 = 2.5e-6 at most.
+    const Vec8 p = 1.0f + f * (1.0f + f * (0.5f + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120)))));
+    return p * reinterpret_cast<Vec8>((127 - whole) << 23);
 }
 
 inline int floorInt(double v) { return static_cast<int>(__builtin_floor(v)); }
 inline int ceilInt(double v) { return static_cast<int>(__builtin_ceil(v)); }
 inline int smaller(int a, int b) { return a < b ? a : b; }
 inline int larger(int a, int b) { return a > b ? a : b; }
+inline int clampTo(int v, int lo, int hi) { return v < lo ? lo : (v > hi ? hi : v); }
 inline double clampTo(double v, double hi) { return v < 0 ? 0 : (v > hi ? hi : v); }
 
 /// Where rays meet the plane w: coordinate = base + index·scale.
 struct RayPlane {
     double baseU, baseV, scale;
+    double u(double a) const { return baseU + a * scale; }
+    double v(double b) const { return baseV + b * scale; }
 };
 
-template <class V>
+/// Intensities on eight lines, as entries of the integral table, and the share of valid corners that they come from.
+struct Samples {
+    Int8 entry;
+    Vec8 share;
+};
+
+/// The stretch of eight lines between two samples: what the integral table tells of it, and by what to multiply that.
+struct Stretch {
+    Int8 low, high; ///< rows of the integral table
+    Vec8 weight;
+};
+
+/// kMode: SweepMode; kInvalid: some voxels may be invalid.
+template <SweepMode kMode, bool kInvalid>
 class Band {
-    using L = Lanes<V>;
-    static constexpr int K = L::kCount;
-    static constexpr int kNear = 4; ///< table entries closer than this are averaged by their middle
+    static constexpr bool kSingle = kMode == SweepMode::Single;
+    static constexpr int K = lanesOf(kMode);
+    static constexpr int kVectors = kSingle ? 1 : K / kWide; ///< that hold the lanes of a line
+    static constexpr int kSpread = 4;         ///< accumulators that take turns, so that no addition waits for the last
+    static constexpr int kExhaustedEvery = 4; ///< slices between looks for exhausted rays
+    static constexpr int kFlushEvery = 4;     ///< slices
 
 public:
     Band(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums)
         : m_in(in), m_band(band), m_scratch(scratch), m_sums(sums), m_slopeStep(in.firstSlopeStep), m_b0(band.first),
           m_b1(band.last) {
-        const auto nu = static_cast<std::size_t>(in.nu);
-        m_accumulator = scratch.floats(0, accumulatorSize());
+        m_accumulator = scratch.get<float>(SweepScratch::Accumulator, accumulatorSize());
         for (std::size_t i = 0; i < accumulatorSize(); ++i) m_accumulator[i] = 0.0f;
-        m_row = scratch.floats(1, 2 * (nu + 1));
-        m_local.depth = scratch.floats(2, nu * K);
-        m_local.share = scratch.floats(3, nu);
-        m_local.entry = scratch.ints(0, nu);
+        for (int lane = 0; lane < K; ++lane) m_limit[lane] = in.exhaustedDepth / in.depthUnit[lane];
+        if (kMode == SweepMode::Jacobian) // derivatives exhaust nothing
+            for (int lane = 1; lane < K; ++lane) m_limit[lane] = -1e30f;
     }
 
     /// Slices in turn, each range of them with rays of its own, dense enough there: rays that diverge from a near eye
@@ -122,30 +143,12 @@ public:
             m_b0 *= 2;
             m_b1 *= 2;
         }
+        flush();
     }
 
 private:
-    static constexpr int kOutside = -1;
     static constexpr float kNoShare = 1e-6f; ///< of valid corners: nothing there has an intensity
-
-    /// Neighbouring lines toward the eye, rays or those of voxels, and how far they have come: per line the optical
-    /// depth of each candidate, the table entry at the last sample (kOutside: not in the box there), and where voxels
-    /// may be invalid the share of valid corners there.
-    struct Lines {
-        int first = 0, last = 0; ///< indices along u
-        float* depth = nullptr;  ///< [line][K]
-        int* entry = nullptr;
-        float* share = nullptr;
-        const float* length = nullptr;        ///< d0 per slice
-        int lengthStep = 1;                   ///< 0: the same for all
-        const std::uint16_t* codes = nullptr; ///< of the voxels whose lines these are; null for rays
-    };
-
-    /// Of SweepInput, where the compiler sees that stores leave them alone.
-    struct Tables {
-        const float *depth, *integral;
-        const int* opaqueBefore;
-    };
+    static constexpr int kNever = -1000000;  ///< a plane at which no entry was taken
 
     // ---- The ray grid --------------------------------------------------------------------------------------------
 
@@ -159,25 +162,27 @@ private:
         const double scale = (w - m_in.eyeW) / (k - m_in.eyeW);
         return {m_in.eyeU * (1 - scale), m_in.eyeV * (1 - scale), scale};
     }
-    std::size_t rowRays() const { return static_cast<std::size_t>(m_a1 - m_a0 + 1); }
-    std::size_t rays() const { return rowRays() * static_cast<std::size_t>(m_b1 - m_b0 + 1); }
-    std::size_t rayIndex(int a, int b) const {
-        return static_cast<std::size_t>(b - m_b0) * rowRays() + static_cast<std::size_t>(a - m_a0);
+    std::size_t rows() const { return static_cast<std::size_t>(m_b1 - m_b0 + 1); }
+    std::size_t rowRays() const { return static_cast<std::size_t>(m_blocks) * kWide; }
+    std::size_t rowOf(int b) const { return static_cast<std::size_t>(b - m_b0); }
+    std::size_t accumulatorSize() const {
+        return static_cast<std::size_t>(m_in.features + 1) * 3 * (kSingle ? kWide : kSpread * K);
     }
-    std::size_t accumulatorSize() const { return static_cast<std::size_t>(m_in.features + 1) * 3 * K; }
+    /// Of the planes that lines are sampled at: stepsPerSlice to a slice distance, the first of all at the front.
+    double sampleW(int index) const { return index < 0 ? -0.5 : static_cast<double>(index) / m_in.stepsPerSlice; }
 
     /// Takes rays from the front of the box to the slices [begin, end), whose voxels ask for them.
     void sweepSlices(int begin, int end) {
         startRays(begin, end);
-        int next = 0; // where the rays go next
+        int at = -1; // the sample plane that rays have come to
         for (int k = begin; k < end; ++k) {
-            for (; next <= k - m_in.ownSlices; ++next) advanceRays(next);
-            gather(k);
-            flush();
+            for (; at < (k - m_in.ownSlices) * m_in.stepsPerSlice; ++at) advanceRays(at, at + 1);
+            gather(k, larger(at, -1));
+            if (k % kFlushEvery == kFlushEvery - 1) flush();
         }
     }
 
-    /// Chooses the rays that voxels of the slices [begin, end) will ask for, and lets them start.
+    /// Chooses the rays that voxels of the slices [begin, end) will ask for.
     void startRays(int begin, int end) {
         double lo = 1e30, hi = -1e30;
         for (int side = 0; side < 2; ++side) { // positions are monotone in w: the extremes are at the ends
@@ -188,18 +193,22 @@ private:
         }
         m_a0 = floorInt(lo);
         m_a1 = floorInt(hi) + 1;
-        m_rays.depth = m_scratch.floats(4, rays() * K);
-        m_rays.share = m_scratch.floats(5, rays());
-        m_rays.entry = m_scratch.ints(1, rays());
-        m_gatherRow = m_scratch.floats(6, rowRays() * K);
-        m_length = m_scratch.floats(7, rays());
-        const std::size_t longest = 8 + static_cast<std::size_t>(larger(m_a1 - m_a0 + 1, m_in.nu));
-        m_next = m_scratch.ints(2, longest);
-        m_nextShare = m_scratch.floats(8, longest);
+        m_blocks = (m_a1 - m_a0) / kWide + 1;
+        const std::size_t rays = rows() * rowRays(), blocks = rows() * static_cast<std::size_t>(m_blocks);
+        m_depth = m_scratch.get<float>(SweepScratch::Depth, rays * K);
+        m_entry = m_scratch.get<int>(SweepScratch::Entry, rays);
+        if (kInvalid) m_share = m_scratch.get<float>(SweepScratch::Share, rays);
+        m_length = m_scratch.get<float>(SweepScratch::Length, rays);
+        m_stamp = m_scratch.get<int>(SweepScratch::Stamp, blocks);
+        m_flags = m_scratch.get<std::uint8_t>(SweepScratch::Flags, blocks);
+        for (std::size_t i = 0; i < rays * K; ++i) m_depth[i] = 0.0f;
+        for (std::size_t i = 0; i < blocks; ++i) {
+            m_stamp[i] = kNever;
+            m_flags[i] = 0;
+        }
         for (int b = m_b0; b <= m_b1; ++b)
-            for (int a = m_a0; a <= m_a1; ++a) m_length[rayIndex(a, b)] = static_cast<float>(rayLength(a, b));
-        for (std::size_t i = 0; i < rays() * K; ++i) m_rays.depth[i] = 0.0f;
-        forEachBlock([&](const Block& block) { this->begin(rayPlane(-0.5), -0.5, block.row, raysOf(block)); });
+            for (std::size_t i = 0; i < rowRays(); ++i)
+                m_length[rowOf(b) * rowRays() + i] = static_cast<float>(rayLength(m_a0 + static_cast<int>(i), b));
     }
 
     double lengthOf(double slopeU, double slopeV) const {
@@ -211,364 +220,490 @@ private:
         return m_in.perspective ? lengthOf(a * m_slopeStep, b * m_slopeStep) : lengthOf(m_in.slopeU, m_in.slopeV);
     }
 
-    /// Lines along a row that may share their sample planes: all where they are parallel, else as long as their slopes
-    /// (here `slopeStep` apart) hardly change.
-    int blockSize(double slopeStep, int all) const {
-        constexpr double kSlopeChange = 0.06;
-        return m_in.perspective
-                   ? larger(1, static_cast<int>(clampTo(kSlopeChange * m_in.hw / (slopeStep * m_in.hu), all)))
-                   : all;
-    }
+    // ---- Samples -------------------------------------------------------------------------------------------------
 
-    struct Block {
-        int row, first, last;
-        double length; ///< d0 per slice, in the middle
+    /// The rows of voxels around (v, w), clamped to the volume, and their weights.
+    struct Rows {
+        int count = 0;
+        const std::uint16_t* codes[4];
+        float weights[4];
     };
-    template <class Body>
-    void forEachBlock(const Body& body) {
-        const int size = blockSize(m_slopeStep, m_a1 - m_a0 + 1);
-        for (int b = m_b0; b <= m_b1; ++b)
-            for (int a = m_a0; a <= m_a1; a += size) {
-                const int last = smaller(a + size - 1, m_a1);
-                body(Block{b, a, last, rayLength((a + last) / 2, b)});
-            }
-    }
-    Lines raysOf(const Block& block) const {
-        const std::size_t at = rayIndex(block.first, block.row);
-        return {block.first, block.last, m_rays.depth + at * K, m_rays.entry + at, m_rays.share + at, m_length + at,
-                1,           nullptr};
-    }
-
-    // ---- Along the lines -----------------------------------------------------------------------------------------
-
-    /// Takes every ray on to d0/2 in front of slice k.
-    void advanceRays(int k) {
-        forEachBlock([&](const Block& block) {
-            const auto plane = [&](double w) { return rayPlane(w); };
-            toSlice(plane, k, block.length, block.row, raysOf(block));
-        });
-    }
-
-    /// From d0/2 in front of slice k − 1 (k = 0: from the front of the box) to d0/2 in front of slice k. A sample lies
-    /// on each voxel plane, since that is where trilinear interpolation has its kinks.
-    template <class Plane>
-    void toSlice(const Plane& plane, int k, double length, int row, const Lines& lines) {
-        const double end = k - 0.5 / length;
-        double from = k == 0 ? -0.5 : end - 1;
-        if (k > 0) from = step(plane, from, k - 1, row, lines);
-        const int steps = stepsOver(end - from, length);
-        const double start = from;
-        if (end - start < 1e-6) return;
-        for (int n = 1; n <= steps; ++n) from = step(plane, from, start + (end - start) * n / steps, row, lines);
-    }
-
-    /// Samples over a part of a slice distance: no further apart than maxStep, but no more than tell the voxels apart
-    /// that a line crosses there, since between them its intensity is smooth (long voxels seen along their length).
-    int stepsOver(double slices, double length) const {
-        const double lateral = length * length - m_in.hw * m_in.hw; // squared, in d0
-        const double narrow = m_in.hu < m_in.hv ? m_in.hu : m_in.hv;
-        const double crossed = lateral > 0 ? 1.5 * slices * __builtin_sqrt(lateral) / narrow : 0.0;
-        const double wanted = slices * length / m_in.maxStep - 1e-6, enough = 1 + 2 * crossed / m_in.maxStep;
-        return larger(1, ceilInt(wanted < enough ? wanted : enough));
-    }
-
-    /// The lines of `row` that are inside the box at this plane; empty where first > last.
-    struct Inside {
-        int first, last;
-    };
-    Inside insideAt(const RayPlane& p, int row, const Lines& lines) const {
-        const double v = p.baseV + row * p.scale;
-        if (v < -0.5 || v > m_in.nv - 0.5) return {lines.first, lines.first - 1};
-        return {larger(lines.first, ceilInt((-0.5 - p.baseU) / p.scale)),
-                smaller(lines.last, floorInt((m_in.nu - 0.5 - p.baseU) / p.scale))};
-    }
-
-    /// Reads the volume along `row` where it meets the plane w, into m_row; see interpolateRow.
-    void readRow(const RayPlane& p, double w, int row, const Inside& inside) {
-        const double top = m_in.nu - 1;
-        const int x0 = static_cast<int>(clampTo(p.baseU + inside.first * p.scale, top)),
-                  x1 = smaller(m_in.nu - 1, static_cast<int>(clampTo(p.baseU + inside.last * p.scale, top)) + 1);
-        interpolateRow(x0, x1, clampTo(p.baseV + row * p.scale, m_in.nv - 1), clampTo(w, m_in.nw - 1));
-    }
-
-    /// Samples the lines `inside` where they meet the row that was read last: table entries into m_next, and where
-    /// voxels may be invalid the shares of valid corners into m_nextShare. Eight at a time; both have room for the last
-    /// eight.
-    void sampleRow(const RayPlane& p, const Inside& inside) {
-        const int count = inside.last - inside.first + 1;
-        const Vec8 zero{}, scale = zero + static_cast<float>(p.scale), limit = zero + static_cast<float>(m_in.nu - 1);
-        const Int8 top = Int8{} + (m_in.tableSize - 1);
-        const Vec8 first = Vec8{0, 1, 2, 3, 4, 5, 6, 7} * scale + static_cast<float>(p.baseU + inside.first * p.scale);
-        for (int i = 0; i < count; i += 8) {
-            Vec8 u = first + static_cast<float>(i) * scale;
-            u = u < zero ? zero : u;
-            u = u > limit ? limit : u;
-            const Int8 x = __builtin_convertvector(u, Int8);
-            const Vec8 f = u - __builtin_convertvector(x, Vec8);
-            Vec8 entry = gathered(m_row, x);
-            entry += f * (gathered(m_row + 1, x) - entry);
-            if (m_in.valid) {
-                const float* shares = m_row + m_in.nu + 1;
-                Vec8 share = gathered(shares, x);
-                share += f * (gathered(shares + 1, x) - share);
-                entry = share > zero + kNoShare ? entry / share : zero;
-                *reinterpret_cast<Vec8InMemory*>(m_nextShare + i) = share;
-            }
-            const Int8 next = __builtin_convertvector(entry + 0.5f, Int8);
-            *reinterpret_cast<Int8InMemory*>(m_next + i) = next < top ? next : top;
-        }
-    }
-
-    /// Notes where the lines start from.
-    void begin(const RayPlane& p, double w, int row, const Lines& lines) {
-        for (int a = 0; a <= lines.last - lines.first; ++a) lines.entry[a] = kOutside;
-        const Inside inside = insideAt(p, row, lines);
-        if (inside.first > inside.last) return;
-        readRow(p, w, row, inside);
-        sampleRow(p, inside);
-        const int offset = inside.first - lines.first;
-        for (int i = 0; i <= inside.last - inside.first; ++i) lines.entry[i + offset] = m_next[i];
-        if (!m_in.valid) return;
-        for (int i = 0; i <= inside.last - inside.first; ++i) lines.share[i + offset] = m_nextShare[i];
-    }
-
-    /// Adds `path` times the mean of τ while the intensity goes linearly from one table entry to another: exact, by the
-    /// table's running integral.
-    static void addDepth(const Tables& tables, float* depth, int from, int to, float path) {
-        const int low = smaller(from, to), high = larger(from, to);
-        if (tables.opaqueBefore[high + 1] == tables.opaqueBefore[low]) return; // transparent in every candidate
-        // Entries next to each other are averaged by their middle: their integrals differ by less than floats can tell.
-        // Selected, not branched: in noisy data nobody could foretell which it will be.
-        static constexpr float kNothing[K] = {};
-        const bool near = high - low < kNear;
-        const float* plus = near ? tables.depth + static_cast<std::ptrdiff_t>((low + high) / 2) * K
-                                 : tables.integral + static_cast<std::ptrdiff_t>(high) * K;
-        const float* minus = near ? kNothing : tables.integral + static_cast<std::ptrdiff_t>(low) * K;
-        const float scale = path / static_cast<float>(near ? 1 : high - low);
-        L::store(depth, L::load(depth) + scale * (L::load(plus) - L::load(minus)));
-    }
-
-    /// Takes eight lines from `i` on over what is transparent in every candidate, if it is so for all of them.
-    bool crossTransparent(const Tables& tables, const Lines& lines, int i, int next) {
-        const Int8 entries = *reinterpret_cast<const Int8InMemory*>(lines.entry + i);
-        const Int8 now = *reinterpret_cast<const Int8InMemory*>(m_next + next);
-        const Int8 last = entries < 0 ? now : entries;
-        const Int8 low = last < now ? last : now, high = last < now ? now : last;
-        if (!allZero(gathered(tables.opaqueBefore + 1, high) - gathered(tables.opaqueBefore, low))) return false;
-        *reinterpret_cast<Int8InMemory*>(lines.entry + i) = now;
-        if (m_in.valid)
-            for (int k = 0; k < 8; ++k) lines.share[i + k] = m_nextShare[next + k];
-        return true;
-    }
-
-    /// Adds to the lines what they meet between two planes. Returns `to`.
-    template <class Plane>
-    double step(const Plane& plane, double from, double to, int row, const Lines& lines) {
-        const RayPlane p = plane(to), before = plane(from);
-        Inside inside = insideAt(p, row, lines);
-        if (inside.first > inside.last) inside = {lines.last + 1, lines.last};
-        const float slices = static_cast<float>(to - from);
-        const Tables tables{m_in.depthTable, m_in.integralTable, m_in.opaqueBefore};
-        const bool someInvalid = m_in.valid != nullptr;
-        if (inside.first <= inside.last) {
-            readRow(p, to, row, inside);
-            sampleRow(p, inside);
-        }
-        for (int a = inside.first; a <= inside.last; ++a) {
-            const int i = a - lines.first, now = m_next[a - inside.first];
-            if (((a - inside.first) & 7) == 0 && a + 7 <= inside.last &&
-                crossTransparent(tables, lines, i, a - inside.first)) {
-                a += 7;
-                continue;
-            }
-            int last = lines.entry[i];
-            lines.entry[i] = now;
-            if (lines.codes && m_in.featureOfCode[lines.codes[i]] == kTransparent) continue;
-            float path = lines.length[i * lines.lengthStep] * slices;
-            const bool cameIn = last == kOutside; // through a side, on the way
-            if (cameIn) {
-                path *= insideShare(p, before, a, row);
-                last = now;
-            }
-            int end = now;
-            if (someInvalid) {
-                const float share = m_nextShare[a - inside.first], lastShare = cameIn ? share : lines.share[i];
-                lines.share[i] = share;
-                if (lastShare <= kNoShare) last = now;
-                if (share <= kNoShare) end = last;
-                path *= 0.5f * (lastShare + share);
-            }
-            addDepth(tables, lines.depth + i * K, last, end, path);
-        }
-        const auto leave = [&](int a) { // through a side
-            const int i = a - lines.first;
-            if (lines.entry[i] == kOutside) return;
-            float path = lines.length[i * lines.lengthStep] * slices * insideShare(before, p, a, row);
-            if (someInvalid) path *= lines.share[i];
-            addDepth(tables, lines.depth + i * K, lines.entry[i], lines.entry[i], path);
-            lines.entry[i] = kOutside;
-        };
-        for (int a = lines.first; a < inside.first; ++a) leave(a);
-        for (int a = inside.last + 1; a <= lines.last; ++a) leave(a);
-        return to;
-    }
-
-    /// The part of a line between two planes that lies inside the sides of the box, where it is inside at `in` and
-    /// outside at `out`.
-    float insideShare(const RayPlane& in, const RayPlane& out, int a, int row) const {
-        const double u0 = in.baseU + a * in.scale, u1 = out.baseU + a * out.scale;
-        const double v0 = in.baseV + row * in.scale, v1 = out.baseV + row * out.scale;
-        double share = 1;
-        const auto cut = [&](double x0, double x1, double size) {
-            double t = 1;
-            if (x1 < -0.5)
-                t = (x0 + 0.5) / (x0 - x1);
-            else if (x1 > size - 0.5)
-                t = (size - 0.5 - x0) / (x1 - x0);
-            share = t < share ? t : share;
-        };
-        cut(u0, u1, m_in.nu);
-        cut(v0, v1, m_in.nv);
-        return static_cast<float>(share < 0 ? 0 : share);
-    }
-
-    /// m_row[x], x ∈ [x0, x1]: the volume at (x, v, w) as an entry of the depth table; m_row[x1 + 1] repeats the last,
-    /// for the ray that ends on it. With invalid voxels: entry·share there, and the share of the valid corners behind.
-    void interpolateRow(int x0, int x1, double v, double w) {
+    Rows rowsAt(double v, double w) const {
+        v = clampTo(v, m_in.nv - 1);
+        w = clampTo(w, m_in.nw - 1);
         const int v0 = smaller(static_cast<int>(v), larger(0, m_in.nv - 2)),
                   w0 = smaller(static_cast<int>(w), larger(0, m_in.nw - 2));
         const double fv = v - v0, fw = w - w0;
         const double weights[4] = {(1 - fv) * (1 - fw), fv * (1 - fw), (1 - fv) * fw, fv * fw};
-        float* row = m_row;
-        float* share = m_row + m_in.nu + 1;
-        bool fresh = true;
+        Rows rows;
         for (int corner = 0; corner < 4; ++corner) {
-            if (weights[corner] < 1e-7) continue; // on a voxel plane: a row less to read
-            const int vv = v0 + (corner & 1), ww = w0 + (corner >> 1);
-            const std::uint16_t* codes = m_in.codes + vv * m_in.codeStrides.v + ww * m_in.codeStrides.w;
-            const float weight = static_cast<float>(weights[corner]), scaled = weight * m_in.tableEntryOfCode;
-            if (m_in.valid) {
-                const std::uint8_t* valid = m_in.valid + vv * m_in.fieldStrides.v + ww * m_in.fieldStrides.w;
-                for (int x = x0; x <= x1; ++x) {
-                    const bool good = valid[x * m_in.fieldStrides.u] != 0;
-                    row[x] = (fresh ? 0.0f : row[x]) + (good ? scaled * codes[x] : 0.0f);
-                    share[x] = (fresh ? 0.0f : share[x]) + (good ? weight : 0.0f);
-                }
-            } else if (fresh) {
-                for (int x = x0; x <= x1; ++x) row[x] = scaled * static_cast<float>(codes[x]);
-            } else {
-                for (int x = x0; x <= x1; ++x) row[x] += scaled * static_cast<float>(codes[x]);
-            }
-            fresh = false;
+            if (weights[corner] < 1e-6) continue; // on a voxel plane: a row less to read
+            rows.codes[rows.count] =
+                m_in.codes + (v0 + (corner & 1)) * m_in.codeStrides.v + (w0 + (corner >> 1)) * m_in.codeStrides.w;
+            rows.weights[rows.count++] = static_cast<float>(weights[corner]);
         }
-        row[x1 + 1] = row[x1];
-        if (m_in.valid) share[x1 + 1] = share[x1];
+        return rows;
+    }
+
+    /// The volume at u = u0 + n·du, n = 0 … 7, along the rows.
+    inline Samples sample(const Rows& rows, double first, double step) const {
+        const float u0 = static_cast<float>(first), du = static_cast<float>(step);
+        Vec8 near, far, total = {}, share = {};
+        const auto add = [&](int row, Vec8 f) {
+            const float weight = rows.weights[row];
+            if (kInvalid) {
+                const Vec8 invalid = Vec8{} + static_cast<float>(kInvalidCode), zero = {};
+                const Vec8 nearShare = near == invalid ? zero : (1.0f - f) * weight,
+                           farShare = far == invalid ? zero : f * weight;
+                total += nearShare * near + farShare * far;
+                share += nearShare + farShare;
+            } else {
+                total += weight * (near + f * (far - near));
+            }
+        };
+        if (du == 1.0f && u0 >= 0.0f && u0 + (kWide - 1) < static_cast<float>(m_in.nu - 1)) {
+            const int x = static_cast<int>(u0);
+            const Vec8 f = Vec8{} + (u0 - static_cast<float>(x));
+            for (int row = 0; row < rows.count; ++row) {
+                near = toFloat(load(rows.codes[row] + x));
+                far = toFloat(load(rows.codes[row] + x + 1));
+                add(row, f);
+            }
+        } else {
+            const Vec8 zero = {}, last = zero + static_cast<float>(m_in.nu - 1);
+            const Int8 lastPair = Int8{} + larger(0, m_in.nu - 2);
+            Vec8 u = u0 + kIota * du;
+            u = u > zero ? u : zero;
+            u = u < last ? u : last;
+            Int8 x = toInt(u);
+            x = x < lastPair ? x : lastPair;
+            const Vec8 f = u - toFloat(x);
+            for (int row = 0; row < rows.count; ++row) {
+                gatheredPairs(rows.codes[row], x, near, far);
+                add(row, f);
+            }
+        }
+        if (kInvalid) {
+            const Vec8 zero = {};
+            total = share > zero + kNoShare ? total / share : zero;
+        }
+        return {toInt(total * m_in.tableEntryOfCode + 0.5f), share};
+    }
+
+    /// τ between two samples is its mean over the table entries from one to the other, both included: what the running
+    /// integral tells, and for neighbouring entries the mean of the two.
+    static Stretch stretch(Samples from, Samples to, Vec8 path) {
+        if (kInvalid) {
+            const Vec8 nothing = Vec8{} + kNoShare;
+            from.entry = from.share > nothing ? from.entry : to.entry;
+            to.entry = to.share > nothing ? to.entry : from.entry;
+            path *= 0.5f * (from.share + to.share);
+        }
+        const Int8 low = from.entry < to.entry ? from.entry : to.entry,
+                   high = (from.entry < to.entry ? to.entry : from.entry) + 1;
+        return {low, high, path / toFloat(high - low)};
+    }
+
+    /// The parts of eight lines between two planes that lie inside the sides of the box.
+    Vec8 insideShare(const RayPlane& from, const RayPlane& to, double a, double b) const {
+        Vec8 share;
+        for (int n = 0; n < kWide; ++n) {
+            double enter = 0, leave = 1;
+            const auto cut = [&](double x0, double x1, double size) {
+                const double lo = -0.5, hi = size - 0.5;
+                if (x0 == x1) {
+                    if (x0 < lo || x0 > hi) leave = -1;
+                    return;
+                }
+                double t0 = (lo - x0) / (x1 - x0), t1 = (hi - x0) / (x1 - x0);
+                if (t0 > t1) {
+                    const double t = t0;
+                    t0 = t1;
+                    t1 = t;
+                }
+                enter = t0 > enter ? t0 : enter;
+                leave = t1 < leave ? t1 : leave;
+            };
+            cut(from.u(a + n), to.u(a + n), m_in.nu);
+            cut(from.v(b), to.v(b), m_in.nv);
+            share[n] = leave > enter ? static_cast<float>(leave - enter) : 0.0f;
+        }
+        return share;
+    }
+    bool insideU(double first, double last) const { return first >= -0.5 && last <= m_in.nu - 0.5; }
+    bool insideV(double v) const { return v >= -0.5 && v <= m_in.nv - 0.5; }
+
+    // ---- Along the rays ------------------------------------------------------------------------------------------
+
+    enum Flag : std::uint8_t { kActive = 1, kExhausted = 2 };
+
+    const std::uint8_t* opaqueRow(double v, double w) const {
+        const int row = clampTo(floorInt(v + 0.5), 0, m_in.nv - 1) / kBlockSize,
+                  k = clampTo(floorInt(w + 0.5), 0, m_in.nw - 1),
+                  slice = (m_in.flipped ? m_in.nw - 1 - k : k) / kBlockSize;
+        return m_in.opaque + row * m_in.opaqueStrides.v + slice * m_in.opaqueStrides.w;
+    }
+    bool opaqueBetween(const std::uint8_t* row, double first, double last) const {
+        const int end = clampTo(static_cast<int>(last + 0.5), 0, m_in.nu - 1) / kBlockSize;
+        for (int i = clampTo(static_cast<int>(first + 0.5), 0, m_in.nu - 1) / kBlockSize; i <= end; ++i)
+            if (row[i * m_in.opaqueStrides.u]) return true;
+        return false;
+    }
+
+    /// Takes every ray from one sample plane to the next, blocks of eight rays at a time; blocks that meet nothing
+    /// opaque on either plane, and exhausted ones, are passed over.
+    void advanceRays(int from, int to) {
+        const double w0 = sampleW(from), w1 = sampleW(to);
+        const RayPlane p0 = rayPlane(w0), p1 = rayPlane(w1);
+        const double lo0 = (-0.5 - p0.baseU) / p0.scale, lo1 = (-0.5 - p1.baseU) / p1.scale,
+                     hi0 = (m_in.nu - 0.5 - p0.baseU) / p0.scale, hi1 = (m_in.nu - 0.5 - p1.baseU) / p1.scale;
+        const int firstBlock = larger(0, (ceilInt(lo0 < lo1 ? lo0 : lo1) - m_a0) / kWide),
+                  lastBlock = smaller(m_blocks - 1, (floorInt(hi0 > hi1 ? hi0 : hi1) - m_a0) / kWide);
+        const float slices = static_cast<float>(w1 - w0);
+        const bool look = to % (kExhaustedEvery * m_in.stepsPerSlice) == 0;
+        for (int b = m_b0; b <= m_b1; ++b) {
+            const double v0 = p0.v(b), v1 = p1.v(b);
+            const bool bothInside = insideV(v0) && insideV(v1);
+            if (!bothInside && (larger(v0<-0.5, v0> m_in.nv - 0.5) & larger(v1<-0.5, v1> m_in.nv - 0.5))) continue;
+            const std::uint8_t* opaque = opaqueRow(v1, w1);
+            const Rows before = rowsAt(v0, w0), now = rowsAt(v1, w1);
+            for (int block = firstBlock; block <= lastBlock; ++block) {
+                const std::size_t at = rowOf(b) * static_cast<std::size_t>(m_blocks) + static_cast<std::size_t>(block);
+                if (m_flags[at] & kExhausted) continue;
+                const int a = m_a0 + block * kWide;
+                const double u1 = p1.u(a), end1 = p1.u(a + kWide - 1);
+                const bool active = opaqueBetween(opaque, u1, end1);
+                const bool wasActive = m_flags[at] & kActive;
+                m_flags[at] = active ? kActive : 0;
+                if (!active && !wasActive) continue;
+                const std::size_t ray = at * kWide;
+                Samples s0;
+                if (m_stamp[at] == from) {
+                    s0.entry = load(m_entry + ray);
+                    if (kInvalid) s0.share = load(m_share + ray);
+                } else {
+                    s0 = sample(before, p0.u(a), p0.scale);
+                }
+                const Samples s1 = sample(now, u1, p1.scale);
+                store(m_entry + ray, s1.entry);
+                if (kInvalid) store(m_share + ray, s1.share);
+                m_stamp[at] = to;
+                Vec8 path = load(m_length + ray) * slices;
+                if (!bothInside || !insideU(u1, end1) || !insideU(p0.u(a), p0.u(a + kWide - 1)))
+                    path *= insideShare(p0, p1, a, b);
+                addDepth(m_depth + ray * K, stretch(s0, s1, path));
+                if (look && exhausted(m_depth + ray * K)) m_flags[at] |= kExhausted;
+            }
+        }
+    }
+
+    /// Adds what eight rays meet on a stretch.
+    void addDepth(float* depth, const Stretch& s) const {
+        const std::int32_t* table = m_in.integralTable;
+        if constexpr (kSingle) {
+            store(depth, load(depth) + s.weight * toFloat(gathered(table, s.high) - gathered(table, s.low)));
+        } else {
+            for (int n = 0; n < kWide; ++n)
+                for (int part = 0; part < kVectors; ++part, depth += kWide)
+                    store(depth, load(depth) + s.weight[n] * between(s.low[n], s.high[n], part));
+        }
+    }
+    /// The difference of two rows of the integral table.
+    Vec8 between(int low, int high, int part) const {
+        const std::int32_t* table = m_in.integralTable + part * kWide;
+        return toFloat(load(table + static_cast<std::ptrdiff_t>(high) * K) -
+                       load(table + static_cast<std::ptrdiff_t>(low) * K));
+    }
+
+    bool exhausted(const float* depth) const {
+        Int8 open = {};
+        for (int n = 0; n < (kSingle ? 1 : kWide); ++n)
+            for (int part = 0; part < kVectors; ++part) {
+                const Vec8 limit = kSingle ? Vec8{} + m_limit[0] : load(m_limit + part * kWide);
+                open |= load(depth + (n * kVectors + part) * kWide) < limit;
+            }
+        return none(open);
     }
 
     // ---- At the voxels -------------------------------------------------------------------------------------------
 
-    void gather(int k) {
+    /// Eight voxels of a row, u … u + 7.
+    struct VoxelBlock {
+        int u = 0, v = 0, k = 0, count = 0;
+        const std::uint16_t* codes = nullptr;
+        std::ptrdiff_t field = 0; ///< index of the first in weights and field
+        int list[kWide];          ///< those that count
+        int listed = 0;
+        Int8 ray;          ///< the ray below, in its row
+        Vec8 fraction;     ///< between it and the next
+        const float* near; ///< depths of the row of rays below
+        const float* far;  ///< and above
+        float fractionV;   ///< between them
+    };
+
+    void gather(int k, int at) {
         const RayPlane p = rayPlane(k);
-        for (int v = 0; v < m_in.nv; ++v) {
+        const int firstRow = larger(0, m_band.outermostLow ? 0 : floorInt(p.v(m_b0)) - 1),
+                  lastRow = smaller(m_in.nv - 1, m_band.outermostHigh ? m_in.nv - 1 : ceilInt(p.v(m_b1)) + 1);
+        for (int v = firstRow; v <= lastRow; ++v) {
             const double b = (v - p.baseV) / p.scale;
             if ((b < m_b0 && !m_band.outermostLow) || (b >= m_b1 && !m_band.outermostHigh)) continue;
-            const int row = larger(m_b0, smaller(m_b1 - 1, floorInt(b)));
-            const std::uint16_t* codes = m_in.codes + v * m_in.codeStrides.v + k * m_in.codeStrides.w;
-            int u0 = 0, u1 = m_in.nu - 1; // what is seen of the row
-            while (u0 <= u1 && m_in.featureOfCode[codes[u0]] == kTransparent) ++u0;
-            while (u0 <= u1 && m_in.featureOfCode[codes[u1]] == kTransparent) --u1;
-            if (u0 > u1) continue;
+            gatherRow(k, v, p, b, at);
+        }
+    }
 
-            // Between the two ray rows first, then along them.
-            const double first = (u0 - p.baseU) / p.scale, last = (u1 - p.baseU) / p.scale;
-            const int a0 = larger(m_a0, smaller(m_a1 - 1, floorInt(first))),
-                      a1 = larger(a0 + 1, smaller(m_a1, floorInt(last) + 1));
-            const float fb = static_cast<float>(b - row);
-            const float* near = m_rays.depth + rayIndex(a0, row) * K;
-            const float* far = m_rays.depth + rayIndex(a0, row + 1) * K;
-            for (int i = 0; i <= (a1 - a0); ++i) {
-                const V d = L::load(near + i * K);
-                L::store(m_gatherRow + i * K, d + fb * (L::load(far + i * K) - d));
+    void gatherRow(int k, int v, const RayPlane& p, double b, int at) {
+        const int row = clampTo(floorInt(b), m_b0, m_b1 - 1);
+        const std::uint8_t* opaque = opaqueRow(v, k);
+        VoxelBlock block;
+        block.v = v;
+        block.k = k;
+        block.fractionV = static_cast<float>(b - row);
+        block.near = m_depth + rowOf(row) * rowRays() * K;
+        block.far = block.near + rowRays() * K;
+        const std::uint8_t* flags = m_flags + rowOf(row) * static_cast<std::size_t>(m_blocks);
+        const std::uint16_t* codes = m_in.codes + v * m_in.codeStrides.v + k * m_in.codeStrides.w;
+        const std::ptrdiff_t field = v * m_in.fieldStrides.v + k * m_in.fieldStrides.w;
+        m_ownReady = false;
+        for (int i = 0; i * kWide < m_in.nu; ++i) {
+            if (!opaque[i * m_in.opaqueStrides.u]) continue;
+            block.u = i * kWide;
+            const double a = (block.u - p.baseU) / p.scale - m_a0;
+            const double perVoxel = 1 / p.scale;
+            const int firstRay = clampTo(static_cast<int>(a), 0, m_a1 - m_a0 - 1),
+                      lastRay = clampTo(static_cast<int>(a + perVoxel * (kWide - 1)) + 1, 0, m_a1 - m_a0);
+            bool open = false;
+            for (int r = firstRay / kWide; r <= lastRay / kWide && !open; ++r)
+                open = !(flags[r] & flags[r + m_blocks] & kExhausted);
+            if (!open) continue;
+            block.count = smaller(kWide, m_in.nu - block.u);
+            block.codes = codes + block.u;
+            block.listed = 0;
+            for (int n = 0; n < block.count; ++n) {
+                block.list[block.listed] = n;
+                block.listed += m_in.featureOfCode[block.codes[n]] != kTransparent;
             }
-            followOwnLines(codes, u0, u1, v, k);
-            gatherRow(codes, u0, u1, v, k, static_cast<float>(first - a0), static_cast<float>(1 / p.scale),
-                      a1 - a0 - 1);
+            if (block.listed == 0) continue;
+            block.field = field + block.u * m_in.fieldStrides.u;
+            const Vec8 index = static_cast<float>(a) + kIota * static_cast<float>(perVoxel);
+            const Int8 zero = {}, last = zero + (m_a1 - m_a0 - 1);
+            Int8 ray = toInt(index);
+            ray = ray > zero ? ray : zero;
+            block.ray = ray < last ? ray : last;
+            block.fraction = index - toFloat(block.ray);
+            if (!m_ownReady) startOwnLines(v, k, at);
+            gatherBlock(block);
         }
     }
 
-    /// What the voxels u ∈ [u0, u1] have right in front of them, along lines of their own: surfaces there change so
-    /// much from ray to ray that depths between rays would not do.
-    void followOwnLines(const std::uint16_t* codes, int u0, int u1, int v, int k) {
-        for (int i = 0; i < (u1 - u0 + 1) * K; ++i) m_local.depth[i] = 0.0f;
-        if (m_in.ownSlices == 0) return;
-        const auto plane = [&](double w) { return voxelPlane(w, k); };
-        // Blocks begin at multiples of their size, so that a voxel's line does not depend on what else is seen.
-        const int size = blockSize(1 / (k - m_in.eyeW), m_in.nu);
-        for (int block = u0 / size; block * size <= u1; ++block) {
-            const int first = larger(u0, block * size), last = smaller(u1, (block + 1) * size - 1);
-            const double away = k - m_in.eyeW, middle = (block + 0.5) * size;
-            const double l = m_in.perspective ? lengthOf((middle - m_in.eyeU) / away, (v - m_in.eyeV) / away)
-                                              : lengthOf(m_in.slopeU, m_in.slopeV);
-            const float length = static_cast<float>(l);
-            const Lines lines{
-                first, last, m_local.depth + (first - u0) * K, m_local.entry, m_local.share, &length, 0, codes + first};
-            const int start = k - m_in.ownSlices; // where the rays are
-            const double from = start < 0 ? -0.5 : start - 0.5 / l;
-            begin(plane(from), from, v, lines);
-            for (int slice = larger(0, start + 1); slice <= k; ++slice) toSlice(plane, slice, l, v, lines);
+    /// The sample planes between where the rays are and a voxel, for one row of voxels.
+    struct OwnLines {
+        static constexpr int kMost = 16;
+        int count = 0; ///< planes
+        RayPlane plane[kMost];
+        Rows rows[kMost];
+        double slices[kMost]; ///< from plane i − 1 to plane i
+        bool insideV[kMost];
+    };
+
+    /// The last plane lies d0/2 in front of the voxels, for the line in the middle of the row.
+    void startOwnLines(int v, int k, int at) {
+        m_ownReady = true;
+        m_own.count = 0;
+        const double end = k - 0.5 / voxelLength(m_in.nu / 2, v, k);
+        double last = 0;
+        const auto add = [&](double w) {
+            const int i = m_own.count++;
+            m_own.plane[i] = voxelPlane(w, k);
+            m_own.rows[i] = rowsAt(m_own.plane[i].v(v), w);
+            m_own.insideV[i] = insideV(m_own.plane[i].v(v));
+            m_own.slices[i] = w - last;
+            last = w;
+        };
+        for (int i = at; i == at || (sampleW(i) < end && m_own.count < OwnLines::kMost - 1); ++i) add(sampleW(i));
+        add(end > last ? end : last);
+        m_own.slices[m_own.count - 1] = k - m_own.slices[0]; // see ownStretches
+    }
+
+    double voxelLength(int u, int v, int k) const {
+        if (!m_in.perspective) return lengthOf(m_in.slopeU, m_in.slopeV);
+        const double away = k - m_in.eyeW;
+        return lengthOf((u - m_in.eyeU) / away, (v - m_in.eyeV) / away);
+    }
+
+    /// Calls body(stretch) for each stretch of the voxels' own lines.
+    template <class Body>
+    void alongOwnLines(const VoxelBlock& block, const Body& body) {
+        const float first = static_cast<float>(voxelLength(block.u, block.v, block.k)),
+                    last = m_in.perspective ? static_cast<float>(voxelLength(block.u + kWide - 1, block.v, block.k))
+                                            : first;
+        const Vec8 length = first + kIota * ((last - first) / (kWide - 1)), zero = {};
+        Samples before = sample(m_own.rows[0], m_own.plane[0].u(block.u), m_own.plane[0].scale);
+        Vec8 left = length * static_cast<float>(m_own.slices[m_own.count - 1]) - 0.5f; // path to d0/2 in front
+        for (int i = 1; i < m_own.count; ++i) {
+            const RayPlane &p0 = m_own.plane[i - 1], &p1 = m_own.plane[i];
+            const Samples now = sample(m_own.rows[i], p1.u(block.u), p1.scale);
+            Vec8 path = i + 1 < m_own.count ? length * static_cast<float>(m_own.slices[i]) : left;
+            left -= path;
+            path = path > zero ? path : zero;
+            if (!m_own.insideV[i - 1] || !m_own.insideV[i] || !insideU(p0.u(block.u), p0.u(block.u + kWide - 1)) ||
+                !insideU(p1.u(block.u), p1.u(block.u + kWide - 1)))
+                path *= insideShare(p0, p1, block.u, block.v);
+            body(stretch(before, now, path));
+            before = now;
         }
     }
 
-    /// Voxels u ∈ [u0, u1] of one row; voxel u0 lies at `first` in m_gatherRow, whose last pair starts at `lastPair`.
-    void gatherRow(const std::uint16_t* codes, int u0, int u1, int v, int k, float first, float raysPerVoxel,
-                   int lastPair) {
-        const std::ptrdiff_t at = v * m_in.fieldStrides.v + k * m_in.fieldStrides.w;
-        for (int u = u0; u <= u1; ++u) {
-            const std::uint8_t feature = m_in.featureOfCode[codes[u]];
-            if (feature == kTransparent) continue;
-            const std::ptrdiff_t here = at + u * m_in.fieldStrides.u;
-            if (m_in.valid && !m_in.valid[here]) continue;
-            const float a = first + static_cast<float>(u - u0) * raysPerVoxel;
-            const int i = larger(0, smaller(lastPair, static_cast<int>(a)));
-            const float f = a - static_cast<float>(i);
-            const V near = L::load(m_gatherRow + i * K);
-            const V depth =
-                near + f * (L::load(m_gatherRow + (i + 1) * K) - near) + L::load(m_local.depth + (u - u0) * K);
-            const V seen = expMinus<V>(depth) * L::load(m_in.alphaTable + static_cast<std::size_t>(codes[u]) * K);
-            float* sum = m_accumulator + static_cast<std::size_t>(feature) * 3 * K;
-            L::store(sum, L::load(sum) + seen);
-            if (m_in.weights[0]) {
-                L::store(sum + K, L::load(sum + K) + seen * m_in.weights[0][here]);
-                L::store(sum + 2 * K, L::load(sum + 2 * K) + seen * m_in.weights[1][here]);
+    void gatherBlock(const VoxelBlock& block) {
+        if constexpr (kSingle)
+            gatherSingle(block);
+        else
+            gatherLanes(block);
+    }
+
+    void gatherSingle(const VoxelBlock& block) {
+        Vec8 near = gathered(block.near, block.ray), far = gathered(block.far, block.ray);
+        near += block.fraction * (gathered(block.near + 1, block.ray) - near);
+        far += block.fraction * (gathered(block.far + 1, block.ray) - far);
+        Vec8 depth = near + block.fractionV * (far - near);
+        alongOwnLines(block, [&](const Stretch& s) {
+            depth += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
+        });
+        Vec8 alpha = {}, weights[2] = {};
+        Int8 feature = Int8{} + kTransparent;
+        for (int i = 0; i < block.listed; ++i) {
+            const int n = block.list[i];
+            alpha[n] = m_in.alphaTable[block.codes[n]];
+            feature[n] = m_in.featureOfCode[block.codes[n]];
+            if (!m_in.weights) continue;
+            const std::uint32_t both = m_in.weights[block.field + n * m_in.fieldStrides.u];
+            weights[0][n] = static_cast<float>(both & 0xffff);
+            weights[1][n] = static_cast<float>(both >> 16);
+        }
+        const Vec8 seen = expMinus(depth * m_in.depthUnit[0]) * alpha;
+        if (m_in.field)
+            for (int i = 0; i < block.listed; ++i)
+                m_in.field[block.field + block.list[i] * m_in.fieldStrides.u] = seen[block.list[i]];
+        for (int i = 0; i < block.listed; ++i) { // the features of the block in turn: nearly always one
+            const int f = feature[block.list[i]];
+            if (f < 0) continue; // has had its turn
+            float* sum = m_accumulator + static_cast<std::size_t>(f) * 3 * kWide;
+            const Int8 here = feature == f;
+            const Vec8 zero = {}, mine = here ? seen : zero;
+            store(sum, load(sum) + mine);
+            store(sum + kWide, load(sum + kWide) + mine * weights[0]);
+            store(sum + 2 * kWide, load(sum + 2 * kWide) + mine * weights[1]);
+            feature |= here; // −1
+        }
+    }
+
+    void gatherLanes(const VoxelBlock& block) {
+        // The four rays around each voxel.
+        const Vec8 f = block.fraction;
+        const float fv = block.fractionV;
+        const Vec8 near0 = (1.0f - f) * (1.0f - fv), near1 = f * (1.0f - fv), far0 = (1.0f - f) * fv, far1 = f * fv;
+        Vec8 depth[kWide][kVectors];
+        for (int i = 0; i < block.listed; ++i) {
+            const int n = block.list[i];
+            const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(block.ray[n]) * K;
+            for (int part = 0; part < kVectors; ++part) {
+                const float* near = block.near + ray + part * kWide;
+                const float* far = block.far + ray + part * kWide;
+                depth[n][part] =
+                    near0[n] * load(near) + near1[n] * load(near + K) + far0[n] * load(far) + far1[n] * load(far + K);
             }
-            if (K == 1 && m_in.field) L::store(m_in.field + here, seen);
+        }
+        alongOwnLines(block, [&](const Stretch& s) {
+            for (int i = 0; i < block.listed; ++i) {
+                const int n = block.list[i];
+                for (int part = 0; part < kVectors; ++part)
+                    depth[n][part] += s.weight[n] * between(s.low[n], s.high[n], part);
+            }
+        });
+        for (int i = 0; i < block.listed; ++i) {
+            const int n = block.list[i];
+            const int feature = m_in.featureOfCode[block.codes[n]];
+            Vec8 seen[kVectors];
+            if constexpr (kMode == SweepMode::Batch)
+                seen[0] = expMinus(depth[n][0] * load(m_in.depthUnit)) *
+                          load(m_in.alphaTable + static_cast<std::size_t>(block.codes[n]) * K);
+            else
+                differentiate(depth[n], block.codes[n], feature, seen);
+            float* sum = m_accumulator +
+                         (static_cast<std::size_t>(i & (kSpread - 1)) * static_cast<std::size_t>(m_in.features + 1) +
+                          static_cast<std::size_t>(feature)) *
+                             3 * K;
+            add(sum, seen, 1.0f);
+            if (!m_in.weights) continue;
+            const std::uint32_t both = m_in.weights[block.field + n * m_in.fieldStrides.u];
+            add(sum + K, seen, static_cast<float>(both & 0xffff));
+            add(sum + 2 * K, seen, static_cast<float>(both >> 16));
         }
     }
+    static void add(float* sum, const Vec8* seen, float weight) {
+        for (int part = 0; part < kVectors; ++part)
+            store(sum + part * kWide, load(sum + part * kWide) + seen[part] * weight);
+    }
 
-    /// Floats hold one slice of a band at most: what they lose stays below 1e-6 of the sum.
+    /// v = α·exp(−D) in lane 0, ∂v/∂x_j = exp(−D)·∂α/∂x_j − v·∂D/∂x_j in lane 1 + j.
+    void differentiate(const Vec8* depth, std::uint16_t code, int feature, Vec8* seen) const {
+        const float* alpha = m_in.alphaTable + static_cast<std::size_t>(code) * 2;
+        const Vec8 transmittance = expMinus(Vec8{} + depth[0][0] * m_in.depthUnit[0]);
+        const float light = transmittance[0], v = light * alpha[0];
+        for (int part = 0; part < kVectors; ++part) seen[part] = -v * depth[part] * load(m_in.depthUnit + part * kWide);
+        seen[0][0] = v;
+        const int lane = feature - m_in.firstDerivative + 1;
+        if (feature < m_in.features && lane >= 1 && lane < K) seen[lane / kWide][lane % kWide] += light * alpha[1];
+    }
+
+    /// Floats hold a few slices of a band at most: what they lose stays below 1e-6 of the sum.
     void flush() {
-        for (std::size_t i = 0; i < accumulatorSize(); ++i) {
-            m_sums[i] += static_cast<double>(m_accumulator[i]);
-            m_accumulator[i] = 0.0f;
+        const std::size_t sums = static_cast<std::size_t>(m_in.features + 1) * 3;
+        if (kSingle) {
+            for (std::size_t i = 0; i < sums * kWide; ++i) m_sums[i / kWide] += static_cast<double>(m_accumulator[i]);
+        } else {
+            for (std::size_t i = 0; i < sums * K * kSpread; ++i)
+                m_sums[i % (sums * K)] += static_cast<double>(m_accumulator[i]);
         }
+        for (std::size_t i = 0; i < accumulatorSize(); ++i) m_accumulator[i] = 0.0f;
     }
 
     const SweepInput& m_in;
     const SweepBand& m_band;
     SweepScratch& m_scratch;
     double* m_sums;
-    double m_slopeStep;     ///< perspective: slope between neighbouring rays
-    int m_a0 = 0, m_a1 = 0; ///< rays of a row
-    int m_b0, m_b1;         ///< rows of rays; m_b1 is the first of the next band
-    float* m_accumulator;   ///< [features + 1][3][K]
-    float* m_row;           ///< see interpolateRow
-    Lines m_rays;           ///< all rows of rays
-    Lines m_local;          ///< the voxels of one row
-    int* m_next = nullptr;  ///< see sampleRow
-    float* m_nextShare = nullptr;
-    float* m_gatherRow = nullptr; ///< [ray][K], optical depth between two rows of rays
-    float* m_length = nullptr;    ///< [row][ray], d0 per slice
+    double m_slopeStep;              ///< perspective: slope between neighbouring rays
+    int m_a0 = 0, m_a1 = 0;          ///< rays of a row that voxels lie between
+    int m_blocks = 0;                ///< of eight rays in a row; the last may go beyond m_a1
+    int m_b0, m_b1;                  ///< rows of rays; m_b1 is the first of the next band
+    float* m_accumulator;            ///< Single: [features + 1][3][eight voxels], else [kSpread][features + 1][3][K]
+    float* m_depth = nullptr;        ///< [row][ray][K]
+    int* m_entry = nullptr;          ///< [row][ray], at the plane in m_stamp
+    float* m_share = nullptr;        ///< [row][ray], valid corners there
+    float* m_length = nullptr;       ///< [row][ray], d0 per slice
+    int* m_stamp = nullptr;          ///< [row][block]
+    std::uint8_t* m_flags = nullptr; ///< [row][block]
+    float m_limit[K];                ///< a lane at this depth, in units of the table, is exhausted
+    OwnLines m_own;
+    bool m_ownReady = false;
 };
+
+void sweepBand(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
+    const auto run = [&]<SweepMode kMode>() {
+        if (in.someInvalid)
+            Band<kMode, true>(in, band, scratch, sums).run();
+        else
+            Band<kMode, false>(in, band, scratch, sums).run();
+    };
+    switch (in.mode) {
+    case SweepMode::Single:
+        return run.template operator()<SweepMode::Single>();
+    case SweepMode::Batch:
+        return run.template operator()<SweepMode::Batch>();
+    case SweepMode::Jacobian:
+        return run.template operator()<SweepMode::Jacobian>();
+    }
+}
 
 } // namespace
 } // namespace pellucid

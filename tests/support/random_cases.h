@@ -1,0 +1,50 @@
+// Seeded random cases of everything that an engine must measure: volume, spacing, camera, transfer function.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "render/camera.h"
+#include "tf/transfer_function.h"
+#include "volume/volume.h"
+
+namespace pellucid::test {
+
+/// Draws by hand from std::mt19937, because the distributions of std differ between libraries.
+class Random {
+public:
+    explicit Random(std::uint32_t seed) : m_bits(seed) {}
+
+    double unit() { ///< [0, 1), 32 bits
+        return static_cast<double>(m_bits()) / 4294967296.0;
+    }
+    double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
+    int below(int count) { return static_cast<int>(unit() * count); } ///< 0 … count − 1
+    bool chance(double probability) { return unit() < probability; }
+    double sign() { return chance(0.5) ? 1.0 : -1.0; }
+
+private:
+    std::mt19937 m_bits;
+};
+
+struct RandomCase {
+    std::uint32_t number = 0;
+    std::string volumeKind, cameraKind, tfKind; ///< what to print beside a figure
+    std::shared_ptr<const Volume> volume;       ///< 20 to 48 voxels per axis, different on each
+    Camera camera;                              ///< outside the box, valid for the volume
+    TransferFunction tf;                        ///< 1 to 5 features, at least one opacity above 0
+
+    std::string describe() const; ///< one line: number, kinds, dims, spacing
+};
+
+/// Case `number`: the same on every machine but for the last bits of sin and exp. Each kind of volume, camera and
+/// transfer function comes equally often in a run of consecutive numbers, in independent orders.
+RandomCase randomCase(std::uint32_t number);
+
+/// The same camera as `camera` of the kind `name` draws for that volume; kinds are listed in cameraKinds().
+const std::vector<std::string>& cameraKinds();
+Camera randomCamera(const std::string& kind, Random& random, const Geometry& geometry);
+
+} // namespace pellucid::test
