@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <glm/common.hpp>
+
 #include "volume/error.h"
 
 namespace pellucid::gl {

@@ -227,7 +227,7 @@ void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slot
         programs.setTables(request.tables, m_grid.maxCode);
         programs.setSweep(s, ring);
         programs.setVolume(s, m_volume, request.eyeInVoxels);
-        programs.setWeighted(request.weights != nullptr);
+        if (slots > 0) programs.setWeighted(request.weights != nullptr);
         bindTexture(2, GL_TEXTURE_3D, m_volume.weights().name);
         bindTexture(0, GL_TEXTURE_3D, m_volume.codes().name);
         bindStorage(0, m_light);

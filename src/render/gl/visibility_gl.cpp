@@ -43,7 +43,8 @@ public:
     /// The device has no derivative sweep: the cpu engine answers, on the same volume.
     SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
-        return makeCpuEngine(m_volume, m_quality)->jacobian(camera, tf, weights, job);
+        if (!m_cpu) m_cpu = makeCpuEngine(m_volume, m_quality);
+        return m_cpu->jacobian(camera, tf, weights, job);
     }
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override;
 
@@ -56,6 +57,7 @@ private:
     IntensityGrid m_grid;
     int m_cells;
     gl::InContext<gl::SweepDevice> m_device;
+    std::unique_ptr<VisibilityEngine> m_cpu; ///< made when first needed
 };
 
 std::vector<std::uint16_t> GlEngine::slotsOfCodes(const std::vector<Feature>& features) const {
