@@ -5,7 +5,7 @@
 //        the weight of brightness, then of saturation, in the 16-bit units of the weights
 // T is taken d0/2 in front of the voxel's centre. The last u_own.x voxel planes in front of it are followed along the
 // voxel's own line; the light that arrives there is interpolated between the four rays around. Where these disagree
-// (edges of what is opaque) the line is followed for u_own.y planes more.
+// (edges of what is opaque) the line is followed further, twice as far each time, for at most u_own.y planes.
 #include "include/candidates.glsl"
 #include "include/opacity.glsl"
 #include "include/volume.glsl"
@@ -78,15 +78,14 @@ void lightAt(ivec3 q, out LANE light[PACKS]) {
     toLight(depth, light);
     if (c <= enter) return;
     Sample last = sampleAt(ray, c);
-    int plane = q.z;
-    for (int part = 0; part < 2; ++part) {
-        plane -= u_own[part];
+    for (int planes = u_own.x;; planes = min(2 * planes, u_own.y)) {
+        int plane = q.z - planes;
         float to = max(enter, float(plane));
         follow(ray, c, to, last, depth);
         c = to;
         toLight(depth, light);
         if (enter >= float(plane) || isDark(depth)) return;
-        if (interpolateLight(ray, plane, light) <= u_tolerance) return;
+        if (interpolateLight(ray, plane, light) <= u_tolerance || planes == u_own.y) return;
     }
 }
 

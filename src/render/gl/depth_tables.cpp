@@ -13,7 +13,7 @@ namespace pellucid::gl {
 namespace {
 
 constexpr int kCells = 4096; ///< with 8 candidates 128 KiB each for τ and its integral: stays in a GPU's cache
-constexpr int kMostCells = 16384;
+constexpr int kMostCells = 16384, kMostCellsHigh = 65535;
 
 /// τ at a point of a transfer function, and ∫τ dα up to there: ∫ −ln(1 − a) da = α + (1 − α)·ln(1 − α).
 struct Depth {
@@ -53,11 +53,11 @@ void fillOne(const TransferFunction& tf, int cells, std::vector<double>& tau, st
 
 } // namespace
 
-int tableCells(const Volume& volume) {
-    if (!IntensityCoder(volume).exact()) return kCells;
+int tableCells(const Volume& volume, Quality quality) {
+    const int most = quality == Quality::High ? kMostCellsHigh : kMostCells;
+    if (!IntensityCoder(volume).exact()) return most;
     const int span = static_cast<int>(std::lround(volume.range().hi - volume.range().lo));
-    if (span <= kCells) return span * (kCells / span);
-    return std::min(span, kMostCells);
+    return span <= kCells ? span * (kCells / span) : std::min(span, most);
 }
 
 DepthTables makeDepthTables(std::span<const TransferFunction> tfs, int candidates, int cells) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "render/visibility.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
@@ -21,8 +22,9 @@ struct DepthTables {
     std::vector<std::uint32_t> opaqueBefore; ///< [entry], how many cells before it any candidate has an opacity in
 };
 
-/// A number of cells such that the intensities of integer data in a window of up to 16 384 values are entries.
-int tableCells(const Volume& volume);
+/// A number of cells such that the intensities of integer data in a window of up to 16 384 values (high: 65 536) are
+/// entries: steps of a transfer function are smeared over a cell, and should not touch what lies on neither side.
+int tableCells(const Volume& volume, Quality quality);
 DepthTables makeDepthTables(std::span<const TransferFunction> tfs, int candidates, int cells);
 
 } // namespace pellucid::gl

@@ -73,8 +73,7 @@ void throwOnGlError(const std::string& doing) {
     // A lost context reports errors for ever: take a bounded number away.
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
     }
-    if (error == GL_OUT_OF_MEMORY)
-        throw OutOfMemory(kOutOfMemory + doing, "OpenGL", kUseCpu);
+    if (error == GL_OUT_OF_MEMORY) throw OutOfMemory(kOutOfMemory + doing, "OpenGL", kUseCpu);
     throw Error(std::string("OpenGL reports ") + errorName(error) + " while " + doing, "OpenGL", kUseCpu);
 }
 

@@ -49,8 +49,8 @@ void ResidentVolume::require(const Planes& planes) {
         makeRoom(planes);
         m_size = m_room;
         m_first = Int3(0);
-        m_first[a] = std::clamp(planes.forward ? planes.first : planes.end - m_room[a], 0,
-                                m_grid.codes.dims()[a] - m_room[a]);
+        m_first[a] =
+            std::clamp(planes.forward ? planes.first : planes.end - m_room[a], 0, m_grid.codes.dims()[a] - m_room[a]);
         uploadBox(m_codes, m_grid.codes.data(), false);
         m_codesResident = true;
         m_weightsResident = false;

@@ -15,9 +15,12 @@ namespace {
 constexpr int kSide = 8;           ///< local_size of march and gather, both axes
 constexpr int kPlanesPerGroup = 8; ///< of visibility_gather.comp
 constexpr int kReduceColumns = 16; ///< local_size_x of visibility_reduce.comp
-constexpr int kMostSlots = 2048;   ///< features and one; with one candidate they fit into 32 KiB, which every device has
+constexpr int kMostSlots = 2048; ///< features and one; with one candidate they fit into 32 KiB, which every device has
 
 using glm::value_ptr;
+
+/// Planes whose light is kept besides those that a step adds.
+int ringExtra(const Sweep& s) { return s.ownPlanes.y - s.ownPlanes.x + 1; }
 
 GLuint groups(int count, int size) { return static_cast<GLuint>((count + size - 1) / size); }
 
@@ -144,10 +147,11 @@ int SweepDevice::candidatesAtOnce(const SweepRequest& request) const {
     int planes = 0;
     for (const Sweep& s : request.sweeps) {
         rays = std::max(rays, static_cast<double>(s.rays.x) * s.rays.y);
-        planes = std::max(planes, s.ownPlanes.x + s.ownPlanes.y + 1);
+        planes = std::max(planes, 1 + ringExtra(s));
     }
     for (const int candidates : {8, 4, 1})
-        if (segmentsFor(candidates, slotsFor(request.features)) > 0 && 4.0 * candidates * rays * planes <= bufferLimit())
+        if (segmentsFor(candidates, slotsFor(request.features)) > 0 &&
+            4.0 * candidates * rays * planes <= bufferLimit())
             return candidates;
     if (request.features + 1 > kMostSlots)
         throw Error("at most " + std::to_string(kMostSlots - 1) + " features can be measured", "transfer function",
@@ -174,7 +178,8 @@ const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots)
 }
 
 void SweepDevice::uploadTables(const DepthTables& tables) {
-    const std::size_t bytes = tables.tau.size() * sizeof(float), counts = tables.opaqueBefore.size() * sizeof(std::uint32_t);
+    const std::size_t bytes = tables.tau.size() * sizeof(float),
+                      counts = tables.opaqueBefore.size() * sizeof(std::uint32_t);
     const std::string what = "the transfer functions' tables";
     ensure(m_integral, static_cast<double>(bytes), what);
     ensure(m_tau, static_cast<double>(bytes), what);
@@ -192,7 +197,7 @@ void SweepDevice::uploadTables(const DepthTables& tables) {
 /// buffers hold. `outputBytes` are what each `outputPlanes` of them leave.
 int SweepDevice::planesAtOnce(const Sweep& s, int candidates, double outputBytes, int outputPlanes) const {
     const double layer = 4.0 * candidates * s.rays.x * s.rays.y;
-    const double light = std::floor(bufferLimit() / layer) - s.ownPlanes.y;
+    const double light = std::floor(bufferLimit() / layer) - ringExtra(s);
     const double output = std::floor(bufferLimit() / outputBytes) * outputPlanes;
     if (light < 1 || output < 1)
         throw Error("a single plane of voxels needs more than the device's buffers of " +
@@ -211,7 +216,7 @@ void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slot
     const double outputBytes = slots == 0 ? 4 * area : groupsPerLayer * slots * 3 * candidates * 4;
     const int outputPlanes = slots == 0 ? 1 : kPlanesPerGroup;
     const int atOnce = planesAtOnce(s, candidates, outputBytes, outputPlanes);
-    const int ring = atOnce + s.ownPlanes.y; // planes whose light is still asked for
+    const int ring = atOnce + ringExtra(s); // planes whose light is still asked for
     ensure(m_light, 4.0 * candidates * s.rays.x * s.rays.y * ring, "the rays' light");
     ensure(m_output, outputBytes * groups(atOnce, outputPlanes), slots == 0 ? "the visibility" : "the sums");
 
@@ -220,8 +225,9 @@ void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slot
         job.throwIfStopped();
         job.report(static_cast<double>(plane - s.firstPlane) / (s.dims.z - s.firstPlane));
         const int end = std::min(plane + atOnce, s.dims.z);
-        const int front = std::max(0, plane - s.ownPlanes.x - s.ownPlanes.y - 1);
-        m_volume.require({s.axis, s.sign > 0 ? front : s.dims.z - end, s.sign > 0 ? end : s.dims.z - front, s.sign > 0});
+        const int front = std::max(0, plane - s.ownPlanes.y - 1);
+        m_volume.require(
+            {s.axis, s.sign > 0 ? front : s.dims.z - end, s.sign > 0 ? end : s.dims.z - front, s.sign > 0});
 
         const Programs& programs = programsFor(candidates, slots);
         programs.setTables(request.tables, m_grid.maxCode);

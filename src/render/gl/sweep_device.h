@@ -1,6 +1,6 @@
 // The sweeps of one volume on the device: visibility (MEASURES §4) and its sums per feature. Rays march through the
-// volume and leave in a buffer how much light they bring to every voxel plane; a second pass gathers from it, per voxel,
-// the light in front of it; a third one adds up. Lives in one OpenGL context.
+// volume and leave in a buffer how much light they bring to every voxel plane; a second pass gathers from it, per
+// voxel, the light in front of it; a third one adds up. Lives in one OpenGL context.
 #pragma once
 
 #include <functional>
@@ -47,8 +47,7 @@ public:
     /// units of their 16 bits. The same bits in every run. Throws Error, Cancelled.
     std::vector<double> sums(const SweepRequest& request, const JobControl& job);
     /// All planes that have voxels, in the order of the sweeps; one candidate. Throws Error, Cancelled.
-    void field(const SweepRequest& request, const JobControl& job,
-               const std::function<void(const SweptPlanes&)>& sink);
+    void field(const SweepRequest& request, const JobControl& job, const std::function<void(const SweptPlanes&)>& sink);
 
 private:
     class Programs;

@@ -38,9 +38,9 @@ struct Sweep {
     double front = -0.5; ///< c where the box begins, or the eye's where it lies beside the box
     int firstPlane = 0;  ///< first c that has voxels of this sweep
     int pieces = 1;      ///< samples per unit of c, one of them on each voxel plane
-    /// Planes in front of a voxel that are followed along its own line before rays tell the light there; and how many
-    /// more where T differs by more than `tolerance` between the rays.
-    glm::ivec2 ownPlanes{1, 0};
+    /// Planes in front of a voxel that are followed along its own line before rays tell the light there: at least, and
+    /// at most, where T differs by more than `tolerance` between the rays.
+    glm::ivec2 ownPlanes{1, 1};
     double tolerance = 0;
 
     /// Voxel coordinates (i, j, k) = matrix·q + offset.

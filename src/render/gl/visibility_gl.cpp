@@ -31,7 +31,7 @@ class GlEngine final : public VisibilityEngine {
 public:
     GlEngine(std::shared_ptr<const Volume> volume, Quality quality, const gl::VisibilityBudget& budget)
         : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)),
-          m_cells(gl::tableCells(*m_volume)) {
+          m_cells(gl::tableCells(*m_volume, quality)) {
         m_device.emplace([&] { return std::make_unique<gl::SweepDevice>(m_grid, budget); });
     }
 
@@ -94,7 +94,8 @@ std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const Tr
     std::vector<FeatureSums> results;
     while (results.size() < tfs.size()) {
         const std::size_t first = results.size();
-        const auto group = tfs.subspan(first, std::min<std::size_t>(static_cast<std::size_t>(atOnce), tfs.size() - first));
+        const auto group =
+            tfs.subspan(first, std::min<std::size_t>(static_cast<std::size_t>(atOnce), tfs.size() - first));
         const int lanes = group.size() == 1 ? 1 : group.size() <= 4 ? 4 : 8;
         request.tables = gl::makeDepthTables(group, lanes, m_cells);
         JobControl part = job;
@@ -117,7 +118,8 @@ std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const Tr
                 r.allVisibility += v;
                 if (f < features.size()) r.visibility[f] = v;
                 for (std::size_t n = 0; n < 2; ++n) {
-                    const double scale = weights != nullptr ? static_cast<double>(weights->scale(static_cast<int>(n))) : 0;
+                    const double scale =
+                        weights != nullptr ? static_cast<double>(weights->scale(static_cast<int>(n))) : 0;
                     const double weighted = item[(n + 1) * stride] * scale;
                     r.allWeighted[n] += weighted;
                     if (f < features.size()) r.weighted[n][f] = weighted;

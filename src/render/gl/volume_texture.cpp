@@ -72,8 +72,7 @@ VolumeTexture uploadVolume(const IntensityGrid& grid) {
     VolumeTexture volume;
     volume.maxCode = grid.maxCode;
     volume.hasInvalid = !grid.valid.empty();
-    volume.texture =
-        makeTexture3d(grid.codes.dims(), volume.hasInvalid ? GL_RG16 : GL_R16, GL_LINEAR, "the volume");
+    volume.texture = makeTexture3d(grid.codes.dims(), volume.hasInvalid ? GL_RG16 : GL_R16, GL_LINEAR, "the volume");
     uploadCodes(volume.texture, grid, Int3(0), grid.codes.dims(), Int3(0));
     return volume;
 }
