@@ -34,13 +34,20 @@ void inPieces(std::size_t count, const std::function<void(std::size_t, std::size
                 [&](std::size_t i) { body(i * kPiece, std::min(count, (i + 1) * kPiece)); });
 }
 
+/// How the codes of a volume are to be read: intensity is code / max.
+struct Codes {
+    int max = 65535;
+    int step = 1;             ///< codes are multiples of this
+    bool someInvalid = false; ///< kInvalidCode is no intensity
+};
+
 /// The transfer functions of one sweep as its kernel reads them, side by side in lanes. Lanes without a transfer
 /// function of their own repeat the last one, so that they keep no ray alive.
 class SweepTables {
 public:
     /// Up to kSweepLanes candidates.
-    SweepTables(std::span<const TransferFunction> tfs, const IntensityGrid& grid)
-        : SweepTables(tfs.size() == 1 ? SweepMode::Single : SweepMode::Batch, tfs[0].features, grid) {
+    SweepTables(std::span<const TransferFunction> tfs, const Codes& codes)
+        : SweepTables(tfs.size() == 1 ? SweepMode::Single : SweepMode::Batch, tfs[0].features, codes) {
         std::vector<TfSampler> samplers(tfs.begin(), tfs.end());
         while (samplers.size() < m_lanes) samplers.push_back(samplers.back());
         fillIntegral([&](double s, double* tau) {
@@ -60,8 +67,8 @@ public:
     }
     /// One transfer function and the derivatives of its depth by the peaks of features from `firstDerivative` on.
     /// A voxel that is transparent now but not under a higher peak counts: its visibility has a derivative.
-    SweepTables(const TransferFunction& tf, int firstDerivative, const IntensityGrid& grid)
-        : SweepTables(SweepMode::Jacobian, tf.features, grid) {
+    SweepTables(const TransferFunction& tf, int firstDerivative, const Codes& codes)
+        : SweepTables(SweepMode::Jacobian, tf.features, codes) {
         const TfSampler sampler(tf), shapes(withFullPeaks(tf));
         fillIntegral([&](double s, double* tau) {
             const double a = sampler.opacity(s);
@@ -102,16 +109,16 @@ public:
     }
 
 private:
-    SweepTables(SweepMode mode, const std::vector<Feature>& features, const IntensityGrid& grid)
-        : m_mode(mode), m_features(&features), m_lanes(asSize(lanesOf(mode))), m_codes(asSize(grid.maxCode) + 1),
-          m_codeStep(asSize(grid.codeStep)) {
+    SweepTables(SweepMode mode, const std::vector<Feature>& features, const Codes& codes)
+        : m_mode(mode), m_features(&features), m_lanes(asSize(lanesOf(mode))), m_codes(asSize(codes.max) + 1),
+          m_codeStep(asSize(codes.step)), m_someInvalid(codes.someInvalid) {
         // Where codes are exact every value has an entry of its own, so that what is constant is measured exactly.
-        const int values = grid.maxCode / grid.codeStep;
-        const int steps = grid.codeStep > 1 || values < kMostTableEntries
+        const int values = codes.max / codes.step;
+        const int steps = codes.step > 1 || values < kMostTableEntries
                               ? values * std::max(1, (kMostTableEntries - 1) / values)
                               : kMostTableEntries - 1;
         m_entries = asSize(std::min(steps, kMostTableEntries - 1)) + 1;
-        m_entryOfCode = static_cast<float>(m_entries - 1) / static_cast<float>(grid.maxCode);
+        m_entryOfCode = static_cast<float>(m_entries - 1) / static_cast<float>(codes.max);
     }
 
     /// `taus(s, tau)` sets the lanes that are not 0.
@@ -158,6 +165,7 @@ private:
                 m_featureOfCode[code] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(m_features->size()) : f);
             }
         });
+        if (m_someInvalid) m_featureOfCode[kInvalidCode] = kTransparent;
         m_opaqueCodes.assign(m_codes + 1, 0);
         for (std::size_t c = 0; c < m_codes; ++c)
             m_opaqueCodes[c + 1] = m_opaqueCodes[c] + (m_featureOfCode[c] != kTransparent ? 1 : 0);
@@ -166,6 +174,7 @@ private:
     SweepMode m_mode;
     const std::vector<Feature>* m_features;
     std::size_t m_lanes, m_codes, m_codeStep, m_entries = 0;
+    bool m_someInvalid;
     float m_entryOfCode = 0;
     std::vector<std::int32_t> m_integral;
     std::vector<float> m_alpha;
@@ -176,15 +185,14 @@ private:
 
 class CpuEngine final : public VisibilityEngine {
 public:
-    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality)
-        : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)) {
-        const std::vector<std::uint8_t> valid = std::move(m_grid.valid);
-        m_codes = std::move(m_grid.codes).release();
-        m_someInvalid = !valid.empty();
-        if (m_someInvalid)
+    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality) : m_volume(std::move(volume)), m_quality(quality) {
+        IntensityGrid grid = makeIntensityGrid(*m_volume);
+        m_codeSpace = {grid.maxCode, grid.codeStep, !grid.valid.empty()};
+        m_codes = std::move(grid.codes).release();
+        if (m_codeSpace.someInvalid)
             inPieces(m_codes.size(), [&](std::size_t first, std::size_t last) {
                 for (std::size_t i = first; i < last; ++i)
-                    m_codes[i] = valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
+                    m_codes[i] = grid.valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
             });
         m_codes.resize(m_codes.size() + kCodePadding);
         findRanges();
@@ -200,7 +208,7 @@ public:
             const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
             checkFeatures(batch[0]);
             for (const TransferFunction& tf : batch) PELLUCID_CHECK(tf.features.size() == tfs[0].features.size());
-            const Sums sums = sweep(camera, SweepTables(batch, m_grid), weights, nullptr, job);
+            const Sums sums = sweep(camera, SweepTables(batch, m_codeSpace), weights, nullptr, job);
             for (std::size_t lane = 0; lane < batch.size(); ++lane) all.push_back(sums.ofLane(lane));
         }
         return all;
@@ -211,7 +219,7 @@ public:
         checkFeatures(tf);
         SumsJacobian result;
         for (std::size_t first = 0; first == 0 || first < tf.features.size(); first += kJacobianLanes - 1) {
-            const SweepTables tables(tf, static_cast<int>(first), m_grid);
+            const SweepTables tables(tf, static_cast<int>(first), m_codeSpace);
             const Sums sums = sweep(camera, tables, weights, nullptr, job);
             if (first == 0) result.sums = sums.ofLane(0);
             for (std::size_t lane = 1; lane < kJacobianLanes && first + lane <= tf.features.size(); ++lane)
@@ -223,7 +231,7 @@ public:
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
         checkFeatures(tf);
         VisibilityField field{Grid<float>(m_volume->dims())};
-        sweep(camera, SweepTables({&tf, 1}, m_grid), nullptr, &field.values, job);
+        sweep(camera, SweepTables({&tf, 1}, m_codeSpace), nullptr, &field.values, job);
         return field;
     }
 
@@ -282,7 +290,7 @@ private:
             auto [low, high] = ranges[block];
             const int last = std::min(nx - 1, (block + 1) * kBlockSize);
             for (int x = std::max(0, block * kBlockSize - 1); x <= last; ++x) {
-                if (codes[x] == kInvalidCode && m_someInvalid) continue;
+                if (codes[x] == kInvalidCode && m_codeSpace.someInvalid) continue;
                 low = std::min(low, codes[x]);
                 high = std::max(high, codes[x]);
             }
@@ -292,37 +300,59 @@ private:
 
     static Vec3 permuted(const Vec3& p, const Axes& x) { return {p[x.u], p[x.v], p[x.w]}; }
 
-    /// The sweep axis: the one along which a ray crosses most voxels; for a perspective eye the one whose rays stay
-    /// steepest. Counted in voxels, so that rays cross about one voxel per slice however unequal the spacing is.
-    Axes chooseAxes(const Camera& camera) const {
+    /// One sweep of those that together visit every voxel once.
+    struct View {
+        Axes axes;
+        bool pyramid; ///< visits only the voxels that the eye sees along this axis rather than another
+    };
+
+    /// Rays that make more than this many voxels along a slice for one across are left to another sweep.
+    static constexpr double kSteepest = 1.25;
+
+    /// Axes are compared in voxels, so that rays cross about one voxel per slice however unequal the spacing is.
+    std::vector<View> viewsOf(const Camera& camera) const {
+        const auto axesOf = [](int w, bool flipped) { return Axes{w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped}; };
         const Geometry& g = m_volume->geometry();
-        int w = 0;
-        bool flipped = false;
         if (camera.projection == Projection::Orthographic) {
             const Vec3 d = camera.forward() / g.spacing;
+            int w = 0;
             for (int a = 1; a < 3; ++a)
                 if (std::abs(d[a]) > std::abs(d[w])) w = a;
-            flipped = d[w] < 0;
-        } else {
-            const Vec3 lo(-0.5), hi = Vec3(g.dims) - 0.5, eye = g.voxelFromWorld(camera.eye);
-            double best = std::numeric_limits<double>::infinity();
-            for (int a = 0; a < 3; ++a) {
-                const double outside = std::max(lo[a] - eye[a], eye[a] - hi[a]);
-                if (outside < 0) continue;
-                double lateral = 0;
-                for (int b = 0; b < 3; ++b)
-                    if (b != a) lateral = std::max({lateral, std::abs(lo[b] - eye[b]), std::abs(hi[b] - eye[b])});
-                const double slope = lateral / (outside + (hi[a] - lo[a]) / 2);
-                if (slope >= best) continue;
-                best = slope;
-                w = a;
-                flipped = eye[a] >= hi[a];
-            }
+            return {{axesOf(w, d[w] < 0), false}};
         }
-        return {w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped};
+        const Vec3 eye = eyeInVoxels(camera), last = Vec3(g.dims - 1);
+        int best = -1;
+        double slope = kSteepest;
+        for (int w = 0; w < 3; ++w) {
+            const double away = std::max(0 - eye[w], eye[w] - last[w]); // of the nearest slice
+            if (away <= 0) continue;
+            double lateral = 0;
+            for (int a = 0; a < 3; ++a)
+                if (a != w) lateral = std::max({lateral, eye[a], last[a] - eye[a]});
+            if (lateral / away > slope) continue;
+            slope = lateral / away;
+            best = w;
+        }
+        if (best >= 0) return {{axesOf(best, eye[best] > 0), false}};
+        std::vector<View> views;
+        for (int w = 0; w < 3; ++w)
+            for (const bool flipped : {false, true}) {
+                const double away = flipped ? eye[w] : last[w] - eye[w]; // of the farthest slice
+                bool any = away > 0;
+                for (int a = 0; a < 3; ++a)
+                    if (a != w) any = any && eye[a] + away >= 0 && eye[a] - away <= last[a];
+                if (any) views.push_back({axesOf(w, flipped), true});
+            }
+        return views;
     }
 
-    void setRays(SweepInput& in, const Camera& camera, const Axes& axes) const {
+    /// Rounded, so that differences from voxels are exact and each voxel is on one side of a pyramid's face.
+    Vec3 eyeInVoxels(const Camera& camera) const {
+        return glm::round(m_volume->geometry().voxelFromWorld(camera.eye) * 1048576.0) / 1048576.0;
+    }
+
+    void setRays(SweepInput& in, const Camera& camera, const View& view) const {
+        const Axes& axes = view.axes;
         const Geometry& g = m_volume->geometry();
         const Vec3 h = permuted(g.spacing, axes) / g.d0();
         in.hu = h.x, in.hv = h.y, in.hw = h.z;
@@ -331,24 +361,26 @@ private:
         in.stepsPerSlice = high ? 2 : 1;
         in.raySpacing = high ? 0.6 : 1.0;
         in.ownSlices = high ? 2 : 1;
+        if (getenv("PS")) in.raySpacing = atof(getenv("PS"));
+        if (getenv("PO")) in.ownSlices = atoi(getenv("PO"));
+        if (getenv("PD")) in.tolerance = atof(getenv("PD"));
+        if (getenv("PF")) in.ownSteps = atoi(getenv("PF"));
+        if (getenv("PT")) in.stepsPerSlice = atoi(getenv("PT"));
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
             in.slopeU = d.x / (sign * d.z);
             in.slopeV = d.y / (sign * d.z);
-            if (in.slopeU == 0 && in.slopeV == 0) { // every ray is a voxel's own line
-                in.raySpacing = 1;
-                in.ownSlices = 0;
-            }
+            if (in.slopeU == 0 && in.slopeV == 0) in.raySpacing = 1; // every ray is a voxel's own line
             return;
         }
-        const Vec3 eye = permuted(g.voxelFromWorld(camera.eye), axes);
+        const Vec3 eye = permuted(eyeInVoxels(camera), axes);
         in.eyeU = eye.x;
         in.eyeV = eye.y;
         in.eyeW = axes.flipped ? in.nw - 1 - eye.z : eye.z;
-        const double near = 0 - in.eyeW, far = in.nw - 1 - in.eyeW;
-        const double halvings = std::floor(std::log2(far / near));
-        in.firstSlopeStep = in.raySpacing / far * std::exp2(halvings);
+        in.pyramid = view.pyramid;
+        in.ownsTieU = axes.w < axes.u;
+        in.ownsTieV = axes.w < axes.v;
     }
 
     /// Codes laid out so that neighbours along u are neighbours in memory.
@@ -393,14 +425,29 @@ private:
                 return sweep(parallel, tables, weights, field, job);
             }
         }
-        const Axes axes = chooseAxes(camera);
         const std::vector<std::uint8_t> opaque = tables.opaqueBlocks(m_ranges);
+        Sums sums;
+        for (const View& view : viewsOf(camera)) {
+            Sums part = sweep(camera, view, tables, opaque, weights, field, job);
+            if (sums.values.empty()) {
+                sums = std::move(part);
+                continue;
+            }
+            for (std::size_t i = 0; i < sums.values.size(); ++i) sums.values[i] += part.values[i];
+        }
+        return sums;
+    }
 
+    Sums sweep(const Camera& camera, const View& view, const SweepTables& tables,
+               const std::vector<std::uint8_t>& opaque, const WeightFields* weights, Grid<float>* field,
+               const JobControl& job) {
+        const Geometry& g = m_volume->geometry();
+        const Axes& axes = view.axes;
         SweepInput in;
         tables.giveTo(in);
         in.nu = g.dims[axes.u], in.nv = g.dims[axes.v], in.nw = g.dims[axes.w];
         in.codes = codesFor(axes, in.codeStrides);
-        in.someInvalid = m_someInvalid;
+        in.someInvalid = m_codeSpace.someInvalid;
         in.fieldStrides = stridesOf(g.dims, axes);
         in.opaqueStrides = stridesOf(m_blocks, axes);
         in.opaque = opaque.data();
@@ -419,27 +466,27 @@ private:
             for (int a = 0; a < 2; ++a) units[asSize(a + 1)] = weights->scale(a);
         }
         if (field) in.field = field->data() + start;
-        setRays(in, camera, axes);
+        setRays(in, camera, view);
         const bool exact = m_quality == Quality::High || in.mode == SweepMode::Jacobian;
         in.exhaustedDepth = static_cast<float>(exact ? kExhaustedHigh : kExhausted);
         return {run(in, job), asSize(in.features), asSize(lanesOf(in.mode)), units};
     }
 
     std::vector<double> run(const SweepInput& in, const JobControl& job) {
-        const auto bands = sweepBands(in);
+        const auto pieces = sweepPieces(in);
         const std::size_t size = (asSize(in.features) + 1) * 3 * asSize(lanesOf(in.mode));
-        std::vector<std::vector<double>> partial(bands.size());
+        std::vector<std::vector<double>> partial(pieces.size());
         std::atomic<std::size_t> done = 0;
-        parallelFor(bands.size(), [&](std::size_t i) {
+        parallelFor(pieces.size(), [&](std::size_t i) {
             job.throwIfStopped();
             partial[i].assign(size, 0.0);
             const auto scratch = borrowScratch();
-            sweepKernel()(in, bands[i], *scratch, partial[i].data());
+            sweepKernel()(in, pieces[i], *scratch, partial[i].data());
             returnScratch(scratch);
-            job.report(static_cast<double>(++done) / static_cast<double>(bands.size()));
+            job.report(static_cast<double>(++done) / static_cast<double>(pieces.size()));
         });
         std::vector<double> sums(size, 0.0);
-        for (const auto& part : partial) // in the order of the bands, whatever thread made them
+        for (const auto& part : partial) // in the order of the pieces, whatever thread made them
             for (std::size_t i = 0; i < size; ++i) sums[i] += part[i];
         return sums;
     }
@@ -458,9 +505,8 @@ private:
 
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
-    IntensityGrid m_grid;               ///< without its codes: how they are to be read
+    Codes m_codeSpace;
     std::vector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more
-    bool m_someInvalid = false;
     Int3 m_blocks{0, 0, 0};
     std::vector<std::array<std::uint16_t, 2>> m_ranges; ///< per block: the lowest and highest code
     std::vector<std::uint16_t> m_codesYZX;              ///< made when a sweep along x first needs it

@@ -66,25 +66,30 @@ struct SweepInput {
     // The rays.
     bool perspective = false;
     double slopeU = 0, slopeV = 0;       ///< orthographic: du/dw, dv/dw of every ray
-    double eyeU = 0, eyeV = 0, eyeW = 0; ///< perspective: the eye, eyeW < −1/2
-    double raySpacing = 1;               ///< of the rays, in voxels; perspective: at most
-    double firstSlopeStep = 1;     ///< perspective: slope between neighbouring rays at slice 0; halved further away
-    double hu = 1, hv = 1, hw = 1; ///< spacing in d0
-    int stepsPerSlice = 1;         ///< samples of a line per slice distance
-    int ownSlices = 1;             ///< slice distances right in front of voxels followed along lines of their own
+    double eyeU = 0, eyeV = 0, eyeW = 0; ///< perspective: the eye; only voxels with w > eyeW are visited
+    bool pyramid = false; ///< perspective: … and only those that lie no farther off along u and v than along w;
+    bool ownsTieU = false, ownsTieV = false; ///< … or as far
+    double raySpacing = 1;                   ///< of the rays, in voxels; perspective: at most
+    double hu = 1, hv = 1, hw = 1;           ///< spacing in d0
+    int stepsPerSlice = 1;                   ///< samples of a line per slice distance
+    int ownSteps = 4;              ///< samples per slice distance of the lines of voxels that are followed all the way
+    float tolerance = 1;           ///< transmittance: where neighbouring rays differ by more, voxels follow their own line
+    int ownSlices = 1; ///< slice distances right in front of voxels followed along lines of their own
 };
 
-/// The rays b in [first, last], and the voxel rows that lie in [first, last) between them; in units of the first ray
-/// grid. The outermost bands take everything beyond their outer edge too.
-struct SweepBand {
-    int first = 0, last = 0;
+/// A part of a sweep that needs no other: the voxels of the slices [begin, end) that lie between the rows of rays
+/// [firstRow, lastRow). The outermost ones take everything beyond their outer edge too.
+struct SweepPiece {
+    int begin = 0, end = 0;
+    double slopeStep = 1; ///< perspective: slope between neighbouring rays
+    int firstRow = 0, lastRow = 0;
     bool outermostLow = false, outermostHigh = false;
 };
 
-/// Memory that a band works in, kept between bands; aligned to 64 bytes.
+/// Memory that a piece is worked on in, kept between pieces; aligned to 64 bytes.
 class SweepScratch {
 public:
-    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Flags, kSlots };
+    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Flags, Near, Far, kSlots };
     /// At least `bytes`; contents are kept only while it need not grow.
     template <class T>
     T* get(Slot slot, std::size_t count) {
@@ -96,18 +101,19 @@ private:
     std::vector<unsigned char> m_memory[kSlots];
 };
 
-/// Sums of one band: double[features + 1][3][lanes], the last feature being "in none"; added to.
+/// Sums of one piece: double[features + 1][3][lanes], the last feature being "in none"; added to.
 /// [..][0] Σv, [1] and [2] Σ v times the 16-bit weights. Jacobian: lane 0 Σv…, lane 1 + j their derivatives.
-using SweepKernel = void (*)(const SweepInput& input, const SweepBand& band, SweepScratch& scratch, double* sums);
+using SweepKernel = void (*)(const SweepInput& input, const SweepPiece& piece, SweepScratch& scratch, double* sums);
 
-/// The bands of a sweep: depends on the input alone, never on threads.
-std::vector<SweepBand> sweepBands(const SweepInput& input);
+/// The pieces of a sweep: depends on the input alone, never on threads. Rays that diverge from a near eye start anew
+/// from the front of the box as soon as they lie too far apart.
+std::vector<SweepPiece> sweepPieces(const SweepInput& input);
 
 /// The best kernel for this processor.
 SweepKernel sweepKernel();
 
 // One per instruction set (sweep_generic.cpp, sweep_avx2.cpp).
-void sweepGeneric(const SweepInput&, const SweepBand&, SweepScratch&, double*);
-void sweepAvx2(const SweepInput&, const SweepBand&, SweepScratch&, double*);
+void sweepGeneric(const SweepInput&, const SweepPiece&, SweepScratch&, double*);
+void sweepAvx2(const SweepInput&, const SweepPiece&, SweepScratch&, double*);
 
 } // namespace pellucid

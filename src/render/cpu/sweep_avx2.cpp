@@ -3,8 +3,8 @@
 
 namespace pellucid {
 
-void sweepAvx2(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
-    sweepBand(in, band, scratch, sums);
+void sweepAvx2(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums) {
+    sweepPiece(in, piece, scratch, sums);
 }
 
 } // namespace pellucid

@@ -16,27 +16,57 @@ void* SweepScratch::bytes(Slot slot, std::size_t count) {
     return std::align(kAlignment, count, p, space);
 }
 
-std::vector<SweepBand> sweepBands(const SweepInput& in) {
-    constexpr int kRowsPerBand =
-        12; // one row in thirteen is computed twice; small volumes still give every thread work
+namespace {
+
+/// One row in thirteen is computed twice; small volumes still give every thread work.
+constexpr int kRowsPerPiece = 12;
+/// Slices nearer to the eye than this share their rays: there are few.
+constexpr double kNearest = 8;
+
+void addPieces(const SweepInput& in, int begin, int end, double slopeStep, std::vector<SweepPiece>& pieces) {
     double lo = 1e30, hi = -1e30;
-    for (const int k : {0, in.nw - 1}) {
-        const double scale = in.perspective ? in.firstSlopeStep * (k - in.eyeW) : in.raySpacing;
+    for (const int k : {begin, end - 1}) {
+        const double away = k - in.eyeW, scale = in.perspective ? slopeStep * away : in.raySpacing;
+        double first = 0, last = in.nv - 1;
+        if (in.pyramid) {
+            first = std::max(first, in.eyeV - away);
+            last = std::min(last, in.eyeV + away);
+            if (first > last) { // none on this slice: any may come in between
+                first = in.eyeV - away;
+                last = in.eyeV + away;
+            }
+        }
         const double base = in.perspective ? in.eyeV : in.slopeV * k;
-        lo = std::min(lo, (0 - base) / scale);
-        hi = std::max(hi, (in.nv - 1 - base) / scale);
+        lo = std::min(lo, (first - base) / scale);
+        hi = std::max(hi, (last - base) / scale);
     }
-    const int first = static_cast<int>(std::floor(lo)), last = static_cast<int>(std::floor(hi)) + 1;
-    std::vector<SweepBand> bands;
-    for (int b = first; b < last; b += kRowsPerBand)
-        bands.push_back({b, std::min(last, b + kRowsPerBand), false, false});
-    bands.front().outermostLow = true;
-    bands.back().outermostHigh = true;
-    return bands;
+    const int firstRow = static_cast<int>(std::floor(lo)), lastRow = static_cast<int>(std::floor(hi)) + 1;
+    for (int b = firstRow; b < lastRow; b += kRowsPerPiece)
+        pieces.push_back({begin, end, slopeStep, b, std::min(lastRow, b + kRowsPerPiece), b == firstRow,
+                          b + kRowsPerPiece >= lastRow});
 }
 
-void sweepGeneric(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
-    sweepBand(in, band, scratch, sums);
+} // namespace
+
+std::vector<SweepPiece> sweepPieces(const SweepInput& in) {
+    std::vector<SweepPiece> pieces;
+    if (!in.perspective) {
+        addPieces(in, 0, in.nw, 0, pieces);
+        return pieces;
+    }
+    const int first = std::max(0, static_cast<int>(std::floor(in.eyeW)) + 1);
+    for (int end = in.nw; end > first;) {
+        const double away = end - 1 - in.eyeW;
+        const int begin =
+            away <= kNearest ? first : std::max(first, static_cast<int>(std::floor(in.eyeW + away / 2)) + 1);
+        addPieces(in, begin, end, in.raySpacing / away, pieces);
+        end = begin;
+    }
+    return pieces;
+}
+
+void sweepGeneric(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums) {
+    sweepPiece(in, piece, scratch, sums);
 }
 
 SweepKernel sweepKernel() {

@@ -109,7 +109,7 @@ struct Stretch {
 
 /// kMode: SweepMode; kInvalid: some voxels may be invalid.
 template <SweepMode kMode, bool kInvalid>
-class Band {
+class Sweeper {
     static constexpr bool kSingle = kMode == SweepMode::Single;
     static constexpr int K = lanesOf(kMode);
     static constexpr int kVectors = kSingle ? 1 : K / kWide; ///< that hold the lanes of a line
@@ -118,30 +118,29 @@ class Band {
     static constexpr int kFlushEvery = 4;     ///< slices
 
 public:
-    Band(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums)
-        : m_in(in), m_band(band), m_scratch(scratch), m_sums(sums), m_slopeStep(in.firstSlopeStep), m_b0(band.first),
-          m_b1(band.last) {
+    Sweeper(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums)
+        : m_in(in), m_piece(piece), m_scratch(scratch), m_sums(sums), m_b0(piece.firstRow), m_b1(piece.lastRow),
+          m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5), m_start(floorInt(m_startW * in.stepsPerSlice)) {
         m_accumulator = scratch.get<float>(SweepScratch::Accumulator, accumulatorSize());
         for (std::size_t i = 0; i < accumulatorSize(); ++i) m_accumulator[i] = 0.0f;
         for (int lane = 0; lane < K; ++lane) m_limit[lane] = in.exhaustedDepth / in.depthUnit[lane];
+        for (int lane = 0; lane < kWide; ++lane) // derivatives are no depths
+            m_lightUnit[lane] = kMode == SweepMode::Batch || lane == 0 ? in.depthUnit[lane] : 0.0f;
+        const auto planes = static_cast<std::size_t>(in.nw + 2);
+        m_near.planes = scratch.get<OwnPlane>(SweepScratch::Near, planes * static_cast<std::size_t>(in.stepsPerSlice));
+        m_far.planes = scratch.get<OwnPlane>(SweepScratch::Far, planes * static_cast<std::size_t>(in.ownSteps));
         if (kMode == SweepMode::Jacobian) // derivatives exhaust nothing
             for (int lane = 1; lane < K; ++lane) m_limit[lane] = -1e30f;
     }
 
-    /// Slices in turn, each range of them with rays of its own, dense enough there: rays that diverge from a near eye
-    /// start anew from the front of the box as soon as they lie too far apart.
+    /// Takes rays from where they start to the slices of the piece, whose voxels ask for them.
     void run() {
-        for (int begin = 0; begin < m_in.nw;) {
-            int end = m_in.nw;
-            if (m_in.perspective) {
-                end = smaller(end, floorInt(m_in.eyeW + m_in.raySpacing / m_slopeStep * (1 + 1e-9)) + 1);
-                if (end <= begin) end = begin; // not dense enough for a single slice
-            }
-            if (end > begin) sweepSlices(begin, end);
-            begin = end;
-            m_slopeStep *= 0.5;
-            m_b0 *= 2;
-            m_b1 *= 2;
+        startRays();
+        int at = m_start; // the sample plane that rays have come to
+        for (int k = m_piece.begin; k < m_piece.end; ++k) {
+            for (; at < (k - m_in.ownSlices) * m_in.stepsPerSlice; ++at) advanceRays(at, at + 1);
+            gather(k, at);
+            if (k % kFlushEvery == kFlushEvery - 1) flush();
         }
         flush();
     }
@@ -153,7 +152,7 @@ private:
     // ---- The ray grid --------------------------------------------------------------------------------------------
 
     RayPlane rayPlane(double w) const {
-        if (m_in.perspective) return {m_in.eyeU, m_in.eyeV, m_slopeStep * (w - m_in.eyeW)};
+        if (m_in.perspective) return {m_in.eyeU, m_in.eyeV, m_piece.slopeStep * (w - m_in.eyeW)};
         return {m_in.slopeU * w, m_in.slopeV * w, m_in.raySpacing};
     }
     /// The same for the lines through the voxels of slice k.
@@ -168,26 +167,46 @@ private:
     std::size_t accumulatorSize() const {
         return static_cast<std::size_t>(m_in.features + 1) * 3 * (kSingle ? kWide : kSpread * K);
     }
-    /// Of the planes that lines are sampled at: stepsPerSlice to a slice distance, the first of all at the front.
-    double sampleW(int index) const { return index < 0 ? -0.5 : static_cast<double>(index) / m_in.stepsPerSlice; }
-
-    /// Takes rays from the front of the box to the slices [begin, end), whose voxels ask for them.
-    void sweepSlices(int begin, int end) {
-        startRays(begin, end);
-        int at = -1; // the sample plane that rays have come to
-        for (int k = begin; k < end; ++k) {
-            for (; at < (k - m_in.ownSlices) * m_in.stepsPerSlice; ++at) advanceRays(at, at + 1);
-            gather(k, larger(at, -1));
-            if (k % kFlushEvery == kFlushEvery - 1) flush();
-        }
+    /// Of the planes that lines are sampled at: stepsPerSlice to a slice distance, the first of all at the front or the
+    /// eye.
+    double sampleW(int index) const {
+        return index == m_start ? m_startW : static_cast<double>(index) / m_in.stepsPerSlice;
     }
 
-    /// Chooses the rays that voxels of the slices [begin, end) will ask for.
-    void startRays(int begin, int end) {
+    /// The voxels of a slice that are visited.
+    struct Extent {
+        int u0, u1, v0, v1;
+    };
+    Extent extentOf(int k) const {
+        Extent e{0, m_in.nu - 1, 0, m_in.nv - 1};
+        if (!m_in.pyramid) return e;
+        const double away = k - m_in.eyeW;
+        const auto cut = [&](double eye, bool ownsTie, int& first, int& last) {
+            const int lo = ceilInt(eye - away), hi = floorInt(eye + away);
+            first = larger(first, lo == eye - away && !ownsTie ? lo + 1 : lo);
+            last = smaller(last, hi == eye + away && !ownsTie ? hi - 1 : hi);
+        };
+        cut(m_in.eyeU, m_in.ownsTieU, e.u0, e.u1);
+        cut(m_in.eyeV, m_in.ownsTieV, e.v0, e.v1);
+        return e;
+    }
+
+    /// Chooses the rays that voxels of the piece will ask for.
+    void startRays() {
         double lo = 1e30, hi = -1e30;
-        for (int side = 0; side < 2; ++side) { // positions are monotone in w: the extremes are at the ends
-            const RayPlane p = rayPlane(side == 0 ? begin : end - 1);
-            const double first = (0 - p.baseU) / p.scale, last = (m_in.nu - 1 - p.baseU) / p.scale;
+        for (const int k :
+             {m_piece.begin, m_piece.end - 1}) { // positions are monotone in w: the extremes are at the ends
+            const RayPlane p = rayPlane(k);
+            double first = 0, last = m_in.nu - 1;
+            if (m_in.pyramid) {
+                first = first > m_in.eyeU - (k - m_in.eyeW) ? first : m_in.eyeU - (k - m_in.eyeW);
+                last = last < m_in.eyeU + (k - m_in.eyeW) ? last : m_in.eyeU + (k - m_in.eyeW);
+                if (first > last) { // none on this slice: any may come in between
+                    first = m_in.eyeU - (k - m_in.eyeW);
+                    last = m_in.eyeU + (k - m_in.eyeW);
+                }
+            }
+            first = (first - p.baseU) / p.scale, last = (last - p.baseU) / p.scale;
             lo = first < lo ? first : lo;
             hi = last > hi ? last : hi;
         }
@@ -217,7 +236,8 @@ private:
     }
     /// Length of a ray between two slices, in d0; the same all along it.
     double rayLength(int a, int b) const {
-        return m_in.perspective ? lengthOf(a * m_slopeStep, b * m_slopeStep) : lengthOf(m_in.slopeU, m_in.slopeV);
+        return m_in.perspective ? lengthOf(a * m_piece.slopeStep, b * m_piece.slopeStep)
+                                : lengthOf(m_in.slopeU, m_in.slopeV);
     }
 
     // ---- Samples -------------------------------------------------------------------------------------------------
@@ -355,10 +375,16 @@ private:
     void advanceRays(int from, int to) {
         const double w0 = sampleW(from), w1 = sampleW(to);
         const RayPlane p0 = rayPlane(w0), p1 = rayPlane(w1);
-        const double lo0 = (-0.5 - p0.baseU) / p0.scale, lo1 = (-0.5 - p1.baseU) / p1.scale,
-                     hi0 = (m_in.nu - 0.5 - p0.baseU) / p0.scale, hi1 = (m_in.nu - 0.5 - p1.baseU) / p1.scale;
-        const int firstBlock = larger(0, (ceilInt(lo0 < lo1 ? lo0 : lo1) - m_a0) / kWide),
-                  lastBlock = smaller(m_blocks - 1, (floorInt(hi0 > hi1 ? hi0 : hi1) - m_a0) / kWide);
+        // Rays inside the box on either plane; none are outside on both that come through an edge worth counting.
+        double lo = (-0.5 - p1.baseU) / p1.scale, hi = (m_in.nu - 0.5 - p1.baseU) / p1.scale;
+        if (p0.scale > 0) {
+            const double lo0 = (-0.5 - p0.baseU) / p0.scale, hi0 = (m_in.nu - 0.5 - p0.baseU) / p0.scale;
+            lo = lo0 < lo ? lo0 : lo;
+            hi = hi0 > hi ? hi0 : hi;
+        }
+        if (hi < m_a0 || lo > m_a1) return;
+        const int firstBlock = lo < m_a0 ? 0 : (ceilInt(lo) - m_a0) / kWide,
+                  lastBlock = hi > m_a1 ? m_blocks - 1 : (floorInt(hi) - m_a0) / kWide;
         const float slices = static_cast<float>(w1 - w0);
         const bool look = to % (kExhaustedEvery * m_in.stepsPerSlice) == 0;
         for (int b = m_b0; b <= m_b1; ++b) {
@@ -429,7 +455,7 @@ private:
 
     /// Eight voxels of a row, u … u + 7.
     struct VoxelBlock {
-        int u = 0, v = 0, k = 0, count = 0;
+        int u = 0, v = 0, k = 0;
         const std::uint16_t* codes = nullptr;
         std::ptrdiff_t field = 0; ///< index of the first in weights and field
         int list[kWide];          ///< those that count
@@ -443,16 +469,18 @@ private:
 
     void gather(int k, int at) {
         const RayPlane p = rayPlane(k);
-        const int firstRow = larger(0, m_band.outermostLow ? 0 : floorInt(p.v(m_b0)) - 1),
-                  lastRow = smaller(m_in.nv - 1, m_band.outermostHigh ? m_in.nv - 1 : ceilInt(p.v(m_b1)) + 1);
+        const Extent extent = extentOf(k);
+        if (extent.u0 > extent.u1) return;
+        const int firstRow = larger(extent.v0, m_piece.outermostLow ? 0 : floorInt(p.v(m_b0)) - 1),
+                  lastRow = smaller(extent.v1, m_piece.outermostHigh ? m_in.nv - 1 : ceilInt(p.v(m_b1)) + 1);
         for (int v = firstRow; v <= lastRow; ++v) {
             const double b = (v - p.baseV) / p.scale;
-            if ((b < m_b0 && !m_band.outermostLow) || (b >= m_b1 && !m_band.outermostHigh)) continue;
-            gatherRow(k, v, p, b, at);
+            if ((b < m_b0 && !m_piece.outermostLow) || (b >= m_b1 && !m_piece.outermostHigh)) continue;
+            gatherRow(k, v, extent, p, b, at);
         }
     }
 
-    void gatherRow(int k, int v, const RayPlane& p, double b, int at) {
+    void gatherRow(int k, int v, const Extent& extent, const RayPlane& p, double b, int at) {
         const int row = clampTo(floorInt(b), m_b0, m_b1 - 1);
         const std::uint8_t* opaque = opaqueRow(v, k);
         VoxelBlock block;
@@ -464,8 +492,8 @@ private:
         const std::uint8_t* flags = m_flags + rowOf(row) * static_cast<std::size_t>(m_blocks);
         const std::uint16_t* codes = m_in.codes + v * m_in.codeStrides.v + k * m_in.codeStrides.w;
         const std::ptrdiff_t field = v * m_in.fieldStrides.v + k * m_in.fieldStrides.w;
-        m_ownReady = false;
-        for (int i = 0; i * kWide < m_in.nu; ++i) {
+        m_near.ready = m_far.ready = false;
+        for (int i = extent.u0 / kWide; i <= extent.u1 / kWide; ++i) {
             if (!opaque[i * m_in.opaqueStrides.u]) continue;
             block.u = i * kWide;
             const double a = (block.u - p.baseU) / p.scale - m_a0;
@@ -476,10 +504,10 @@ private:
             for (int r = firstRay / kWide; r <= lastRay / kWide && !open; ++r)
                 open = !(flags[r] & flags[r + m_blocks] & kExhausted);
             if (!open) continue;
-            block.count = smaller(kWide, m_in.nu - block.u);
             block.codes = codes + block.u;
             block.listed = 0;
-            for (int n = 0; n < block.count; ++n) {
+            const int end = smaller(kWide, extent.u1 + 1 - block.u);
+            for (int n = larger(0, extent.u0 - block.u); n < end; ++n) {
                 block.list[block.listed] = n;
                 block.listed += m_in.featureOfCode[block.codes[n]] != kTransparent;
             }
@@ -491,38 +519,44 @@ private:
             ray = ray > zero ? ray : zero;
             block.ray = ray < last ? ray : last;
             block.fraction = index - toFloat(block.ray);
-            if (!m_ownReady) startOwnLines(v, k, at);
+            if (!m_near.ready) startNear(v, k, at);
             gatherBlock(block);
         }
     }
 
-    /// The sample planes between where the rays are and a voxel, for one row of voxels.
+    /// A sample plane as lines through the voxels of one row meet it.
+    struct OwnPlane {
+        double w;
+        RayPlane lines;
+        Rows rows;
+        bool insideV;
+        const std::uint8_t* opaque;
+    };
+    /// Those on the way to one row of voxels, from far to near; room for one more.
     struct OwnLines {
-        static constexpr int kMost = 16;
-        int count = 0; ///< planes
-        RayPlane plane[kMost];
-        Rows rows[kMost];
-        double slices[kMost]; ///< from plane i − 1 to plane i
-        bool insideV[kMost];
+        OwnPlane* planes = nullptr;
+        int count = 0;
+        bool ready = false;
     };
 
-    /// The last plane lies d0/2 in front of the voxels, for the line in the middle of the row.
-    void startOwnLines(int v, int k, int at) {
-        m_ownReady = true;
-        m_own.count = 0;
-        const double end = k - 0.5 / voxelLength(m_in.nu / 2, v, k);
-        double last = 0;
-        const auto add = [&](double w) {
-            const int i = m_own.count++;
-            m_own.plane[i] = voxelPlane(w, k);
-            m_own.rows[i] = rowsAt(m_own.plane[i].v(v), w);
-            m_own.insideV[i] = insideV(m_own.plane[i].v(v));
-            m_own.slices[i] = w - last;
-            last = w;
-        };
-        for (int i = at; i == at || (sampleW(i) < end && m_own.count < OwnLines::kMost - 1); ++i) add(sampleW(i));
-        add(end > last ? end : last);
-        m_own.slices[m_own.count - 1] = k - m_own.slices[0]; // see ownStretches
+    OwnPlane ownPlane(double w, int v, int k) const {
+        const RayPlane lines = voxelPlane(w, k);
+        const double vThere = lines.v(v);
+        return {w, lines, rowsAt(vThere, w), insideV(vThere), opaqueRow(vThere, w)};
+    }
+    /// From where the rays are.
+    void startNear(int v, int k, int at) {
+        m_near.ready = true;
+        m_near.count = 0;
+        for (int i = at; i == at || sampleW(i) < k; ++i) m_near.planes[m_near.count++] = ownPlane(sampleW(i), v, k);
+    }
+    /// From where rays start.
+    void startFar(int v, int k) {
+        m_far.ready = true;
+        m_far.count = 0;
+        const int first = floorInt(m_startW * m_in.ownSteps);
+        for (int i = first; i == first || i < k * m_in.ownSteps; ++i)
+            m_far.planes[m_far.count++] = ownPlane(i == first ? m_startW : static_cast<double>(i) / m_in.ownSteps, v, k);
     }
 
     double voxelLength(int u, int v, int k) const {
@@ -531,27 +565,52 @@ private:
         return lengthOf((u - m_in.eyeU) / away, (v - m_in.eyeV) / away);
     }
 
-    /// Calls body(stretch) for each stretch of the voxels' own lines.
+    /// Calls body(stretch) for each stretch of the voxels' own lines that is not transparent.
     template <class Body>
-    void alongOwnLines(const VoxelBlock& block, const Body& body) {
-        const float first = static_cast<float>(voxelLength(block.u, block.v, block.k)),
-                    last = m_in.perspective ? static_cast<float>(voxelLength(block.u + kWide - 1, block.v, block.k))
-                                            : first;
-        const Vec8 length = first + kIota * ((last - first) / (kWide - 1)), zero = {};
-        Samples before = sample(m_own.rows[0], m_own.plane[0].u(block.u), m_own.plane[0].scale);
-        Vec8 left = length * static_cast<float>(m_own.slices[m_own.count - 1]) - 0.5f; // path to d0/2 in front
-        for (int i = 1; i < m_own.count; ++i) {
-            const RayPlane &p0 = m_own.plane[i - 1], &p1 = m_own.plane[i];
-            const Samples now = sample(m_own.rows[i], p1.u(block.u), p1.scale);
-            Vec8 path = i + 1 < m_own.count ? length * static_cast<float>(m_own.slices[i]) : left;
-            left -= path;
-            path = path > zero ? path : zero;
-            if (!m_own.insideV[i - 1] || !m_own.insideV[i] || !insideU(p0.u(block.u), p0.u(block.u + kWide - 1)) ||
-                !insideU(p1.u(block.u), p1.u(block.u + kWide - 1)))
-                path *= insideShare(p0, p1, block.u, block.v);
-            body(stretch(before, now, path));
-            before = now;
+    void alongOwnLines(const VoxelBlock& block, const OwnLines& own, const Body& body) const {
+        const double first = voxelLength(block.u, block.v, block.k),
+                     last = m_in.perspective ? voxelLength(block.u + kWide - 1, block.v, block.k) : first;
+        const Vec8 length = static_cast<float>(first) + kIota * static_cast<float>((last - first) / (kWide - 1)),
+                   zero = {};
+        const double end = block.k - 1 / (first + last); // d0/2 in front of the voxels
+        const auto opaqueAt = [&](const OwnPlane& p) {
+            return opaqueBetween(p.opaque, p.lines.u(block.u), p.lines.u(block.u + kWide - 1));
+        };
+        const auto inside = [&](const OwnPlane& p) {
+            return p.insideV && insideU(p.lines.u(block.u), p.lines.u(block.u + kWide - 1));
+        };
+        const auto at = [&](const OwnPlane& p) { return sample(p.rows, p.lines.u(block.u), p.lines.scale); };
+        Samples before = {};
+        bool known = false, wasOpaque = opaqueAt(own.planes[0]);
+        for (int i = 1;; ++i) {
+            const OwnPlane& p0 = own.planes[i - 1];
+            const bool isLast = i >= own.count || own.planes[i].w >= end;
+            const OwnPlane p1 = isLast ? ownPlane(end > p0.w ? end : p0.w, block.v, block.k) : own.planes[i];
+            const bool opaque = opaqueAt(p1);
+            if (!opaque && !wasOpaque) {
+                known = false;
+            } else {
+                if (!known) before = at(p0);
+                const Samples now = at(p1);
+                Vec8 path = isLast ? length * static_cast<float>(block.k - p0.w) - 0.5f
+                                   : length * static_cast<float>(p1.w - p0.w);
+                path = path > zero ? path : zero;
+                if (!inside(p0) || !inside(p1)) path *= insideShare(p0.lines, p1.lines, block.u, block.v);
+                body(stretch(before, now, path));
+                before = now;
+                known = true;
+            }
+            wasOpaque = opaque;
+            if (isLast) return;
         }
+    }
+
+    /// Where so different amounts of light come along four neighbouring rays that nothing between them is known. The
+    /// difference of two transmittances is at most exp(−D)·ΔD, D the smaller depth; 1 + D + D²/2 ≤ exp(D).
+    Int8 disagree(Vec8 a, Vec8 b, Vec8 c, Vec8 d, Vec8 unit) const {
+        const Vec8 lowAB = a < b ? a : b, highAB = a < b ? b : a, lowCD = c < d ? c : d, highCD = c < d ? d : c;
+        const Vec8 low = (lowAB < lowCD ? lowAB : lowCD) * unit, high = (highAB > highCD ? highAB : highCD) * unit;
+        return high - low > m_in.tolerance * (1.0f + low * (1.0f + 0.5f * low));
     }
 
     void gatherBlock(const VoxelBlock& block) {
@@ -562,11 +621,18 @@ private:
     }
 
     void gatherSingle(const VoxelBlock& block) {
-        Vec8 near = gathered(block.near, block.ray), far = gathered(block.far, block.ray);
-        near += block.fraction * (gathered(block.near + 1, block.ray) - near);
-        far += block.fraction * (gathered(block.far + 1, block.ray) - far);
+        const Vec8 near0 = gathered(block.near, block.ray), near1 = gathered(block.near + 1, block.ray),
+                   far0 = gathered(block.far, block.ray), far1 = gathered(block.far + 1, block.ray);
+        const Vec8 near = near0 + block.fraction * (near1 - near0), far = far0 + block.fraction * (far1 - far0);
         Vec8 depth = near + block.fractionV * (far - near);
-        alongOwnLines(block, [&](const Stretch& s) {
+        Int8 listed = {};
+        for (int i = 0; i < block.listed; ++i) listed[block.list[i]] = -1;
+        const bool follow = !none(disagree(near0, near1, far0, far1, Vec8{} + m_in.depthUnit[0]) & listed);
+        if (follow) {
+            depth = Vec8{};
+            if (!m_far.ready) startFar(block.v, block.k);
+        }
+        alongOwnLines(block, follow ? m_far : m_near, [&](const Stretch& s) {
             depth += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
         });
         Vec8 alpha = {}, weights[2] = {};
@@ -603,17 +669,25 @@ private:
         const float fv = block.fractionV;
         const Vec8 near0 = (1.0f - f) * (1.0f - fv), near1 = f * (1.0f - fv), far0 = (1.0f - f) * fv, far1 = f * fv;
         Vec8 depth[kWide][kVectors];
+        Int8 disagreed = {};
         for (int i = 0; i < block.listed; ++i) {
             const int n = block.list[i];
             const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(block.ray[n]) * K;
             for (int part = 0; part < kVectors; ++part) {
                 const float* near = block.near + ray + part * kWide;
                 const float* far = block.far + ray + part * kWide;
-                depth[n][part] =
-                    near0[n] * load(near) + near1[n] * load(near + K) + far0[n] * load(far) + far1[n] * load(far + K);
+                const Vec8 d0 = load(near), d1 = load(near + K), d2 = load(far), d3 = load(far + K);
+                depth[n][part] = near0[n] * d0 + near1[n] * d1 + far0[n] * d2 + far1[n] * d3;
+                if (part == 0) disagreed |= disagree(d0, d1, d2, d3, load(m_lightUnit));
             }
         }
-        alongOwnLines(block, [&](const Stretch& s) {
+        const bool follow = !none(disagreed);
+        if (follow) {
+            for (int i = 0; i < block.listed; ++i)
+                for (int part = 0; part < kVectors; ++part) depth[block.list[i]][part] = Vec8{};
+            if (!m_far.ready) startFar(block.v, block.k);
+        }
+        alongOwnLines(block, follow ? m_far : m_near, [&](const Stretch& s) {
             for (int i = 0; i < block.listed; ++i) {
                 const int n = block.list[i];
                 for (int part = 0; part < kVectors; ++part)
@@ -656,7 +730,7 @@ private:
         if (feature < m_in.features && lane >= 1 && lane < K) seen[lane / kWide][lane % kWide] += light * alpha[1];
     }
 
-    /// Floats hold a few slices of a band at most: what they lose stays below 1e-6 of the sum.
+    /// Floats hold a few slices of a piece at most: what they lose stays below 1e-6 of the sum.
     void flush() {
         const std::size_t sums = static_cast<std::size_t>(m_in.features + 1) * 3;
         if (kSingle) {
@@ -669,13 +743,14 @@ private:
     }
 
     const SweepInput& m_in;
-    const SweepBand& m_band;
+    const SweepPiece& m_piece;
     SweepScratch& m_scratch;
     double* m_sums;
-    double m_slopeStep;              ///< perspective: slope between neighbouring rays
     int m_a0 = 0, m_a1 = 0;          ///< rays of a row that voxels lie between
     int m_blocks = 0;                ///< of eight rays in a row; the last may go beyond m_a1
-    int m_b0, m_b1;                  ///< rows of rays; m_b1 is the first of the next band
+    int m_b0, m_b1;                  ///< rows of rays; m_b1 is the first of the next piece
+    double m_startW;                 ///< where rays start
+    int m_start;                     ///< the sample plane there
     float* m_accumulator;            ///< Single: [features + 1][3][eight voxels], else [kSpread][features + 1][3][K]
     float* m_depth = nullptr;        ///< [row][ray][K]
     int* m_entry = nullptr;          ///< [row][ray], at the plane in m_stamp
@@ -684,16 +759,17 @@ private:
     int* m_stamp = nullptr;          ///< [row][block]
     std::uint8_t* m_flags = nullptr; ///< [row][block]
     float m_limit[K];                ///< a lane at this depth, in units of the table, is exhausted
-    OwnLines m_own;
-    bool m_ownReady = false;
+    float m_lightUnit[kWide];        ///< depthUnit of the lanes that are depths, else 0
+    OwnLines m_near; ///< from where the rays are to the voxels of a row
+    OwnLines m_far;  ///< from where rays start
 };
 
-void sweepBand(const SweepInput& in, const SweepBand& band, SweepScratch& scratch, double* sums) {
+void sweepPiece(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums) {
     const auto run = [&]<SweepMode kMode>() {
         if (in.someInvalid)
-            Band<kMode, true>(in, band, scratch, sums).run();
+            Sweeper<kMode, true>(in, piece, scratch, sums).run();
         else
-            Band<kMode, false>(in, band, scratch, sums).run();
+            Sweeper<kMode, false>(in, piece, scratch, sums).run();
     };
     switch (in.mode) {
     case SweepMode::Single:
