@@ -4,6 +4,7 @@
 #include <array>
 
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "volume/error.h"
 
@@ -43,7 +44,11 @@ void ResidentVolume::setWeights(const std::uint32_t* weights, std::uint64_t key)
 
 void ResidentVolume::require(const Planes& planes) {
     const int a = planes.axis;
-    const bool present = m_codesResident && planes.first >= m_first[a] && planes.end <= m_first[a] + m_size[a];
+    Int3 first(0), end = m_grid.codes.dims();
+    first[a] = planes.first;
+    end[a] = planes.end;
+    const bool present = m_codesResident && glm::all(glm::greaterThanEqual(first, m_first)) &&
+                         glm::all(glm::lessThanEqual(end, m_first + m_size));
     const bool weighted = m_weightData == nullptr || m_weights.name;
     if (!present || !weighted) {
         makeRoom(planes);
@@ -95,10 +100,11 @@ void ResidentVolume::makeRoom(const Planes& planes) {
             m_weights = {};
         }
     }
-    throw Error("the graphics device has no room for " + std::to_string(needed) + " planes of the volume at a time (" +
-                    std::to_string(static_cast<long long>(planeBytes * needed)) + " bytes in textures of at most " +
-                    std::to_string(m_longest) + " along one axis)",
-                "OpenGL", "use --engine cpu");
+    throw OutOfMemory("the graphics device has no memory for " + std::to_string(needed) +
+                          " planes of the volume at a time (" +
+                          std::to_string(static_cast<long long>(planeBytes * needed)) +
+                          " bytes in textures of at most " + std::to_string(m_longest) + " along one axis)",
+                      "OpenGL", "use --engine cpu");
 }
 
 void ResidentVolume::uploadBox(Texture3d& texture, const void* data, bool weights) const {

@@ -41,7 +41,7 @@ public:
     /// From now on require() keeps these in the device's memory too; uploaded only when `key` or the planes change.
     /// Null: no weights. The numbers must stay where they are until the next call.
     void setWeights(const std::uint32_t* weights, std::uint64_t key);
-    /// Makes sure that at least these planes are there. Throws Error where there is not even room for them.
+    /// Makes sure that at least these planes are there. Throws OutOfMemory where there is not even room for them.
     void require(const Planes& planes);
 
     const Int3& first() const noexcept { return m_first; } ///< the voxel that the resident box begins with

@@ -19,6 +19,11 @@ constexpr int kMostSlots = 2048; ///< features and one; with one candidate they 
 
 using glm::value_ptr;
 
+int longestTexture3d() {
+    requireGl43();
+    return glInteger(GL_MAX_3D_TEXTURE_SIZE);
+}
+
 /// Planes whose light is kept besides those that a step adds.
 int ringExtra(const Sweep& s) { return s.ownPlanes.y - s.ownPlanes.x + 1; }
 
@@ -109,9 +114,10 @@ private:
 
 SweepDevice::SweepDevice(const IntensityGrid& grid, const VisibilityBudget& budget)
     : m_grid(grid), m_budget(budget),
-      m_volume(grid, budget.volumeBytes, std::min(budget.textureSize, glInteger(GL_MAX_3D_TEXTURE_SIZE))) {
-    requireGl43();
+      m_volume(grid, budget.volumeBytes, std::min(budget.textureSize, longestTexture3d())) {
     m_reduce = makeProgram({"visibility_reduce.comp"});
+    // Better now than later: who asked for the best engine takes another one where the volume is too large.
+    m_volume.require({2, 0, std::min(grid.codes.dims().z, 20), true});
 }
 
 SweepDevice::~SweepDevice() = default;
@@ -193,32 +199,41 @@ void SweepDevice::uploadTables(const DepthTables& tables) {
     throwOnGlError("uploading the transfer functions");
 }
 
-/// How many planes are swept in one step: few enough that a step takes well under a second, and no more than the
-/// buffers hold. `outputBytes` are what each `outputPlanes` of them leave.
-int SweepDevice::planesAtOnce(const Sweep& s, int candidates, double outputBytes, int outputPlanes) const {
-    const double layer = 4.0 * candidates * s.rays.x * s.rays.y;
+int SweepDevice::prepare(const Sweep& s, int candidates, int slots) {
+    const double layer = 4.0 * candidates * s.rays.x * s.rays.y, area = static_cast<double>(s.dims.x) * s.dims.y;
+    const double groupsPerLayer = static_cast<double>(groups(s.dims.x, kSide)) * groups(s.dims.y, kSide);
+    // What each so many planes leave.
+    const int outputPlanes = slots == 0 ? 1 : kPlanesPerGroup;
+    const double outputBytes = slots == 0 ? 4 * area : groupsPerLayer * slots * 3 * candidates * 4;
     const double light = std::floor(bufferLimit() / layer) - ringExtra(s);
     const double output = std::floor(bufferLimit() / outputBytes) * outputPlanes;
     if (light < 1 || output < 1)
         throw Error("a single plane of voxels needs more than the device's buffers of " +
                         std::to_string(static_cast<long long>(bufferLimit())) + " bytes",
                     "OpenGL", "use --engine cpu");
-    const double wanted = std::max(1.0, m_budget.voxelsPerStep / (static_cast<double>(s.dims.x) * s.dims.y));
-    const int planes = static_cast<int>(std::min({wanted, light, output, static_cast<double>(s.dims.z)}));
-    return planes > kPlanesPerGroup ? planes / kPlanesPerGroup * kPlanesPerGroup : planes;
+    // Few enough planes that a step takes well under a second.
+    const double wanted = std::max(1.0, m_budget.voxelsPerStep / area);
+    int planes = static_cast<int>(std::min({wanted, light, output, static_cast<double>(s.dims.z)}));
+    for (;; planes /= 2) {
+        if (planes > kPlanesPerGroup) planes = planes / kPlanesPerGroup * kPlanesPerGroup;
+        try {
+            const int resident = std::min(s.dims.z, planes + s.ownPlanes.y + 1);
+            m_volume.require(
+                {s.axis, s.sign > 0 ? 0 : s.dims.z - resident, s.sign > 0 ? resident : s.dims.z, s.sign > 0});
+            ensure(m_light, layer * (planes + ringExtra(s)), "the rays' light");
+            ensure(m_output, outputBytes * groups(planes, outputPlanes), slots == 0 ? "the visibility" : "the sums");
+            return planes;
+        } catch (const OutOfMemory&) { // fewer planes may do
+            if (planes == 1) throw;
+        }
+    }
 }
 
 void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slots, const JobControl& job,
                            const AfterPlanes& after) {
     const int candidates = request.tables.candidates;
-    const double area = static_cast<double>(s.dims.x) * s.dims.y;
-    const double groupsPerLayer = static_cast<double>(groups(s.dims.x, kSide)) * groups(s.dims.y, kSide);
-    const double outputBytes = slots == 0 ? 4 * area : groupsPerLayer * slots * 3 * candidates * 4;
-    const int outputPlanes = slots == 0 ? 1 : kPlanesPerGroup;
-    const int atOnce = planesAtOnce(s, candidates, outputBytes, outputPlanes);
-    const int ring = atOnce + ringExtra(s); // planes whose light is still asked for
-    ensure(m_light, 4.0 * candidates * s.rays.x * s.rays.y * ring, "the rays' light");
-    ensure(m_output, outputBytes * groups(atOnce, outputPlanes), slots == 0 ? "the visibility" : "the sums");
+    const int atOnce = prepare(s, candidates, slots);
+    const int ring = atOnce + ringExtra(s);
 
     int marched = s.firstPlane; // the rays have come so far
     for (int plane = s.firstPlane; plane < s.dims.z; plane += atOnce) {

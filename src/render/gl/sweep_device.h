@@ -58,7 +58,8 @@ private:
     void runSweeps(const SweepRequest& request, int slots, const JobControl& job, const AfterPlanes& after);
     void runSweep(const SweepRequest& request, const Sweep& sweep, int slots, const JobControl& job,
                   const AfterPlanes& after);
-    int planesAtOnce(const Sweep& sweep, int candidates, double outputBytes, int outputPlanes) const;
+    /// Makes room for the steps of a sweep, the volume included, and says how many planes one can take.
+    int prepare(const Sweep& sweep, int candidates, int slots);
     void uploadTables(const DepthTables& tables);
     const Programs& programsFor(int candidates, int slots);
     int slotsFor(int features) const;
