@@ -39,8 +39,9 @@ bool inPyramid(ivec3 voxel) {
     return axis == u_pyramid.x && (d[axis] > 0.0 ? 1 : -1) == u_pyramid.y;
 }
 
-// Multiplies `light` by what arrives along `ray` at the plane c, and returns how far the rays around disagree about it.
-float interpolateLight(Ray ray, int c, inout LANE light[PACKS]) {
+// What arrives along `ray` at the plane c, dimmed by `near` on its way on; returns how far the rays around disagree
+// about it.
+float interpolateLight(Ray ray, int c, LANE near[PACKS], out LANE light[PACKS]) {
     vec2 position = (ray.at - u_grid.xy) * u_grid.z;
     // Lattice points are hit exactly where the view is along an axis; rounding must not move off them.
     vec2 nearest = round(position);
@@ -57,14 +58,10 @@ float interpolateLight(Ray ray, int c, inout LANE light[PACKS]) {
     for (int p = 0; p < PACKS; ++p) {
         LANE t00 = i_light[at.x + p], t10 = i_light[at.y + p], t01 = i_light[at.z + p], t11 = i_light[at.w + p];
         LANE spread = max(max(t00, t10), max(t01, t11)) - min(min(t00, t10), min(t01, t11));
-        disagreement = max(disagreement, largest(spread * light[p]));
-        light[p] *= mix(mix(t00, t10, w.x), mix(t01, t11, w.x), w.y);
+        disagreement = max(disagreement, largest(spread * near[p]));
+        light[p] = near[p] * mix(mix(t00, t10, w.x), mix(t01, t11, w.x), w.y);
     }
     return disagreement;
-}
-
-void toLight(LANE depth[PACKS], out LANE light[PACKS]) {
-    for (int p = 0; p < PACKS; ++p) light[p] = exp(-depth[p]);
 }
 
 // The light that comes through to d0/2 in front of the voxel q.
@@ -73,19 +70,29 @@ void lightAt(ivec3 q, out LANE light[PACKS]) {
     Ray ray = Ray(vec2(q.xy) + slope * (u_reference - float(q.z)), slope);
     float enter = passageOf(ray, 2.0).enter;
     float c = float(q.z) - 0.5 / lengthPerC(ray);
-    LANE depth[PACKS];
-    for (int p = 0; p < PACKS; ++p) depth[p] = LANE(0.0);
-    toLight(depth, light);
+    LANE depth[PACKS], near[PACKS], interpolated[PACKS];
+    for (int p = 0; p < PACKS; ++p) {
+        depth[p] = LANE(0.0);
+        light[p] = LANE(c > enter ? 0.0 : 1.0);
+    }
     if (c <= enter) return;
     Sample last = sampleAt(ray, c);
-    for (int planes = u_own.x;; planes = min(2 * planes, u_own.y)) {
+    // Share of the answer that is left to what lies further on: it falls steadily with the disagreement, so that results
+    // do not hang on the last bits.
+    float left = 1.0;
+    for (int planes = u_own.x; left > 0.0; planes = min(2 * planes, u_own.y)) {
         int plane = q.z - planes;
         float to = max(enter, float(plane));
         follow(ray, c, to, last, depth);
         c = to;
-        toLight(depth, light);
-        if (enter >= float(plane) || isDark(depth)) return;
-        if (interpolateLight(ray, plane, light) <= u_tolerance || planes == u_own.y) return;
+        for (int p = 0; p < PACKS; ++p) interpolated[p] = near[p] = exp(-depth[p]);
+        float share = left;
+        left = 0.0;
+        if (enter < float(plane) && !isDark(depth)) {
+            float disagreement = interpolateLight(ray, plane, near, interpolated);
+            if (planes < u_own.y) left = share * smoothstep(0.5 * u_tolerance, u_tolerance, disagreement);
+        }
+        for (int p = 0; p < PACKS; ++p) light[p] += (share - left) * interpolated[p];
     }
 }
 

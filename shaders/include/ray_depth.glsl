@@ -39,8 +39,9 @@ UINT_LANE integralTo(float entry, int pack) {
 void addPiece(inout LANE depth[PACKS], Sample a, Sample b, float path) {
 #ifdef HAS_INVALID
     path *= 0.5 * (a.share + b.share);
-    if (a.share == 0.0) a.entry = b.entry;
-    if (b.share == 0.0) b.entry = a.entry;
+    const float kNoShare = 1e-3; // rounding on a lattice point must not let in a neighbour's intensity
+    if (a.share < kNoShare) a.entry = b.entry;
+    if (b.share < kNoShare) b.entry = a.entry;
 #endif
     float low = min(a.entry, b.entry), high = max(a.entry, b.entry);
     if (i_opaqueBefore[cellOf(low)] == i_opaqueBefore[cellOf(high) + 1]) return;

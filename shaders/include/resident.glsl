@@ -4,7 +4,7 @@
 layout(location = 10) uniform mat3 u_voxelFromQ; // voxel of the resident box = u_voxelFromQ * q + u_voxelOffset
 layout(location = 11) uniform vec3 u_voxelOffset;
 layout(location = 14) uniform ivec3 u_lastVoxel; // of the resident box
-layout(location = 15) uniform vec3 u_texel;      // 1 / size of the texture
+layout(location = 15) uniform vec3 u_textureSize;
 #ifdef FOLDED
 layout(location = 16) uniform ivec3 u_brick;
 layout(location = 17) uniform ivec3 u_bricks; // number along each axis
@@ -30,5 +30,5 @@ ivec3 voxelAt(ivec3 q) {
 
 vec2 codeAndWeightAt(vec3 q) {
     vec3 voxel = clamp(u_voxelFromQ * q + u_voxelOffset, vec3(0.0), vec3(u_lastVoxel));
-    return codeAndWeight((voxel + vec3(texelShift(ivec3(voxel))) + 0.5) * u_texel);
+    return codeAndWeight((voxel + vec3(texelShift(ivec3(voxel))) + 0.5) / u_textureSize);
 }

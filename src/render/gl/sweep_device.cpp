@@ -81,7 +81,7 @@ public:
             glProgramUniformMatrix3fv(p, 10, 1, GL_FALSE, value_ptr(glm::mat3(s.voxelFromQ())));
             glProgramUniform3fv(p, 11, 1, value_ptr(glm::vec3(s.voxelOffset() - first)));
             glProgramUniform3iv(p, 14, 1, value_ptr(volume.size() - 1));
-            glProgramUniform3fv(p, 15, 1, value_ptr(glm::vec3(1.0 / Vec3(volume.codes().size))));
+            glProgramUniform3fv(p, 15, 1, value_ptr(glm::vec3(volume.codes().size)));
             if (!f.folded()) continue;
             glProgramUniform3iv(p, 16, 1, value_ptr(f.brick));
             glProgramUniform3iv(p, 17, 1, value_ptr(f.bricks));

@@ -27,7 +27,7 @@ struct Sampling {
 // no interpolation finds. Rays per voxel are whole, so that some stand on the voxel columns.
 Sampling samplingOf(Quality quality) {
     if (quality == Quality::High) return {2.5, 2.0, {6, 24}, 0.005};
-    return {1.5, 1.0, {4, 16}, 0.03};
+    return {1.5, 1.0, {4, 16}, 0.04};
 }
 
 /// The two other axes, in order.
