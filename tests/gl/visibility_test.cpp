@@ -181,12 +181,18 @@ TEST_CASE("sums of a batch are those of the single fields", "[gl]") {
     WeightFields weights(volume->dims(), 1, 1);
     for (std::size_t i = 0; i < volume->size(); ++i)
         weights.set(i, static_cast<float>(i % 7) / 7, static_cast<float>(i % 11) / 11);
-    std::vector<TransferFunction> tfs; // six: one full group of lanes and a part of the next
-    for (int i = 0; i < 6; ++i) tfs.push_back(withFeatureOpacities(tents(3, 0.4), {0.1 * i, 0.3, 0.9 - 0.1 * i}));
+    std::vector<TransferFunction> tfs; // nine: one full group of lanes and one alone
+    for (int i = 0; i < 9; ++i) tfs.push_back(withFeatureOpacities(tents(3, 0.4), {0.1 * i, 0.3, 0.9 - 0.1 * i}));
     const auto engine = makeGlEngine(volume);
+    gl::VisibilityBudget small; // the light of eight candidates does not fit in: fewer at a time
+    small.bufferBytes = 100e3;
+    const auto smaller = gl::makeGlEngine(volume, Quality::Normal, small);
     for (const auto& [view, camera] : everyKindOfView(volume->geometry())) {
         CAPTURE(view);
-        const auto batch = engine->sums(camera, tfs, &weights);
+        const auto batch = engine->sums(camera, tfs, &weights), few = smaller->sums(camera, tfs, &weights);
+        REQUIRE(few.size() == tfs.size());
+        for (std::size_t t = 0; t < tfs.size(); ++t)
+            CHECK(few[t].allVisibility == Approx(batch[t].allVisibility).epsilon(0.01));
         REQUIRE(batch.size() == tfs.size());
         for (std::size_t t = 0; t < tfs.size(); ++t) {
             const auto single = sumsOfField(*volume, tfs[t].features, engine->field(camera, tfs[t]).values, &weights);
@@ -296,6 +302,28 @@ TEST_CASE("weights that change between two calls count", "[gl]") {
     const FeatureSums none = engine->sums(camera, {&tf, 1}, nullptr)[0];
     CHECK(none.allWeighted[0] == 0);
     CHECK(none.allVisibility == before.allVisibility);
+}
+
+TEST_CASE("calls in a row make nothing anew on the device", "[gl]") {
+    if (!haveGl()) return;
+    const struct Restore {
+        ~Restore() { gl::limitAllocations(std::numeric_limits<double>::infinity()); }
+    } restore;
+    const auto volume = noise({18, 17, 16}, {1, 1, 1}, 3);
+    const Camera camera = perspective(volume->geometry(), {5, -40, 8});
+    const WeightFields weights = unevenWeights(volume->dims());
+    std::vector<TransferFunction> tfs, others;
+    for (int i = 0; i < 8; ++i) {
+        tfs.push_back(tents(3, 0.1 + 0.1 * i));
+        others.push_back(tents(3, 0.15 + 0.1 * i));
+    }
+    const auto engine = makeGlEngine(volume);
+    const auto first = engine->sums(camera, tfs, &weights);
+    gl::limitAllocations(0); // from here on everything asked for is refused
+    CHECK(engine->sums(camera, others, &weights)[7].visibility != first[7].visibility);
+    CHECK(engine->sums(camera, tfs, &weights)[7].visibility == first[7].visibility);
+    CHECK(engine->sums(camera, {tfs.data(), 1}, &weights)[0].allVisibility ==
+          Approx(first[0].allVisibility).epsilon(0.01));
 }
 
 TEST_CASE("a device without memory is used in bricks, or an error says what to do", "[gl]") {

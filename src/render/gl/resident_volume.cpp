@@ -59,13 +59,11 @@ void ResidentVolume::require(const Planes& planes) {
         uploadBox(m_codes, m_grid.codes.data(), false);
         m_codesResident = true;
         m_weightsResident = false;
-        ++m_uploads;
     }
     if (m_weightData == nullptr || (m_weightsResident && m_residentKey == m_weightKey)) return;
     uploadBox(m_weights, m_weightData, true);
     m_weightsResident = true;
     m_residentKey = m_weightKey;
-    ++m_uploads;
 }
 
 /// Chooses how many planes will be resident, and makes textures for them.

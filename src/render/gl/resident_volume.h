@@ -49,7 +49,6 @@ public:
     const Folding& folding() const noexcept { return m_folding; }
     const Texture3d& codes() const noexcept { return m_codes; }
     const Texture3d& weights() const noexcept { return m_weights; } ///< R32UI
-    int uploads() const noexcept { return m_uploads; }              ///< of boxes so far, for tests
 
 private:
     void makeRoom(const Planes& planes);
@@ -65,7 +64,6 @@ private:
     Int3 m_first{0, 0, 0}, m_size{0, 0, 0}, m_room{0, 0, 0};
     Folding m_folding;
     Texture3d m_codes, m_weights;
-    int m_uploads = 0;
 };
 
 } // namespace pellucid::gl

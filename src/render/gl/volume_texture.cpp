@@ -68,15 +68,6 @@ void uploadWeights(const Texture3d& texture, const std::uint32_t* weights, const
     throwOnGlError("uploading the saliency");
 }
 
-VolumeTexture uploadVolume(const IntensityGrid& grid) {
-    VolumeTexture volume;
-    volume.maxCode = grid.maxCode;
-    volume.hasInvalid = !grid.valid.empty();
-    volume.texture = makeTexture3d(grid.codes.dims(), volume.hasInvalid ? GL_RG16 : GL_R16, GL_LINEAR, "the volume");
-    uploadCodes(volume.texture, grid, Int3(0), grid.codes.dims(), Int3(0));
-    return volume;
-}
-
 void TableTexture::fill(std::span<const float> values, int channels) {
     PELLUCID_CHECK((channels == 1 || channels == 4) && !values.empty());
     constexpr int kRow = 256;
