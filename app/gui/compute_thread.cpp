@@ -3,19 +3,6 @@
 #include "render/gl/engines.h"
 
 namespace pellucid::gui {
-namespace {
-
-TransferFunction withoutOpacities(TransferFunction tf) {
-    for (ControlPoint& p : tf.points) {
-        p.opacity = 0;
-        p.fixed = false;
-        p.extraJson.clear();
-    }
-    for (Feature& f : tf.features) f.name.clear();
-    return tf;
-}
-
-} // namespace
 
 VisibilityEngine& ComputeCache::engine(const std::shared_ptr<const Volume>& volume) {
     if (m_engineVolume != volume || !m_engine) {
@@ -28,9 +15,10 @@ VisibilityEngine& ComputeCache::engine(const std::shared_ptr<const Volume>& volu
 
 const WeightFields& ComputeCache::weights(const std::shared_ptr<const Volume>& volume, const TransferFunction& tf,
                                           const JobControl& job) {
-    TransferFunction key = withoutOpacities(tf);
+    TransferFunction key = colorsOf(tf);
     if (m_weightsVolume != volume || !(m_weightsTf == key)) {
         m_weightsVolume.reset();
+        m_weights = {}; // before the new ones, so that both never need room at once
         m_weights = saliencyFields(*volume, tf, {}, job);
         m_weightsTf = std::move(key);
         m_weightsVolume = volume;

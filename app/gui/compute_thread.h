@@ -25,7 +25,7 @@ public:
 private:
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     std::unique_ptr<VisibilityEngine> m_engine;
-    TransferFunction m_weightsTf; // without opacities
+    TransferFunction m_weightsTf; // its colorsOf()
     WeightFields m_weights;
 };
 

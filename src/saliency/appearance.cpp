@@ -1,19 +1,50 @@
 #include "saliency/appearance.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "volume/error.h"
+#include "volume/parallel.h"
 
 namespace pellucid {
 
+namespace {
+
+constexpr int kBins = 1 << 14; ///< a power of two, so that s·kBins is exact
+constexpr double kBinTolerance = 1e-5;
+
+AppearanceReader::Pair pairOf(const Appearance& a) {
+    return std::bit_cast<AppearanceReader::Pair>(
+        std::array<float, 2>{static_cast<float>(a.brightness), static_cast<float>(a.saturation)});
+}
+
+/// Whether leaving out `p`, between `a` and `b`, changes no colour.
+bool onLine(const ControlPoint& a, const ControlPoint& p, const ControlPoint& b) {
+    if (a.x == p.x || p.x == b.x) return (a.x == p.x && a.color == p.color) || (p.x == b.x && p.color == b.color);
+    const double t = (p.x - a.x) / (b.x - a.x);
+    const auto close = [t](double from, double v, double to) { return std::abs(from + t * (to - from) - v) < 1e-12; };
+    return close(a.color.r, p.color.r, b.color.r) && close(a.color.g, p.color.g, b.color.g) &&
+           close(a.color.b, p.color.b, b.color.b);
+}
+
+/// Whether all values of a type fit into a table.
+template <class T>
+constexpr bool kTabulated = sizeof(T) <= 2;
+
+} // namespace
+
 AppearanceReader::AppearanceReader(const Volume& volume, const TransferFunction& tf, const Rgb& background)
-    : m_volume(volume), m_sampler(tf), m_features(tf.features), m_background(appearanceOf(background)),
-      m_coder(volume) {
-    if (!m_coder.exact()) return;
-    // Only codes that occur are multiples of the exact scale, but filling every entry costs less than telling which.
-    m_ofCode.resize(static_cast<std::size_t>(m_coder.maxCode()) + 1);
-    for (std::size_t c = 0; c < m_ofCode.size(); ++c) m_ofCode[c] = atIntensity(m_coder.intensity(static_cast<int>(c)));
+    : m_volume(volume), m_sampler(tf), m_features(tf.features), m_background(appearanceOf(background)) {
+    for (const Feature& f : m_features) m_breaks.insert(m_breaks.end(), {f.a, f.b});
+    for (const ControlPoint& p : tf.points) m_breaks.push_back(p.x);
+    if (bytesPerSample(volume.sampleType()) <= 2)
+        tabulateSamples();
+    else if (volume.size() > 4 * kBins)
+        tabulateIntensities();
 }
 
 Appearance AppearanceReader::atIntensity(double s) const {
@@ -21,18 +52,93 @@ Appearance AppearanceReader::atIntensity(double s) const {
     return appearanceOf(m_sampler.color(s));
 }
 
-void AppearanceReader::readRow(std::size_t first, std::span<float> brightness, std::span<float> saturation) const {
+AppearanceReader::Pair AppearanceReader::pairAt(double s, Latest& latest) const {
+    if (s == latest.intensity) return latest.ofIntensity;
+    latest.intensity = s;
+    if (featureAt(m_features, s) < 0) return latest.ofIntensity = pairOf(m_background);
+    const Rgb color = m_sampler.color(s);
+    if (!(color == latest.color)) latest.ofColor = pairOf(appearanceOf(color));
+    latest.color = color;
+    return latest.ofIntensity = latest.ofColor;
+}
+
+void AppearanceReader::tabulateSamples() {
     std::visit(
         [&](const auto& values) {
-            for (std::size_t x = 0; x < brightness.size(); ++x) {
-                const double s = m_volume.intensityOfValue(static_cast<double>(values[first + x]));
-                Appearance a = m_background;
-                if (m_ofCode.empty())
-                    a = atIntensity(s);
-                else if (!std::isnan(s))
-                    a = m_ofCode[m_coder.code(s)];
-                brightness[x] = static_cast<float>(a.brightness);
-                saturation[x] = static_cast<float>(a.saturation);
+            using T = typename std::decay_t<decltype(values)>::value_type;
+            if constexpr (kTabulated<T>) {
+                constexpr int kLowest = std::numeric_limits<T>::min(), kHighest = std::numeric_limits<T>::max();
+                m_ofSample.resize(static_cast<std::size_t>(kHighest - kLowest + 1));
+                constexpr int kPiece = 256;
+                parallelFor(m_ofSample.size() / kPiece, [&](std::size_t piece) {
+                    Latest latest;
+                    for (std::size_t i = piece * kPiece; i < (piece + 1) * kPiece; ++i)
+                        m_ofSample[i] = pairAt(m_volume.intensityOfValue(kLowest + static_cast<int>(i)), latest);
+                });
+            }
+        },
+        m_volume.samples());
+}
+
+/// The bin [index, index + 1) / kBins. Whether its colours lie on a line is asked at a few points, and on both sides of
+/// every place where features or colours may change.
+AppearanceReader::Bin AppearanceReader::binAt(int index) const {
+    const double lower = static_cast<double>(index) / kBins;
+    const double upper = index + 1 < kBins ? std::nextafter(static_cast<double>(index + 1) / kBins, 0.0) : 1.0;
+    const Appearance a = atIntensity(lower), b = atIntensity(upper);
+    const double db = b.brightness - a.brightness, ds = b.saturation - a.saturation;
+    const auto bends = [&](double s) {
+        const Appearance o = atIntensity(s);
+        const double t = s * kBins - index;
+        return std::abs(o.brightness - (a.brightness + t * db)) > kBinTolerance ||
+               std::abs(o.saturation - (a.saturation + t * ds)) > kBinTolerance;
+    };
+    bool linear = !(bends(lower + 0.25 / kBins) || bends(lower + 0.5 / kBins) || bends(lower + 0.75 / kBins));
+    for (const double s : m_breaks)
+        if (s > lower && s <= upper) linear = linear && !bends(s) && !bends(std::nextafter(s, 0.0));
+    Bin bin{static_cast<float>(a.brightness), static_cast<float>(a.saturation), static_cast<float>(db),
+            static_cast<float>(ds)};
+    if (!linear) bin.brightnessStep = std::numeric_limits<float>::quiet_NaN();
+    return bin;
+}
+
+void AppearanceReader::tabulateIntensities() {
+    m_ofIntensity.resize(kBins);
+    constexpr int kPiece = 256;
+    parallelFor(kBins / kPiece, [&](std::size_t piece) {
+        for (std::size_t i = piece * kPiece; i < (piece + 1) * kPiece; ++i)
+            m_ofIntensity[i] = binAt(static_cast<int>(i));
+    });
+}
+
+void AppearanceReader::readRow(std::size_t first, int count, Pair* out) const {
+    std::visit(
+        [&](const auto& values) {
+            using T = typename std::decay_t<decltype(values)>::value_type;
+            const T* row = values.data() + first;
+            if constexpr (kTabulated<T>) {
+                const Pair* table = m_ofSample.data();
+                constexpr int kLowest = std::numeric_limits<T>::min();
+                for (int x = 0; x < count; ++x) out[x] = table[row[x] - kLowest];
+            } else {
+                Latest latest;
+                for (int x = 0; x < count; ++x) {
+                    const double s = m_volume.intensityOfValue(static_cast<double>(row[x]));
+                    if (m_ofIntensity.empty() || std::isnan(s)) {
+                        out[x] = pairAt(s, latest);
+                        continue;
+                    }
+                    const double scaled = s * kBins;
+                    const int index = std::min(static_cast<int>(scaled), kBins - 1);
+                    const Bin& bin = m_ofIntensity[static_cast<std::size_t>(index)];
+                    if (std::isnan(bin.brightnessStep)) {
+                        out[x] = pairAt(s, latest);
+                        continue;
+                    }
+                    const float t = static_cast<float>(scaled - index);
+                    out[x] = std::bit_cast<Pair>(std::array<float, 2>{bin.brightness + t * bin.brightnessStep,
+                                                                      bin.saturation + t * bin.saturationStep});
+                }
             }
         },
         m_volume.samples());
@@ -61,6 +167,19 @@ void validate(const SaliencyOptions& o) {
         throw UsageError("sigma lies in (0, 8] reference lengths", "saliency", "give --sigma such a value");
     if (!std::isfinite(o.w1) || !std::isfinite(o.w2) || o.w1 < 0 || o.w2 < 0)
         throw UsageError("w1 and w2 are finite and not negative", "saliency", "correct --w1, --w2");
+}
+
+TransferFunction colorsOf(const TransferFunction& tf) {
+    const std::vector<ControlPoint> points = tf.pointsWithEnds();
+    TransferFunction colors;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const ControlPoint p{points[i].x, 0.0, points[i].color, false, {}};
+        const bool inner = i > 0 && i + 1 < points.size();
+        if (inner && onLine(colors.points.back(), p, points[i + 1])) continue;
+        colors.points.push_back(p);
+    }
+    for (const Feature& f : tf.features) colors.features.push_back({{}, f.a, f.b, {}, {}});
+    return colors;
 }
 
 WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options) {

@@ -1,12 +1,11 @@
 // The attributes that saliency is made of, voxel by voxel (MEASURES §5).
 #pragma once
 
-#include <span>
+#include <cstdint>
 #include <vector>
 
 #include "saliency/lch.h"
 #include "saliency/saliency_field.h"
-#include "volume/intensity_grid.h"
 
 namespace pellucid {
 
@@ -16,18 +15,37 @@ public:
     AppearanceReader(const Volume& volume, const TransferFunction& tf, const Rgb& background);
 
     Appearance at(std::size_t voxel) const { return atIntensity(m_volume.intensity(voxel)); }
-    /// The nx values of the row that starts at voxel index `first`.
-    void readRow(std::size_t first, std::span<float> brightness, std::span<float> saturation) const;
+
+    /// Brightness and saturation as two floats, in this order in memory.
+    using Pair = std::uint64_t;
+    /// The `count` voxels from index `first` on: samples of up to 16 bits through a table of all their values; others,
+    /// where the volume is large, through a table of intensities that is right to 1e-5.
+    void readRow(std::size_t first, int count, Pair* out) const;
 
 private:
+    struct Bin {
+        float brightness, saturation;         ///< at the bin's lower end
+        float brightnessStep, saturationStep; ///< over the bin; NaN: not linear there, evaluate
+    };
+    /// The latest intensity and colour that were asked for: neighbouring values often have the same.
+    struct Latest {
+        double intensity = -1;
+        Rgb color{-1, -1, -1};
+        Pair ofIntensity = 0, ofColor = 0;
+    };
     Appearance atIntensity(double s) const;
+    Pair pairAt(double s, Latest& latest) const;
+    void tabulateSamples();
+    void tabulateIntensities();
+    Bin binAt(int index) const;
 
     const Volume& m_volume;
     TfSampler m_sampler;
     std::vector<Feature> m_features;
     Appearance m_background;
-    IntensityCoder m_coder;
-    std::vector<Appearance> m_ofCode; ///< per code; only where codes are exact
+    std::vector<double> m_breaks; ///< where features or colours may change
+    std::vector<Pair> m_ofSample; ///< by value, the lowest first; only for samples of 8 and 16 bits
+    std::vector<Bin> m_ofIntensity;
 };
 
 /// One direction of a truncated kernel: the voxels (i+dx, j+dy, k+dz), |dx| ≤ halfWidth, of the ball around (i,j,k).

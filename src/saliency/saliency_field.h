@@ -28,6 +28,10 @@ struct SaliencyOptions {
 /// rounding, get weights of exactly 0.
 WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options);
 
+/// The part of `tf` that saliency depends on: two with equal parts have the same fields. Opacities and names are gone,
+/// and points between which no colour bends, such as those that scaling a feature inserts.
+TransferFunction colorsOf(const TransferFunction& tf);
+
 /// Depends on the colours and features of `tf`, never on its opacities. Throws Error for options out of range.
 WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options = {},
                             const JobControl& job = {});

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "saliency/ball_plan.h"
 #include "saliency/lch.h"
+#include "saliency/saliency_direct.h"
 #include "saliency/saliency_field.h"
 #include "support/volumes.h"
 #include "volume/error.h"
@@ -24,6 +26,11 @@ double largestDifference(const WeightFields& a, const WeightFields& b, int attri
 
 /// Weights are stored in steps of 1.5e-5 and 2e-5: they are off by half of that.
 constexpr double kRounding = 1.1e-5;
+
+void checkAgainst(const WeightFields& expected, const WeightFields& fields) {
+    CHECK(largestDifference(expected, fields, 0) < 1e-4);
+    CHECK(largestDifference(expected, fields, 1) < 1e-4);
+}
 
 } // namespace
 
@@ -71,25 +78,159 @@ TEST_CASE("at the border weights are normalised over the neighbours inside", "[s
 TEST_CASE("the fast fields equal the direct sums", "[saliency]") {
     std::mt19937 random(7);
     for (const auto kernel : {SaliencyKernel::Thesis, SaliencyKernel::Narrow})
-        for (const double sigma : {0.6, 2.0, 3.3})
+        for (const double sigma : {0.4, 0.6, 2.0, 3.3, 8.0})
             for (const Vec3 spacing : {Vec3(1), Vec3(0.7, 1.1, 2.3), Vec3(2, 0.5, 1)}) {
                 const auto volume = roughVolume(random, {17, 21, 13}, spacing);
                 SaliencyOptions options{sigma, kernel, 1.0, 0.8, {0.2, 0.1, 0.4}};
                 const TransferFunction tf = tents(4);
-                const WeightFields fast = saliencyFields(*volume, tf, options),
-                                   slow = saliencyFieldsReference(*volume, tf, options);
-                CHECK(largestDifference(fast, slow, 0) < 1e-4);
-                CHECK(largestDifference(fast, slow, 1) < 1e-4);
+                const WeightFields slow = saliencyFieldsReference(*volume, tf, options);
+                checkAgainst(slow, saliencyFields(*volume, tf, options));
+                checkAgainst(slow, saliencyFieldsDirect(*volume, tf, options));
             }
 }
 
 TEST_CASE("integer volumes give the same fields through their table of colours", "[saliency]") {
     std::vector<std::int16_t> samples;
     for (int i = 0; i < 12 * 12 * 12; ++i) samples.push_back(static_cast<std::int16_t>(-300 + (i * 37) % 1000));
-    const Volume volume({{12, 12, 12}, Vec3(1), Vec3(0)}, Samples(samples));
-    const WeightFields fast = saliencyFields(volume, tents(3)), slow = saliencyFieldsReference(volume, tents(3));
-    CHECK(largestDifference(fast, slow, 0) < 1e-4);
-    CHECK(largestDifference(fast, slow, 1) < 1e-4);
+    const Geometry geometry{{12, 12, 12}, Vec3(1), Vec3(0)};
+    const Volume volume(geometry, Samples(samples));
+    checkAgainst(saliencyFieldsReference(volume, tents(3)), saliencyFields(volume, tents(3)));
+    // A window inside the range, bounds that are no integers, a missing value; and 8 bits with a sign.
+    const Volume window = Volume(geometry, Samples(samples), 33.0).withRange({-150.5, 420.25});
+    checkAgainst(saliencyFieldsReference(window, ramp(5)), saliencyFields(window, ramp(5)));
+    std::vector<std::int8_t> bytes;
+    for (const std::int16_t s : samples) bytes.push_back(static_cast<std::int8_t>(s / 8));
+    const Volume small(geometry, Samples(bytes));
+    checkAgainst(saliencyFieldsReference(small, tents(5)), saliencyFields(small, tents(5)));
+}
+
+TEST_CASE("large volumes of real numbers give the same fields through their table of intensities", "[saliency]") {
+    // More than 4·16384 voxels. Colours that bend, a step, a feature that begins between two of them, a thin one.
+    TransferFunction tf;
+    tf.points = {{0.1, 0.5, {1, 0, 0}, false, {}},      {0.3003, 0.5, {0.2, 0.9, 0.1}, false, {}},
+                 {0.3003, 0.5, {0, 0, 1}, false, {}},   {0.5, 0.5, {0.5, 0.5, 0.5}, false, {}},
+                 {0.5007, 0.5, {0, 1, 1}, false, {}},   {0.5008, 0.5, {1, 1, 0}, false, {}},
+                 {0.9, 0.5, {0.9, 0.1, 0.8}, false, {}}};
+    tf.features = {{"low", 0.05, 0.47, {}, {}}, {"thin", 0.5004, 0.50055, {}, {}}, {"high", 0.7123, 1, {}, {}}};
+    std::mt19937 random(10);
+    auto volume = roughVolume(random, {48, 44, 40}, Vec3(1));
+    checkAgainst(saliencyFieldsReference(*volume, tf), saliencyFields(*volume, tf));
+    // Values drawn where the table is hardest.
+    std::uniform_real_distribution<double> near(0.4995, 0.5015);
+    volume = volumeFrom(geometryOf({48, 44, 40}), [&](int, int, int) { return near(random); });
+    checkAgainst(saliencyFieldsReference(*volume, tf), saliencyFields(*volume, tf));
+}
+
+TEST_CASE("regions of one colour that are left out hold what the sums would", "[saliency]") {
+    // Wider, deeper and longer than a tile (192 × 32 × 96), with large regions of one colour: a few balls of other
+    // colours, at the sides of the volume and of tiles, and some lone voxels.
+    struct Ball {
+        Vec3 at;
+        double radius, value;
+    };
+    const std::vector<Ball> balls{{{0, 0, 0}, 5, 0.4},      {{199, 69, 109}, 7, 0.6}, {{104, 35, 55}, 9, 0.15},
+                                  {{96, 31, 95}, 3, 0.85},  {{32, 34, 97}, 0.5, 0.5}, {{111, 2, 20}, 0.5, 0.5},
+                                  {{112, 60, 21}, 0.5, 0.5}};
+    const auto volume = volumeFrom(geometryOf({200, 70, 110}), [&](int i, int j, int k) {
+        double s = i < 150 ? 0.5 : 0.05; // a tent, and the gap in front of the first
+        for (const Ball& b : balls)
+            if (glm::length(Vec3(i, j, k) - b.at) <= b.radius) s = b.value;
+        return s;
+    });
+    for (const double w2 : {1.0, 0.25})
+        for (const double sigma : {1.0, 2.0, 4.5}) {
+            SaliencyOptions options{sigma, SaliencyKernel::Thesis, 1.0, w2, {0.1, 0.3, 0.2}};
+            checkAgainst(saliencyFieldsDirect(*volume, tents(3), options), saliencyFields(*volume, tents(3), options));
+        }
+}
+
+TEST_CASE("the loops for every instruction set make the same weights", "[saliency]") {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> unit(0, 1);
+    constexpr int kFloats = 2 * (16 + 64 + 16), kFrom = 32, kTo = 160;
+    for (const double sigma : {2.0, 5.0}) {
+        SaliencyOptions options;
+        options.sigma = sigma;
+        const BallPair balls = ballsOf(geometryOf({100, 100, 100}, Vec3(1, 1, 1.5)), options);
+        const BallPlan plan(balls, kFloats);
+        const auto reachY = static_cast<std::size_t>(balls[1].reach(1)),
+                   reachZ = static_cast<std::size_t>(balls[1].reach(2));
+        std::vector<std::vector<float>> rows(2 * reachZ + 2 * reachY + 1, std::vector<float>(kFloats));
+        for (auto& row : rows)
+            for (float& v : row) v = unit(random);
+        const std::vector<float> centre(kFloats, 900.0f), surround(kFloats, 100.0f);
+        std::vector<std::vector<std::uint32_t>> results;
+        for (const BallSumsKernel* kernel : ballSumsKernels()) {
+            // Row y + dy of slice z + dz is rows[reachY + reachZ + dy + dz]: any will do.
+            const auto floats = static_cast<std::size_t>(plan.sums().zSumCount) * kFloats;
+            std::vector<std::vector<float>> zSums(2 * reachY + 1, std::vector<float>(floats));
+            std::vector<const float*> of(2 * reachZ + 1), sums;
+            for (std::size_t y = 0; y < zSums.size(); ++y) {
+                for (std::size_t z = 0; z < of.size(); ++z) of[z] = rows[y + z].data();
+                kernel->sumAlongZ(plan.sums(), of.data() + reachZ, kFrom, kTo, zSums[y].data());
+                sums.push_back(zSums[y].data());
+            }
+            std::vector<float> scratch(static_cast<std::size_t>(plan.sums().profileCount) * kFloats);
+            auto& packed = results.emplace_back(kFloats / 2);
+            kernel->packRow(plan.sums(), sums.data() + reachY, {centre.data(), surround.data()}, kFrom, kTo,
+                            scratch.data(), packed.data());
+        }
+        std::size_t different = 0, largest = 0;
+        for (const auto& result : results)
+            for (std::size_t x = kFrom / 2; x < kTo / 2; ++x)
+                for (const int shift : {0, 16}) {
+                    const auto a = static_cast<int>(result[x] >> shift & 0xffffu),
+                               b = static_cast<int>(results.back()[x] >> shift & 0xffffu);
+                    largest = std::max(largest, static_cast<std::size_t>(b));
+                    if (std::abs(a - b) > 1) ++different; // sums in another order: another rounding
+                }
+        CHECK(different == 0);
+        CHECK(largest > 100);
+    }
+}
+
+TEST_CASE("greys are nowhere salient by their saturation", "[saliency]") {
+    std::mt19937 random(12);
+    const auto volume = roughVolume(random, {20, 20, 20}, Vec3(1));
+    TransferFunction tf = ramp(4);
+    for (ControlPoint& p : tf.points) p.color = {p.x, p.x, p.x};
+    const WeightFields fields = saliencyFields(*volume, tf);
+    double brightness = 0;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        brightness += static_cast<double>(fields.brightness(i));
+        CHECK(fields.saturation(i) == 0);
+    }
+    CHECK(brightness > 0);
+}
+
+TEST_CASE("what saliency depends on are colours and the bounds of features", "[saliency]") {
+    const TransferFunction tf = ramp(4);
+    // Scaling half of a ramp inserts points at the feature's end, between which no colour bends.
+    TransferFunction half = tf;
+    half.features = {{"half", 0.3, 0.6, {}, {}}};
+    const TransferFunction scaled = withFeatureOpacities(half, {0.7});
+    REQUIRE(scaled.points.size() > half.points.size());
+    CHECK(colorsOf(scaled) == colorsOf(half));
+    std::mt19937 random(13);
+    const auto volume = roughVolume(random, {20, 20, 20}, Vec3(1));
+    checkAgainst(saliencyFields(*volume, half), saliencyFields(*volume, colorsOf(half)));
+
+    TransferFunction renamed = half;
+    renamed.features[0].name = "other";
+    CHECK(colorsOf(renamed) == colorsOf(half));
+    TransferFunction moved = half;
+    moved.features[0].b = 0.61;
+    CHECK_FALSE(colorsOf(moved) == colorsOf(half));
+    TransferFunction recoloured = half;
+    recoloured.points[1].color.g += 0.01;
+    CHECK_FALSE(colorsOf(recoloured) == colorsOf(half));
+    // A step of colour stays, in its order.
+    TransferFunction step = half;
+    step.points = {{0.5, 0, {1, 0, 0}, false, {}}, {0.5, 0, {0, 1, 0}, false, {}}};
+    TransferFunction turned = step;
+    std::swap(turned.points[0].color, turned.points[1].color);
+    CHECK_FALSE(colorsOf(step) == colorsOf(turned));
+    CHECK(colorsOf(colorsOf(step)) == colorsOf(step));
 }
 
 TEST_CASE("opacity plays no part in saliency, colour does", "[saliency]") {
@@ -116,13 +257,16 @@ TEST_CASE("invalid voxels take the background's colour", "[saliency]") {
 
 TEST_CASE("saliency has the same bits for any number of threads", "[saliency]") {
     std::mt19937 random(9);
-    const auto volume = roughVolume(random, {30, 40, 50}, Vec3(1));
+    const auto volume = roughVolume(random, {210, 70, 40}, Vec3(1)); // six tiles
     setThreadCount(1);
     const WeightFields one = saliencyFields(*volume, tents(3));
     setThreadCount(3);
     const WeightFields three = saliencyFields(*volume, tents(3));
+    setThreadCount(8);
+    const WeightFields eight = saliencyFields(*volume, tents(3));
     setThreadCount(0);
     CHECK(one == three);
+    CHECK(three == eight);
 }
 
 TEST_CASE("impossible options are refused, and a stop is heard", "[saliency]") {

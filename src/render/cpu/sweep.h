@@ -72,9 +72,9 @@ struct SweepInput {
     double raySpacing = 1;                   ///< of the rays, in voxels; perspective: at most
     double hu = 1, hv = 1, hw = 1;           ///< spacing in d0
     int stepsPerSlice = 1;                   ///< samples of a line per slice distance
-    int ownSteps = 4;              ///< samples per slice distance of the lines of voxels that are followed all the way
-    float tolerance = 1;           ///< transmittance: where neighbouring rays differ by more, voxels follow their own line
-    int ownSlices = 1; ///< slice distances right in front of voxels followed along lines of their own
+    int ownSteps = 4;    ///< samples per slice distance of the lines of voxels that are followed all the way
+    float tolerance = 1; ///< transmittance: where neighbouring rays differ by more, voxels follow their own line
+    int ownSlices = 1;   ///< slice distances right in front of voxels followed along lines of their own
 };
 
 /// A part of a sweep that needs no other: the voxels of the slices [begin, end) that lie between the rows of rays

@@ -120,7 +120,8 @@ class Sweeper {
 public:
     Sweeper(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums)
         : m_in(in), m_piece(piece), m_scratch(scratch), m_sums(sums), m_b0(piece.firstRow), m_b1(piece.lastRow),
-          m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5), m_start(floorInt(m_startW * in.stepsPerSlice)) {
+          m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5), m_start(floorInt(m_startW * in.stepsPerSlice)),
+          m_follows(in.tolerance < 1e30f) {
         m_accumulator = scratch.get<float>(SweepScratch::Accumulator, accumulatorSize());
         for (std::size_t i = 0; i < accumulatorSize(); ++i) m_accumulator[i] = 0.0f;
         for (int lane = 0; lane < K; ++lane) m_limit[lane] = in.exhaustedDepth / in.depthUnit[lane];
@@ -551,28 +552,34 @@ private:
         for (int i = at; i == at || sampleW(i) < k; ++i) m_near.planes[m_near.count++] = ownPlane(sampleW(i), v, k);
     }
     /// From where rays start.
-    void startFar(int v, int k) {
+    const OwnLines& farLines(const VoxelBlock& block) {
+        if (m_far.ready) return m_far;
         m_far.ready = true;
         m_far.count = 0;
         const int first = floorInt(m_startW * m_in.ownSteps);
-        for (int i = first; i == first || i < k * m_in.ownSteps; ++i)
-            m_far.planes[m_far.count++] = ownPlane(i == first ? m_startW : static_cast<double>(i) / m_in.ownSteps, v, k);
+        for (int i = first; i == first || i < block.k * m_in.ownSteps; ++i)
+            m_far.planes[m_far.count++] =
+                ownPlane(i == first ? m_startW : static_cast<double>(i) / m_in.ownSteps, block.v, block.k);
+        return m_far;
     }
 
-    double voxelLength(int u, int v, int k) const {
-        if (!m_in.perspective) return lengthOf(m_in.slopeU, m_in.slopeV);
-        const double away = k - m_in.eyeW;
-        return lengthOf((u - m_in.eyeU) / away, (v - m_in.eyeV) / away);
+    /// Of the voxels' own lines, d0 per slice.
+    Vec8 voxelLengths(const VoxelBlock& block) const {
+        if (!m_in.perspective) return Vec8{} + static_cast<float>(lengthOf(m_in.slopeU, m_in.slopeV));
+        const double perSlice = 1 / (block.k - m_in.eyeW), v = (block.v - m_in.eyeV) * perSlice * m_in.hv;
+        const Vec8 u = static_cast<float>((block.u - m_in.eyeU) * perSlice * m_in.hu) +
+                       kIota * static_cast<float>(perSlice * m_in.hu);
+        Vec8 length = u * u + static_cast<float>(m_in.hw * m_in.hw + v * v);
+        for (int n = 0; n < kWide; ++n) length[n] = __builtin_sqrtf(length[n]);
+        return length;
     }
 
     /// Calls body(stretch) for each stretch of the voxels' own lines that is not transparent.
     template <class Body>
     void alongOwnLines(const VoxelBlock& block, const OwnLines& own, const Body& body) const {
-        const double first = voxelLength(block.u, block.v, block.k),
-                     last = m_in.perspective ? voxelLength(block.u + kWide - 1, block.v, block.k) : first;
-        const Vec8 length = static_cast<float>(first) + kIota * static_cast<float>((last - first) / (kWide - 1)),
-                   zero = {};
-        const double end = block.k - 1 / (first + last); // d0/2 in front of the voxels
+        const Vec8 length = voxelLengths(block), zero = {}, ends = static_cast<float>(block.k) - 0.5f / length;
+        double end = static_cast<double>(ends[0]); // d0/2 in front of the voxels: of the one where that is farthest off
+        for (int n = 1; n < kWide; ++n) end = static_cast<double>(ends[n]) > end ? static_cast<double>(ends[n]) : end;
         const auto opaqueAt = [&](const OwnPlane& p) {
             return opaqueBetween(p.opaque, p.lines.u(block.u), p.lines.u(block.u + kWide - 1));
         };
@@ -592,9 +599,9 @@ private:
             } else {
                 if (!known) before = at(p0);
                 const Samples now = at(p1);
-                Vec8 path = isLast ? length * static_cast<float>(block.k - p0.w) - 0.5f
-                                   : length * static_cast<float>(p1.w - p0.w);
-                path = path > zero ? path : zero;
+                const Vec8 upTo = Vec8{} + static_cast<float>(p1.w),
+                           reach = (upTo < ends ? upTo : ends) - static_cast<float>(p0.w);
+                Vec8 path = length * (reach > zero ? reach : zero);
                 if (!inside(p0) || !inside(p1)) path *= insideShare(p0.lines, p1.lines, block.u, block.v);
                 body(stretch(before, now, path));
                 before = now;
@@ -625,16 +632,20 @@ private:
                    far0 = gathered(block.far, block.ray), far1 = gathered(block.far + 1, block.ray);
         const Vec8 near = near0 + block.fraction * (near1 - near0), far = far0 + block.fraction * (far1 - far0);
         Vec8 depth = near + block.fractionV * (far - near);
-        Int8 listed = {};
-        for (int i = 0; i < block.listed; ++i) listed[block.list[i]] = -1;
-        const bool follow = !none(disagree(near0, near1, far0, far1, Vec8{} + m_in.depthUnit[0]) & listed);
-        if (follow) {
-            depth = Vec8{};
-            if (!m_far.ready) startFar(block.v, block.k);
+        const auto follow = [&](Vec8& sum) {
+            return [&sum, this](const Stretch& s) {
+                sum += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
+            };
+        };
+        alongOwnLines(block, m_near, follow(depth));
+        if (m_follows) {
+            Int8 listed = {};
+            for (int i = 0; i < block.listed; ++i) listed[block.list[i]] = -1;
+            if (!none(disagree(near0, near1, far0, far1, Vec8{} + m_in.depthUnit[0]) & listed)) {
+                depth = Vec8{};
+                alongOwnLines(block, farLines(block), follow(depth));
+            }
         }
-        alongOwnLines(block, follow ? m_far : m_near, [&](const Stretch& s) {
-            depth += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
-        });
         Vec8 alpha = {}, weights[2] = {};
         Int8 feature = Int8{} + kTransparent;
         for (int i = 0; i < block.listed; ++i) {
@@ -663,13 +674,19 @@ private:
         }
     }
 
+    /// Lanes in which a voxel of this code is seen at all.
+    Int8 opaqueLanes(std::uint16_t code) const {
+        if (kMode == SweepMode::Jacobian) return Int8{} - (m_in.alphaTable[static_cast<std::size_t>(code) * 2] > 0);
+        return load(m_in.alphaTable + static_cast<std::size_t>(code) * K) > Vec8{};
+    }
+
     void gatherLanes(const VoxelBlock& block) {
         // The four rays around each voxel.
         const Vec8 f = block.fraction;
         const float fv = block.fractionV;
         const Vec8 near0 = (1.0f - f) * (1.0f - fv), near1 = f * (1.0f - fv), far0 = (1.0f - f) * fv, far1 = f * fv;
-        Vec8 depth[kWide][kVectors];
-        Int8 disagreed = {};
+        Vec8 depth[kWide][kVectors], own[kWide][kVectors];
+        Int8 apart = {}; // lanes in which any voxel's rays disagree
         for (int i = 0; i < block.listed; ++i) {
             const int n = block.list[i];
             const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(block.ray[n]) * K;
@@ -678,22 +695,31 @@ private:
                 const float* far = block.far + ray + part * kWide;
                 const Vec8 d0 = load(near), d1 = load(near + K), d2 = load(far), d3 = load(far + K);
                 depth[n][part] = near0[n] * d0 + near1[n] * d1 + far0[n] * d2 + far1[n] * d3;
-                if (part == 0) disagreed |= disagree(d0, d1, d2, d3, load(m_lightUnit));
+                if (part > 0 || !m_follows) continue;
+                apart |= disagree(d0, d1, d2, d3, load(m_lightUnit)) & opaqueLanes(block.codes[n]);
             }
         }
-        const bool follow = !none(disagreed);
-        if (follow) {
+        const auto follow = [&](Vec8(*sum)[kVectors]) {
+            return [&, sum](const Stretch& s) {
+                for (int i = 0; i < block.listed; ++i) {
+                    const int n = block.list[i];
+                    for (int part = 0; part < kVectors; ++part)
+                        sum[n][part] += s.weight[n] * between(s.low[n], s.high[n], part);
+                }
+            };
+        };
+        alongOwnLines(block, m_near, follow(depth));
+        if (m_follows && !none(apart)) {
+            if (kMode == SweepMode::Jacobian) apart = Int8{} - 1; // derivatives go with their depth
+            for (auto& voxel : own)
+                for (Vec8& part : voxel) part = Vec8{};
+            alongOwnLines(block, farLines(block), follow(own));
             for (int i = 0; i < block.listed; ++i)
-                for (int part = 0; part < kVectors; ++part) depth[block.list[i]][part] = Vec8{};
-            if (!m_far.ready) startFar(block.v, block.k);
+                for (int part = 0; part < kVectors; ++part) {
+                    const int n = block.list[i];
+                    depth[n][part] = apart ? own[n][part] : depth[n][part];
+                }
         }
-        alongOwnLines(block, follow ? m_far : m_near, [&](const Stretch& s) {
-            for (int i = 0; i < block.listed; ++i) {
-                const int n = block.list[i];
-                for (int part = 0; part < kVectors; ++part)
-                    depth[n][part] += s.weight[n] * between(s.low[n], s.high[n], part);
-            }
-        });
         for (int i = 0; i < block.listed; ++i) {
             const int n = block.list[i];
             const int feature = m_in.featureOfCode[block.codes[n]];
@@ -760,8 +786,9 @@ private:
     std::uint8_t* m_flags = nullptr; ///< [row][block]
     float m_limit[K];                ///< a lane at this depth, in units of the table, is exhausted
     float m_lightUnit[kWide];        ///< depthUnit of the lanes that are depths, else 0
-    OwnLines m_near; ///< from where the rays are to the voxels of a row
-    OwnLines m_far;  ///< from where rays start
+    OwnLines m_near;                 ///< from where the rays are to the voxels of a row
+    OwnLines m_far;                  ///< from where rays start
+    bool m_follows;                  ///< own lines all the way, where rays disagree
 };
 
 void sweepPiece(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums) {

@@ -1,0 +1,78 @@
+#include "saliency/saliency_direct.h"
+
+#include <atomic>
+#include <cstring>
+
+#include "saliency/slice_ring.h"
+#include "volume/parallel.h"
+
+namespace pellucid {
+
+namespace {
+
+/// The weights along x of every run of a ball, each run's own times its weight at (dy, dz).
+std::vector<std::vector<float>> runWeights(const BallKernel& ball) {
+    std::vector<std::vector<float>> all;
+    for (const KernelRun& run : ball.runs) {
+        std::vector<float>& weights = all.emplace_back();
+        for (int dx = -run.halfWidth; dx <= run.halfWidth; ++dx)
+            weights.push_back(static_cast<float>(ball.weight(dx, run.dy, run.dz)));
+    }
+    return all;
+}
+
+void sweepTile(const BallPair& balls, const std::array<std::vector<std::vector<float>>, 2>& weights,
+               const AppearanceReader& reader, const SaliencyOptions& options, const Tile& tile, std::ptrdiff_t stride,
+               WeightFields& fields) {
+    const Int3 dims = fields.dims();
+    const int reach = balls[1].reach(2), width = tile.x1 - tile.x0;
+    SliceRing ring(reader, dims, tile, balls[1], stride);
+    RowScaler scaler(balls, dims, tile, stride, options, fields);
+    const AlignedArray<std::uint32_t> packed(static_cast<std::size_t>(stride / 2));
+    std::array<std::vector<DirectRun>, 2> runs;
+    for (int z = std::max(0, tile.z0 - reach); z < std::min(dims.z, tile.z0 + reach); ++z) ring.load(z);
+    for (int z = tile.z0; z < tile.z1; ++z) {
+        if (z + reach < dims.z) ring.load(z + reach);
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            for (std::size_t b = 0; b < 2; ++b) {
+                runs[b].clear();
+                for (std::size_t r = 0; r < weights[b].size(); ++r) {
+                    const KernelRun& run = balls[b].runs[r];
+                    runs[b].push_back({ring.row(y + run.dy, z + run.dz), run.halfWidth, weights[b][r].data()});
+                }
+            }
+            const DirectRun* const first[2] = {runs[0].data(), runs[1].data()};
+            const int counts[2] = {static_cast<int>(runs[0].size()), static_cast<int>(runs[1].size())};
+            const int blocks = (width + kBlockVoxels - 1) / kBlockVoxels;
+            ballSumsKernel().packRowDirect(first, counts, scaler.at(y, z), 2 * kHaloVoxels,
+                                           2 * (kHaloVoxels + blocks * kBlockVoxels), packed.get());
+            const std::size_t voxel =
+                static_cast<std::size_t>(tile.x0) +
+                static_cast<std::size_t>(dims.x) *
+                    (static_cast<std::size_t>(y) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(z));
+            std::memcpy(fields.data() + voxel, packed.get() + kHaloVoxels,
+                        static_cast<std::size_t>(width) * sizeof(std::uint32_t));
+        }
+    }
+}
+
+} // namespace
+
+WeightFields saliencyFieldsDirect(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options,
+                                  const JobControl& job) {
+    validate(options);
+    const BallPair balls = ballsOf(volume.geometry(), options);
+    const Tiling tiling(volume.dims(), balls);
+    const std::array weights{runWeights(balls[0]), runWeights(balls[1])};
+    const AppearanceReader reader(volume, tf, options.background);
+    WeightFields fields = emptyWeightFields(volume.dims(), options);
+    std::atomic<std::size_t> done = 0;
+    parallelFor(tiling.count(), [&](std::size_t i) {
+        job.throwIfStopped();
+        sweepTile(balls, weights, reader, options, tiling.tile(i), tiling.stride(), fields);
+        job.report(static_cast<double>(++done) / static_cast<double>(tiling.count()));
+    });
+    return fields;
+}
+
+} // namespace pellucid
