@@ -5,6 +5,7 @@
 
 #include "render/gl/engines.h"
 #include "support/disagreement.h"
+#include "support/orbit_check.h"
 #include "support/random_cases.h"
 
 using namespace pellucid;
@@ -40,4 +41,9 @@ TEST_CASE("the gl engine keeps the tolerances of MEASURES on 50 random cases", "
         CHECK(median(visibility[q]) <= kQualities[q].second.median);
         CHECK(median(vws[q]) <= kQualities[q].second.median);
     }
+}
+
+TEST_CASE("W does not jump where the gl engine changes its sweep axis", "[orbit]") {
+    if (!testing::haveGl()) return;
+    checkOrbits([](auto volume) { return makeGlEngine(volume); }, PELLUCID_SHARED_DIR);
 }
