@@ -3,6 +3,7 @@
 //   out  o_color   premultiplied sRGB and opacity of the part of the ray in slab and box; blended under what is there
 #include "include/opacity.glsl"
 #include "include/volume.glsl"
+#include "include/brick.glsl"
 #include "include/tf_segment.glsl"
 
 layout(location = 1) uniform vec4 u_pictureFromFragment; // normalized picture coordinates: xy scale, zw offset
@@ -13,6 +14,8 @@ layout(location = 4) uniform vec2 u_tangents;     // perspective: tangents of th
 layout(location = 5) uniform float u_perD0;       // 1 / d0
 layout(location = 6) uniform vec3 u_clipLo;       // part of the box that is drawn, t
 layout(location = 7) uniform vec3 u_clipHi;
+layout(location = 13) uniform vec3 u_brickLo; // part of the box that the texture stands for: segments belong to the
+layout(location = 14) uniform vec3 u_brickHi; // brick that holds their middle
 
 #ifdef SHADING
 #include "include/shading.glsl"
@@ -33,10 +36,12 @@ void main() {
     float from = max(max(enter.x, enter.y), max(enter.z, v_slab.x));
     float to = min(min(leave.x, leave.y), min(leave.z, v_slab.y));
     if (!(to > from)) discard;
+    vec3 middle = origin + 0.5 * (from + to) * direction;
+    if (any(lessThan(middle, u_brickLo)) || any(greaterThanEqual(middle, u_brickHi))) discard;
 
     // The intensity goes linearly from one end to the other: then what the slab absorbs and emits is exact, and thin
     // tents leave no bands.
-    vec2 front = codeAndWeight(origin + from * direction), back = codeAndWeight(origin + to * direction);
+    vec2 front = codeInBrick(origin + from * direction), back = codeInBrick(origin + to * direction);
     float share = 0.5 * (front.y + back.y);
     if (front.y == 0.0) front.x = back.x;
     if (back.y == 0.0) back.x = front.x;
@@ -46,7 +51,7 @@ void main() {
     float alpha = opacityOfStep(mean.a * share, steps);
     vec3 color = mean.rgb / mean.a;
 #ifdef SHADING
-    color = shaded(color, origin + 0.5 * (from + to) * direction, direction);
+    color = shaded(color, middle, direction);
 #endif
     o_color = vec4(color * alpha, alpha);
 }

@@ -1,60 +1,47 @@
-// visibility_gather.comp: v = T * alpha of every voxel of some planes (MEASURES 4)
-//   in   u_depth          optical depth per ray and layer, as visibility_march.comp leaves it
-//   out  o_visibility     per voxel and candidate, a fastest, then b, then c - u_planes.x; 0 for voxels of other sweeps
-// T is taken d0/2 in front of the voxel's centre, interpolated between the four rays around the voxel's own. Where they
-// disagree (edges of the box and of what is opaque) the voxel's own ray is followed instead.
+// visibility_gather.comp: v = T * alpha of every voxel of some planes (MEASURES 4), or its sums per feature
+//   in   light per ray and plane, as visibility_march.comp leaves it
+//   out  FIELD: v per voxel, a fastest, then b, then c - u_planes.x; 0 for voxels of other sweeps
+//        else: per work group, feature and item the sum over its voxels; items are v of each candidate, then v times
+//        the weight of brightness, then of saturation, in the 16-bit units of the weights
+// T is taken d0/2 in front of the voxel's centre. The last u_own.x voxel planes in front of it are followed along the
+// voxel's own line; the light that arrives there is interpolated between the four rays around. Where these disagree
+// (edges of what is opaque) the line is followed further, twice as far each time, for at most u_own.y planes.
+#include "include/candidates.glsl"
 #include "include/opacity.glsl"
 #include "include/volume.glsl"
-#include "include/tf.glsl"
 #include "include/rays.glsl"
-#include "include/candidates.glsl"
-#include "include/optical_depth.glsl"
+#include "include/resident.glsl"
+#include "include/ray_depth.glsl"
 
+const int kSide = 8, kGroup = kSide * kSide;
+const int kPlanesPerGroup = 8; // C++: the same in visibility_gl.cpp
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 2) uniform sampler3D u_depth;
-layout(binding = 0, std430) writeonly buffer Visibility { LANES o_visibility[]; };
-layout(location = 12) uniform ivec2 u_planes;  // first c, one past the last
-layout(location = 13) uniform ivec4 u_pyramid; // x: world axis of this sweep's pyramid, y: its sign; x = -1: all voxels
-layout(location = 14) uniform vec3 u_eyeInVoxels;   // in the volume's own axes
-layout(location = 15) uniform vec3 u_volumeSpacing; // the same, units of d0
-layout(location = 16) uniform float u_tolerance;    // of T, between neighbouring rays
+layout(binding = 0, std430) readonly buffer Light { LANE i_light[]; };
+layout(location = 20) uniform ivec2 u_planes;  // first c, one past the last
+layout(location = 21) uniform int u_ring;      // layers of i_light
+layout(location = 23) uniform ivec2 u_own;
+layout(location = 24) uniform float u_tolerance; // of T, between neighbouring rays
+layout(location = 25) uniform ivec4 u_pyramid; // x: volume's axis of this sweep's pyramid, y: its sign; x = -1: all voxels
+layout(location = 26) uniform vec3 u_eyeInBox; // in voxels of the resident box
+
+#ifdef FIELD
+layout(binding = 5, std430) writeonly buffer Visibility { float o_visibility[]; };
+#else
+#include "include/feature_sums.glsl"
+#endif
 
 // Every voxel belongs to exactly one pyramid: that of the largest component of its direction from the eye.
-bool inPyramid(vec3 voxel) {
+bool inPyramid(ivec3 voxel) {
     if (u_pyramid.x < 0) return true;
-    vec3 d = (voxel - u_eyeInVoxels) * u_volumeSpacing;
+    vec3 d = vec3(voxel) - u_eyeInBox;
     vec3 m = abs(d);
     int axis = m.x >= m.y && m.x >= m.z ? 0 : (m.y >= m.z ? 1 : 2);
     return axis == u_pyramid.x && (d[axis] > 0.0 ? 1 : -1) == u_pyramid.y;
 }
 
-LANES depthAt(ivec2 pixel, int layer, float weight) {
-    LANES near = LANES_OF(texelFetch(u_depth, ivec3(pixel, layer), 0));
-    LANES far = LANES_OF(texelFetch(u_depth, ivec3(pixel, layer + 1), 0));
-    return mix(near, far, weight);
-}
-
-const float kDark = 10.0; // optical depth of a transmittance of 5e-5
-
-// The optical depth of a part of one ray.
-LANES marched(Ray ray, float from, float to, float perC) {
-    LANES depth = LANES(0.0);
-    int count = int(ceil((to - from) / u_slabs.y));
-    float width = (to - from) / float(max(count, 1));
-    for (int i = 0; i < count; ++i) { // toward the eye, so that it can end where nothing shines through any more
-        float middle = to - (float(i) + 0.5) * width;
-        depth += opticalDepthAt(lateral(ray, middle), middle) * (width * perC);
-        if (smallest(depth) > kDark) break;
-    }
-    return depth;
-}
-
-LANES depthInFrontOf(vec3 q) {
-    vec2 slope = u_eye.w > 0.5 ? (q.xy - u_eye.xy) / (q.z - u_eye.z) : u_shear;
-    Ray ray = Ray(q.xy + slope * (u_reference - q.z), slope);
-    float perC = lengthPerC(ray);
-    float c = q.z - 0.5 / perC;
-
+// What arrives along `ray` at the plane c, dimmed by `near` on its way on; returns how far the rays around disagree
+// about it.
+float interpolateLight(Ray ray, int c, LANE near[PACKS], out LANE light[PACKS]) {
     vec2 position = (ray.at - u_grid.xy) * u_grid.z;
     // Lattice points are hit exactly where the view is along an axis; rounding must not move off them.
     vec2 nearest = round(position);
@@ -62,48 +49,99 @@ LANES depthInFrontOf(vec3 q) {
     ivec2 p0 = clamp(ivec2(floor(position)), ivec2(0), u_rays - 1);
     ivec2 p1 = min(p0 + 1, u_rays - 1);
     vec2 w = clamp(position - vec2(p0), 0.0, 1.0);
+    if (w.x == 0.0) p1.x = p0.x;
+    if (w.y == 0.0) p1.y = p0.y;
 
-    float layer = (c - u_slabs.x) / u_slabs.y - float(u_layers.x);
-    int l = clamp(int(floor(layer)), 0, u_layers.y - u_layers.x - 1);
-    float wl = clamp(layer - float(l), 0.0, 1.0);
+    int layer = c % u_ring * u_rays.y;
+    ivec4 at = PACKS * (u_rays.x * (layer + ivec4(p0.y, p0.y, p1.y, p1.y)) + ivec4(p0.x, p1.x, p0.x, p1.x));
+    float disagreement = 0.0;
+    for (int p = 0; p < PACKS; ++p) {
+        LANE t00 = i_light[at.x + p], t10 = i_light[at.y + p], t01 = i_light[at.z + p], t11 = i_light[at.w + p];
+        LANE spread = max(max(t00, t10), max(t01, t11)) - min(min(t00, t10), min(t01, t11));
+        disagreement = max(disagreement, largest(spread * near[p]));
+        light[p] = near[p] * mix(mix(t00, t10, w.x), mix(t01, t11, w.x), w.y);
+    }
+    return disagreement;
+}
 
-    LANES d00 = depthAt(p0, l, wl);
-    LANES d10 = w.x > 0.0 ? depthAt(ivec2(p1.x, p0.y), l, wl) : d00;
-    LANES d01 = w.y > 0.0 ? depthAt(ivec2(p0.x, p1.y), l, wl) : d00;
-    LANES d11 = w.x > 0.0 && w.y > 0.0 ? depthAt(p1, l, wl) : (w.x > 0.0 ? d10 : d01);
-    LANES least = min(min(d00, d10), min(d01, d11));
-    LANES spread = max(max(d00, d10), max(d01, d11)) - least;
-    if (largest(spread * exp(-least)) > u_tolerance) return marched(ray, passageOf(ray, 2.0).enter, c, perC);
-    return mix(mix(d00, d10, w.x), mix(d01, d11, w.x), w.y);
+// The light that comes through to d0/2 in front of the voxel q.
+void lightAt(ivec3 q, out LANE light[PACKS]) {
+    vec2 slope = u_eye.w > 0.5 ? (vec2(q.xy) - u_eye.xy) / (float(q.z) - u_eye.z) : u_shear;
+    Ray ray = Ray(vec2(q.xy) + slope * (u_reference - float(q.z)), slope);
+    float enter = passageOf(ray, 2.0).enter;
+    float c = float(q.z) - 0.5 / lengthPerC(ray);
+    LANE depth[PACKS], near[PACKS], interpolated[PACKS];
+    for (int p = 0; p < PACKS; ++p) {
+        depth[p] = LANE(0.0);
+        light[p] = LANE(c > enter ? 0.0 : 1.0);
+    }
+    if (c <= enter) return;
+    Sample last = sampleAt(ray, c);
+    // Share of the answer that is left to what lies further on: it falls steadily with the disagreement, so that results
+    // do not hang on the last bits.
+    float left = 1.0;
+    for (int planes = u_own.x; left > 0.0; planes = min(2 * planes, u_own.y)) {
+        int plane = q.z - planes;
+        float to = max(enter, float(plane));
+        follow(ray, c, to, last, depth);
+        c = to;
+        for (int p = 0; p < PACKS; ++p) interpolated[p] = near[p] = exp(-depth[p]);
+        float share = left;
+        left = 0.0;
+        if (enter < float(plane) && !isDark(depth)) {
+            float disagreement = interpolateLight(ray, plane, near, interpolated);
+            if (planes < u_own.y) left = share * smoothstep(0.5 * u_tolerance, u_tolerance, disagreement);
+        }
+        for (int p = 0; p < PACKS; ++p) light[p] += (share - left) * interpolated[p];
+    }
+}
+
+// v of one voxel; false where it is 0.
+bool visibilityOf(ivec3 q, out ivec3 texel, out int code, out LANE visibility[PACKS]) {
+    for (int p = 0; p < PACKS; ++p) visibility[p] = LANE(0.0);
+    if (any(greaterThanEqual(q.xy, u_dims.xy)) || q.z >= u_planes.y) return false;
+    ivec3 voxel = voxelAt(q);
+    if (!inPyramid(voxel)) return false;
+    texel = voxel + texelShift(voxel);
+    vec2 content = texelFetch(u_volume, texel, 0).rg;
+#ifdef HAS_INVALID
+    if (content.g < 0.5) return false;
+#endif
+    code = int(content.r * 65535.0 + 0.5);
+    float entry = content.r * u_entriesPerCode;
+    if (i_opaqueBefore[cellOf(entry)] == i_opaqueBefore[cellOf(entry) + 1]) return false;
+    LANE own[PACKS];
+    float most = 0.0;
+    for (int p = 0; p < PACKS; ++p) {
+        own[p] = tauAt(entry, p);
+        most = max(most, largest(own[p]));
+    }
+    if (most <= 0.0) return false;
+    LANE light[PACKS];
+    lightAt(q, light);
+    for (int p = 0; p < PACKS; ++p) visibility[p] = light[p] * opacityOfDepth(own[p]);
+    return true;
 }
 
 void main() {
-    ivec3 index = ivec3(gl_GlobalInvocationID);
-    index.z += u_planes.x;
-    if (any(greaterThanEqual(index.xy, u_dims.xy)) || index.z >= u_planes.y) return;
-    vec3 q = vec3(index);
-    vec3 t = u_texFromQ * q + u_texOffset;
-    ivec3 voxel = ivec3(t * vec3(textureSize(u_volume, 0)));
-
-    LANES visibility = LANES(0.0);
-    if (inPyramid(vec3(voxel))) {
-        vec2 texel = texelFetch(u_volume, voxel, 0).rg;
-#ifdef HAS_INVALID
-        bool valid = texel.g > 0.5;
-#else
-        bool valid = true;
-#endif
-        LANES own = LANES_OF(tfEntry(texel.r));
-        if (valid && largest(own) > 0.0) {
-            LANES depth = depthInFrontOf(q);
-#if CANDIDATES == 4
-            vec4 alpha = vec4(opacityOfDepth(own.x), opacityOfDepth(own.y),
-                              opacityOfDepth(own.z), opacityOfDepth(own.w));
-#else
-            float alpha = opacityOfDepth(own);
-#endif
-            visibility = exp(-depth) * alpha;
-        }
+    ivec2 ab = ivec2(gl_GlobalInvocationID.xy);
+    int first = u_planes.x + int(gl_WorkGroupID.z) * kPlanesPerGroup;
+    ivec3 texel;
+    int code;
+    LANE visibility[PACKS];
+#ifdef FIELD
+    for (int c = first; c < min(first + kPlanesPerGroup, u_planes.y); ++c) {
+        visibilityOf(ivec3(ab, c), texel, code, visibility);
+        if (all(lessThan(ab, u_dims.xy)))
+            o_visibility[((c - u_planes.x) * u_dims.y + ab.y) * u_dims.x + ab.x] = visibility[0];
     }
-    o_visibility[(index.z - u_planes.x) * u_dims.x * u_dims.y + index.y * u_dims.x + index.x] = visibility;
+#else
+    clearSums();
+    for (int c = first; c < min(first + kPlanesPerGroup, u_planes.y); ++c) {
+        bool seen = visibilityOf(ivec3(ab, c), texel, code, visibility);
+        stage(seen, texel, code, visibility);
+        addStaged();
+    }
+    storeSums();
+#endif
 }

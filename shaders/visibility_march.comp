@@ -1,33 +1,41 @@
-// visibility_march.comp: the optical depth between the eye and every layer, along every ray
-//   in   layer 0 of u_depth, where this is not the first chunk: the depth at layer u_layers.x
-//   out  layer i of u_depth: the integral of tau from where the ray enters the box to layer u_layers.x + i, no unit
-// One invocation per ray; layers are the boundaries of slabs, each slab sampled in the middle of its part in the box.
-#include "include/volume.glsl"
-#include "include/tf.glsl"
-#include "include/rays.glsl"
+// visibility_march.comp: how much light every ray lets through to each voxel plane
+//   in   light at plane u_planes.x - 1, where that is not the first
+//   out  light at the planes u_planes.x ... u_planes.y - 1: T = exp(-optical depth), 1 where the ray has not yet entered
+// One invocation per ray. Planes take turns in u_ring layers of the buffer.
 #include "include/candidates.glsl"
-#include "include/optical_depth.glsl"
+#include "include/volume.glsl"
+#include "include/rays.glsl"
+#include "include/resident.glsl"
+#include "include/ray_depth.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0, LANES_FORMAT) uniform image3D u_depth;
+layout(binding = 0, std430) buffer Light { LANE io_light[]; }; // candidates fastest, then rays along a, b, then layers
+layout(location = 20) uniform ivec2 u_planes; // first c, one past the last
+layout(location = 21) uniform int u_ring;
+layout(location = 22) uniform bool u_first; // the rays start here
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, u_rays))) return;
-    Ray ray = rayOfPixel(pixel);
+    Ray ray = rayAt(u_grid.xy + vec2(pixel) / u_grid.z);
     Passage passage = passageOf(ray, 2.0);
-    float perC = lengthPerC(ray);
+    int at = (pixel.y * u_rays.x + pixel.x) * PACKS, layerSize = u_rays.x * u_rays.y * PACKS;
 
-    LANES depth = LANES(0.0);
-    if (u_layers.x == 0) imageStore(u_depth, ivec3(pixel, 0), vec4(0.0));
-    else depth = LANES_OF(imageLoad(u_depth, ivec3(pixel, 0)));
-    for (int layer = u_layers.x; layer < u_layers.y; ++layer) {
-        float from = max(layerC(layer), passage.enter);
-        float to = min(layerC(layer + 1), passage.leave);
-        if (to > from) {
-            float middle = 0.5 * (from + to);
-            depth += opticalDepthAt(lateral(ray, middle), middle) * ((to - from) * perC);
+    float c = passage.enter;
+    LANE depth[PACKS];
+    for (int p = 0; p < PACKS; ++p) depth[p] = LANE(0.0);
+    if (!u_first) {
+        c = max(c, float(u_planes.x - 1));
+        for (int p = 0; p < PACKS; ++p)
+            depth[p] = -log(max(io_light[(u_planes.x - 1) % u_ring * layerSize + at + p], LANE(1e-30)));
+    }
+    Sample last = sampleAt(ray, c);
+    for (int plane = u_planes.x; plane < u_planes.y; ++plane) {
+        float to = min(float(plane), passage.leave);
+        if (to > c) {
+            follow(ray, c, to, last, depth);
+            c = to;
         }
-        imageStore(u_depth, ivec3(pixel, layer + 1 - u_layers.x), TEXEL_OF(depth));
+        for (int p = 0; p < PACKS; ++p) io_light[plane % u_ring * layerSize + at + p] = exp(-depth[p]);
     }
 }

@@ -1,16 +1,13 @@
-// Several transfer functions are swept at once, one per component.
-//   CANDIDATES   1 or 4
-#if CANDIDATES == 4
-#define LANES vec4
-#define LANES_FORMAT rgba32f
-#define LANES_OF(texel) (texel)
-#define TEXEL_OF(lanes) (lanes)
+// Several transfer functions are swept at once: PACKS vectors LANE per ray or voxel, one component per candidate.
+//   CANDIDATES   1, 4 or 8
+#if CANDIDATES == 1
+#define LANE float
+#define UINT_LANE uint
 #else
-#define LANES float
-#define LANES_FORMAT r32f
-#define LANES_OF(texel) ((texel).r)
-#define TEXEL_OF(lanes) vec4(lanes)
+#define LANE vec4
+#define UINT_LANE uvec4
 #endif
+#define PACKS ((CANDIDATES + 3) / 4)
 
 float largest(float x) {
     return x;

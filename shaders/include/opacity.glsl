@@ -7,6 +7,10 @@ float opacityOfDepth(float opticalDepth) {
                                : 1.0 - exp(-opticalDepth);
 }
 
+vec4 opacityOfDepth(vec4 x) {
+    return vec4(opacityOfDepth(x.x), opacityOfDepth(x.y), opacityOfDepth(x.z), opacityOfDepth(x.w));
+}
+
 float opacityOfStep(float opticalDepth, float steps) {
     return opacityOfDepth(opticalDepth * steps);
 }

@@ -9,10 +9,8 @@ layout(location = 4) uniform vec3 u_spacing;    // of a, b, c in units of d0
 layout(location = 5) uniform ivec3 u_dims;      // of a, b, c
 layout(location = 6) uniform vec3 u_grid;       // (a, b) of ray (0, 0); rays per voxel
 layout(location = 7) uniform ivec2 u_rays;      // number of rays along a, b
-layout(location = 8) uniform vec2 u_slabs;      // c of layer 0; c per layer
-layout(location = 9) uniform ivec2 u_layers;    // first and last layer in the depth texture
-layout(location = 10) uniform mat3 u_texFromQ;  // t = u_texFromQ * q + u_texOffset, [0,1] over the box
-layout(location = 11) uniform vec3 u_texOffset;
+layout(location = 8) uniform float u_front;     // c where the box begins, or the eye's if it lies beside the box
+layout(location = 9) uniform float u_pieces;    // samples per unit of c
 
 struct Ray {
     vec2 at;    // (a, b) on the reference plane
@@ -36,20 +34,15 @@ float lengthPerC(Ray ray) {
     return length(vec3(ray.slope, 1.0) * u_spacing);
 }
 
-float layerC(int layer) {
-    return u_slabs.x + float(layer) * u_slabs.y;
-}
-
-// How a ray passes through the box: c where it enters, c where it leaves, and the face it enters by (0 the front,
-// 1 a side in a, 2 a side in b). The sides by which it leaves are moved outward by `margin` voxels: just outside the
-// box a ray goes on as the volume's edge, so that interpolating between rays meets no jump there.
+// How a ray passes through the box: c where it enters, c where it leaves. The sides by which it leaves are moved outward
+// by `margin` voxels: just outside the box a ray goes on as the volume's edge, so that interpolating between rays meets
+// no jump there.
 struct Passage {
     float enter, leave;
-    int face;
 };
 
 Passage passageOf(Ray ray, float margin) {
-    Passage p = Passage(u_slabs.x, float(u_dims.z) - 0.5, 0);
+    Passage p = Passage(u_front, float(u_dims.z) - 0.5);
     for (int axis = 0; axis < 2; ++axis) {
         float lo = -0.5, hi = float(u_dims[axis]) - 0.5;
         float slope = ray.slope[axis], at = ray.at[axis];
@@ -59,10 +52,7 @@ Passage passageOf(Ray ray, float margin) {
         }
         float enter = ((slope > 0.0 ? lo : hi) - at) / slope + u_reference;
         float leave = ((slope > 0.0 ? hi + margin : lo - margin) - at) / slope + u_reference;
-        if (enter > p.enter) {
-            p.enter = enter;
-            p.face = axis + 1;
-        }
+        p.enter = max(p.enter, enter);
         p.leave = min(p.leave, leave);
     }
     return p;

@@ -1,5 +1,5 @@
 // Light from the eye on the surface that the intensity's gradient describes; the same numbers as in
-// src/render/cpu/cpu_renderer.cpp. Needs volume.glsl.
+// src/render/cpu/cpu_renderer.cpp. Needs brick.glsl.
 layout(location = 8) uniform vec3 u_voxel;   // one voxel, in t
 layout(location = 9) uniform vec3 u_spacing; // world units
 layout(location = 10) uniform vec3 u_box;    // size of the box, world units
@@ -13,7 +13,7 @@ vec3 shaded(vec3 color, vec3 t, vec3 direction) {
     for (int a = 0; a < 3; ++a) {
         vec3 stride = vec3(0.0);
         stride[a] = u_voxel[a];
-        gradient[a] = (codeAndWeight(t + stride).x - codeAndWeight(t - stride).x) / u_spacing[a];
+        gradient[a] = (codeInBrick(t + stride).x - codeInBrick(t - stride).x) / u_spacing[a];
     }
     gradient *= u_intensityPerCode;
     float len = length(gradient);

@@ -16,14 +16,27 @@ TEST_CASE("every permutation of every shader compiles", "[gl]") {
         std::vector<std::string> files;
         std::vector<std::vector<std::string>> permutations;
     };
-    const std::vector<std::vector<std::string>> candidates{
-        {"CANDIDATES 1"}, {"CANDIDATES 4"}, {"CANDIDATES 1", "HAS_INVALID"}, {"CANDIDATES 4", "HAS_INVALID"}};
+    std::vector<std::vector<std::string>> marches, gathers;
+    for (const char* candidates : {"CANDIDATES 1", "CANDIDATES 4", "CANDIDATES 8"})
+        for (const bool invalid : {false, true})
+            for (const bool folded : {false, true}) {
+                std::vector<std::string> defines{candidates};
+                if (invalid) defines.push_back("HAS_INVALID");
+                if (folded) defines.push_back("FOLDED");
+                marches.push_back(defines);
+                gathers.push_back(defines);
+                gathers.back().insert(gathers.back().end(), {"SLOTS 4", "SEGMENTS 2"});
+                if (candidates != std::string("CANDIDATES 1")) continue;
+                gathers.push_back(defines);
+                gathers.back().push_back("FIELD");
+            }
     const std::vector<Program> programs{
         {{"slice.vert", "slice_raycast.frag"}, {{}, {"SHADING"}, {"HAS_INVALID"}, {"SHADING", "HAS_INVALID"}}},
         {{"composite.vert", "composite.frag"}, {{}}},
         {{"composite.vert", "opaque_mask.frag"}, {{}}},
-        {{"visibility_march.comp"}, candidates},
-        {{"visibility_gather.comp"}, candidates}};
+        {{"visibility_march.comp"}, marches},
+        {{"visibility_gather.comp"}, gathers},
+        {{"visibility_reduce.comp"}, {{}}}};
     std::set<std::string> stages;
     gl::HeadlessContext context;
     for (const Program& program : programs) {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "render/gl/engines.h"
+#include "render/gl/gl_resources.h"
 #include "render/gl/visibility_gl.h"
 #include "volume/parallel.h"
 
@@ -180,12 +181,18 @@ TEST_CASE("sums of a batch are those of the single fields", "[gl]") {
     WeightFields weights(volume->dims(), 1, 1);
     for (std::size_t i = 0; i < volume->size(); ++i)
         weights.set(i, static_cast<float>(i % 7) / 7, static_cast<float>(i % 11) / 11);
-    std::vector<TransferFunction> tfs; // six: one full group of lanes and a part of the next
-    for (int i = 0; i < 6; ++i) tfs.push_back(withFeatureOpacities(tents(3, 0.4), {0.1 * i, 0.3, 0.9 - 0.1 * i}));
+    std::vector<TransferFunction> tfs; // nine: one full group of lanes and one alone
+    for (int i = 0; i < 9; ++i) tfs.push_back(withFeatureOpacities(tents(3, 0.4), {0.1 * i, 0.3, 0.9 - 0.1 * i}));
     const auto engine = makeGlEngine(volume);
+    gl::VisibilityBudget small; // the light of eight candidates does not fit in: fewer at a time
+    small.bufferBytes = 100e3;
+    const auto smaller = gl::makeGlEngine(volume, Quality::Normal, small);
     for (const auto& [view, camera] : everyKindOfView(volume->geometry())) {
         CAPTURE(view);
-        const auto batch = engine->sums(camera, tfs, &weights);
+        const auto batch = engine->sums(camera, tfs, &weights), few = smaller->sums(camera, tfs, &weights);
+        REQUIRE(few.size() == tfs.size());
+        for (std::size_t t = 0; t < tfs.size(); ++t)
+            CHECK(few[t].allVisibility == Approx(batch[t].allVisibility).epsilon(0.01));
         REQUIRE(batch.size() == tfs.size());
         for (std::size_t t = 0; t < tfs.size(); ++t) {
             const auto single = sumsOfField(*volume, tfs[t].features, engine->field(camera, tfs[t]).values, &weights);
@@ -202,27 +209,151 @@ TEST_CASE("sums of a batch are those of the single fields", "[gl]") {
     }
 }
 
-TEST_CASE("memory bounds and threads change nothing", "[gl]") {
+namespace {
+
+double worstDifference(const Grid<float>& a, const Grid<float>& b) {
+    double worst = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        worst = std::max(worst, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
+    return worst;
+}
+
+/// Weights without any pattern that a mistake of one voxel would leave as it is.
+WeightFields unevenWeights(const Int3& dims) {
+    WeightFields weights(dims, 1.0, 2.0);
+    for (std::size_t i = 0; i < voxelCount(dims); ++i)
+        weights.set(i, static_cast<float>(i * 7919 % 1009) / 1009, static_cast<float>(i * 104729 % 997) / 500);
+    return weights;
+}
+
+} // namespace
+
+TEST_CASE("a volume swept in bricks has the same visibility", "[gl]") {
     if (!haveGl()) return;
-    const auto volume = noise({13, 12, 11}, {1, 1, 1.6}, 4);
+    const Int3 dims(90, 26, 41);
+    std::mt19937 random(8);
+    std::vector<float> holes(voxelCount(dims));
+    for (auto& v : holes) v = random() % 50 == 0 ? std::nanf("") : static_cast<float>(random() % 1000);
+    const auto invalid = std::make_shared<const Volume>(Geometry{dims, {1, 1.3, 0.8}, {0, 0, 0}}, Samples(holes));
+    const WeightFields weights = unevenWeights(dims);
     const TransferFunction tf = tents(3, 0.4);
-    const auto whole = makeGlEngine(volume);
-    // A few layers and a plane or two at a time.
-    const auto pieces = gl::makeGlEngine(volume, Quality::Normal, {13 * 12 * 4.0 * 30, 13 * 12 * 4.0 * 2});
-    for (const auto& [view, camera] : everyKindOfView(volume->geometry())) {
-        CAPTURE(view);
-        const auto a = whole->field(camera, tf).values, b = pieces->field(camera, tf).values;
-        double worst = 0;
-        for (std::size_t i = 0; i < a.size(); ++i)
-            worst = std::max(worst, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
-        CHECK(worst < 1e-5);
-        setThreadCount(1);
-        const auto one = whole->sums(camera, {&tf, 1}, nullptr)[0];
-        setThreadCount(3);
-        const auto three = whole->sums(camera, {&tf, 1}, nullptr)[0];
-        setThreadCount(0);
-        CHECK(one.visibility == three.visibility); // the same bits
+    for (const auto& volume : {noise(dims, {1, 1, 1.6}, 4), invalid}) {
+        const auto whole = makeGlEngine(volume);
+        // 24 planes of y at a time, 37 of z, 83 of x, and little for everything else.
+        gl::VisibilityBudget tiny;
+        tiny.volumeBytes = 24 * 90 * 41 * (volume == invalid ? 8.0 : 6.0);
+        tiny.voxelsPerStep = 3 * 90 * 41;
+        tiny.bufferBytes = 4e6;
+        gl::VisibilityBudget both = tiny;
+        both.textureSize = 64; // 90 voxels in two bricks
+        for (const auto& [budget, name] : {std::pair{tiny, "windows"}, {both, "windows, folded"}}) {
+            const auto pieces = gl::makeGlEngine(volume, Quality::Normal, budget);
+            for (const auto& [view, camera] : everyKindOfView(volume->geometry())) {
+                CAPTURE(view, name);
+                CHECK(worstDifference(whole->field(camera, tf).values, pieces->field(camera, tf).values) < 1e-5);
+                const FeatureSums a = whole->sums(camera, {&tf, 1}, &weights)[0],
+                                  b = pieces->sums(camera, {&tf, 1}, &weights)[0];
+                for (std::size_t f = 0; f < 3; ++f) {
+                    CHECK(b.visibility[f] == Approx(a.visibility[f]).epsilon(1e-5));
+                    for (std::size_t n = 0; n < 2; ++n)
+                        CHECK(b.weighted[n][f] == Approx(a.weighted[n][f]).epsilon(1e-5));
+                }
+            }
+        }
     }
+}
+
+TEST_CASE("sums on the device are exact and the same in every run", "[gl]") {
+    if (!haveGl()) return;
+    const auto volume = noise({29, 23, 34}, {1, 1, 1}, 14);
+    const WeightFields weights = unevenWeights(volume->dims());
+    const auto engine = makeGlEngine(volume), another = makeGlEngine(volume);
+    for (const auto& [view, camera] : everyKindOfView(volume->geometry()))
+        for (const int features : {1, 3, 30}) {
+            CAPTURE(view, features);
+            const TransferFunction tf = tents(features, 0.2);
+            const FeatureSums sums = engine->sums(camera, {&tf, 1}, &weights)[0];
+            const FeatureSums expected = sumsOfField(*volume, tf.features, engine->field(camera, tf).values, &weights);
+            for (std::size_t f = 0; f < tf.features.size(); ++f) {
+                CHECK(sums.visibility[f] == Approx(expected.visibility[f]).epsilon(1e-5));
+                for (std::size_t n = 0; n < 2; ++n)
+                    CHECK(sums.weighted[n][f] == Approx(expected.weighted[n][f]).epsilon(1e-5));
+            }
+            CHECK(sums.allVisibility == Approx(expected.allVisibility).epsilon(1e-5));
+            const FeatureSums again = another->sums(camera, {&tf, 1}, &weights)[0];
+            CHECK(again.visibility == sums.visibility); // the same bits
+            CHECK(again.weighted == sums.weighted);
+        }
+}
+
+TEST_CASE("weights that change between two calls count", "[gl]") {
+    if (!haveGl()) return;
+    const auto volume = noise({12, 11, 10}, {1, 1, 1}, 3);
+    const Camera camera = perspective(volume->geometry(), {5, -30, 8});
+    const TransferFunction tf = tents(3, 0.3);
+    const auto engine = makeGlEngine(volume);
+    WeightFields weights = unevenWeights(volume->dims());
+    const FeatureSums before = engine->sums(camera, {&tf, 1}, &weights)[0];
+    for (std::size_t i = 0; i < weights.size(); ++i) weights.set(i, 0.5f * weights.brightness(i), 0.0f);
+    const FeatureSums after = engine->sums(camera, {&tf, 1}, &weights)[0];
+    CHECK(after.allVisibility == before.allVisibility);
+    CHECK(after.allWeighted[0] == Approx(0.5 * before.allWeighted[0]).epsilon(1e-3)); // rounded to 16 bits
+    CHECK(after.allWeighted[1] == 0);
+    const FeatureSums none = engine->sums(camera, {&tf, 1}, nullptr)[0];
+    CHECK(none.allWeighted[0] == 0);
+    CHECK(none.allVisibility == before.allVisibility);
+}
+
+TEST_CASE("calls in a row make nothing anew on the device", "[gl]") {
+    if (!haveGl()) return;
+    const struct Restore {
+        ~Restore() { gl::limitAllocations(std::numeric_limits<double>::infinity()); }
+    } restore;
+    const auto volume = noise({18, 17, 16}, {1, 1, 1}, 3);
+    const Camera camera = perspective(volume->geometry(), {5, -40, 8});
+    const WeightFields weights = unevenWeights(volume->dims());
+    std::vector<TransferFunction> tfs, others;
+    for (int i = 0; i < 8; ++i) {
+        tfs.push_back(tents(3, 0.1 + 0.1 * i));
+        others.push_back(tents(3, 0.15 + 0.1 * i));
+    }
+    const auto engine = makeGlEngine(volume);
+    const auto first = engine->sums(camera, tfs, &weights);
+    gl::limitAllocations(0); // from here on everything asked for is refused
+    CHECK(engine->sums(camera, others, &weights)[7].visibility != first[7].visibility);
+    CHECK(engine->sums(camera, tfs, &weights)[7].visibility == first[7].visibility);
+    CHECK(engine->sums(camera, {tfs.data(), 1}, &weights)[0].allVisibility ==
+          Approx(first[0].allVisibility).epsilon(0.01));
+}
+
+TEST_CASE("a device without memory is used in bricks, or an error says what to do", "[gl]") {
+    if (!haveGl()) return;
+    const struct Restore {
+        ~Restore() { gl::limitAllocations(std::numeric_limits<double>::infinity()); }
+    } restore;
+    const auto volume = noise({24, 20, 300}, {1, 1, 1}, 3);
+    const Camera camera = perspective(volume->geometry(), {15, -13, 600});
+    const TransferFunction tf = tents(3, 0.3);
+    const auto expected = makeGlEngine(volume)->field(camera, tf).values;
+    // The volume takes 288 000 bytes, the light of all planes more: both come in parts then.
+    gl::limitAllocations(200e3);
+    CHECK(worstDifference(makeGlEngine(volume)->field(camera, tf).values, expected) < 1e-5);
+
+    gl::limitAllocations(100);
+    try {
+        makeGlEngine(volume)->field(camera, tf);
+        FAIL("expected an error");
+    } catch (const Error& error) {
+        CHECK(error.problem().find("memory") != std::string::npos);
+        CHECK(error.where() == "OpenGL");
+        CHECK(error.whatToDo().find("--engine cpu") != std::string::npos);
+    }
+    RenderSettings settings;
+    settings.width = settings.height = 20;
+    const auto draw = [&] { return makeGlRenderer(volume)->render(camera, tf, settings); };
+    CHECK_THROWS_AS(draw(), Error); // and no black image
+    gl::limitAllocations(std::numeric_limits<double>::infinity());
+    CHECK(draw().width == 20);
 }
 
 TEST_CASE("thin volumes have visibility too", "[gl]") {
@@ -240,19 +371,30 @@ TEST_CASE("thin volumes have visibility too", "[gl]") {
     }
 }
 
+TEST_CASE("a volume longer than any texture is measured and drawn", "[gl]") {
+    if (!haveGl()) return;
+    std::vector<std::uint8_t> values;
+    for (int i = 0; i < 20000 * 3; ++i) values.push_back(static_cast<std::uint8_t>(i * 31 % 251));
+    const auto volume = volumeOf({20000, 3, 1}, values); // devices take up to 16384
+    const TransferFunction tf = tents(3, 0.4);
+    const Camera along = orthographic(volume->geometry(), {1, 0, 0}, 10),
+                 across = orthographic(volume->geometry(), {0, 1, 0}, 10);
+    const auto gl = makeGlEngine(volume), reference = makeReferenceEngine(volume);
+    for (const Camera& camera : {along, across})
+        CHECK(worstDifference(gl->field(camera, tf).values, reference->field(camera, tf).values) < 0.01);
+    RenderSettings settings;
+    settings.width = settings.height = 24;
+    settings.background = Rgb{0.1, 0.2, 0.3};
+    const Image a = makeGlRenderer(volume)->render(across, tf, settings),
+                b = makeCpuRenderer(volume)->render(across, tf, settings);
+    double worst = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i)
+        worst = std::max(worst, static_cast<double>(std::abs(a.rgba[i] - b.rgba[i])));
+    CHECK(worst < 0.03);
+}
+
 TEST_CASE("what the device or the caller cannot do is an error", "[gl]") {
     if (!haveGl()) return;
-    // Longer than any device's 3D textures.
-    const auto endless = volumeOf({70000, 1, 1}, std::vector<std::uint8_t>(70000, 1));
-    try {
-        makeGlEngine(endless);
-        FAIL("expected an error");
-    } catch (const Error& error) {
-        CHECK(error.problem().find("70000") != std::string::npos);
-        CHECK(error.whatToDo().find("--engine cpu") != std::string::npos);
-    }
-    CHECK_THROWS_AS(makeGlRenderer(endless), Error);
-
     const auto volume = noise({6, 6, 6}, {1, 1, 1}, 1);
     const auto engine = makeGlEngine(volume);
     Camera inside = perspective(volume->geometry(), {0, -20, 0});

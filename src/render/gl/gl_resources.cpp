@@ -1,6 +1,7 @@
 #include "render/gl/gl_resources.h"
 
-#include "volume/error.h"
+#include <atomic>
+#include <limits>
 
 namespace pellucid::gl {
 
@@ -23,7 +24,25 @@ const char* errorName(GLenum error) {
     }
 }
 
+const char* kOutOfMemory = "the graphics device is out of memory while ";
 const char* kUseCpu = "use --engine cpu";
+
+std::atomic<double> allocationLimit = std::numeric_limits<double>::infinity();
+
+void throwIfTooMuch(double bytes, const std::string& what) {
+    if (bytes > allocationLimit) throw OutOfMemory(kOutOfMemory + ("making room for " + what), "OpenGL", kUseCpu);
+}
+
+double bytesPerTexel(GLenum format) {
+    switch (format) {
+    case GL_R16:
+        return 2;
+    case GL_RGBA32F:
+        return 16;
+    default:
+        return 4;
+    }
+}
 
 void checkSize(int largest, GLenum limitName, const std::string& what) {
     const int limit = glInteger(limitName);
@@ -46,14 +65,15 @@ void clampToEdge(GLenum target, GLenum filter) {
 
 } // namespace
 
+void limitAllocations(double bytes) { allocationLimit = bytes; }
+
 void throwOnGlError(const std::string& doing) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) return;
     // A lost context reports errors for ever: take a bounded number away.
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
     }
-    if (error == GL_OUT_OF_MEMORY)
-        throw Error("the graphics device is out of memory while " + doing, "OpenGL", kUseCpu);
+    if (error == GL_OUT_OF_MEMORY) throw OutOfMemory(kOutOfMemory + doing, "OpenGL", kUseCpu);
     throw Error(std::string("OpenGL reports ") + errorName(error) + " while " + doing, "OpenGL", kUseCpu);
 }
 
@@ -65,6 +85,7 @@ int glInteger(GLenum parameter) {
 
 Texture2d makeTexture2d(glm::ivec2 size, GLenum format, GLenum filter, const std::string& what) {
     checkSize(std::max(size.x, size.y), GL_MAX_TEXTURE_SIZE, what);
+    throwIfTooMuch(bytesPerTexel(format) * size.x * size.y, what);
     throwOnGlError("preparing " + what);
     Texture2d texture{TextureName::make(), size, format};
     glBindTexture(GL_TEXTURE_2D, texture.name.id());
@@ -77,6 +98,7 @@ Texture2d makeTexture2d(glm::ivec2 size, GLenum format, GLenum filter, const std
 
 Texture3d makeTexture3d(glm::ivec3 size, GLenum format, GLenum filter, const std::string& what) {
     checkSize(std::max(size.x, std::max(size.y, size.z)), GL_MAX_3D_TEXTURE_SIZE, what);
+    throwIfTooMuch(bytesPerTexel(format) * size.x * size.y * size.z, what);
     throwOnGlError("preparing " + what);
     Texture3d texture{TextureName::make(), size, format};
     glBindTexture(GL_TEXTURE_3D, texture.name.id());
@@ -101,6 +123,7 @@ ColorTarget makeColorTarget(glm::ivec2 size, GLenum format, GLenum filter, const
 }
 
 Buffer makeBuffer(GLenum target, std::size_t bytes, const void* data, GLenum usage, const std::string& what) {
+    throwIfTooMuch(static_cast<double>(bytes), what);
     throwOnGlError("preparing " + what);
     Buffer buffer{BufferName::make(), bytes};
     glBindBuffer(target, buffer.name.id());

@@ -8,8 +8,19 @@
 #include <glm/vec3.hpp>
 
 #include "render/gl/gl_object.h"
+#include "volume/error.h"
 
 namespace pellucid::gl {
+
+/// The device has no room for what was asked for: something smaller may do.
+class OutOfMemory : public Error {
+public:
+    using Error::Error;
+};
+
+/// Refuses textures and buffers of more than this many bytes from now on, in every context, as a device does that has
+/// no more memory: for tests. Infinite at first.
+void limitAllocations(double bytes);
 
 /// Throws Error where GL has recorded one since the last call: `doing` says what was attempted ("drawing the slices").
 void throwOnGlError(const std::string& doing);
@@ -27,7 +38,7 @@ struct Texture3d {
     glm::ivec3 size{0, 0, 0};
     GLenum format = 0;
 };
-/// `filter` is GL_NEAREST or GL_LINEAR; `what` names the content in errors. Throw Error: too large, out of memory.
+/// `filter` is GL_NEAREST or GL_LINEAR; `what` names the content in errors. Throw Error: too large; OutOfMemory.
 Texture2d makeTexture2d(glm::ivec2 size, GLenum format, GLenum filter, const std::string& what);
 Texture3d makeTexture3d(glm::ivec3 size, GLenum format, GLenum filter, const std::string& what);
 

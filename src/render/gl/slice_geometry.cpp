@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "volume/error.h"
 
@@ -102,10 +104,15 @@ glm::dmat3 SliceView::rayDirection(const Geometry& g) const {
             camera.forward() / size};
 }
 
-std::vector<SlabVertex> slabTriangles(const SliceView& view, const Geometry& geometry, const RenderSettings& settings) {
-    const Box box = clippedBox(geometry, settings);
-    std::array<double, 8> depth{};
-    for (int i = 0; i < 8; ++i) depth[static_cast<std::size_t>(i)] = view.depthOf(box.corner(i));
+std::vector<SlabVertex> slabTriangles(const SliceView& view, const Geometry& geometry, const RenderSettings& settings,
+                                      const Vec3& partLo, const Vec3& partHi) {
+    Box box = clippedBox(geometry, settings);
+    const auto depthsOf = [&](const Box& b) {
+        std::array<double, 8> depths{};
+        for (int i = 0; i < 8; ++i) depths[static_cast<std::size_t>(i)] = view.depthOf(b.corner(i));
+        return depths;
+    };
+    std::array<double, 8> depth = depthsOf(box);
     double nearest = *std::min_element(depth.begin(), depth.end());
     const double farthest = *std::max_element(depth.begin(), depth.end());
     // A wide box may reach behind the eye; what is nearer than this is thinner than any sample.
@@ -118,9 +125,19 @@ std::vector<SlabVertex> slabTriangles(const SliceView& view, const Geometry& geo
     const int count = std::max(1, static_cast<int>(slabs));
     const double thickness = (farthest - nearest) / count;
 
+    const Vec3 origin = geometry.boxMin(), size = geometry.boxMax() - origin;
+    box = {glm::max(box.lo, origin + size * partLo), glm::min(box.hi, origin + size * partHi)};
+    if (!glm::all(glm::lessThan(box.lo, box.hi))) return {};
+    depth = depthsOf(box);
+    const auto [partNear, partFar] = std::minmax_element(depth.begin(), depth.end());
+    const auto slabOf = [&](double d) {
+        return static_cast<int>(std::clamp((d - nearest) / thickness, 0.0, count - 1.0));
+    };
+    const int firstSlab = slabOf(*partNear), lastSlab = slabOf(*partFar);
+
     std::vector<SlabVertex> vertices;
     std::vector<glm::dvec2> points;
-    for (int slab = 0; slab < count; ++slab) {
+    for (int slab = firstSlab; slab <= lastSlab; ++slab) {
         const double from = nearest + slab * thickness, to = slab + 1 == count ? farthest : from + thickness;
         points.clear();
         for (std::size_t i = 0; i < 8; ++i)

@@ -38,7 +38,9 @@ struct SlabVertex {
 
 /// Triangles of all slabs, front to back, so that samples along no ray of the picture lie farther apart than
 /// settings.stepInD0. Every triangle list of one slab is the convex outline of slab ∩ clipped box.
-/// Throws Error where that takes more than a million slabs.
-std::vector<SlabVertex> slabTriangles(const SliceView& view, const Geometry& geometry, const RenderSettings& settings);
+/// Only the outlines within a part of the box, [partLo, partHi] in t of [0,1] over the box, for volumes drawn in
+/// bricks; the slabs are the same. Throws Error where that takes more than a million slabs.
+std::vector<SlabVertex> slabTriangles(const SliceView& view, const Geometry& geometry, const RenderSettings& settings,
+                                      const Vec3& partLo = Vec3(0), const Vec3& partHi = Vec3(1));
 
 } // namespace pellucid::gl

@@ -11,6 +11,7 @@
 #include "render/gl/gl_resources.h"
 #include "render/gl/shader_program.h"
 #include "render/gl/slice_geometry.h"
+#include "render/gl/volume_bricks.h"
 #include "render/gl/volume_texture.h"
 #include "tf/tf_table.h"
 #include "volume/error.h"
@@ -53,6 +54,13 @@ public:
         glProgramUniform3fv(m_id, 9, 1, value_ptr(spacing));
         glProgramUniform3fv(m_id, 10, 1, value_ptr(box));
         glProgramUniform1f(m_id, 11, perCode);
+    }
+    void setBrick(const VolumeBrick& b) const {
+        glProgramUniform3fv(m_id, 13, 1, value_ptr(glm::vec3(b.lo)));
+        glProgramUniform3fv(m_id, 14, 1, value_ptr(glm::vec3(b.hi)));
+        glProgramUniform3fv(m_id, 15, 1, value_ptr(glm::vec3(b.textureFromBox)));
+        glProgramUniform3fv(m_id, 16, 1, value_ptr(glm::vec3(b.textureOffset)));
+        glProgramUniform3fv(m_id, 17, 1, value_ptr(glm::vec3(b.textureEnd)));
     }
     void setTileFromPicture(const glm::vec4& v) const { glProgramUniform4fv(m_id, 20, 1, value_ptr(v)); }
 
@@ -100,7 +108,7 @@ struct SliceRaycaster::Impl {
     FramebufferName maskFramebuffer; ///< depth alone, since a texture must not be read and drawn at once
 
     std::shared_ptr<const Volume> volume;
-    VolumeTexture texture;
+    std::unique_ptr<BrickedVolume> bricks;
     std::optional<TransferFunction> tf;
     TableTexture table;
     std::optional<int> tableFeature; ///< onlyFeature that the table was made for; empty: it is out of date
@@ -120,9 +128,9 @@ struct SliceRaycaster::Impl {
     }
 
     const SliceProgram& program(bool shading) {
-        auto& slot = slices[(shading ? 2u : 0u) + (texture.hasInvalid ? 1u : 0u)];
+        auto& slot = slices[(shading ? 2u : 0u) + (bricks->hasInvalid() ? 1u : 0u)];
         if (!slot) {
-            auto defines = texture.defines();
+            auto defines = bricks->defines();
             if (shading) defines.push_back("SHADING");
             slot.emplace(defines);
         }
@@ -159,6 +167,7 @@ struct SliceRaycaster::Impl {
 
     void resize(glm::ivec2 size);
     void maskOpaque();
+    void drawSlabs(const SliceProgram& p, const std::vector<SlabVertex>& vertices, const JobControl& job);
     void accumulate(const Camera& camera, const RenderSettings& settings, const Tile& tile, const JobControl& job);
     void drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile);
 };
@@ -196,7 +205,6 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
                                       const JobControl& job) {
     const Geometry& g = volume->geometry();
     const SliceView view(camera, g, settings);
-    const std::vector<SlabVertex> vertices = slabTriangles(view, g, settings);
 
     const glm::vec2 size(accumulated.color.size);
     const glm::vec2 picture(settings.width, settings.height);
@@ -207,7 +215,7 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
 
     const SliceProgram& p = program(settings.shading);
     p.use();
-    p.setEntriesPerCode(static_cast<float>(65535.0 / texture.maxCode * (kTableSize - 1)));
+    p.setEntriesPerCode(static_cast<float>(65535.0 / bricks->maxCode() * (kTableSize - 1)));
     p.setIntegralStart(kTableSize);
     p.setPictureFromFragment({tileSize / size, tileLow});
     p.setTileFromPicture({2.0f / tileSize, -2.0f * tileLow / tileSize - 1.0f});
@@ -217,9 +225,8 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
     p.setClip(glm::vec3(settings.clipLo), glm::vec3(settings.clipHi));
     if (settings.shading)
         p.setShading(glm::vec3(1.0 / Vec3(g.dims)), glm::vec3(g.spacing), glm::vec3(g.boxMax() - g.boxMin()),
-                     65535.0f / static_cast<float>(texture.maxCode));
+                     65535.0f / static_cast<float>(bricks->maxCode()));
     bindTexture(1, GL_TEXTURE_2D, table.name());
-    bindTexture(0, GL_TEXTURE_3D, texture.texture.name);
 
     glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
     glViewport(0, 0, accumulated.color.size.x, accumulated.color.size.y);
@@ -237,19 +244,41 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
     glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
 
     glBindVertexArray(sliceArray.id());
+    RenderSettings sampled = settings;
+    // Both ends of a segment must lie in its brick's texture.
+    if (bricks->count() > 1) sampled.stepInD0 = std::min(settings.stepInD0, kBrickStep);
+    const auto order = bricks->frontToBack(camera);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const VolumeBrick& brick = bricks->use(order[i]);
+        p.setBrick(brick);
+        JobControl part = job;
+        if (job.progress)
+            part.progress = [&](double f) {
+                job.progress((static_cast<double>(i) + f) / static_cast<double>(order.size()));
+            };
+        drawSlabs(p, slabTriangles(view, g, sampled, glm::max(brick.lo, Vec3(0)), glm::min(brick.hi, Vec3(1))), part);
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glDisable(GL_BLEND);
+    glDisable(GL_DEPTH_TEST);
+    throwOnGlError("drawing the slices");
+}
+
+/// Front to back over what is accumulated already.
+void SliceRaycaster::Impl::drawSlabs(const SliceProgram& p, const std::vector<SlabVertex>& vertices,
+                                     const JobControl& job) {
     glBindBuffer(GL_ARRAY_BUFFER, vertexBuffer.id());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(SlabVertex)), vertices.data(),
                  GL_STREAM_DRAW);
     // Whole slabs only would be prettier, but any cut is right: triangles of one slab do not overlap.
-    const double slabsPerBatch = kFragmentsPerBatch / (static_cast<double>(size.x) * static_cast<double>(size.y));
+    const glm::dvec2 size(accumulated.color.size);
+    const double slabsPerBatch = kFragmentsPerBatch / (size.x * size.y);
     const std::size_t perBatch =
         3 * std::min(static_cast<std::size_t>(std::max(1.0, 4 * slabsPerBatch)), vertices.size() / 3 / kMaskings + 1);
     for (std::size_t first = 0; first < vertices.size(); first += perBatch) {
         job.throwIfStopped();
-        if (first > 0) {
-            maskOpaque();
-            p.use();
-        }
+        if (first > 0) maskOpaque();
+        p.use();
         const std::size_t count = std::min(perBatch, vertices.size() - first);
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
         // Without waiting the driver would queue everything, and nobody could cancel.
@@ -258,10 +287,6 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
             job.report(static_cast<double>(first + count) / static_cast<double>(vertices.size()));
         }
     }
-    glBindBuffer(GL_ARRAY_BUFFER, 0);
-    glDisable(GL_BLEND);
-    glDisable(GL_DEPTH_TEST);
-    throwOnGlError("drawing the slices");
 }
 
 void SliceRaycaster::Impl::drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile) {
@@ -286,8 +311,8 @@ SliceRaycaster::~SliceRaycaster() = default;
 SliceRaycaster::SliceRaycaster(SliceRaycaster&&) noexcept = default;
 SliceRaycaster& SliceRaycaster::operator=(SliceRaycaster&&) noexcept = default;
 
-void SliceRaycaster::setVolume(std::shared_ptr<const Volume> volume) {
-    m_impl->texture = uploadVolume(makeIntensityGrid(*volume));
+void SliceRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longestTexture) {
+    m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture);
     m_impl->volume = std::move(volume);
 }
 

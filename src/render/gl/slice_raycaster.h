@@ -38,8 +38,10 @@ public:
     SliceRaycaster(SliceRaycaster&&) noexcept;
     SliceRaycaster& operator=(SliceRaycaster&&) noexcept;
 
-    /// Uploads the intensities. Throws Error (too large for the device, out of memory); the former volume stays then.
-    void setVolume(std::shared_ptr<const Volume> volume);
+    /// Uploads the intensities: in bricks where the volume is longer than the device's textures, and brick by brick at
+    /// every drawing, which takes its time, where the device has not the memory for all. Throws Error (not even memory
+    /// for one brick); the former volume stays then. `longestTexture` (≥ 16): as if the device took no longer ones.
+    void setVolume(std::shared_ptr<const Volume> volume, int longestTexture = 1 << 30);
     /// Cheap: a table of some thousand entries; nothing happens where `tf` equals the present one.
     void setTransferFunction(const TransferFunction& tf);
 

@@ -1,4 +1,4 @@
-// How the volume is swept to measure visibility: along which of its axes, with which rays and in which slabs. No GL.
+// How the volume is swept to measure visibility: along which of its axes and with which rays. No GL.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,11 @@
 
 namespace pellucid::gl {
 
-/// One sweep: slabs perpendicular to an axis of the volume, front to back, and straight rays through all of them.
-/// Slabs follow the volume's axes, not the view: rays can then stand exactly on the voxel columns of the farthest
+/// One sweep: the voxel planes across an axis of the volume, front to back, and straight rays through all of them.
+/// Planes follow the volume's axes, not the view: rays can then stand exactly on the voxel columns of the farthest
 /// plane, so that a view along an axis is computed without any interpolation, and no voxel is ever seen at a flat
-/// angle.
+/// angle. Angles are those of the grid of voxels, so that a ray crosses about one voxel per plane however unequal the
+/// spacing is.
 ///
 /// Coordinates q = (a, b, c) are voxel coordinates with the sweep's axis last and c growing away from the eye.
 struct Sweep {
@@ -34,13 +35,13 @@ struct Sweep {
     double raysPerVoxel = 1; ///< along a and b, on the reference plane
     glm::ivec2 rays{0, 0};   ///< number along a, b
 
-    /// Where T differs by more than this between the rays around a voxel, its own ray is followed.
+    double front = -0.5; ///< c where the box begins, or the eye's where it lies beside the box
+    int firstPlane = 0;  ///< first c that has voxels of this sweep
+    int pieces = 1;      ///< samples per unit of c, one of them on each voxel plane
+    /// Planes in front of a voxel that are followed along its own line before rays tell the light there: at least, and
+    /// at most, where T differs by more than `tolerance` between the rays.
+    glm::ivec2 ownPlanes{1, 1};
     double tolerance = 0;
-
-    double firstLayer = 0; ///< c where the first slab begins
-    double layerStep = 0;  ///< c per slab
-    int layers = 0;        ///< slabs; there is one boundary more
-    int firstPlane = 0;    ///< first c that has voxels of this sweep
 
     /// Voxel coordinates (i, j, k) = matrix·q + offset.
     glm::dmat3 voxelFromQ() const;
@@ -50,16 +51,10 @@ struct Sweep {
         std::ptrdiff_t base = 0, a = 0, b = 0, c = 0;
     };
     Strides strides() const;
-
-    /// Slabs [first, last] such that boundaries first … last + 1 … enclose all of plane c and of what lies half a
-    /// voxel in front of it.
-    int layerBefore(double c) const;
-    int layerAfter(double c) const;
 };
 
 /// One sweep for orthographic cameras and for eyes far enough away; else up to six, a pyramid of directions each, so
-/// that an eye close to the box sees every voxel at a moderate angle. `quality` sets the slabs' thickness (along a ray)
-/// and the rays per voxel.
+/// that an eye close to the box sees every voxel at a moderate angle. `quality` sets the density of samples and rays.
 std::vector<Sweep> makeSweeps(const Camera& camera, const Geometry& geometry, Quality quality);
 
 } // namespace pellucid::gl

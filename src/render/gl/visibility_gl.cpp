@@ -1,224 +1,38 @@
-// makeGlEngine: visibility by OpenGL (MEASURES §4). Rays march through the volume and leave the optical depth of every
-// slab in a 3D texture; a second pass gathers from it, per voxel, the transmittance in front of it.
-#include <algorithm>
+// makeGlEngine: the VisibilityEngine on OpenGL; sweep_device.h does the work in the context.
 #include <array>
-#include <cmath>
-#include <map>
-#include <optional>
-#include <span>
-
-#include <glm/gtc/type_ptr.hpp>
 
 #include "render/gl/engines.h"
-#include "render/gl/gl_resources.h"
 #include "render/gl/headless_context.h"
-#include "render/gl/shader_program.h"
-#include "render/gl/sweep_geometry.h"
+#include "render/gl/sweep_device.h"
 #include "render/gl/visibility_gl.h"
-#include "render/gl/volume_texture.h"
-#include "tf/opacity.h"
 #include "volume/parallel.h"
 
 namespace pellucid {
 
-namespace gl {
-
 namespace {
 
-constexpr int kGroup = 8; ///< local_size of the shaders, both axes
-
-using glm::value_ptr;
-
-/// Uniforms of include/rays.glsl and include/tf.glsl; locations as written there.
-void setSweep(GLuint program, const Sweep& s, const VolumeTexture& volume) {
-    glProgramUniform1f(program, 0, 65535.0f);
-    glProgramUniform4f(program, 1, static_cast<float>(s.eye.x), static_cast<float>(s.eye.y),
-                       static_cast<float>(s.eye.z), s.perspective ? 1.0f : 0.0f);
-    glProgramUniform2fv(program, 2, 1, value_ptr(glm::vec2(s.shear)));
-    glProgramUniform1f(program, 3, static_cast<float>(s.reference));
-    glProgramUniform3fv(program, 4, 1, value_ptr(glm::vec3(s.spacing)));
-    glProgramUniform3iv(program, 5, 1, value_ptr(s.dims));
-    glProgramUniform3fv(program, 6, 1, value_ptr(glm::vec3(s.grid, s.raysPerVoxel)));
-    glProgramUniform2iv(program, 7, 1, value_ptr(s.rays));
-    glProgramUniform2f(program, 8, static_cast<float>(s.firstLayer), static_cast<float>(s.layerStep));
-    // t = (voxel + ½) / size
-    const Vec3 size(volume.texture.size);
-    glm::dmat3 texFromQ = s.voxelFromQ();
-    for (int column = 0; column < 3; ++column) texFromQ[column] /= size;
-    glProgramUniformMatrix3fv(program, 10, 1, GL_FALSE, value_ptr(glm::mat3(texFromQ)));
-    glProgramUniform3fv(program, 11, 1, value_ptr(glm::vec3((s.voxelOffset() + 0.5) / size)));
+/// A number that tells weights apart: they come as plain memory, which may be filled anew between two calls.
+std::uint64_t keyOf(const std::uint32_t* words, std::size_t count) {
+    constexpr std::size_t kPiece = 1 << 20;
+    std::vector<std::uint64_t> parts((count + kPiece - 1) / kPiece);
+    parallelFor(parts.size(), [&](std::size_t part) {
+        std::array<std::uint64_t, 4> hash{1, 2, 3, 4}; // four chains, so that multiplications overlap
+        const std::size_t end = std::min(count, (part + 1) * kPiece);
+        for (std::size_t i = part * kPiece; i < end; ++i)
+            hash[i & 3] = (hash[i & 3] ^ words[i]) * 0x9e3779b97f4a7c15u + (hash[i & 3] >> 29);
+        parts[part] = hash[0] ^ (hash[1] << 1) ^ (hash[2] << 2) ^ (hash[3] << 3);
+    });
+    std::uint64_t key = count;
+    for (const std::uint64_t part : parts) key = (key ^ part) * 0x9e3779b97f4a7c15u + (key >> 29);
+    return key;
 }
-
-/// visibility_march.comp and visibility_gather.comp for one number of candidates; locations as written there.
-class SweepPrograms {
-public:
-    SweepPrograms(int candidates, std::vector<std::string> defines) {
-        defines.push_back("CANDIDATES " + std::to_string(candidates));
-        m_march = makeProgram({"visibility_march.comp"}, defines);
-        m_gather = makeProgram({"visibility_gather.comp"}, defines);
-    }
-
-    void begin(const Sweep& sweep, const Geometry& g, const Camera& camera, const VolumeTexture& volume) const {
-        setSweep(m_march.id(), sweep, volume);
-        setSweep(m_gather.id(), sweep, volume);
-        glProgramUniform4i(m_gather.id(), 13, sweep.pyramid ? sweep.axis : -1, sweep.sign, 0, 0);
-        glProgramUniform3fv(m_gather.id(), 14, 1, value_ptr(glm::vec3(g.voxelFromWorld(camera.eye))));
-        glProgramUniform3fv(m_gather.id(), 15, 1, value_ptr(glm::vec3(g.spacing / g.d0())));
-        glProgramUniform1f(m_gather.id(), 16, static_cast<float>(sweep.tolerance));
-    }
-    void march(const Sweep& sweep, int firstLayer, int lastLayer) const {
-        glProgramUniform2i(m_march.id(), 9, firstLayer, lastLayer);
-        glUseProgram(m_march.id());
-        dispatch(sweep.rays, 1);
-        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                        GL_TEXTURE_UPDATE_BARRIER_BIT);
-    }
-    void gather(const Sweep& sweep, int firstLayer, int lastLayer, int firstPlane, int endPlane) const {
-        glProgramUniform2i(m_gather.id(), 9, firstLayer, lastLayer);
-        glProgramUniform2i(m_gather.id(), 12, firstPlane, endPlane);
-        glUseProgram(m_gather.id());
-        dispatch(glm::ivec2(sweep.dims), endPlane - firstPlane);
-        glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-    }
-
-private:
-    static void dispatch(glm::ivec2 size, int planes) {
-        const auto groups = [](int n) { return static_cast<GLuint>((n + kGroup - 1) / kGroup); };
-        glDispatchCompute(groups(size.x), groups(size.y), static_cast<GLuint>(planes));
-    }
-    ProgramName m_march, m_gather;
-};
-
-/// The visibilities of some planes of one sweep, on the CPU's side.
-struct Planes {
-    const Sweep& sweep;
-    int first, end;                ///< c
-    int candidates;                ///< floats per voxel
-    std::span<const float> values; ///< a fastest, then b, then c − first
-};
-using PlanesSink = std::function<void(const Planes&)>;
-
-/// Everything on the device; lives in its context.
-class Device {
-public:
-    Device(const IntensityGrid& grid, const VisibilityBudget& budget) : m_budget(budget) {
-        requireGl43();
-        m_volume = uploadVolume(grid);
-    }
-
-    /// `tables`: optical depth of d0 per code (0 … maxCode) and candidate, `candidates` (1 or 4) floats per code.
-    void sweep(const Camera& camera, const Geometry& g, Quality quality, std::span<const float> tables, int candidates,
-               const JobControl& job, const PlanesSink& sink) {
-        m_table.fill(tables, candidates);
-        auto found = m_programs.find(candidates);
-        if (found == m_programs.end())
-            found = m_programs.emplace(candidates, SweepPrograms(candidates, m_volume.defines())).first;
-        const auto sweeps = makeSweeps(camera, g, quality);
-        for (std::size_t i = 0; i < sweeps.size(); ++i) {
-            JobControl part = job;
-            if (job.progress)
-                part.progress = [&](double f) {
-                    job.progress((static_cast<double>(i) + f) / static_cast<double>(sweeps.size()));
-                };
-            found->second.begin(sweeps[i], g, camera, m_volume);
-            runSweep(found->second, sweeps[i], candidates, part, sink);
-        }
-    }
-
-private:
-    void runSweep(const SweepPrograms& programs, const Sweep& s, int candidates, const JobControl& job,
-                  const PlanesSink& sink) {
-        // As many planes at a time as the bounds allow, at least one.
-        const double texel = 4.0 * candidates;
-        const double layerBytes = texel * s.rays.x * s.rays.y, planeBytes = texel * s.dims.x * s.dims.y;
-        const double depthLimit = glInteger(GL_MAX_3D_TEXTURE_SIZE);
-        const double blockLimit = glInteger(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
-        if (planeBytes > blockLimit)
-            throw Error("one plane of voxels takes " + std::to_string(static_cast<long long>(planeBytes)) +
-                            " bytes, the device's buffers " + std::to_string(static_cast<long long>(blockLimit)),
-                        "OpenGL", "use --engine cpu");
-        const double visibilityBytes = std::min(m_budget.visibilityBytes, blockLimit);
-        const double layersAtOnce = std::min(m_budget.depthTextureBytes / layerBytes, depthLimit) - 4;
-        const int planesAtOnce = std::clamp(
-            static_cast<int>(std::min(layersAtOnce * s.layerStep, visibilityBytes / planeBytes)), 1, s.dims.z);
-        const int layersNeeded =
-            std::min(s.layers, static_cast<int>(std::ceil((planesAtOnce + 1) / s.layerStep)) + 2) + 1;
-        const GLenum format = candidates == 4 ? GL_RGBA32F : GL_R32F;
-        const glm::ivec3 size(s.rays, layersNeeded);
-        if (m_depth.size != size || m_depth.format != format) {
-            m_depth = {}; // before the new one, so that both never need room at once
-            m_depth = makeTexture3d(size, format, GL_NEAREST, "the rays' optical depth");
-        }
-        const std::size_t bytes = static_cast<std::size_t>(planeBytes) * static_cast<std::size_t>(planesAtOnce);
-        if (m_visibility.bytes < bytes) {
-            m_visibility = {};
-            m_visibility = makeBuffer(GL_SHADER_STORAGE_BUFFER, bytes, nullptr, GL_STREAM_READ, "the visibility");
-        }
-
-        bindTexture(2, GL_TEXTURE_3D, m_depth.name);
-        bindTexture(1, GL_TEXTURE_2D, m_table.name());
-        bindTexture(0, GL_TEXTURE_3D, m_volume.texture.name);
-        glBindImageTexture(0, m_depth.name.id(), 0, GL_TRUE, 0, GL_READ_WRITE, format);
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, m_visibility.name.id());
-
-        int present = 0; // layer that the depth texture begins with
-        for (int plane = s.firstPlane; plane < s.dims.z; plane += planesAtOnce) {
-            job.throwIfStopped();
-            job.report(static_cast<double>(plane - s.firstPlane) / (s.dims.z - s.firstPlane));
-            const int end = std::min(plane + planesAtOnce, s.dims.z);
-            // The points asked for lie up to half a voxel in front of their plane.
-            const int first = plane == s.firstPlane ? 0 : s.layerBefore(plane - 0.5);
-            const int last = std::max(s.layerAfter(end - 0.5), first + 1);
-            if (first != present) copyLayer(first - present, 0, s.rays);
-            present = first;
-            programs.march(s, first, last);
-            programs.gather(s, first, last, plane, end);
-            deliver(s, plane, end, candidates, sink);
-        }
-        glUseProgram(0);
-        throwOnGlError("measuring visibility");
-    }
-
-    void copyLayer(int from, int to, glm::ivec2 rays) {
-        glCopyImageSubData(m_depth.name.id(), GL_TEXTURE_3D, 0, 0, 0, from, m_depth.name.id(), GL_TEXTURE_3D, 0, 0, 0,
-                           to, rays.x, rays.y, 1);
-    }
-
-    void deliver(const Sweep& s, int plane, int end, int candidates, const PlanesSink& sink) {
-        const std::size_t count = static_cast<std::size_t>(s.dims.x) * static_cast<std::size_t>(s.dims.y) *
-                                  static_cast<std::size_t>(end - plane) * static_cast<std::size_t>(candidates);
-        glBindBuffer(GL_SHADER_STORAGE_BUFFER, m_visibility.name.id());
-        const void* data = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * sizeof(float)),
-                                            GL_MAP_READ_BIT);
-        throwOnGlError("measuring visibility");
-        if (data == nullptr) throw Error("the visibility cannot be read back", "OpenGL", "use --engine cpu");
-        const struct Unmap {
-            ~Unmap() { glUnmapBuffer(GL_SHADER_STORAGE_BUFFER); }
-        } unmap;
-        sink({s, plane, end, candidates, {static_cast<const float*>(data), count}});
-    }
-
-    VisibilityBudget m_budget;
-    VolumeTexture m_volume;
-    TableTexture m_table;
-    std::map<int, SweepPrograms> m_programs; ///< by number of candidates
-    Texture3d m_depth;
-    Buffer m_visibility;
-};
-
-} // namespace
-
-} // namespace gl
-
-namespace {
-
-constexpr std::uint16_t kNoFeature = 65535;
 
 class GlEngine final : public VisibilityEngine {
 public:
     GlEngine(std::shared_ptr<const Volume> volume, Quality quality, const gl::VisibilityBudget& budget)
-        : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)) {
-        m_device.emplace([&] { return std::make_unique<gl::Device>(m_grid, budget); });
+        : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)),
+          m_cells(gl::tableCells(*m_volume, quality)) {
+        m_device.emplace([&] { return std::make_unique<gl::SweepDevice>(m_grid, budget); });
     }
 
     std::string name() const override { return "gl"; }
@@ -229,42 +43,30 @@ public:
     /// The device has no derivative sweep: the cpu engine answers, on the same volume.
     SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
-        return makeCpuEngine(m_volume, m_quality)->jacobian(camera, tf, weights, job);
+        if (!m_cpu) m_cpu = makeCpuEngine(m_volume, m_quality);
+        return m_cpu->jacobian(camera, tf, weights, job);
     }
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override;
 
 private:
-    /// Per code and candidate; candidates beyond the last transfer function are transparent.
-    std::vector<float> opticalDepthTables(std::span<const TransferFunction> tfs, int candidates) const;
-    std::vector<std::uint16_t> featureOfCodes(const std::vector<Feature>& features) const;
+    /// Slot of every code: the index of its feature, or the number of features for "in none".
+    std::vector<std::uint16_t> slotsOfCodes(const std::vector<Feature>& features) const;
 
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
     IntensityGrid m_grid;
-    gl::InContext<gl::Device> m_device;
+    int m_cells;
+    gl::InContext<gl::SweepDevice> m_device;
+    std::unique_ptr<VisibilityEngine> m_cpu; ///< made when first needed
 };
 
-std::vector<float> GlEngine::opticalDepthTables(std::span<const TransferFunction> tfs, int candidates) const {
-    const std::size_t codes = static_cast<std::size_t>(m_grid.maxCode) + 1,
-                      lanes = static_cast<std::size_t>(candidates);
-    std::vector<float> tables(codes * lanes, 0.0f);
-    for (std::size_t t = 0; t < tfs.size(); ++t) {
-        const TfSampler sampler(tfs[t]);
-        for (std::size_t code = 0; code < codes; ++code) {
-            const double s = static_cast<double>(code) / m_grid.maxCode;
-            tables[code * lanes + t] = static_cast<float>(opticalDepthOfOpacity(sampler.opacity(s)));
-        }
-    }
-    return tables;
-}
-
-std::vector<std::uint16_t> GlEngine::featureOfCodes(const std::vector<Feature>& features) const {
-    std::vector<std::uint16_t> of(static_cast<std::size_t>(m_grid.maxCode) + 1, kNoFeature);
-    for (std::size_t code = 0; code < of.size(); ++code) {
+std::vector<std::uint16_t> GlEngine::slotsOfCodes(const std::vector<Feature>& features) const {
+    std::vector<std::uint16_t> slots(static_cast<std::size_t>(m_grid.maxCode) + 1);
+    for (std::size_t code = 0; code < slots.size(); ++code) {
         const int f = featureAt(features, static_cast<double>(code) / m_grid.maxCode);
-        if (f >= 0) of[code] = static_cast<std::uint16_t>(f);
+        slots[code] = static_cast<std::uint16_t>(f < 0 ? static_cast<int>(features.size()) : f);
     }
-    return of;
+    return slots;
 }
 
 std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const TransferFunction> tfs,
@@ -275,71 +77,55 @@ std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const Tr
     for (const TransferFunction& tf : tfs)
         if (tf.features != features)
             throw Error("transfer functions of one batch must share their features", "transfer function", "");
-    const std::size_t slots = features.size() + 1;
-    const auto featureOf = featureOfCodes(features);
+    if (weights != nullptr) PELLUCID_CHECK(weights->dims() == m_volume->dims());
 
-    std::vector<FeatureSums> results(tfs.size());
-    for (std::size_t firstTf = 0; firstTf < tfs.size(); firstTf += 4) {
-        const auto group = tfs.subspan(firstTf, std::min<std::size_t>(4, tfs.size() - firstTf));
-        const int candidates = group.size() == 1 ? 1 : 4;
-        const auto tables = opticalDepthTables(group, candidates);
-        std::vector<std::array<double, 3>> total(slots * static_cast<std::size_t>(candidates));
+    gl::SweepRequest request;
+    request.sweeps = gl::makeSweeps(camera, m_volume->geometry(), m_quality);
+    request.eyeInVoxels = m_volume->geometry().voxelFromWorld(camera.eye);
+    request.slotOfCode = slotsOfCodes(features);
+    request.features = static_cast<int>(features.size());
+    if (weights != nullptr) {
+        request.weights = weights->data();
+        request.weightsKey = keyOf(weights->data(), weights->size());
+    }
+    int atOnce = 0;
+    m_device.run([&](gl::SweepDevice& device) { atOnce = device.candidatesAtOnce(request); });
 
-        const auto add = [&](const gl::Planes& planes) {
-            const auto stride = planes.sweep.strides();
-            const auto width = static_cast<std::size_t>(planes.sweep.dims.x);
-            const auto height = static_cast<std::size_t>(planes.sweep.dims.y);
-            const auto lanes = static_cast<std::size_t>(candidates);
-            const auto count = static_cast<std::size_t>(planes.end - planes.first);
-            std::vector<std::vector<std::array<double, 3>>> partial(count);
-            parallelFor(count, [&](std::size_t p) {
-                auto& sum = partial[p];
-                sum.resize(total.size());
-                const float* v = planes.values.data() + p * width * height * lanes;
-                for (std::size_t b = 0; b < height; ++b) {
-                    std::ptrdiff_t voxel = stride.base + static_cast<std::ptrdiff_t>(b) * stride.b +
-                                           (planes.first + static_cast<std::ptrdiff_t>(p)) * stride.c;
-                    for (std::size_t a = 0; a < width; ++a, voxel += stride.a, v += lanes) {
-                        const auto i = static_cast<std::size_t>(voxel);
-                        const std::uint16_t f = featureOf[m_grid.codes[i]];
-                        auto* slot = &sum[(f == kNoFeature ? slots - 1 : f) * lanes];
-                        const double w0 = weights ? static_cast<double>(weights->brightness(i)) : 0.0;
-                        const double w1 = weights ? static_cast<double>(weights->saturation(i)) : 0.0;
-                        for (std::size_t lane = 0; lane < lanes; ++lane) {
-                            const double x = static_cast<double>(v[lane]);
-                            slot[lane][0] += x;
-                            slot[lane][1] += x * w0;
-                            slot[lane][2] += x * w1;
-                        }
-                    }
-                }
-            });
-            for (const auto& one : partial) // in order: the same bits for any number of threads
-                for (std::size_t i = 0; i < total.size(); ++i)
-                    for (std::size_t n = 0; n < 3; ++n) total[i][n] += one[i][n];
-        };
+    std::vector<FeatureSums> results;
+    while (results.size() < tfs.size()) {
+        const std::size_t first = results.size();
+        const auto group =
+            tfs.subspan(first, std::min<std::size_t>(static_cast<std::size_t>(atOnce), tfs.size() - first));
+        const int lanes = group.size() == 1 ? 1 : group.size() <= 4 ? 4 : 8;
+        request.tables = gl::makeDepthTables(group, lanes, m_cells);
         JobControl part = job;
         if (job.progress)
             part.progress = [&](double f) {
-                const double groupSize = static_cast<double>(group.size());
-                job.progress((static_cast<double>(firstTf) + f * groupSize) / static_cast<double>(tfs.size()));
+                job.progress((static_cast<double>(first) + f * static_cast<double>(group.size())) /
+                             static_cast<double>(tfs.size()));
             };
-        m_device.run([&](gl::Device& device) {
-            device.sweep(camera, m_volume->geometry(), m_quality, tables, candidates, part, add);
-        });
+        std::vector<double> totals;
+        m_device.run([&](gl::SweepDevice& device) { totals = device.sums(request, part); });
 
+        const auto stride = static_cast<std::size_t>(lanes);
         for (std::size_t lane = 0; lane < group.size(); ++lane) {
-            FeatureSums& r = results[firstTf + lane];
+            FeatureSums r;
             r.visibility.resize(features.size());
             for (auto& w : r.weighted) w.resize(features.size());
-            for (std::size_t f = 0; f < slots; ++f) {
-                const auto& s = total[f * static_cast<std::size_t>(candidates) + lane];
-                r.allVisibility += s[0];
-                for (std::size_t n = 0; n < 2; ++n) r.allWeighted[n] += s[n + 1];
-                if (f == features.size()) continue;
-                r.visibility[f] = s[0];
-                for (std::size_t n = 0; n < 2; ++n) r.weighted[n][f] = s[n + 1];
+            for (std::size_t f = 0; f <= features.size(); ++f) {
+                const double* item = &totals[f * 3 * stride + lane];
+                const double v = item[0];
+                r.allVisibility += v;
+                if (f < features.size()) r.visibility[f] = v;
+                for (std::size_t n = 0; n < 2; ++n) {
+                    const double scale =
+                        weights != nullptr ? static_cast<double>(weights->scale(static_cast<int>(n))) : 0;
+                    const double weighted = item[(n + 1) * stride] * scale;
+                    r.allWeighted[n] += weighted;
+                    if (f < features.size()) r.weighted[n][f] = weighted;
+                }
             }
+            results.push_back(std::move(r));
         }
     }
     job.report(1.0);
@@ -348,9 +134,12 @@ std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const Tr
 
 VisibilityField GlEngine::field(const Camera& camera, const TransferFunction& tf, const JobControl& job) {
     camera.validate(m_volume->geometry(), "camera");
+    gl::SweepRequest request;
+    request.sweeps = gl::makeSweeps(camera, m_volume->geometry(), m_quality);
+    request.eyeInVoxels = m_volume->geometry().voxelFromWorld(camera.eye);
+    request.tables = gl::makeDepthTables({&tf, 1}, 1, m_cells);
     VisibilityField result{Grid<float>(m_volume->dims())};
-    const auto tables = opticalDepthTables({&tf, 1}, 1);
-    const auto store = [&](const gl::Planes& planes) {
+    const auto store = [&](const gl::SweptPlanes& planes) {
         const auto stride = planes.sweep.strides();
         const float* v = planes.values.data();
         for (int c = planes.first; c < planes.end; ++c)
@@ -359,8 +148,7 @@ VisibilityField GlEngine::field(const Camera& camera, const TransferFunction& tf
                     result.values[static_cast<std::size_t>(stride.base + a * stride.a + b * stride.b + c * stride.c)] +=
                         *v;
     };
-    m_device.run(
-        [&](gl::Device& device) { device.sweep(camera, m_volume->geometry(), m_quality, tables, 1, job, store); });
+    m_device.run([&](gl::SweepDevice& device) { device.field(request, job, store); });
     job.report(1.0);
     return result;
 }

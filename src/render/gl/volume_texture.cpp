@@ -4,35 +4,68 @@
 
 namespace pellucid::gl {
 
-VolumeTexture uploadVolume(const IntensityGrid& grid) {
-    const Int3 dims = grid.codes.dims();
-    VolumeTexture volume;
-    volume.maxCode = grid.maxCode;
-    volume.hasInvalid = !grid.valid.empty();
-    volume.texture = makeTexture3d(dims, volume.hasInvalid ? GL_RG16 : GL_R16, GL_LINEAR, "the volume");
+namespace {
 
-    const std::size_t plane = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
-    std::vector<std::uint16_t> pairs(volume.hasInvalid ? 2 * plane : 0);
-    glBindTexture(GL_TEXTURE_3D, volume.texture.name.id());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    for (int k = 0; k < dims.z; ++k) {
-        const std::size_t first = static_cast<std::size_t>(k) * plane;
-        const std::uint16_t* row = grid.codes.data() + first;
-        if (volume.hasInvalid) {
-            for (std::size_t i = 0; i < plane; ++i) {
-                const bool valid = grid.valid[first + i] != 0;
-                pairs[2 * i] = valid ? row[i] : std::uint16_t{0};
-                pairs[2 * i + 1] = valid ? std::uint16_t{65535} : std::uint16_t{0};
-            }
-            row = pairs.data();
-        }
-        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, dims.x, dims.y, 1, volume.hasInvalid ? GL_RG : GL_RED,
-                        GL_UNSIGNED_SHORT, row);
+/// Lets glTexSubImage3D read a box out of a larger array; GL's defaults afterwards.
+class UnpackBox {
+public:
+    explicit UnpackBox(const Int3& dims) {
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, dims.x);
+        glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, dims.y);
     }
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    ~UnpackBox() {
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+        glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
+    }
+    UnpackBox(const UnpackBox&) = delete;
+    UnpackBox& operator=(const UnpackBox&) = delete;
+};
+
+template <class T>
+void copyBox(const T* data, const Int3& dims, const Int3& first, const Int3& size, const Int3& to, GLenum format,
+             GLenum type, std::size_t perVoxel) {
+    const auto row = static_cast<std::size_t>(dims.x), plane = row * static_cast<std::size_t>(dims.y);
+    const std::size_t start = static_cast<std::size_t>(first.z) * plane + static_cast<std::size_t>(first.y) * row +
+                              static_cast<std::size_t>(first.x);
+    const UnpackBox unpack(dims);
+    glTexSubImage3D(GL_TEXTURE_3D, 0, to.x, to.y, to.z, size.x, size.y, size.z, format, type, data + start * perVoxel);
+}
+
+} // namespace
+
+void uploadCodes(const Texture3d& texture, const IntensityGrid& grid, const Int3& first, const Int3& size,
+                 const Int3& to) {
+    const Int3 dims = grid.codes.dims();
+    glBindTexture(GL_TEXTURE_3D, texture.name.id());
+    if (grid.valid.empty()) {
+        copyBox(grid.codes.data(), dims, first, size, to, GL_RED, GL_UNSIGNED_SHORT, 1);
+    } else {
+        const Int3 layer(size.x, size.y, 1);
+        std::vector<std::uint16_t> pairs(2 * voxelCount(layer));
+        for (int k = 0; k < size.z; ++k) {
+            auto pair = pairs.begin();
+            for (int j = 0; j < size.y; ++j)
+                for (int i = 0; i < size.x; ++i) {
+                    const std::size_t voxel = grid.codes.index(first.x + i, first.y + j, first.z + k);
+                    const bool valid = grid.valid[voxel] != 0;
+                    *pair++ = valid ? grid.codes[voxel] : std::uint16_t{0};
+                    *pair++ = valid ? std::uint16_t{65535} : std::uint16_t{0};
+                }
+            copyBox(pairs.data(), layer, Int3(0), layer, to + Int3(0, 0, k), GL_RG, GL_UNSIGNED_SHORT, 2);
+        }
+    }
     glBindTexture(GL_TEXTURE_3D, 0);
     throwOnGlError("uploading the volume");
-    return volume;
+}
+
+void uploadWeights(const Texture3d& texture, const std::uint32_t* weights, const Int3& dims, const Int3& first,
+                   const Int3& size, const Int3& to) {
+    glBindTexture(GL_TEXTURE_3D, texture.name.id());
+    copyBox(weights, dims, first, size, to, GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+    glBindTexture(GL_TEXTURE_3D, 0);
+    throwOnGlError("uploading the saliency");
 }
 
 void TableTexture::fill(std::span<const float> values, int channels) {

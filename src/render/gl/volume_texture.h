@@ -9,23 +9,15 @@
 
 namespace pellucid::gl {
 
-/// shape (nx, ny, nz); R16 = code/65535, or RG16 = (code·valid, valid) where some voxels are invalid.
-struct VolumeTexture {
-    Texture3d texture;
-    int maxCode = 65535; ///< intensity = code / maxCode
-    bool hasInvalid = false;
+/// Copies a box of the volume, the voxels [first, first + size), into a part of a texture that begins at `to`. Codes go
+/// into R16 = code/65535 or, where some voxels are invalid, RG16 = (code·valid, valid); weights (one word per voxel of
+/// a volume of `dims`, x fastest) into R32UI.
+void uploadCodes(const Texture3d& texture, const IntensityGrid& grid, const Int3& first, const Int3& size,
+                 const Int3& to);
+void uploadWeights(const Texture3d& texture, const std::uint32_t* weights, const Int3& dims, const Int3& first,
+                   const Int3& size, const Int3& to);
 
-    /// The shaders' permutation.
-    std::vector<std::string> defines() const {
-        if (hasInvalid) return {"HAS_INVALID"};
-        return {};
-    }
-};
-
-/// Linear filtering. Throws Error: an axis longer than the device's textures, out of memory.
-VolumeTexture uploadVolume(const IntensityGrid& grid);
-
-/// A table for tfEntry() of include/tf.glsl: rows of 256 entries, unfiltered. Refilled in place while its size stays.
+/// A table for tfTexel() of include/tf_segment.glsl: rows of 256 entries, unfiltered. Refilled in place while its size stays.
 class TableTexture {
 public:
     /// `values`: entries × channels floats; channels 1 or 4.

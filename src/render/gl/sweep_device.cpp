@@ -1,0 +1,334 @@
+#include "render/gl/sweep_device.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/type_ptr.hpp>
+
+#include "render/gl/shader_program.h"
+#include "volume/error.h"
+
+namespace pellucid::gl {
+
+namespace {
+
+constexpr int kSide = 8;           ///< local_size of march and gather, both axes
+constexpr int kPlanesPerGroup = 8; ///< of visibility_gather.comp
+constexpr int kReduceColumns = 16; ///< local_size_x of visibility_reduce.comp
+constexpr int kMostSlots = 2048; ///< features and one; with one candidate they fit into 32 KiB, which every device has
+
+using glm::value_ptr;
+
+int longestTexture3d() {
+    requireGl43();
+    return glInteger(GL_MAX_3D_TEXTURE_SIZE);
+}
+
+/// Planes whose light is kept besides those that a step adds.
+int ringExtra(const Sweep& s) { return s.ownPlanes.y - s.ownPlanes.x + 1; }
+
+GLuint groups(int count, int size) { return static_cast<GLuint>((count + size - 1) / size); }
+
+/// Overwrites the beginning of a buffer that is large enough.
+void write(const Buffer& buffer, const void* data, std::size_t bytes) {
+    PELLUCID_CHECK(bytes <= buffer.bytes);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.name.id());
+    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+}
+
+void bindStorage(GLuint binding, const Buffer& buffer) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.name.id());
+}
+
+} // namespace
+
+/// visibility_march.comp and visibility_gather.comp, one permutation; locations as written there.
+class SweepDevice::Programs {
+public:
+    explicit Programs(const std::vector<std::string>& defines)
+        : m_march(makeProgram({"visibility_march.comp"}, defines)),
+          m_gather(makeProgram({"visibility_gather.comp"}, defines)) {}
+
+    void setTables(const DepthTables& tables, int maxCode) const {
+        for (const GLuint p : {m_march.id(), m_gather.id()}) {
+            glProgramUniform1f(p, 0, static_cast<float>(65535.0 / maxCode * tables.cells));
+            glProgramUniform1f(p, 12, static_cast<float>(tables.unit));
+            glProgramUniform1i(p, 13, tables.cells - 1);
+        }
+    }
+    void setSweep(const Sweep& s, int ring) const {
+        for (const GLuint p : {m_march.id(), m_gather.id()}) {
+            glProgramUniform4f(p, 1, static_cast<float>(s.eye.x), static_cast<float>(s.eye.y),
+                               static_cast<float>(s.eye.z), s.perspective ? 1.0f : 0.0f);
+            glProgramUniform2fv(p, 2, 1, value_ptr(glm::vec2(s.shear)));
+            glProgramUniform1f(p, 3, static_cast<float>(s.reference));
+            glProgramUniform3fv(p, 4, 1, value_ptr(glm::vec3(s.spacing)));
+            glProgramUniform3iv(p, 5, 1, value_ptr(s.dims));
+            glProgramUniform3fv(p, 6, 1, value_ptr(glm::vec3(s.grid, s.raysPerVoxel)));
+            glProgramUniform2iv(p, 7, 1, value_ptr(s.rays));
+            glProgramUniform1f(p, 8, static_cast<float>(s.front));
+            glProgramUniform1f(p, 9, static_cast<float>(s.pieces));
+            glProgramUniform1i(p, 21, ring);
+        }
+        glProgramUniform2iv(m_gather.id(), 23, 1, value_ptr(s.ownPlanes));
+        glProgramUniform1f(m_gather.id(), 24, static_cast<float>(s.tolerance));
+        glProgramUniform4i(m_gather.id(), 25, s.pyramid ? s.axis : -1, s.sign, 0, 0);
+    }
+    void setVolume(const Sweep& s, const ResidentVolume& volume, const Vec3& eyeInVoxels) const {
+        const Vec3 first(volume.first());
+        const Folding& f = volume.folding();
+        for (const GLuint p : {m_march.id(), m_gather.id()}) {
+            glProgramUniformMatrix3fv(p, 10, 1, GL_FALSE, value_ptr(glm::mat3(s.voxelFromQ())));
+            glProgramUniform3fv(p, 11, 1, value_ptr(glm::vec3(s.voxelOffset() - first)));
+            glProgramUniform3iv(p, 14, 1, value_ptr(volume.size() - 1));
+            glProgramUniform3fv(p, 15, 1, value_ptr(glm::vec3(volume.codes().size)));
+            if (!f.folded()) continue;
+            glProgramUniform3iv(p, 16, 1, value_ptr(f.brick));
+            glProgramUniform3iv(p, 17, 1, value_ptr(f.bricks));
+            glProgramUniform3iv(p, 18, 1, value_ptr(f.slots));
+            glProgramUniform3iv(p, 19, 1, value_ptr(f.tile));
+        }
+        glProgramUniform3fv(m_gather.id(), 26, 1, value_ptr(glm::vec3(eyeInVoxels - first)));
+    }
+    void setWeighted(bool weighted) const { glProgramUniform1i(m_gather.id(), 27, weighted ? 1 : 0); }
+
+    void march(const Sweep& s, int firstPlane, int endPlane) const {
+        glProgramUniform2i(m_march.id(), 20, firstPlane, endPlane);
+        glProgramUniform1i(m_march.id(), 22, firstPlane == s.firstPlane ? 1 : 0);
+        glUseProgram(m_march.id());
+        glDispatchCompute(groups(s.rays.x, kSide), groups(s.rays.y, kSide), 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+    void gather(const Sweep& s, int firstPlane, int endPlane) const {
+        glProgramUniform2i(m_gather.id(), 20, firstPlane, endPlane);
+        glUseProgram(m_gather.id());
+        glDispatchCompute(groups(s.dims.x, kSide), groups(s.dims.y, kSide),
+                          groups(endPlane - firstPlane, kPlanesPerGroup));
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                        GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+    }
+
+private:
+    ProgramName m_march, m_gather;
+};
+
+SweepDevice::SweepDevice(const IntensityGrid& grid, const VisibilityBudget& budget)
+    : m_grid(grid), m_budget(budget),
+      m_volume(grid, budget.volumeBytes, std::min(budget.textureSize, longestTexture3d())) {
+    m_reduce = makeProgram({"visibility_reduce.comp"});
+    // Better now than later: who asked for the best engine takes another one where the volume is too large.
+    m_volume.require({2, 0, std::min(grid.codes.dims().z, 20), true});
+}
+
+SweepDevice::~SweepDevice() = default;
+
+double SweepDevice::bufferLimit() const {
+    return std::min(m_budget.bufferBytes, static_cast<double>(glInteger(GL_MAX_SHADER_STORAGE_BLOCK_SIZE)));
+}
+
+void SweepDevice::ensure(Buffer& buffer, double bytes, const std::string& what) {
+    const auto size = static_cast<std::size_t>(std::max(bytes, 16.0));
+    if (buffer.bytes >= size) return;
+    buffer = {}; // before the new one, so that both never need room at once
+    buffer = makeBuffer(GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_DYNAMIC_COPY, what);
+}
+
+/// Slots come in powers of two, so that a feature more rarely means another program.
+int SweepDevice::slotsFor(int features) const {
+    int slots = 4;
+    while (slots < features + 1) slots *= 2;
+    return slots;
+}
+
+/// As many invocations per item as a work group has, where shared memory has room for their accumulators; 0: no room.
+int SweepDevice::segmentsFor(int candidates, int slots) const {
+    const int group = kSide * kSide;
+    const int staged = group * 4 * (1 + candidates + 3) + 4;
+    const int room = (glInteger(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE) - staged) / (slots * 3 * candidates * 4);
+    return std::min(room, group / (3 * candidates));
+}
+
+int SweepDevice::candidatesAtOnce(const SweepRequest& request) const {
+    double rays = 0;
+    int planes = 0;
+    for (const Sweep& s : request.sweeps) {
+        rays = std::max(rays, static_cast<double>(s.rays.x) * s.rays.y);
+        planes = std::max(planes, 1 + ringExtra(s));
+    }
+    for (const int candidates : {8, 4, 1})
+        if (segmentsFor(candidates, slotsFor(request.features)) > 0 &&
+            4.0 * candidates * rays * planes <= bufferLimit())
+            return candidates;
+    if (request.features + 1 > kMostSlots)
+        throw Error("at most " + std::to_string(kMostSlots - 1) + " features can be measured", "transfer function",
+                    "join some");
+    throw Error("the light of " + std::to_string(static_cast<long long>(rays)) + " rays at " + std::to_string(planes) +
+                    " planes does not fit into the device's buffers of " +
+                    std::to_string(static_cast<long long>(bufferLimit())) + " bytes",
+                "OpenGL", "use --engine cpu");
+}
+
+const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots) {
+    std::vector<std::string> defines{"CANDIDATES " + std::to_string(candidates)};
+    if (m_volume.hasInvalid()) defines.push_back("HAS_INVALID");
+    if (m_volume.folding().folded()) defines.push_back("FOLDED");
+    if (slots == 0) {
+        defines.push_back("FIELD");
+    } else {
+        defines.push_back("SLOTS " + std::to_string(slots));
+        defines.push_back("SEGMENTS " + std::to_string(segmentsFor(candidates, slots)));
+    }
+    auto& programs = m_programs[defines];
+    if (!programs) programs = std::make_unique<Programs>(defines);
+    return *programs;
+}
+
+void SweepDevice::uploadTables(const DepthTables& tables) {
+    const std::size_t bytes = tables.tau.size() * sizeof(float),
+                      counts = tables.opaqueBefore.size() * sizeof(std::uint32_t);
+    const std::string what = "the transfer functions' tables";
+    ensure(m_integral, static_cast<double>(bytes), what);
+    ensure(m_tau, static_cast<double>(bytes), what);
+    ensure(m_opaque, static_cast<double>(counts), what);
+    write(m_integral, tables.integral.data(), bytes);
+    write(m_tau, tables.tau.data(), bytes);
+    write(m_opaque, tables.opaqueBefore.data(), counts);
+    bindStorage(1, m_integral);
+    bindStorage(2, m_tau);
+    bindStorage(3, m_opaque);
+    throwOnGlError("uploading the transfer functions");
+}
+
+int SweepDevice::prepare(const Sweep& s, int candidates, int slots) {
+    const double layer = 4.0 * candidates * s.rays.x * s.rays.y, area = static_cast<double>(s.dims.x) * s.dims.y;
+    const double groupsPerLayer = static_cast<double>(groups(s.dims.x, kSide)) * groups(s.dims.y, kSide);
+    // What each so many planes leave.
+    const int outputPlanes = slots == 0 ? 1 : kPlanesPerGroup;
+    const double outputBytes = slots == 0 ? 4 * area : groupsPerLayer * slots * 3 * candidates * 4;
+    const double light = std::floor(bufferLimit() / layer) - ringExtra(s);
+    const double output = std::floor(bufferLimit() / outputBytes) * outputPlanes;
+    if (light < 1 || output < 1)
+        throw Error("a single plane of voxels needs more than the device's buffers of " +
+                        std::to_string(static_cast<long long>(bufferLimit())) + " bytes",
+                    "OpenGL", "use --engine cpu");
+    // Few enough planes that a step takes well under a second.
+    const double wanted = std::max(1.0, m_budget.voxelsPerStep / area);
+    int planes = static_cast<int>(std::min({wanted, light, output, static_cast<double>(s.dims.z)}));
+    for (;; planes /= 2) {
+        if (planes > kPlanesPerGroup) planes = planes / kPlanesPerGroup * kPlanesPerGroup;
+        try {
+            const int resident = std::min(s.dims.z, planes + s.ownPlanes.y + 1);
+            m_volume.require(
+                {s.axis, s.sign > 0 ? 0 : s.dims.z - resident, s.sign > 0 ? resident : s.dims.z, s.sign > 0});
+            ensure(m_light, layer * (planes + ringExtra(s)), "the rays' light");
+            ensure(m_output, outputBytes * groups(planes, outputPlanes), slots == 0 ? "the visibility" : "the sums");
+            return planes;
+        } catch (const OutOfMemory&) { // fewer planes may do
+            if (planes == 1) throw;
+        }
+    }
+}
+
+void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slots, const JobControl& job,
+                           const AfterPlanes& after) {
+    const int candidates = request.tables.candidates;
+    const int atOnce = prepare(s, candidates, slots);
+    const int ring = atOnce + ringExtra(s);
+
+    int marched = s.firstPlane; // the rays have come so far
+    for (int plane = s.firstPlane; plane < s.dims.z; plane += atOnce) {
+        job.throwIfStopped();
+        job.report(static_cast<double>(plane - s.firstPlane) / (s.dims.z - s.firstPlane));
+        const int end = std::min(plane + atOnce, s.dims.z);
+        const int front = std::max(0, plane - s.ownPlanes.y - 1);
+        m_volume.require(
+            {s.axis, s.sign > 0 ? front : s.dims.z - end, s.sign > 0 ? end : s.dims.z - front, s.sign > 0});
+
+        const Programs& programs = programsFor(candidates, slots);
+        programs.setTables(request.tables, m_grid.maxCode);
+        programs.setSweep(s, ring);
+        programs.setVolume(s, m_volume, request.eyeInVoxels);
+        if (slots > 0) programs.setWeighted(request.weights != nullptr);
+        bindTexture(2, GL_TEXTURE_3D, m_volume.weights().name);
+        bindTexture(0, GL_TEXTURE_3D, m_volume.codes().name);
+        bindStorage(0, m_light);
+        bindStorage(5, m_output);
+        if (const int marchEnd = end - s.ownPlanes.x; marchEnd > marched) {
+            programs.march(s, marched, marchEnd);
+            marched = marchEnd;
+        }
+        programs.gather(s, plane, end);
+        after(s, plane, end);
+        // Without waiting the driver would queue everything, and nobody could cancel.
+        if (job.stop.stop_possible() || job.progress) glFinish();
+    }
+}
+
+void SweepDevice::runSweeps(const SweepRequest& request, int slots, const JobControl& job, const AfterPlanes& after) {
+    m_volume.setWeights(request.weights, request.weightsKey);
+    uploadTables(request.tables);
+    for (std::size_t i = 0; i < request.sweeps.size(); ++i) {
+        JobControl part = job;
+        if (job.progress)
+            part.progress = [&](double f) {
+                job.progress((static_cast<double>(i) + f) / static_cast<double>(request.sweeps.size()));
+            };
+        runSweep(request, request.sweeps[i], slots, part, after);
+    }
+    glUseProgram(0);
+    throwOnGlError("measuring visibility");
+}
+
+std::vector<double> SweepDevice::sums(const SweepRequest& request, const JobControl& job) {
+    const int slots = slotsFor(request.features), candidates = request.tables.candidates;
+    if (m_uploadedSlots != request.slotOfCode) {
+        std::vector<std::uint16_t> padded = request.slotOfCode;
+        padded.resize(2 * ((padded.size() + 1) / 2));
+        ensure(m_slotOfCode, static_cast<double>(padded.size() * sizeof(std::uint16_t)), "the features");
+        write(m_slotOfCode, padded.data(), padded.size() * sizeof(std::uint16_t));
+        m_uploadedSlots = request.slotOfCode;
+    }
+    bindStorage(4, m_slotOfCode);
+
+    const int entries = slots * 3 * candidates;
+    ensure(m_totals, 8.0 * entries, "the sums");
+    bindStorage(6, m_totals);
+    bool first = true;
+    runSweeps(request, slots, job, [&](const Sweep& s, int plane, int end) {
+        const GLuint count = groups(s.dims.x, kSide) * groups(s.dims.y, kSide) * groups(end - plane, kPlanesPerGroup);
+        glProgramUniform1i(m_reduce.id(), 0, entries);
+        glProgramUniform1i(m_reduce.id(), 1, static_cast<GLint>(count));
+        glProgramUniform1i(m_reduce.id(), 2, first ? 1 : 0);
+        glUseProgram(m_reduce.id());
+        glDispatchCompute(groups(entries, kReduceColumns), 1, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+        first = false;
+    });
+
+    std::vector<double> totals(static_cast<std::size_t>(entries), 0.0);
+    if (first) return totals; // no sweep has any voxel
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, m_totals.name.id());
+    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(totals.size() * sizeof(double)),
+                       totals.data());
+    throwOnGlError("reading the sums");
+    return totals;
+}
+
+void SweepDevice::field(const SweepRequest& request, const JobControl& job,
+                        const std::function<void(const SweptPlanes&)>& sink) {
+    runSweeps(request, 0, job, [&](const Sweep& s, int plane, int end) {
+        const std::size_t count = static_cast<std::size_t>(s.dims.x) * static_cast<std::size_t>(s.dims.y) *
+                                  static_cast<std::size_t>(end - plane);
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, m_output.name.id());
+        const void* data = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * sizeof(float)),
+                                            GL_MAP_READ_BIT);
+        throwOnGlError("reading the visibility");
+        if (data == nullptr) throw Error("the visibility cannot be read back", "OpenGL", "use --engine cpu");
+        const struct Unmap {
+            ~Unmap() { glUnmapBuffer(GL_SHADER_STORAGE_BUFFER); }
+        } unmap;
+        sink({s, plane, end, {static_cast<const float*>(data), count}});
+    });
+}
+
+} // namespace pellucid::gl

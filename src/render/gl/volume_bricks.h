@@ -1,0 +1,54 @@
+// A volume's intensities as one texture, or as bricks where one would be too long or too large: what pictures are drawn
+// from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/gl/volume_texture.h"
+
+namespace pellucid::gl {
+
+/// Longest step of samples along a ray, in d0, whose two ends lie in the texture of the brick that holds its middle.
+inline constexpr double kBrickStep = 4.0;
+
+/// Coordinates t: [0,1] over the volume's box.
+struct VolumeBrick {
+    Int3 index{0, 0, 0};                ///< in the grid of bricks
+    Int3 first{0, 0, 0}, size{0, 0, 0}; ///< the voxels of its texture, its neighbours' included
+    Vec3 lo, hi;                        ///< what it stands for; the outermost ones reach beyond the box
+    Vec3 textureFromBox, textureOffset; ///< t of the texture = t · textureFromBox + textureOffset
+    Vec3 textureEnd;                    ///< centre of the last voxel, t of the texture
+};
+
+class BrickedVolume {
+public:
+    /// Throws Error, OutOfMemory. `longest`: of textures, along any axis, voxels; the device's if less.
+    BrickedVolume(const Volume& volume, int longest);
+
+    std::size_t count() const noexcept { return m_bricks.size(); }
+    bool hasInvalid() const noexcept { return m_hasInvalid; }
+    int maxCode() const noexcept { return m_maxCode; }
+    std::vector<std::string> defines() const {
+        return m_hasInvalid ? std::vector<std::string>{"HAS_INVALID"} : std::vector<std::string>{};
+    }
+    /// Indices of bricks such that none hides an earlier one.
+    std::vector<std::size_t> frontToBack(const Camera& camera) const;
+    /// Binds the brick's texture to unit 0, uploading it first where not all have room.
+    const VolumeBrick& use(std::size_t brick);
+
+private:
+    void cut(const Int3& longest);
+    bool uploadAll();
+
+    Geometry m_geometry;
+    IntensityGrid m_grid; ///< kept only where bricks are uploaded time and again
+    bool m_hasInvalid;
+    int m_maxCode;
+    std::vector<VolumeBrick> m_bricks;
+    Int3 m_counts{1, 1, 1}, m_cells{1, 1, 1}; ///< bricks along each axis; voxels that each stands for
+    std::vector<Texture3d> m_textures;        ///< one per brick, or one alone that they share in turn
+};
+
+} // namespace pellucid::gl
