@@ -149,6 +149,21 @@ TEST_CASE("wrong values of refine and optimize are wrong usage", "[cli][errors]"
     checkFails(w, targeted + Words{"--max-iterations", "many"}, 2, "--max-iterations");
 }
 
+TEST_CASE("what memory will not do for fails before it starts", "[cli][errors]") {
+    const Workshop w;
+    // 200³ voxels: the volume takes 16 MB, measuring 96 MB more; the program itself stays below 0.05 GiB until then.
+    for (const Words& command :
+         {Words{"measure"}, Words{"optimize", "--target", "1,1,1"}, Words{"fields", "--out", "d"}})
+        checkFails(w, command + Words{"sample:disks", "--size", "200", "--tf", "tents:3", "--memory", "0.1"}, 1,
+                   "200 x 200 x 200 voxels needs 112 MB of memory");
+    checkFails(w, {"render", "sample:disks", "--sample-size", "400", "--out", "a.png", "--memory", "0.1"}, 1,
+               "reading and drawing 400 x 400 x 400 voxels needs 256 MB");
+    checkFails(w, {"info", "sample:disks", "--size", "400", "--memory", "0.1"}, 1, "allow more with --memory");
+    for (const char* bad : {"0", "-1", "much", "inf", ""})
+        checkFails(w, {"measure", "sample:disks", "--memory", bad}, 2, "--memory");
+    CHECK(w.run({"info", "sample:disks", "--memory", "0.5"}).status == 0);
+}
+
 TEST_CASE("bad volume files fail with their name", "[cli][errors]") {
     const Workshop w;
     REQUIRE(w.run({"generate", "shells", "--size", "16", "--out", "good.nrrd"}).status == 0);
