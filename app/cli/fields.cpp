@@ -66,7 +66,8 @@ Answer run(const Options& o, Progress& progress) {
     const VwsOptions vws = o.saliency.vws();
     checkFolder(o.out);
     o.camera.check();
-    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("measuring"));
+    const auto [volume, tf] =
+        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("measuring", kMeasureBytesPerVoxel));
     const Geometry& geometry = volume->geometry();
     const Camera camera = o.camera.camera(geometry);
     auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);

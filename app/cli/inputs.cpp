@@ -197,8 +197,8 @@ void EngineOptions::add(CLI::App& app, const std::string& qualityHelp) {
         qualityHelp, kEngineGroup);
 }
 
-MemoryUse EngineOptions::memoryFor(const std::string& doing) const {
-    return {doing, choice == EngineChoice::Reference ? kMeasureByReferenceBytesPerVoxel : kMeasureBytesPerVoxel};
+MemoryUse EngineOptions::memoryFor(const std::string& doing, double bytesPerVoxel) const {
+    return {doing, bytesPerVoxel + (choice == EngineChoice::Reference ? kMoreByReferenceBytesPerVoxel : 0.0)};
 }
 
 void SaliencyInput::add(CLI::App& app) {

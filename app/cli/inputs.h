@@ -78,8 +78,8 @@ struct EngineOptions {
     EngineChoice choice = EngineChoice::Auto;
     Quality quality = Quality::Normal;
     void add(CLI::App& app, const std::string& qualityHelp);
-    /// What `doing` ("measuring") takes with this engine.
-    MemoryUse memoryFor(const std::string& doing) const;
+    /// What `doing` ("measuring") takes that takes `bytesPerVoxel` with the cpu engine.
+    MemoryUse memoryFor(const std::string& doing, double bytesPerVoxel) const;
 };
 
 /// --sigma, --kernel, --w1, --w2, --u1, --u2, --saliency-background.

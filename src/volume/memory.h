@@ -19,8 +19,10 @@ struct MemoryUse {
 /// Beside the volume, per voxel: 2 for intensity codes, 2 for the same in the order of sweeps along x, 4 for the two
 /// weights of saliency, 4 for the visibility that is measured.
 inline constexpr double kMeasureBytesPerVoxel = 12;
-/// The reference engine keeps intensities as doubles, and which are valid, in the place of codes.
-inline constexpr double kMeasureByReferenceBytesPerVoxel = 17;
+/// An optimization stores no visibility.
+inline constexpr double kOptimizeBytesPerVoxel = 8;
+/// The reference engine keeps intensities as doubles, and which are valid, in the place of codes: so much more.
+inline constexpr double kMoreByReferenceBytesPerVoxel = 5;
 /// To look at a volume takes its codes.
 inline constexpr double kViewBytesPerVoxel = 2;
 
