@@ -13,13 +13,31 @@ struct Options {
     CameraOptions camera;
     EngineOptions engine;
     SaliencyInput saliency;
+    bool jacobian = false;
 };
 
 struct Seconds {
     double visibility = 0, saliency = 0, total = 0;
+    std::optional<double> jacobian;
 };
 
-std::string textOf(const TransferFunction& tf, const Measures& m, const std::string& engine, const Seconds& seconds) {
+using Matrix = std::vector<std::vector<double>>;
+
+/// Row i, column j: ∂W_i/∂x_j.
+std::string textOf(const TransferFunction& tf, const Matrix& jacobian) {
+    std::vector<std::string> head{"dVWS / dopacity of"};
+    for (const Feature& f : tf.features) head.push_back(f.name);
+    Table table(head);
+    for (std::size_t i = 0; i < jacobian.size(); ++i) {
+        std::vector<std::string> row{tf.features[i].name};
+        for (const double d : jacobian[i]) row.push_back(fixedText(d, 4));
+        table.add(row);
+    }
+    return table.text();
+}
+
+std::string textOf(const TransferFunction& tf, const Measures& m, const std::optional<Matrix>& jacobian,
+                   const std::string& engine, const Seconds& seconds) {
     Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation"});
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];
@@ -28,12 +46,15 @@ std::string textOf(const TransferFunction& tf, const Measures& m, const std::str
                    fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4)});
     }
     const std::string features = tf.features.empty() ? "the transfer function has no features\n" : table.text();
-    return features + "engine " + engine + ": visibility " + secondsText(seconds.visibility) + ", saliency " +
-           secondsText(seconds.saliency) + ", total " + secondsText(seconds.total) + "\n";
+    const std::string derivatives = jacobian && !jacobian->empty() ? textOf(tf, *jacobian) : "";
+    return features + derivatives + "engine " + engine + ": visibility " + secondsText(seconds.visibility) +
+           ", saliency " + secondsText(seconds.saliency) +
+           (seconds.jacobian ? ", jacobian " + secondsText(*seconds.jacobian) : "") + ", total " +
+           secondsText(seconds.total) + "\n";
 }
 
-Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m, const std::string& engine,
-            const Seconds& seconds) {
+Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m, const std::optional<Matrix>& jacobian,
+            const std::string& engine, const Seconds& seconds) {
     Json features = Json::array();
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];
@@ -45,13 +66,16 @@ Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m,
                             {"vws_brightness", f.vwsBrightness},
                             {"vws_saturation", f.vwsSaturation}});
     }
-    return {
-        {"command", "measure"},
-        {"engine", engine},
-        {"volume", jsonFromVolume(volume)},
-        {"features", features},
-        {"visibility_histogram", m.visibilityHistogram},
-        {"seconds", {{"visibility", seconds.visibility}, {"saliency", seconds.saliency}, {"total", seconds.total}}}};
+    Json json{{"command", "measure"},
+              {"engine", engine},
+              {"volume", jsonFromVolume(volume)},
+              {"features", features},
+              {"visibility_histogram", m.visibilityHistogram}};
+    if (jacobian) json["jacobian"] = *jacobian;
+    Json& times = json["seconds"] = {{"visibility", seconds.visibility}, {"saliency", seconds.saliency}};
+    if (seconds.jacobian) times["jacobian"] = *seconds.jacobian;
+    times["total"] = seconds.total;
+    return json;
 }
 
 Answer run(const Options& o, Progress& progress) {
@@ -69,9 +93,17 @@ Answer run(const Options& o, Progress& progress) {
     seconds.saliency = saliency.seconds();
     const Measures m = measure(*engine, camera, tf, weights, vws, progress.phase("visibility"));
     seconds.visibility = m.visibilitySeconds;
+    std::optional<Matrix> jacobian;
+    if (o.jacobian) {
+        const Stopwatch derivatives;
+        jacobian = vwsJacobian(engine->jacobian(camera, tf, &weights, progress.phase("derivatives")), vws);
+        seconds.jacobian = derivatives.seconds();
+    }
     seconds.total = total.seconds();
-    return {
-        textOf(tf, m, engine->name(), seconds), jsonOf(*volume, tf, m, engine->name(), seconds), volume->notices, {}};
+    return {textOf(tf, m, jacobian, engine->name(), seconds),
+            jsonOf(*volume, tf, m, jacobian, engine->name(), seconds),
+            volume->notices,
+            {}};
 }
 
 } // namespace
@@ -84,6 +116,7 @@ Command addMeasure(CLI::App& program) {
     o->camera.add(*app);
     o->engine.add(*app, "high: half the error, more time");
     o->saliency.add(*app);
+    app->add_flag("--jacobian", o->jacobian, "the derivatives of each VWS with respect to each feature's opacity too");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

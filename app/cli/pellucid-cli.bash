@@ -27,6 +27,7 @@ _pellucid_cli() {
         --method) choices="fixed line parallel" ;;
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
+        --only) choices="setup saliency saliency-direct sweep jacobian optimize refine render" ;;
         --background) choices="transparent" ;;
         --tf)
             COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))
@@ -39,7 +40,7 @@ _pellucid_cli() {
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --view | --step | \
             --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
-            --max-iterations | --fix | --target | --tolerance)
+            --max-iterations | --repeat | --fix | --target | --tolerance)
             return
             ;;
     esac

@@ -44,9 +44,9 @@ public:
     virtual VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job = {}) = 0;
 };
 
-/// MEASURES §4 written out in double precision: one straight line per voxel, steps of at most d0/16. Slow and obvious;
-/// the oracle of the others.
-std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume);
+/// MEASURES §4 written out in double precision: one straight line per voxel, steps of at most d0/`stepsPerD0` (≥ 1; 16
+/// is what tolerances refer to). Slow and obvious; the oracle of the others.
+std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume, int stepsPerD0 = 16);
 
 /// Threads and SIMD, no GL. Same bits for any thread count.
 std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume,

@@ -1,4 +1,5 @@
 // MEASURES §4 written out: for each voxel one straight line toward the eye, double precision, steps of at most d0/16.
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -6,19 +7,20 @@
 #include "render/trilinear.h"
 #include "render/visibility.h"
 #include "tf/opacity.h"
+#include "volume/check.h"
 #include "volume/parallel.h"
 
 namespace pellucid {
 
 namespace {
 
-constexpr double kStepsPerD0 = 16;
 constexpr double kDark = 40; ///< optical depth from which on T < 5e-18: nothing behind is seen
 
 class ReferenceEngine final : public VisibilityEngine {
 public:
-    explicit ReferenceEngine(std::shared_ptr<const Volume> volume)
-        : m_volume(std::move(volume)), m_intensity(m_volume->dims()) {
+    ReferenceEngine(std::shared_ptr<const Volume> volume, int stepsPerD0)
+        : m_volume(std::move(volume)), m_intensity(m_volume->dims()), m_stepsPerD0(stepsPerD0) {
+        PELLUCID_CHECK(stepsPerD0 >= 1);
         if (m_volume->invalidCount() > 0) m_valid.assign(m_volume->size(), 1);
         for (std::size_t i = 0; i < m_volume->size(); ++i) {
             const double s = m_volume->intensity(i);
@@ -35,72 +37,148 @@ public:
     std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
                                   const WeightFields* weights, const JobControl& job) override {
         std::vector<FeatureSums> all;
-        for (const TransferFunction& tf : tfs)
-            all.push_back(sumsOfField(*m_volume, tfs[0].features, field(camera, tf, job).values, weights));
+        for (const TransferFunction& tf : tfs) {
+            PELLUCID_CHECK(tf.features == tfs[0].features);
+            const TfSampler sampler(tf);
+            Parts parts(slices(), emptySums(tf.features.size()));
+            forEachVoxel(camera, job, [&](const Voxel& voxel) {
+                const double v = visibility(camera, sampler, voxel);
+                const auto [lb, ls] = weightsAt(weights, voxel.index);
+                addVoxel(parts[voxel.slice], featureAt(tf.features, voxel.intensity), v, lb, ls);
+            });
+            all.push_back(total(parts));
+        }
         return all;
     }
 
-    SumsJacobian jacobian(const Camera&, const TransferFunction&, const WeightFields*, const JobControl&) override {
-        throw Error("the reference engine has no derivatives yet", "", "");
+    /// Inside feature j ∂α/∂x_j is the shape that x_j scales; so ∂τ/∂x_j = shape/(1 − α), but 0 where the cap holds τ.
+    /// From v = α·T: ∂v/∂x_j = ∂α/∂x_j·T − v·∫∂τ/∂x_j. The same samples as in sums(), so that it is its derivative.
+    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+                          const JobControl& job) override {
+        const std::size_t features = tf.features.size();
+        const TfSampler sampler(tf), shapes(withFullPeaks(tf));
+        Parts parts(slices(), emptySums(features));
+        std::vector<Parts> partsByOpacity(features, parts);
+        forEachVoxel(camera, job, [&](const Voxel& voxel) {
+            const int feature = featureAt(tf.features, voxel.intensity);
+            const double alpha = sampler.opacity(voxel.intensity);
+            const double shape = feature < 0 ? 0.0 : shapes.opacity(voxel.intensity);
+            if (alpha == 0 && shape == 0) return;
+            double depth = 0;
+            std::vector<double> depthByOpacity(features, 0.0);
+            forEachSample(camera, voxel.centre, [&](double s, double steps) {
+                const double a = sampler.opacity(s);
+                depth += steps * opticalDepthOfOpacity(a);
+                const int f = featureAt(tf.features, s);
+                if (f >= 0 && a < kMaxOpacity)
+                    depthByOpacity[static_cast<std::size_t>(f)] += steps * shapes.opacity(s) / (1 - a);
+                return depth <= kDark;
+            });
+            const double transmittance = std::exp(-depth), v = alpha * transmittance;
+            const auto [lb, ls] = weightsAt(weights, voxel.index);
+            addVoxel(parts[voxel.slice], feature, v, lb, ls);
+            for (std::size_t j = 0; j < features; ++j) {
+                const double own = static_cast<int>(j) == feature ? shape * transmittance : 0.0;
+                addVoxel(partsByOpacity[j][voxel.slice], feature, own - v * depthByOpacity[j], lb, ls);
+            }
+        });
+        SumsJacobian result{total(parts), {}};
+        for (const Parts& p : partsByOpacity) result.byOpacity.push_back(total(p));
+        return result;
     }
 
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
-        const Geometry& geometry = m_volume->geometry();
-        camera.validate(geometry, "camera");
         const TfSampler sampler(tf);
-        VisibilityField field{Grid<float>(geometry.dims)};
-        const auto slices = static_cast<std::size_t>(geometry.dims.z);
-        std::atomic<std::size_t> done = 0;
-        parallelFor(slices, [&](std::size_t k) {
-            for (int j = 0; j < geometry.dims.y; ++j) {
-                job.throwIfStopped();
-                for (int i = 0; i < geometry.dims.x; ++i) {
-                    const std::size_t at = field.values.index(i, j, static_cast<int>(k));
-                    if (!m_valid.empty() && !m_valid[at]) continue;
-                    const double alpha = sampler.opacity(m_intensity[at]);
-                    if (alpha == 0) continue;
-                    const Vec3 centre = geometry.worldFromVoxel(Vec3(i, j, static_cast<double>(k)));
-                    field.values[at] =
-                        static_cast<float>(alpha * std::exp(-opticalDepthBefore(camera, sampler, centre)));
-                }
-            }
-            job.report(static_cast<double>(++done) / static_cast<double>(slices));
+        VisibilityField field{Grid<float>(m_volume->dims())};
+        forEachVoxel(camera, job, [&](const Voxel& voxel) {
+            field.values[voxel.index] = static_cast<float>(visibility(camera, sampler, voxel));
         });
         return field;
     }
 
 private:
-    /// ∫τ from d0/2 in front of `centre` to where the line toward the eye leaves the box, or meets the eye.
-    double opticalDepthBefore(const Camera& camera, const TfSampler& sampler, const Vec3& centre) const {
+    using Parts = std::vector<FeatureSums>; ///< one per slice, so that the order of addition is fixed
+
+    struct Voxel {
+        std::size_t slice, index;
+        double intensity;
+        Vec3 centre; ///< world units
+    };
+
+    std::size_t slices() const { return static_cast<std::size_t>(m_volume->dims().z); }
+
+    static FeatureSums total(const Parts& parts) {
+        FeatureSums sums = parts[0];
+        for (std::size_t k = 1; k < parts.size(); ++k) add(sums, parts[k]);
+        return sums;
+    }
+
+    static std::array<double, 2> weightsAt(const WeightFields* weights, std::size_t i) {
+        if (!weights) return {0, 0};
+        return {weights->brightness(i), weights->saturation(i)};
+    }
+
+    /// body(voxel) for each valid voxel; slices on different threads.
+    template <class Body>
+    void forEachVoxel(const Camera& camera, const JobControl& job, const Body& body) const {
+        const Geometry& geometry = m_volume->geometry();
+        camera.validate(geometry, "camera");
+        std::atomic<std::size_t> done = 0;
+        parallelFor(slices(), [&](std::size_t k) {
+            for (int j = 0; j < geometry.dims.y; ++j) {
+                job.throwIfStopped();
+                for (int i = 0; i < geometry.dims.x; ++i) {
+                    const std::size_t at = m_intensity.index(i, j, static_cast<int>(k));
+                    if (!m_valid.empty() && !m_valid[at]) continue;
+                    body(Voxel{k, at, m_intensity[at], geometry.worldFromVoxel(Vec3(i, j, static_cast<double>(k)))});
+                }
+            }
+            job.report(static_cast<double>(++done) / static_cast<double>(slices()));
+        });
+    }
+
+    /// v = T·α of one voxel.
+    double visibility(const Camera& camera, const TfSampler& sampler, const Voxel& voxel) const {
+        const double alpha = sampler.opacity(voxel.intensity);
+        if (alpha == 0) return 0;
+        double depth = 0;
+        forEachSample(camera, voxel.centre, [&](double s, double steps) {
+            depth += steps * opticalDepthOfOpacity(sampler.opacity(s));
+            return depth <= kDark;
+        });
+        return alpha * std::exp(-depth);
+    }
+
+    /// take(s, d) for each sample from d0/2 in front of `centre` to where the line toward the eye leaves the box, or
+    /// meets the eye: s the intensity, d the path that it stands for in units of d0. Until take() says false.
+    template <class Take>
+    void forEachSample(const Camera& camera, const Vec3& centre, const Take& take) const {
         const Geometry& g = m_volume->geometry();
         const double d0 = g.d0();
         const Ray ray{centre, camera.towardEye(centre)};
         double end = intersectBox(ray, g.boxMin(), g.boxMax()).exit;
         if (camera.projection == Projection::Perspective) end = std::min(end, glm::length(camera.eye - centre));
         const double length = end - d0 / 2;
-        if (!(length > 0)) return 0;
-        const int steps = static_cast<int>(std::ceil(length / d0 * kStepsPerD0));
+        if (!(length > 0)) return;
+        const int steps = static_cast<int>(std::ceil(length / d0 * m_stepsPerD0));
         const double step = length / steps;
-        double depth = 0; // in units of one step
         for (int n = 0; n < steps; ++n) {
             const Vec3 p = ray.origin + ray.direction * (d0 / 2 + (n + 0.5) * step);
             const Interpolated s = interpolate(m_intensity, m_valid, g.voxelFromWorld(p));
-            if (s.validShare == 0) continue;
-            depth += s.validShare * opticalDepthOfOpacity(sampler.opacity(s.value));
-            if (depth * step / d0 > kDark) break;
+            if (s.validShare > 0 && !take(s.value, s.validShare * step / d0)) return;
         }
-        return depth * step / d0;
     }
 
     std::shared_ptr<const Volume> m_volume;
     Grid<double> m_intensity;
     std::vector<std::uint8_t> m_valid; ///< empty where all are
+    int m_stepsPerD0;
 };
 
 } // namespace
 
-std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume) {
-    return std::make_unique<ReferenceEngine>(std::move(volume));
+std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume, int stepsPerD0) {
+    return std::make_unique<ReferenceEngine>(std::move(volume), stepsPerD0);
 }
 
 } // namespace pellucid

@@ -14,11 +14,24 @@ namespace {
 
 double share(double part, double whole) { return whole > 0 ? part / whole : 0.0; }
 
+} // namespace
+
 FeatureSums emptySums(std::size_t features) {
     FeatureSums sums;
     sums.visibility.assign(features, 0.0);
     for (auto& w : sums.weighted) w.assign(features, 0.0);
     return sums;
+}
+
+void addVoxel(FeatureSums& sums, int feature, double v, double brightness, double saturation) {
+    sums.allVisibility += v;
+    sums.allWeighted[0] += v * brightness;
+    sums.allWeighted[1] += v * saturation;
+    if (feature < 0) return;
+    const auto f = static_cast<std::size_t>(feature);
+    sums.visibility[f] += v;
+    sums.weighted[0][f] += v * brightness;
+    sums.weighted[1][f] += v * saturation;
 }
 
 void add(FeatureSums& total, const FeatureSums& part) {
@@ -29,8 +42,6 @@ void add(FeatureSums& total, const FeatureSums& part) {
     total.allVisibility += part.allVisibility;
     for (std::size_t w = 0; w < 2; ++w) total.allWeighted[w] += part.allWeighted[w];
 }
-
-} // namespace
 
 std::array<double, 2> attributeWeights(const std::array<double, 2>& allWeighted, const VwsOptions& options) {
     const bool brightness = allWeighted[0] > 0, saturation = allWeighted[1] > 0;
@@ -86,15 +97,7 @@ FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& featur
             const double v = visibility[i];
             if (v == 0) continue;
             const double lb = weights ? weights->brightness(i) : 0.0, ls = weights ? weights->saturation(i) : 0.0;
-            sums.allVisibility += v;
-            sums.allWeighted[0] += v * lb;
-            sums.allWeighted[1] += v * ls;
-            const int f = featureAt(features, volume.intensity(i));
-            if (f < 0) continue;
-            const auto at = static_cast<std::size_t>(f);
-            sums.visibility[at] += v;
-            sums.weighted[0][at] += v * lb;
-            sums.weighted[1][at] += v * ls;
+            addVoxel(sums, featureAt(features, volume.intensity(i)), v, lb, ls);
         }
     });
     FeatureSums total = emptySums(features.size());

@@ -20,6 +20,13 @@ struct FeatureSums {
     std::array<double, 2> allWeighted{0, 0};
 };
 
+/// Zeros for so many features.
+FeatureSums emptySums(std::size_t features);
+/// One voxel of visibility v and weights L_b, L_s; `feature` −1: it is in none, and counts in the sums over all alone.
+void addVoxel(FeatureSums& sums, int feature, double v, double brightness, double saturation);
+/// Both have the same features.
+void add(FeatureSums& total, const FeatureSums& part);
+
 /// How `sums` change with the features' peak opacities x_j, everything else held: what an exact optimizer step needs.
 /// Saliency does not depend on opacity (MEASURES §5), so that the weights are constants here.
 struct SumsJacobian {

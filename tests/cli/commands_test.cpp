@@ -154,6 +154,51 @@ TEST_CASE("measure prints figures that agree with each other", "[cli]") {
     for (const char* word : {"f1", "f2", "f3", "VWS", "engine cpu"}) CHECK(text.out.find(word) != std::string::npos);
 }
 
+TEST_CASE("measure prints how each VWS changes with each opacity", "[cli]") {
+    const Workshop w;
+    const auto measured = [&](std::vector<double> peaks) {
+        // tents:3 with a peak of its own for each
+        json tf{{"format", "pellucid-tf"}, {"version", 1}};
+        const std::array colors{"#ff0000", "#00ff00", "#0000ff"};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double centre = (static_cast<double>(i) + 0.5) / 3;
+            for (const double side : {-1.0, 0.0, 1.0})
+                tf["points"].push_back({{"x", centre + side * 0.4 / 3},
+                                        {"opacity", side == 0 ? peaks[i] : 0.0},
+                                        {"color", colors[i]},
+                                        {"fixed", side != 0}});
+        }
+        w.write("t.tf.json", tf.dump());
+        return w.json(
+            {"measure", "sample:shells", "--size", "24", "--tf", "t.tf.json", "--engine", "cpu", "--jacobian"});
+    };
+    const std::vector<double> peaks{0.05, 0.1, 0.2};
+    const json j = measured(peaks);
+    const auto jacobian = j["jacobian"].get<std::vector<std::vector<double>>>();
+    REQUIRE(jacobian.size() == 3);
+    CHECK(j["seconds"]["jacobian"].get<double>() >= 0);
+    for (std::size_t x = 0; x < 3; ++x) {
+        // Central differences; the third derivatives that they neglect are of the order of h² = 1 % of 1/x² here.
+        constexpr double kShare = 0.1;
+        auto more = peaks, less = peaks;
+        more[x] += kShare * peaks[x];
+        less[x] -= kShare * peaks[x];
+        const auto up = column(measured(more)["features"], "vws"), down = column(measured(less)["features"], "vws");
+        double total = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            INFO("dW" << i << "/dx" << x);
+            REQUIRE(jacobian[i].size() == 3);
+            CHECK(jacobian[i][x] * peaks[x] == Approx((up[i] - down[i]) / (2 * kShare)).margin(0.002).epsilon(0.02));
+            total += jacobian[i][x];
+        }
+        // All shares sum to 1 whatever the opacities: the three tents hold everything that is visible.
+        CHECK(total == Approx(0).margin(1e-4));
+    }
+    CHECK_FALSE(w.json({"measure", "sample:shells", "--size", "16", "--engine", "cpu"}).contains("jacobian"));
+    const Outcome text = w.run({"measure", "sample:shells", "--size", "16", "--engine", "cpu", "--jacobian"});
+    CHECK(text.out.find("dVWS / dopacity of") != std::string::npos);
+}
+
 TEST_CASE("the saliency options change the saliency and nothing else", "[cli]") {
     const Workshop w;
     const auto measured = [&](std::vector<std::string> options) {

@@ -15,8 +15,8 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",    "samples", "generate", "render",
-                                         "measure", "fields",  "refine",   "optimize"};
+const std::vector<std::string> kCommands{"info",   "samples", "generate", "render", "measure",
+                                         "fields", "refine",  "optimize", "bench"};
 
 std::string sourceFile(const std::string& path) {
     std::ifstream in(std::string(PELLUCID_SOURCE_DIR) + "/" + path);
@@ -109,4 +109,6 @@ TEST_CASE("bash completes commands, options, values and samples", "[cli][documen
     // Bash takes the word after the colon for the one to complete.
     CHECK(completions("pellucid-cli info sample:sh") == std::set<std::string>{"shells"});
     CHECK(completions("pellucid-cli refine sample:shells --view").empty());
+    CHECK(completions("pellucid-cli bench --only s") ==
+          std::set<std::string>{"saliency", "saliency-direct", "setup", "sweep"});
 }

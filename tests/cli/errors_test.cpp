@@ -166,6 +166,20 @@ TEST_CASE("what memory will not do for fails before it starts", "[cli][errors]")
     CHECK(w.run({"info", "sample:disks", "--memory", "0.5"}).status == 0);
 }
 
+TEST_CASE("wrong values of bench are wrong usage", "[cli][errors]") {
+    const Workshop w;
+    const Words bench = Words{"bench"} + kShells;
+    for (const char* rows : {"paint", "", "sweep,", "sweep;render", "Sweep"})
+        checkFails(w, bench + Words{"--only", rows}, 2, "known: setup saliency saliency-direct sweep");
+    for (const char* repeat : {"0", "-1", "many", "1001"})
+        checkFails(w, bench + Words{"--repeat", repeat}, 2, "--repeat");
+    checkFails(w, bench + Words{"--threads", "0"}, 2, "--threads");
+    checkFails(w, bench + Words{"--full"}, 2, "--full");
+    checkFails(w, bench + Words{"--tf", "tents:0"}, 2, "tents");
+    checkFails(w, {"bench", "--size", "24"}, 2, "no volume");
+    checkFails(w, {"bench", "missing.nrrd"}, 1, "missing.nrrd");
+}
+
 TEST_CASE("bad volume files fail with their name", "[cli][errors]") {
     const Workshop w;
     REQUIRE(w.run({"generate", "shells", "--size", "16", "--out", "good.nrrd"}).status == 0);

@@ -34,6 +34,15 @@ TEST_CASE("Ctrl-C ends a measurement with status 130 and no answer", "[cli][inte
     CHECK(o.err.find("error") == std::string::npos);
 }
 
+TEST_CASE("Ctrl-C ends a benchmark in the middle of a row", "[cli][interrupt]") {
+    const Workshop w;
+    const Outcome o = interrupted(
+        w, {"bench", "sample:shells", "--size", "229", "--engine", "reference", "--only", "sweep", "--threads", "2"},
+        "sample:shells, default 0 %");
+    CHECK(o.status == 130);
+    CHECK(o.out.empty());
+}
+
 TEST_CASE("Ctrl-C leaves no output file", "[cli][interrupt]") {
     const Workshop w;
     w.write("old.png", "an older picture");

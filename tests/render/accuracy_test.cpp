@@ -1,38 +1,13 @@
 // MEASURES §10 on random cases: every kind of volume, camera and transfer function that support/random_cases.h draws.
 #include <catch2/catch.hpp>
 
-#include "support/disagreement.h"
-#include "support/random_cases.h"
+#include "support/accuracy_check.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
 
 TEST_CASE("the cpu engine keeps the tolerances of MEASURES on 50 random cases", "[visibility][cpu][accuracy]") {
-    constexpr std::uint32_t kCases = 50;
-    constexpr std::array kQualities{std::pair{Quality::Normal, kNormalTolerances},
-                                    std::pair{Quality::High, kHighTolerances}};
-    std::array<std::vector<double>, kQualities.size()> visibility, vws;
-    for (std::uint32_t n = 0; n < kCases; ++n) {
-        const RandomCase c = randomCase(n);
-        const WeightFields weights = saliencyFields(*c.volume, c.tf);
-        const Grid<float> expected = makeReferenceEngine(c.volume)->field(c.camera, c.tf).values;
-        for (std::size_t q = 0; q < kQualities.size(); ++q) {
-            const auto& [quality, allowed] = kQualities[q];
-            const Disagreement d =
-                compareWithField(expected, *makeCpuEngine(c.volume, quality), c.camera, c.tf, weights);
-            INFO(c.describe() << (quality == Quality::High ? ", quality high" : ""));
-            CHECK(d.visibilityRms <= allowed.visibilityRms);
-            CHECK(d.visibility <= allowed.figure);
-            CHECK(d.vws <= allowed.figure);
-            visibility[q].push_back(d.visibility);
-            vws[q].push_back(d.vws);
-        }
-    }
-    for (std::size_t q = 0; q < kQualities.size(); ++q) {
-        INFO("quality " << (q == 0 ? "normal" : "high"));
-        CHECK(median(visibility[q]) <= kQualities[q].second.median);
-        CHECK(median(vws[q]) <= kQualities[q].second.median);
-    }
+    checkRandomCases([](auto volume, Quality quality) { return makeCpuEngine(volume, quality); }, 50);
 }
 
 TEST_CASE("random cases are what they promise", "[visibility][accuracy]") {

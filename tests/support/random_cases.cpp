@@ -47,7 +47,7 @@ Vec3 randomDirection(Random& random) {
     return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-Geometry randomGeometry(Random& random) {
+Geometry randomGeometry(Random& random, double size) {
     Geometry g;
     for (int a = 0; a < 3; ++a) {
         do g.dims[a] = 20 + random.below(25);
@@ -67,6 +67,7 @@ Geometry randomGeometry(Random& random) {
         g.spacing = {random.between(0.5, 1.6), random.between(0.5, 1.6), random.between(0.5, 1.6)};
     }
     if (random.chance(0.2)) g.dims[random.below(3)] = 45 + random.below(4);
+    for (int a = 0; a < 3; ++a) g.dims[a] = std::max(6, static_cast<int>(g.dims[a] * size));
     return g;
 }
 
@@ -238,8 +239,8 @@ void invalidate(Random& random, const Int3& dims, std::vector<float>& samples) {
                     samples[at] = std::numeric_limits<float>::quiet_NaN();
 }
 
-std::shared_ptr<const Volume> randomVolume(std::string& kind, Random& random) {
-    const Geometry geometry = randomGeometry(random);
+std::shared_ptr<const Volume> randomVolume(std::string& kind, Random& random, double size) {
+    const Geometry geometry = randomGeometry(random, size);
     const std::vector<double> values = densities(kind, random, geometry.dims);
     std::optional<double> missing;
     Samples samples;
@@ -341,11 +342,7 @@ TransferFunction randomTf(const std::string& kind, Random& random, const Volume&
     return tf;
 }
 
-} // namespace
-
 // ---------------------------------------------------------------------------------------------------------- cameras
-
-const std::vector<std::string>& cameraKinds() { return kCameraKinds; }
 
 Camera randomCamera(const std::string& kind, Random& random, const Geometry& g) {
     Camera camera;
@@ -389,14 +386,16 @@ Camera randomCamera(const std::string& kind, Random& random, const Geometry& g) 
     return camera;
 }
 
-RandomCase randomCase(std::uint32_t number) {
+} // namespace
+
+RandomCase randomCase(std::uint32_t number, double size) {
     RandomCase c;
     c.number = number;
     c.volumeKind = kVolumeKinds[kindOf(number, kVolumeKinds.size(), 1)];
     c.cameraKind = kCameraKinds[kindOf(number, kCameraKinds.size(), 2)];
     c.tfKind = kTfKinds[kindOf(number, kTfKinds.size(), 3)];
     Random random(77777u + number);
-    c.volume = randomVolume(c.volumeKind, random);
+    c.volume = randomVolume(c.volumeKind, random, size);
     c.camera = randomCamera(c.cameraKind, random, c.volume->geometry());
     c.tf = randomTf(c.tfKind, random, *c.volume);
     c.tf.validate();

@@ -32,7 +32,7 @@ private:
 struct RandomCase {
     std::uint32_t number = 0;
     std::string volumeKind, cameraKind, tfKind; ///< what to print beside a figure
-    std::shared_ptr<const Volume> volume;       ///< 20 to 48 voxels per axis, different on each
+    std::shared_ptr<const Volume> volume;       ///< 12 to 48 voxels per axis
     Camera camera;                              ///< outside the box, valid for the volume
     TransferFunction tf;                        ///< 1 to 5 features, at least one opacity above 0
 
@@ -40,11 +40,8 @@ struct RandomCase {
 };
 
 /// Case `number`: the same on every machine but for the last bits of sin and exp. Each kind of volume, camera and
-/// transfer function comes equally often in a run of consecutive numbers, in independent orders.
-RandomCase randomCase(std::uint32_t number);
-
-/// The same camera as `camera` of the kind `name` draws for that volume; kinds are listed in cameraKinds().
-const std::vector<std::string>& cameraKinds();
-Camera randomCamera(const std::string& kind, Random& random, const Geometry& geometry);
+/// transfer function comes equally often in a run of consecutive numbers, in independent orders. `size` scales the
+/// number of voxels along each axis, for tests that measure one case many times.
+RandomCase randomCase(std::uint32_t number, double size = 1);
 
 } // namespace pellucid::test

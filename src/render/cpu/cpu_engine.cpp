@@ -19,7 +19,9 @@ namespace {
 
 /// In voxels. The rays of an eye farther off are parallel: over 4096 voxels they diverge by less than 0.2.
 constexpr double kFarEye = 1e8;
-constexpr int kMostTableEntries = 4096; ///< 128 KiB with 8 lanes: stays in the second-level cache
+constexpr std::size_t kSmallVolume = 128 * 128 * 128; ///< voxels
+constexpr int kTableEntries = 4096; ///< at most; 128 KiB with 8 lanes: stays in the second-level cache
+constexpr int kFineTableEntries = 16384;
 
 /// Rays are given up at this optical depth: what lies behind is seen by less than 1e-4 (high quality and derivatives,
 /// which have no bound: 6e-6).
@@ -39,6 +41,7 @@ struct Codes {
     int max = 65535;
     int step = 1;             ///< codes are multiples of this
     bool someInvalid = false; ///< kInvalidCode is no intensity
+    bool fine = false;        ///< tables are to have more entries
 };
 
 /// The transfer functions of one sweep as its kernel reads them, side by side in lanes. Lanes without a transfer
@@ -114,10 +117,9 @@ private:
           m_codeStep(asSize(codes.step)), m_someInvalid(codes.someInvalid) {
         // Where codes are exact every value has an entry of its own, so that what is constant is measured exactly.
         const int values = codes.max / codes.step;
-        const int steps = codes.step > 1 || values < kMostTableEntries
-                              ? values * std::max(1, (kMostTableEntries - 1) / values)
-                              : kMostTableEntries - 1;
-        m_entries = asSize(std::min(steps, kMostTableEntries - 1)) + 1;
+        const int most = codes.fine ? kFineTableEntries : kTableEntries;
+        const int perValue = std::max(1, (most - 1) / values);
+        m_entries = asSize(std::min(values * perValue, most - 1)) + 1;
         m_entryOfCode = static_cast<float>(m_entries - 1) / static_cast<float>(codes.max);
     }
 
@@ -187,7 +189,7 @@ class CpuEngine final : public VisibilityEngine {
 public:
     CpuEngine(std::shared_ptr<const Volume> volume, Quality quality) : m_volume(std::move(volume)), m_quality(quality) {
         IntensityGrid grid = makeIntensityGrid(*m_volume);
-        m_codeSpace = {grid.maxCode, grid.codeStep, !grid.valid.empty()};
+        m_codeSpace = {grid.maxCode, grid.codeStep, !grid.valid.empty(), quality == Quality::High || isSmall()};
         m_codes = std::move(grid.codes).release();
         if (m_codeSpace.someInvalid)
             inPieces(m_codes.size(), [&](std::size_t first, std::size_t last) {
@@ -244,7 +246,7 @@ private:
     /// Of a whole sweep: [features + 1][3][lanes], the last feature being "in none".
     struct Sums {
         std::vector<double> values;
-        std::size_t features, lanes;
+        std::size_t features = 0, lanes = 0;
         std::array<double, 3> units; ///< what 1 stands for in Σv and the two weighted sums
 
         FeatureSums ofLane(std::size_t lane) const {
@@ -351,6 +353,8 @@ private:
         return glm::round(m_volume->geometry().voxelFromWorld(camera.eye) * 1048576.0) / 1048576.0;
     }
 
+    bool isSmall() const { return m_volume->size() < kSmallVolume; }
+
     void setRays(SweepInput& in, const Camera& camera, const View& view) const {
         const Axes& axes = view.axes;
         const Geometry& g = m_volume->geometry();
@@ -358,12 +362,11 @@ private:
         in.hu = h.x, in.hv = h.y, in.hw = h.z;
         const double sign = axes.flipped ? -1 : 1;
         const bool high = m_quality == Quality::High;
-        in.stepsPerSlice = high ? 2 : 1;
-        in.raySpacing = high ? 0.6 : 1.0;
-        in.ownSlices = high ? 2 : 1;
-        if (getenv("PS")) in.raySpacing = atof(getenv("PS"));
-        if (getenv("PO")) in.ownSlices = atoi(getenv("PO"));
-        if (getenv("PT")) in.stepsPerSlice = atoi(getenv("PT"));
+        // What is off averages out over many voxels, which small volumes do not have; but they have the time.
+        const bool small = isSmall();
+        in.stepsPerSlice = high ? (small ? 4 : 2) : (small ? 3 : 1);
+        in.ownSteps = high ? (small ? 16 : 4) : 6;
+        in.tolerance = high ? (small ? 0.01f : 0.3f) : (small ? 0.2f : std::numeric_limits<float>::infinity());
         in.perspective = camera.projection == Projection::Perspective;
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
@@ -465,7 +468,7 @@ private:
         }
         if (field) in.field = field->data() + start;
         setRays(in, camera, view);
-        const bool exact = m_quality == Quality::High || in.mode == SweepMode::Jacobian;
+        const bool exact = m_quality == Quality::High || in.mode == SweepMode::Jacobian || isSmall();
         in.exhaustedDepth = static_cast<float>(exact ? kExhaustedHigh : kExhausted);
         return {run(in, job), asSize(in.features), asSize(lanesOf(in.mode)), units};
     }

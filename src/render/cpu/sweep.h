@@ -72,7 +72,9 @@ struct SweepInput {
     double raySpacing = 1;                   ///< of the rays, in voxels; perspective: at most
     double hu = 1, hv = 1, hw = 1;           ///< spacing in d0
     int stepsPerSlice = 1;                   ///< samples of a line per slice distance
-    int ownSlices = 1; ///< slice distances right in front of voxels followed along lines of their own
+    int ownSteps = 4;    ///< samples per slice distance of the lines of voxels that are followed all the way
+    float tolerance = 1; ///< transmittance: where neighbouring rays differ by more, voxels follow their own line
+    int ownSlices = 1;   ///< slice distances right in front of voxels followed along lines of their own
 };
 
 /// A part of a sweep that needs no other: the voxels of the slices [begin, end) that lie between the rows of rays
@@ -87,7 +89,7 @@ struct SweepPiece {
 /// Memory that a piece is worked on in, kept between pieces; aligned to 64 bytes.
 class SweepScratch {
 public:
-    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Flags, kSlots };
+    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Flags, Near, Far, kSlots };
     /// At least `bytes`; contents are kept only while it need not grow.
     template <class T>
     T* get(Slot slot, std::size_t count) {

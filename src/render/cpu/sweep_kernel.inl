@@ -120,10 +120,16 @@ class Sweeper {
 public:
     Sweeper(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums)
         : m_in(in), m_piece(piece), m_scratch(scratch), m_sums(sums), m_b0(piece.firstRow), m_b1(piece.lastRow),
-          m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5), m_start(floorInt(m_startW * in.stepsPerSlice)) {
+          m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5), m_start(floorInt(m_startW * in.stepsPerSlice)),
+          m_follows(in.tolerance < 1e30f) {
         m_accumulator = scratch.get<float>(SweepScratch::Accumulator, accumulatorSize());
         for (std::size_t i = 0; i < accumulatorSize(); ++i) m_accumulator[i] = 0.0f;
         for (int lane = 0; lane < K; ++lane) m_limit[lane] = in.exhaustedDepth / in.depthUnit[lane];
+        for (int lane = 0; lane < kWide; ++lane) // derivatives are no depths
+            m_lightUnit[lane] = kMode == SweepMode::Batch || lane == 0 ? in.depthUnit[lane] : 0.0f;
+        const auto planes = static_cast<std::size_t>(in.nw + 2);
+        m_near.planes = scratch.get<OwnPlane>(SweepScratch::Near, planes * static_cast<std::size_t>(in.stepsPerSlice));
+        m_far.planes = scratch.get<OwnPlane>(SweepScratch::Far, planes * static_cast<std::size_t>(in.ownSteps));
         if (kMode == SweepMode::Jacobian) // derivatives exhaust nothing
             for (int lane = 1; lane < K; ++lane) m_limit[lane] = -1e30f;
     }
@@ -487,7 +493,7 @@ private:
         const std::uint8_t* flags = m_flags + rowOf(row) * static_cast<std::size_t>(m_blocks);
         const std::uint16_t* codes = m_in.codes + v * m_in.codeStrides.v + k * m_in.codeStrides.w;
         const std::ptrdiff_t field = v * m_in.fieldStrides.v + k * m_in.fieldStrides.w;
-        m_ownReady = false;
+        m_near.ready = m_far.ready = false;
         for (int i = extent.u0 / kWide; i <= extent.u1 / kWide; ++i) {
             if (!opaque[i * m_in.opaqueStrides.u]) continue;
             block.u = i * kWide;
@@ -514,65 +520,104 @@ private:
             ray = ray > zero ? ray : zero;
             block.ray = ray < last ? ray : last;
             block.fraction = index - toFloat(block.ray);
-            if (!m_ownReady) startOwnLines(v, k, at);
+            if (!m_near.ready) startNear(v, k, at);
             gatherBlock(block);
         }
     }
 
-    /// The sample planes between where the rays are and d0/2 in front of the voxels of one row.
+    /// A sample plane as lines through the voxels of one row meet it.
+    struct OwnPlane {
+        double w;
+        RayPlane lines;
+        Rows rows;
+        bool insideV;
+        const std::uint8_t* opaque;
+    };
+    /// Those on the way to one row of voxels, from far to near; room for one more.
     struct OwnLines {
-        static constexpr int kMost = 400;
-        int count = 0; ///< planes
-        double w[kMost];
-        RayPlane plane[kMost];
-        Rows rows[kMost];
-        bool insideV[kMost];
+        OwnPlane* planes = nullptr;
+        int count = 0;
+        bool ready = false;
     };
 
-    void setOwnPlane(int i, double w, int v, int k) {
-        m_own.w[i] = w;
-        m_own.plane[i] = voxelPlane(w, k);
-        m_own.rows[i] = rowsAt(m_own.plane[i].v(v), w);
-        m_own.insideV[i] = insideV(m_own.plane[i].v(v));
+    OwnPlane ownPlane(double w, int v, int k) const {
+        const RayPlane lines = voxelPlane(w, k);
+        const double vThere = lines.v(v);
+        return {w, lines, rowsAt(vThere, w), insideV(vThere), opaqueRow(vThere, w)};
     }
-    void startOwnLines(int v, int k, int at) {
-        m_ownReady = true;
-        m_own.count = 0;
-        for (int i = at; i == at || (sampleW(i) < k && m_own.count < OwnLines::kMost - 1); ++i)
-            setOwnPlane(m_own.count++, sampleW(i), v, k);
+    /// From where the rays are.
+    void startNear(int v, int k, int at) {
+        m_near.ready = true;
+        m_near.count = 0;
+        for (int i = at; i == at || sampleW(i) < k; ++i) m_near.planes[m_near.count++] = ownPlane(sampleW(i), v, k);
+    }
+    /// From where rays start.
+    const OwnLines& farLines(const VoxelBlock& block) {
+        if (m_far.ready) return m_far;
+        m_far.ready = true;
+        m_far.count = 0;
+        const int first = floorInt(m_startW * m_in.ownSteps);
+        for (int i = first; i == first || i < block.k * m_in.ownSteps; ++i)
+            m_far.planes[m_far.count++] =
+                ownPlane(i == first ? m_startW : static_cast<double>(i) / m_in.ownSteps, block.v, block.k);
+        return m_far;
     }
 
-    double voxelLength(int u, int v, int k) const {
-        if (!m_in.perspective) return lengthOf(m_in.slopeU, m_in.slopeV);
-        const double away = k - m_in.eyeW;
-        return lengthOf((u - m_in.eyeU) / away, (v - m_in.eyeV) / away);
+    /// Of the voxels' own lines, d0 per slice.
+    Vec8 voxelLengths(const VoxelBlock& block) const {
+        if (!m_in.perspective) return Vec8{} + static_cast<float>(lengthOf(m_in.slopeU, m_in.slopeV));
+        const double perSlice = 1 / (block.k - m_in.eyeW), v = (block.v - m_in.eyeV) * perSlice * m_in.hv;
+        const Vec8 u = static_cast<float>((block.u - m_in.eyeU) * perSlice * m_in.hu) +
+                       kIota * static_cast<float>(perSlice * m_in.hu);
+        Vec8 length = u * u + static_cast<float>(m_in.hw * m_in.hw + v * v);
+        for (int n = 0; n < kWide; ++n) length[n] = __builtin_sqrtf(length[n]);
+        return length;
     }
 
-    /// Calls body(stretch) for each stretch of the voxels' own lines.
+    /// Calls body(stretch) for each stretch of the voxels' own lines that is not transparent.
     template <class Body>
-    void alongOwnLines(const VoxelBlock& block, const Body& body) {
-        const double first = voxelLength(block.u, block.v, block.k),
-                     last = m_in.perspective ? voxelLength(block.u + kWide - 1, block.v, block.k) : first;
-        const Vec8 length = static_cast<float>(first) + kIota * static_cast<float>((last - first) / (kWide - 1)),
-                   zero = {};
-        const double end = block.k - 1 / (first + last); // d0/2 in front of the voxels
-        Samples before = sample(m_own.rows[0], m_own.plane[0].u(block.u), m_own.plane[0].scale);
+    void alongOwnLines(const VoxelBlock& block, const OwnLines& own, const Body& body) const {
+        const Vec8 length = voxelLengths(block), zero = {}, ends = static_cast<float>(block.k) - 0.5f / length;
+        double end = static_cast<double>(ends[0]); // d0/2 in front of the voxels: of the one where that is farthest off
+        for (int n = 1; n < kWide; ++n) end = static_cast<double>(ends[n]) > end ? static_cast<double>(ends[n]) : end;
+        const auto opaqueAt = [&](const OwnPlane& p) {
+            return opaqueBetween(p.opaque, p.lines.u(block.u), p.lines.u(block.u + kWide - 1));
+        };
+        const auto inside = [&](const OwnPlane& p) {
+            return p.insideV && insideU(p.lines.u(block.u), p.lines.u(block.u + kWide - 1));
+        };
+        const auto at = [&](const OwnPlane& p) { return sample(p.rows, p.lines.u(block.u), p.lines.scale); };
+        Samples before = {};
+        bool known = false, wasOpaque = opaqueAt(own.planes[0]);
         for (int i = 1;; ++i) {
-            const bool isLast = i >= m_own.count || m_own.w[i] >= end;
-            if (isLast) setOwnPlane(m_own.count, end > m_own.w[i - 1] ? end : m_own.w[i - 1], block.v, block.k);
-            const int at = isLast ? m_own.count : i;
-            const RayPlane &p0 = m_own.plane[i - 1], &p1 = m_own.plane[at];
-            const Samples now = sample(m_own.rows[at], p1.u(block.u), p1.scale);
-            Vec8 path = isLast ? length * static_cast<float>(block.k - m_own.w[i - 1]) - 0.5f
-                               : length * static_cast<float>(m_own.w[i] - m_own.w[i - 1]);
-            path = path > zero ? path : zero;
-            if (!m_own.insideV[i - 1] || !m_own.insideV[at] || !insideU(p0.u(block.u), p0.u(block.u + kWide - 1)) ||
-                !insideU(p1.u(block.u), p1.u(block.u + kWide - 1)))
-                path *= insideShare(p0, p1, block.u, block.v);
-            body(stretch(before, now, path));
+            const OwnPlane& p0 = own.planes[i - 1];
+            const bool isLast = i >= own.count || own.planes[i].w >= end;
+            const OwnPlane p1 = isLast ? ownPlane(end > p0.w ? end : p0.w, block.v, block.k) : own.planes[i];
+            const bool opaque = opaqueAt(p1);
+            if (!opaque && !wasOpaque) {
+                known = false;
+            } else {
+                if (!known) before = at(p0);
+                const Samples now = at(p1);
+                const Vec8 upTo = Vec8{} + static_cast<float>(p1.w),
+                           reach = (upTo < ends ? upTo : ends) - static_cast<float>(p0.w);
+                Vec8 path = length * (reach > zero ? reach : zero);
+                if (!inside(p0) || !inside(p1)) path *= insideShare(p0.lines, p1.lines, block.u, block.v);
+                body(stretch(before, now, path));
+                before = now;
+                known = true;
+            }
+            wasOpaque = opaque;
             if (isLast) return;
-            before = now;
         }
+    }
+
+    /// Where so different amounts of light come along four neighbouring rays that nothing between them is known. The
+    /// difference of two transmittances is at most exp(−D)·ΔD, D the smaller depth; 1 + D + D²/2 ≤ exp(D).
+    Int8 disagree(Vec8 a, Vec8 b, Vec8 c, Vec8 d, Vec8 unit) const {
+        const Vec8 lowAB = a < b ? a : b, highAB = a < b ? b : a, lowCD = c < d ? c : d, highCD = c < d ? d : c;
+        const Vec8 low = (lowAB < lowCD ? lowAB : lowCD) * unit, high = (highAB > highCD ? highAB : highCD) * unit;
+        return high - low > m_in.tolerance * (1.0f + low * (1.0f + 0.5f * low));
     }
 
     void gatherBlock(const VoxelBlock& block) {
@@ -583,13 +628,24 @@ private:
     }
 
     void gatherSingle(const VoxelBlock& block) {
-        Vec8 near = gathered(block.near, block.ray), far = gathered(block.far, block.ray);
-        near += block.fraction * (gathered(block.near + 1, block.ray) - near);
-        far += block.fraction * (gathered(block.far + 1, block.ray) - far);
+        const Vec8 near0 = gathered(block.near, block.ray), near1 = gathered(block.near + 1, block.ray),
+                   far0 = gathered(block.far, block.ray), far1 = gathered(block.far + 1, block.ray);
+        const Vec8 near = near0 + block.fraction * (near1 - near0), far = far0 + block.fraction * (far1 - far0);
         Vec8 depth = near + block.fractionV * (far - near);
-        alongOwnLines(block, [&](const Stretch& s) {
-            depth += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
-        });
+        const auto follow = [&](Vec8& sum) {
+            return [&sum, this](const Stretch& s) {
+                sum += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
+            };
+        };
+        alongOwnLines(block, m_near, follow(depth));
+        if (m_follows) {
+            Int8 listed = {};
+            for (int i = 0; i < block.listed; ++i) listed[block.list[i]] = -1;
+            if (!none(disagree(near0, near1, far0, far1, Vec8{} + m_in.depthUnit[0]) & listed)) {
+                depth = Vec8{};
+                alongOwnLines(block, farLines(block), follow(depth));
+            }
+        }
         Vec8 alpha = {}, weights[2] = {};
         Int8 feature = Int8{} + kTransparent;
         for (int i = 0; i < block.listed; ++i) {
@@ -618,29 +674,52 @@ private:
         }
     }
 
+    /// Lanes in which a voxel of this code is seen at all.
+    Int8 opaqueLanes(std::uint16_t code) const {
+        if (kMode == SweepMode::Jacobian) return Int8{} - (m_in.alphaTable[static_cast<std::size_t>(code) * 2] > 0);
+        return load(m_in.alphaTable + static_cast<std::size_t>(code) * K) > Vec8{};
+    }
+
     void gatherLanes(const VoxelBlock& block) {
         // The four rays around each voxel.
         const Vec8 f = block.fraction;
         const float fv = block.fractionV;
         const Vec8 near0 = (1.0f - f) * (1.0f - fv), near1 = f * (1.0f - fv), far0 = (1.0f - f) * fv, far1 = f * fv;
-        Vec8 depth[kWide][kVectors];
+        Vec8 depth[kWide][kVectors], own[kWide][kVectors];
+        Int8 apart = {}; // lanes in which any voxel's rays disagree
         for (int i = 0; i < block.listed; ++i) {
             const int n = block.list[i];
             const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(block.ray[n]) * K;
             for (int part = 0; part < kVectors; ++part) {
                 const float* near = block.near + ray + part * kWide;
                 const float* far = block.far + ray + part * kWide;
-                depth[n][part] =
-                    near0[n] * load(near) + near1[n] * load(near + K) + far0[n] * load(far) + far1[n] * load(far + K);
+                const Vec8 d0 = load(near), d1 = load(near + K), d2 = load(far), d3 = load(far + K);
+                depth[n][part] = near0[n] * d0 + near1[n] * d1 + far0[n] * d2 + far1[n] * d3;
+                if (part > 0 || !m_follows) continue;
+                apart |= disagree(d0, d1, d2, d3, load(m_lightUnit)) & opaqueLanes(block.codes[n]);
             }
         }
-        alongOwnLines(block, [&](const Stretch& s) {
-            for (int i = 0; i < block.listed; ++i) {
-                const int n = block.list[i];
-                for (int part = 0; part < kVectors; ++part)
-                    depth[n][part] += s.weight[n] * between(s.low[n], s.high[n], part);
-            }
-        });
+        const auto follow = [&](Vec8(*sum)[kVectors]) {
+            return [&, sum](const Stretch& s) {
+                for (int i = 0; i < block.listed; ++i) {
+                    const int n = block.list[i];
+                    for (int part = 0; part < kVectors; ++part)
+                        sum[n][part] += s.weight[n] * between(s.low[n], s.high[n], part);
+                }
+            };
+        };
+        alongOwnLines(block, m_near, follow(depth));
+        if (m_follows && !none(apart)) {
+            if (kMode == SweepMode::Jacobian) apart = Int8{} - 1; // derivatives go with their depth
+            for (auto& voxel : own)
+                for (Vec8& part : voxel) part = Vec8{};
+            alongOwnLines(block, farLines(block), follow(own));
+            for (int i = 0; i < block.listed; ++i)
+                for (int part = 0; part < kVectors; ++part) {
+                    const int n = block.list[i];
+                    depth[n][part] = apart ? own[n][part] : depth[n][part];
+                }
+        }
         for (int i = 0; i < block.listed; ++i) {
             const int n = block.list[i];
             const int feature = m_in.featureOfCode[block.codes[n]];
@@ -706,8 +785,10 @@ private:
     int* m_stamp = nullptr;          ///< [row][block]
     std::uint8_t* m_flags = nullptr; ///< [row][block]
     float m_limit[K];                ///< a lane at this depth, in units of the table, is exhausted
-    OwnLines m_own;
-    bool m_ownReady = false;
+    float m_lightUnit[kWide];        ///< depthUnit of the lanes that are depths, else 0
+    OwnLines m_near;                 ///< from where the rays are to the voxels of a row
+    OwnLines m_far;                  ///< from where rays start
+    bool m_follows;                  ///< own lines all the way, where rays disagree
 };
 
 void sweepPiece(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums) {

@@ -1,0 +1,323 @@
+// `bench`: how fast this machine measures, as a table (docs/performance.md says what the rows mean).
+#include <algorithm>
+
+#include "bench_run.h"
+#include "commands.h"
+#include "inputs.h"
+#include "parse.h"
+#include "tf/formats/tf_json.h"
+#include "tf/sample_tf.h"
+#include "volume/parallel.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct Options {
+    VolumeOptions volume;
+    TfOptions tf;
+    CameraOptions camera;
+    EngineOptions engine;
+    std::set<BenchRow> only{kBenchRows.begin(), kBenchRows.end()};
+    int repeat = 3;
+    bool full = false;
+};
+
+constexpr const char* kDense = "dense";
+constexpr const char* kSparse = "sparse";
+constexpr const char* kCube = "cube:"; ///< followed by the number of voxels along each side
+constexpr int kCubeSize = 128;         ///< of the smallest
+
+/// One name per comma.
+std::set<BenchRow> parseRows(const std::string& text, const std::string& option) {
+    std::set<BenchRow> rows;
+    for (std::size_t start = 0, end = 0; end != std::string::npos; start = end + 1) {
+        end = text.find(',', start);
+        rows.insert(benchRowFromName(text.substr(start, end - start), option));
+    }
+    return rows;
+}
+
+void check(const Options& o) {
+    o.camera.check();
+    if (!o.volume.path.empty()) {
+        if (o.full) throw UsageError("--full is about the built-in volumes", "--full", "leave it or VOLUME out");
+        return;
+    }
+    const VolumeOptions& v = o.volume;
+    if (v.raw || v.spacing || v.skipBytes || v.missing || v.range || v.sampleSize || v.component != 0)
+        throw UsageError("options of the volume are given, but no volume", "bench", "name a file or sample:NAME");
+}
+
+/// Blocks of the same volume side by side, `n` along each axis: the same voxels whatever the size, so that only the
+/// engine can make larger ones slower.
+std::shared_ptr<const Volume> tiled(const Volume& block, int n) {
+    Geometry geometry = block.geometry();
+    const Int3 d = geometry.dims;
+    geometry.dims = d * n;
+    Samples samples = std::visit(
+        [&](const auto& from) -> Samples {
+            std::decay_t<decltype(from)> to;
+            to.reserve(voxelCount(geometry.dims));
+            for (int k = 0; k < geometry.dims.z; ++k)
+                for (int j = 0; j < geometry.dims.y; ++j) {
+                    const std::ptrdiff_t row = d.x * (j % d.y + static_cast<std::ptrdiff_t>(d.y) * (k % d.z));
+                    for (int i = 0; i < n; ++i) to.insert(to.end(), from.begin() + row, from.begin() + row + d.x);
+                }
+            return to;
+        },
+        block.samples());
+    return std::make_shared<const Volume>(Volume(geometry, std::move(samples)).withRange(block.range()));
+}
+
+std::set<BenchRow> both(const std::set<BenchRow>& a, const std::set<BenchRow>& b) {
+    std::set<BenchRow> rows;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(rows, rows.end()));
+    return rows;
+}
+
+/// `tf` with all rows and, unless the user wants this one alone, two of other densities.
+std::vector<BenchTf> densities(const Options& o, const Volume& volume, const TransferFunction& tf,
+                               const std::string& tfName) {
+    const std::set<BenchRow> sweeps{BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize};
+    std::vector<BenchTf> all{{tfName, tf, o.only, true, 1}};
+    if (!o.tf.spec) {
+        all.push_back({kDense, denseTf(), both(o.only, sweeps), false, kDenseStepScale});
+        all.push_back({kSparse, sparseTf(volume), both(o.only, sweeps), false, 1});
+    }
+    return all;
+}
+
+/// All volumes in turn, so that only one is in memory.
+class Run {
+public:
+    Run(const Options& options, std::vector<int> threads, Progress& progress)
+        : m_options(options), m_progress(progress) {
+        m_bench.threads = std::move(threads);
+        m_bench.repeat = options.repeat;
+        m_bench.engine = options.engine.choice;
+        m_bench.quality = options.engine.quality;
+    }
+
+    void memory() {
+        const JobControl job = m_progress.phase("memcpy");
+        for (const int threads : m_bench.threads) m_memcpy.push_back(memcpyGbPerS(threads, job));
+    }
+    void givenVolume() {
+        const auto [volume, tf] =
+            loadVolumeAndTf(m_options.volume, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
+        m_results.notices = volume->notices;
+        measure(volume, m_options.volume.path,
+                densities(m_options, *volume, tf, m_options.tf.spec.value_or("default")));
+    }
+    void builtInVolumes() {
+        {
+            VolumeOptions knee;
+            knee.path = "sample:knee";
+            const TfOptions tents{m_options.tf.spec.value_or("tents:3")};
+            const auto [volume, tf] = loadVolumeAndTf(knee, tents, m_progress, {"measuring", kMeasureBytesPerVoxel});
+            measure(volume, knee.path, densities(m_options, *volume, tf, *tents.spec));
+        }
+        const std::set<BenchRow> rows = both(m_options.only, {BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian});
+        if (rows.empty()) return;
+        VolumeOptions block;
+        block.path = "sample:shells";
+        block.sampleSize = kCubeSize;
+        auto [volume, tf] = loadVolumeAndTf(block, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
+        const std::string tfName = m_options.tf.spec.value_or(kDense);
+        if (!m_options.tf.spec) tf = denseTf();
+        for (int n = 1; n <= (m_options.full ? 4 : 2); n *= 2)
+            measure(n == 1 ? volume : tiled(*volume, n), kCube + std::to_string(n * kCubeSize),
+                    {{tfName, tf, rows, false, m_options.tf.spec ? 1 : kDenseStepScale}});
+    }
+
+    Answer answer() const {
+        return {textOfMemory() + "\n" + textOfRows() + textOfRatios(), json(), m_results.notices, {}};
+    }
+
+private:
+    void measure(const std::shared_ptr<const Volume>& volume, const std::string& name, std::vector<BenchTf> tfs) {
+        const Camera camera = m_options.camera.camera(volume->geometry());
+        if (m_mainVolume.empty()) {
+            m_mainVolume = name;
+            m_mainTf = tfs.front().name;
+        }
+        std::erase_if(tfs, [](const BenchTf& tf) { return tf.rows.empty(); });
+        BenchResults results = benchVolume(volume, name, camera, tfs, m_bench, m_progress);
+        m_results.rows.insert(m_results.rows.end(), results.rows.begin(), results.rows.end());
+        m_results.notices.insert(m_results.notices.end(), results.notices.begin(), results.notices.end());
+    }
+
+    double memcpyOf(int threads) const {
+        const auto at = std::find(m_bench.threads.begin(), m_bench.threads.end(), threads);
+        return m_memcpy[static_cast<std::size_t>(at - m_bench.threads.begin())];
+    }
+
+    // ---- The ratios ------------------------------------------------------------------------------------------------
+
+    struct Ratio {
+        std::string key;
+        double value;
+        std::string wanted;
+    };
+
+    /// The first row of this kind; null where there is none.
+    const BenchResult* find(BenchRow row, const std::string& volume, const std::string& tf, int threads,
+                            int candidates = 1) const {
+        for (const BenchResult& r : m_results.rows)
+            if (r.row == row && r.volume == volume && r.tf == tf && r.threads == threads && r.candidates == candidates)
+                return &r;
+        return nullptr;
+    }
+
+    /// Of the first volume and transfer function, with the most threads; see docs/performance.md.
+    std::vector<Ratio> ratios() const {
+        std::vector<Ratio> all;
+        const int threads = m_bench.threads.back();
+        const auto add = [&](const char* key, const BenchResult* a, const BenchResult* b, double times,
+                             const char* wanted) {
+            if (a && b && b->seconds * times > 0) all.push_back({key, a->seconds / (b->seconds * times), wanted});
+        };
+        const auto main = [&](BenchRow row, int threadCount, int candidates = 1) {
+            return find(row, m_mainVolume, m_mainTf, threadCount, candidates);
+        };
+        const BenchResult* const sweep8 = main(BenchRow::Sweep, threads, 8);
+        const BenchResult* const saliency = main(BenchRow::Saliency, threads);
+        add("sweep8_over_8_singles", sweep8, main(BenchRow::Sweep, threads, 1), 8, "<= 0.35");
+        if (m_bench.threads == std::vector{1, 2}) {
+            add("threads_speedup", main(BenchRow::Sweep, 1, 8), sweep8, 1, ">= 1.7");
+            add("threads_speedup_saliency", main(BenchRow::Saliency, 1), saliency, 1, "");
+        }
+        add("jacobian_over_sweep8", find(BenchRow::Jacobian, m_mainVolume, kNineTents, threads), sweep8, 1, "<= 2");
+        add("saliency_over_sweep8", saliency, sweep8, 1, "<= 3");
+        add("saliency_direct_over_saliency", main(BenchRow::SaliencyDirect, threads), saliency, 1, ">= 3");
+        if (const BenchResult* const optimized = main(BenchRow::Optimize, threads, 8))
+            add("optimize_over_sweeps", optimized, sweep8, optimized->extra.at("iterations").get<double>(), "<= 3");
+        if (const auto flat = flatness(threads)) all.push_back({"flatness", *flat, "<= 1.25"});
+        return all;
+    }
+
+    /// Largest time per voxel over the smallest, of the cubes; empty where there are not two.
+    std::optional<double> flatness(int threads) const {
+        std::vector<double> perVoxel;
+        for (const BenchResult& r : m_results.rows)
+            if (r.row == BenchRow::Sweep && r.volume.starts_with(kCube) && r.threads == threads && r.candidates == 8)
+                perVoxel.push_back(r.seconds / static_cast<double>(voxelCount(r.dims)));
+        if (perVoxel.size() < 2) return {};
+        const auto [least, most] = std::minmax_element(perVoxel.begin(), perVoxel.end());
+        return *most / *least;
+    }
+
+    // ---- The answer ------------------------------------------------------------------------------------------------
+
+    std::string textOfMemory() const {
+        std::string text = "memcpy";
+        for (std::size_t i = 0; i < m_memcpy.size(); ++i)
+            text += (i == 0 ? " " : ", ") + fixedText(m_memcpy[i], 1) + " GB/s with " +
+                    std::to_string(m_bench.threads[i]) + (m_bench.threads[i] == 1 ? " thread" : " threads");
+        return text + " (bytes read and written)\n";
+    }
+
+    std::string textOfRows() const {
+        Table table({"row", "volume", "TF", "engine", "threads", "time", "CPU time", "ns/voxel", "GB/s", "of memcpy"});
+        for (const BenchResult& r : m_results.rows) {
+            const Json j = jsonOfRow(r);
+            std::string label = name(r.row);
+            if (r.row == BenchRow::Sweep)
+                label += *r.candidates == 1 ? ", 1 TF" : ", " + std::to_string(*r.candidates) + " TFs";
+            if (r.row == BenchRow::Jacobian) label += ", " + std::to_string(*r.features) + " features";
+            if (r.row == BenchRow::Optimize) label += ", " + j["iterations"].dump() + " moves";
+            table.add({label, r.volume, r.tf.value_or(""), r.engine, std::to_string(r.threads), secondsText(r.seconds),
+                       secondsText(r.cpuSeconds), fixedText(j["ns_per_voxel"], 2), fixedText(j["gb_per_s"], 2),
+                       fixedText(100 * j["memcpy_share"].get<double>(), 1) + " %"});
+        }
+        return table.text();
+    }
+
+    std::string textOfRatios() const {
+        Table table({"ratio", "value", "wanted"});
+        const auto all = ratios();
+        if (all.empty()) return {};
+        for (const Ratio& r : all) table.add({r.key, fixedText(r.value, 3), r.wanted});
+        return "\n" + table.text();
+    }
+
+    Json jsonOfRow(const BenchResult& r) const {
+        const auto voxels = static_cast<double>(voxelCount(r.dims));
+        Json j{{"name", name(r.row)}, {"engine", r.engine}, {"volume", r.volume}};
+        if (r.tf) j["tf"] = *r.tf;
+        j["dims"] = jsonFromDims(r.dims);
+        j["threads"] = r.threads;
+        if (r.candidates) j["candidates"] = *r.candidates;
+        if (r.features) j["features"] = *r.features;
+        const double seconds = std::max(r.seconds, 1e-9); // of the clock's resolution
+        j["seconds"] = r.seconds;
+        j["cpu_seconds"] = r.cpuSeconds;
+        j["ns_per_voxel"] = 1e9 * r.seconds / voxels;
+        j["gb_per_s"] = r.bytes / seconds / 1e9;
+        j["bytes_per_voxel"] = r.bytes / voxels;
+        j["memcpy_share"] = r.bytes / seconds / 1e9 / memcpyOf(r.threads);
+        j.update(r.extra);
+        return j;
+    }
+
+    Json json() const {
+        Json rows = Json::array(), memory = Json::array(), values = Json::object();
+        for (const BenchResult& r : m_results.rows) rows.push_back(jsonOfRow(r));
+        for (std::size_t i = 0; i < m_memcpy.size(); ++i)
+            memory.push_back({{"threads", m_bench.threads[i]}, {"gb_per_s", m_memcpy[i]}});
+        for (const Ratio& r : ratios()) values[r.key] = r.value;
+        return {{"command", "bench"}, {"memcpy_gb_per_s", m_memcpy.back()},
+                {"memcpy", memory},   {"repeat", m_bench.repeat},
+                {"rows", rows},       {"ratios", values}};
+    }
+
+    const Options& m_options;
+    Progress& m_progress;
+    BenchOptions m_bench;
+    std::vector<double> m_memcpy; ///< GB/s, per number of threads
+    BenchResults m_results;
+    std::string m_mainVolume, m_mainTf; ///< the first ones, which the ratios are about
+};
+
+Answer run(const Options& o, bool threadsGiven, Progress& progress) {
+    check(o);
+    Run bench(o, threadsGiven ? std::vector{threadCount()} : std::vector{1, 2}, progress);
+    bench.memory();
+    if (o.volume.path.empty())
+        bench.builtInVolumes();
+    else
+        bench.givenVolume();
+    return bench.answer();
+}
+
+} // namespace
+
+Command addBench(CLI::App& program) {
+    CLI::App* app = program.add_subcommand(
+        "bench", "Measures how fast this machine measures, with 1 and 2 threads (or --threads N)");
+    const auto o = std::make_shared<Options>();
+    o->volume.add(*app);
+    app->get_option("VOLUME")->required(false)->description(
+        "what to measure on, as in other commands; without it sample:knee under tents:3, and cubes of 128 and 256 "
+        "voxels along each side");
+    o->tf.add(*app);
+    app->get_option("--tf")->description("transfer function; without it that of the volume, one that gives every voxel "
+                                         "a little opacity (dense), and one that gives it to 3 % of them (sparse)");
+    o->camera.add(*app);
+    o->engine.add(*app, "high: half the error, more time");
+    addValue(
+        *app, "--only", "ROW,...",
+        [o](const std::string& text, const std::string& option) { o->only = parseRows(text, option); },
+        "only these rows of the table: setup, saliency, saliency-direct, sweep, jacobian, optimize, refine, render");
+    addValue(
+        *app, "--repeat", "N",
+        [o](const std::string& text, const std::string& option) {
+            o->repeat = static_cast<int>(parseInteger(text, option, 1, 1000));
+        },
+        "runs of each row after a first one that does not count; the median is told (default 3)");
+    app->add_flag("--full", o->full, "a cube of 512 voxels along each side too: a few minutes, 2 GiB of memory");
+    return {app, [o, app](Progress& progress) { return run(*o, app->get_option("--threads")->count() > 0, progress); }};
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,370 @@
+#include "bench_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <functional>
+#include <numeric>
+
+#include "commands.h"
+#include "optimize/optimizer.h"
+#include "optimize/refine.h"
+#include "saliency/saliency_direct.h"
+#include "volume/histogram.h"
+#include "volume/parallel.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr double kBytesPerCode = 2; ///< what engines and renderers read of a voxel, see IntensityGrid
+constexpr double kDensePeak = 0.001;
+constexpr double kSparseShare = 0.03;
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+/// Processor time of all threads of this process.
+double cpuSeconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// What is asked of an optimization: 0.1, 0.3, 0.6 for three features; for n of them in proportion to 1, 3, 6, 10, …
+std::vector<double> benchTargets(std::size_t features) {
+    std::vector<double> targets;
+    for (std::size_t i = 0; i < features; ++i) targets.push_back(0.5 * static_cast<double>((i + 1) * (i + 2)));
+    return normalizedTargets(std::move(targets), features);
+}
+
+/// What a parallel line search tries first (MEASURES §7): steps 0.05·2^i, i = −2 … 5, along −2(W − t).
+std::vector<TransferFunction> searchCandidates(const TransferFunction& tf, const std::vector<double>& vws,
+                                               double stepScale) {
+    std::vector<TransferFunction> candidates;
+    const std::size_t n = tf.features.size();
+    const std::vector<double> targets = n > 0 ? benchTargets(n) : std::vector<double>();
+    for (int i = -2; i <= 5; ++i) {
+        std::vector<double> x = featureOpacities(tf);
+        for (std::size_t f = 0; f < n; ++f)
+            x[f] = std::clamp(x[f] - stepScale * 0.05 * std::exp2(i) * 2 * (vws[f] - targets[f]), 0.0, 1.0);
+        candidates.push_back(withFeatureOpacities(tf, x));
+    }
+    return candidates;
+}
+
+double bytesPerVoxel(const WeightFields& weights) {
+    return weights.empty() ? 0.0 : static_cast<double>(sizeof(*weights.data()));
+}
+
+/// One row while it is being measured.
+struct Measurement {
+    BenchResult result;
+    std::function<void(BenchResult& result, const JobControl& job)> work; ///< may add to `bytes` and `extra`
+    int times = 1;                                                        ///< that `work` does the same
+    std::vector<double> seconds, cpuSeconds;
+    bool failed = false;
+};
+
+/// The rows under one transfer function. Keeps references: its arguments outlive it.
+class TfBench {
+public:
+    TfBench(const std::shared_ptr<const Volume>& volume, const std::string& volumeName, const Camera& camera,
+            const BenchTf& tf, const BenchOptions& options, VisibilityEngine* engine)
+        : m_volume(volume), m_volumeName(volumeName), m_camera(camera), m_tf(tf), m_options(options), m_engine(engine) {
+    }
+
+    void prepare(const JobControl& job) {
+        const bool weighted = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize);
+        if (wanted(BenchRow::Setup)) addSetup();
+        if (wanted(BenchRow::Saliency)) addSaliency(BenchRow::Saliency, saliencyFields);
+        if (wanted(BenchRow::SaliencyDirect)) addSaliency(BenchRow::SaliencyDirect, saliencyFieldsDirect);
+        if (weighted) m_weights = saliencyFields(*m_volume, m_tf.tf, {}, job);
+        if (wanted(BenchRow::Sweep)) addSweeps(job);
+        if (wanted(BenchRow::Jacobian)) addJacobians(job);
+        if (wanted(BenchRow::Optimize)) addOptimize();
+        if (wanted(BenchRow::Refine)) addRefine();
+        if (wanted(BenchRow::Render)) addRender();
+    }
+
+    void run(const JobControl& job, BenchResults& results) {
+        const JobControl quiet{job.stop, {}}; // reports would cost time
+        const double all = static_cast<double>(m_measurements.size()) * (m_options.repeat + 1);
+        double done = 0;
+        for (int round = 0; round <= m_options.repeat; ++round) // round 0 warms up
+            for (const int threads : m_options.threads) {
+                setThreadCount(threads);
+                for (Measurement& m : m_measurements) {
+                    if (m.result.threads != threads) continue;
+                    if (!m.failed) measureOnce(m, round > 0, quiet, results.notices);
+                    job.report(++done / all);
+                }
+            }
+        for (Measurement& m : m_measurements) {
+            if (m.failed) continue;
+            m.result.seconds = median(m.seconds);
+            m.result.cpuSeconds = median(m.cpuSeconds);
+            results.rows.push_back(std::move(m.result));
+        }
+    }
+
+private:
+    bool wanted(BenchRow row) const { return m_tf.rows.count(row) > 0; }
+    double voxels() const { return static_cast<double>(m_volume->size()); }
+    double sampleBytes() const { return static_cast<double>(m_volume->memoryBytes()); }
+    /// Codes once, and both weights once: a sweep reads them whatever the number of candidates.
+    double sweepBytes() const { return voxels() * (kBytesPerCode + bytesPerVoxel(m_weights)); }
+
+    static void measureOnce(Measurement& m, bool counts, const JobControl& job, std::vector<std::string>& notices) {
+        job.throwIfStopped();
+        try {
+            const Stopwatch watch;
+            const double cpuStart = cpuSeconds();
+            m.work(m.result, job);
+            if (!counts) return;
+            m.seconds.push_back(watch.seconds() / m.times);
+            m.cpuSeconds.push_back((cpuSeconds() - cpuStart) / m.times);
+        } catch (const Error& e) {
+            m.failed = true;
+            const std::string row = std::string("row ") + name(m.result.row) + " of " + m.result.volume;
+            const std::string notice = row + " is left out: " + e.what();
+            if (notices.empty() || notices.back() != notice) notices.push_back(notice);
+        }
+    }
+
+    /// Adds the row once per number of threads; once in all where the work is not done by our threads.
+    void add(const BenchResult& result, double bytes, const std::function<void(BenchResult&, const JobControl&)>& work,
+             int times = 1) {
+        for (const int threads : m_options.threads) {
+            if (result.engine == "gl" && threads != m_options.threads.back()) continue;
+            Measurement m{result, work, times, {}, {}, false};
+            m.result.threads = threads;
+            m.result.bytes = bytes;
+            m_measurements.push_back(std::move(m));
+        }
+    }
+
+    BenchResult row(BenchRow row, const std::string& engine, int candidates, const TransferFunction& tf,
+                    const std::string& tfName) const {
+        BenchResult r;
+        r.row = row;
+        r.engine = engine;
+        r.volume = m_volumeName;
+        r.dims = m_volume->dims();
+        r.tf = tfName;
+        r.candidates = candidates;
+        r.features = static_cast<int>(tf.features.size());
+        r.extra = Json::object();
+        return r;
+    }
+    BenchResult row(BenchRow which, const std::string& engine, int candidates = 1) const {
+        return row(which, engine, candidates, m_tf.tf, m_tf.name);
+    }
+
+    void addSetup() {
+        BenchResult r = row(BenchRow::Setup, m_engine->name());
+        r.tf.reset();
+        r.candidates.reset();
+        r.features.reset();
+        add(r, sampleBytes() + voxels() * kBytesPerCode,
+            [this](BenchResult&, const JobControl&) { makeEngine(m_options.engine, m_volume, m_options.quality); });
+    }
+
+    void addSaliency(BenchRow which, decltype(saliencyFields)* make) {
+        add(row(which, "cpu"), 0, [this, make](BenchResult& r, const JobControl& job) {
+            r.bytes = sampleBytes() + voxels() * bytesPerVoxel(make(*m_volume, m_tf.tf, {}, job));
+        });
+    }
+
+    void addSweeps(const JobControl& job) {
+        const auto sums = m_engine->sums(m_camera, {&m_tf.tf, 1}, &m_weights, {job.stop, {}});
+        m_candidates = searchCandidates(m_tf.tf, vwsOf(sums[0]), m_tf.stepScale);
+        // One by one the same eight, since more opaque ones are done sooner. Where nothing is opaque one stands for
+        // all.
+        const int singles = m_tf.stepScale < 1 ? 1 : static_cast<int>(m_candidates.size());
+        add(
+            row(BenchRow::Sweep, m_engine->name(), 1), sweepBytes(),
+            [this, singles](BenchResult&, const JobControl& j) {
+                for (int i = 0; i < singles; ++i)
+                    m_engine->sums(m_camera, {&m_candidates[static_cast<std::size_t>(i)], 1}, &m_weights, j);
+            },
+            singles);
+        add(row(BenchRow::Sweep, m_engine->name(), 8), sweepBytes(),
+            [this](BenchResult&, const JobControl& j) { m_engine->sums(m_camera, m_candidates, &m_weights, j); });
+    }
+
+    void addJacobians(const JobControl& job) {
+        if (!m_tf.tf.features.empty())
+            add(row(BenchRow::Jacobian, m_engine->name()), sweepBytes(),
+                [this](BenchResult&, const JobControl& j) { m_engine->jacobian(m_camera, m_tf.tf, &m_weights, j); });
+        if (!m_tf.nineFeatures) return;
+        m_nine = tents(9);
+        m_nineWeights = saliencyFields(*m_volume, m_nine, {}, job);
+        add(row(BenchRow::Jacobian, m_engine->name(), 1, m_nine, kNineTents), sweepBytes(),
+            [this](BenchResult&, const JobControl& j) { m_engine->jacobian(m_camera, m_nine, &m_nineWeights, j); });
+    }
+
+    /// The search alone: engine and weights are there.
+    void addOptimize() {
+        if (m_tf.tf.features.empty()) return;
+        add(row(BenchRow::Optimize, m_engine->name(), 8), 0, [this](BenchResult& r, const JobControl& j) {
+            const VwsFunction function(*m_engine, m_camera, m_tf.tf, m_weights);
+            const OptimizeResult found = optimize(function, benchTargets(m_tf.tf.features.size()), {}, j);
+            if (found.reason == StopReason::Cancelled) throw Cancelled{};
+            const int sweeps = 1 + (found.evaluations - 1) / 8; // the start, then eight at a time
+            r.bytes = sweeps * sweepBytes();
+            r.extra = {{"iterations", found.iterations()},
+                       {"evaluations", found.evaluations},
+                       {"sweeps", sweeps},
+                       {"objective", found.history[found.best].objective},
+                       {"converged", found.converged()}};
+        });
+    }
+
+    void addRefine() {
+        add(row(BenchRow::Refine, "cpu"), sampleBytes(), [this](BenchResult& r, const JobControl& j) {
+            r.extra = {{"iterations", refine(makeHistogram(*m_volume), m_tf.tf, {}, j).iterations}};
+        });
+    }
+
+    void addRender() {
+        const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_volume);
+        const RenderSettings settings;
+        BenchResult r = row(BenchRow::Render, renderer->name());
+        r.extra = {{"size", {settings.width, settings.height}}};
+        add(r, voxels() * kBytesPerCode, [this, renderer, settings](BenchResult&, const JobControl& j) {
+            renderer->render(m_camera, m_tf.tf, settings, j);
+        });
+    }
+
+    const std::shared_ptr<const Volume>& m_volume;
+    const std::string& m_volumeName;
+    const Camera& m_camera;
+    const BenchTf& m_tf;
+    const BenchOptions& m_options;
+    VisibilityEngine* m_engine; ///< null where no row needs one
+    WeightFields m_weights, m_nineWeights;
+    TransferFunction m_nine;
+    std::vector<TransferFunction> m_candidates; ///< the eight of a search
+    std::vector<Measurement> m_measurements;
+};
+
+bool needsEngine(const BenchTf& tf) {
+    return std::any_of(tf.rows.begin(), tf.rows.end(), [](BenchRow row) {
+        return row == BenchRow::Setup || row == BenchRow::Sweep || row == BenchRow::Jacobian ||
+               row == BenchRow::Optimize;
+    });
+}
+
+} // namespace
+
+const char* name(BenchRow row) {
+    switch (row) {
+    case BenchRow::Setup:
+        return "setup";
+    case BenchRow::Saliency:
+        return "saliency";
+    case BenchRow::SaliencyDirect:
+        return "saliency-direct";
+    case BenchRow::Sweep:
+        return "sweep";
+    case BenchRow::Jacobian:
+        return "jacobian";
+    case BenchRow::Optimize:
+        return "optimize";
+    case BenchRow::Refine:
+        return "refine";
+    case BenchRow::Render:
+        return "render";
+    }
+    return "";
+}
+
+BenchRow benchRowFromName(const std::string& text, const std::string& option) {
+    std::string known;
+    for (const BenchRow row : kBenchRows) {
+        if (text == name(row)) return row;
+        known += std::string(known.empty() ? "" : " ") + name(row);
+    }
+    throw UsageError("there is no row '" + text + "'", option, "known: " + known);
+}
+
+TransferFunction denseTf() {
+    TransferFunction tf;
+    for (int i = 0; i < 3; ++i) {
+        const double a = i / 3.0, b = (i + 1) / 3.0;
+        const Rgb color = rgbFromHsv(360 * (a + b) / 2, 1, 1);
+        tf.points.push_back({a, kDensePeak, color, false, {}});
+        tf.points.push_back({b, kDensePeak, color, false, {}});
+        tf.features.push_back({"f" + std::to_string(i + 1), a, b, color, {}});
+    }
+    return tf;
+}
+
+TransferFunction sparseTf(const Volume& volume) {
+    constexpr int kBins = 256, kTents = 3;
+    const Histogram histogram = makeHistogram(volume, kBins);
+    TransferFunction tf = tents(kTents);
+    // The tents' ends, from above: each tent takes as many voxels, but at least one bin.
+    std::array<int, kTents + 1> end{};
+    end[kTents] = kBins;
+    std::uint64_t above = 0;
+    int bin = kBins;
+    for (int t = kTents - 1; t >= 0; --t) {
+        const double wanted = kSparseShare * (kTents - t) / kTents * static_cast<double>(histogram.total);
+        do {
+            above += histogram.counts[static_cast<std::size_t>(--bin)];
+        } while (bin > t && static_cast<double>(above) < wanted);
+        end[static_cast<std::size_t>(t)] = bin;
+    }
+    for (std::size_t t = 0; t < kTents; ++t) {
+        const double a = static_cast<double>(end[t]) / kBins, b = static_cast<double>(end[t + 1]) / kBins;
+        tf.points[3 * t].x = a;
+        tf.points[3 * t + 1].x = (a + b) / 2;
+        tf.points[3 * t + 2].x = b;
+        tf.features[t].a = a;
+        tf.features[t].b = b;
+    }
+    return tf;
+}
+
+BenchResults benchVolume(const std::shared_ptr<const Volume>& volume, const std::string& volumeName,
+                         const Camera& camera, const std::vector<BenchTf>& tfs, const BenchOptions& options,
+                         Progress& progress) {
+    BenchResults results;
+    std::unique_ptr<VisibilityEngine> engine;
+    for (const BenchTf& tf : tfs) {
+        const JobControl job = progress.phase(volumeName + ", " + tf.name);
+        setThreadCount(options.threads.back());
+        if (!engine && needsEngine(tf)) engine = makeEngine(options.engine, volume, options.quality);
+        TfBench bench(volume, volumeName, camera, tf, options, engine.get());
+        bench.prepare({job.stop, {}});
+        bench.run(job, results);
+    }
+    return results;
+}
+
+double memcpyGbPerS(int threads, const JobControl& job) {
+    constexpr std::size_t kBytes = std::size_t{256} << 20;
+    const std::vector<char> from(kBytes, 1); // written, so that every page is there
+    std::vector<char> to(kBytes, 0);
+    const auto pieces = static_cast<std::size_t>(threads);
+    setThreadCount(threads);
+    std::vector<double> seconds;
+    for (int run = 0; run < 6; ++run) {
+        job.throwIfStopped();
+        const Stopwatch watch;
+        parallelFor(pieces, [&](std::size_t i) {
+            const std::size_t begin = kBytes * i / pieces, end = kBytes * (i + 1) / pieces;
+            std::memcpy(to.data() + begin, from.data() + begin, end - begin);
+        });
+        if (run > 0) seconds.push_back(watch.seconds());
+    }
+    return 2.0 * static_cast<double>(kBytes) / median(seconds) / 1e9;
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,81 @@
+// What `bench` measures: how long the parts of a measurement take on one volume, with several numbers of threads.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "output.h"
+#include "progress.h"
+#include "render/camera.h"
+#include "render/gl/engines.h"
+#include "tf/transfer_function.h"
+#include "volume/job.h"
+#include "volume/volume.h"
+
+namespace pellucid::cli {
+
+enum class BenchRow { Setup, Saliency, SaliencyDirect, Sweep, Jacobian, Optimize, Refine, Render };
+inline constexpr std::array kBenchRows{BenchRow::Setup,  BenchRow::Saliency, BenchRow::SaliencyDirect,
+                                       BenchRow::Sweep,  BenchRow::Jacobian, BenchRow::Optimize,
+                                       BenchRow::Refine, BenchRow::Render};
+const char* name(BenchRow row);                                                ///< "setup" … "render"
+BenchRow benchRowFromName(const std::string& name, const std::string& option); ///< throws UsageError
+
+/// One line of the table.
+struct BenchResult {
+    BenchRow row = BenchRow::Setup;
+    std::string engine, volume;
+    std::optional<std::string> tf;
+    Int3 dims{0, 0, 0};
+    int threads = 1;
+    std::optional<int> candidates, features;
+    double seconds = 0;    ///< median of the warm runs
+    double cpuSeconds = 0; ///< of all threads together, median too: hardly changes where others use the machine
+    double bytes = 0;      ///< that have to be read or written at least once, see docs/performance.md
+    Json extra;            ///< further fields of this row, an object
+};
+
+/// A transfer function and what is to be measured under it.
+struct BenchTf {
+    std::string name;
+    TransferFunction tf;
+    std::set<BenchRow> rows;
+    bool nineFeatures = false; ///< a Jacobian of kNineTents too
+    /// Length of the steps of the eight candidates in those of a line search, (0, 1].
+    double stepScale = 1;
+};
+
+inline constexpr const char* kNineTents = "tents:9";
+
+/// Every voxel has an opacity, so low that no ray is exhausted: nothing can be left out. Three features.
+TransferFunction denseTf();
+/// Three tents over the (about) 3 % of the voxels with the highest intensities: nearly all can be left out.
+TransferFunction sparseTf(const Volume& volume);
+/// Steps in proportion to the low opacities of denseTf().
+inline constexpr double kDenseStepScale = 0.002;
+
+struct BenchOptions {
+    std::vector<int> threads; ///< ascending
+    int repeat = 3;           ///< runs of each row after a warm-up
+    EngineChoice engine = EngineChoice::Auto;
+    Quality quality = Quality::Normal;
+};
+
+/// The rows of `volume`, and notes about rows that could not be measured. `camera` looks at it. Repetitions of the rows
+/// under one transfer function alternate, so that a machine that changes its speed changes that of all of them.
+struct BenchResults {
+    std::vector<BenchResult> rows;
+    std::vector<std::string> notices;
+};
+BenchResults benchVolume(const std::shared_ptr<const Volume>& volume, const std::string& volumeName,
+                         const Camera& camera, const std::vector<BenchTf>& tfs, const BenchOptions& options,
+                         Progress& progress);
+
+/// Bytes read plus bytes written per second, in 1e9, by a plain copy of 256 MiB cut into one piece per thread: what
+/// this machine's memory gives. Median of five.
+double memcpyGbPerS(int threads, const JobControl& job);
+
+} // namespace pellucid::cli

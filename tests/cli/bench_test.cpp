@@ -1,0 +1,161 @@
+// `bench`: which rows there are, and that their figures agree with each other and with the other commands. How long
+// anything takes is not asserted.
+#include <cmath>
+#include <set>
+
+#include <catch2/catch.hpp>
+
+#include "cli_runner.h"
+
+using nlohmann::json;
+using pellucid::test::Outcome;
+using pellucid::test::Workshop;
+
+namespace {
+
+constexpr double kVoxels = 24 * 24 * 24;
+const std::vector<std::string> kBench{"bench", "sample:shells", "--size", "24", "--engine", "cpu", "--repeat", "1"};
+
+json bench(const Workshop& w, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = kBench;
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return w.json(arguments);
+}
+
+std::vector<json> rowsNamed(const json& answer, const std::string& name) {
+    std::vector<json> rows;
+    for (const json& row : answer["rows"])
+        if (row["name"] == name) rows.push_back(row);
+    return rows;
+}
+
+} // namespace
+
+TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]") {
+    const Workshop w;
+    const json j = bench(w, {});
+    CHECK(j["command"] == "bench");
+    CHECK(j["repeat"] == 1);
+    REQUIRE(j["memcpy"].size() == 2);
+    CHECK(j["memcpy"][0]["threads"] == 1);
+    CHECK(j["memcpy"][1]["threads"] == 2);
+    CHECK(j["memcpy_gb_per_s"] == j["memcpy"][1]["gb_per_s"]);
+
+    std::set<std::string> names;
+    for (const json& row : j["rows"]) {
+        INFO(row.dump());
+        names.insert(row["name"]);
+        CHECK(row["engine"] == "cpu");
+        CHECK(row["volume"] == "sample:shells");
+        CHECK(row["dims"] == json({24, 24, 24}));
+        const int threads = row["threads"];
+        REQUIRE((threads == 1 || threads == 2));
+        const double seconds = row["seconds"], bytes = row["bytes_per_voxel"], rate = row["gb_per_s"];
+        CHECK(seconds > 0);
+        CHECK(row["cpu_seconds"].get<double>() > 0);
+        CHECK(row["ns_per_voxel"].get<double>() == Approx(1e9 * seconds / kVoxels));
+        CHECK(rate == Approx(bytes * kVoxels / seconds / 1e9));
+        const double memcpyRate = j["memcpy"][static_cast<std::size_t>(threads - 1)]["gb_per_s"];
+        CHECK(row["memcpy_share"].get<double>() == Approx(rate / memcpyRate));
+    }
+    CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
+                                         "refine", "render"});
+
+    // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.
+    const auto sweeps = rowsNamed(j, "sweep");
+    CHECK(sweeps.size() == 2 * 3 * 2);
+    std::set<std::string> tfs;
+    for (const json& row : sweeps) {
+        tfs.insert(row["tf"]);
+        CHECK((row["candidates"] == 1 || row["candidates"] == 8));
+        CHECK(row["features"] == 3);
+        CHECK(row["bytes_per_voxel"] == 6.0);
+    }
+    CHECK(tfs == std::set<std::string>{"default", "dense", "sparse"});
+    std::multiset<int> features;
+    for (const json& row : rowsNamed(j, "jacobian")) features.insert(row["features"].get<int>());
+    CHECK(features == std::multiset<int>{3, 3, 3, 3, 3, 3, 9, 9});
+    // The samples are of one byte; saliency writes four, the engine codes of two.
+    CHECK(rowsNamed(j, "saliency")[0]["bytes_per_voxel"] == 5.0);
+    CHECK(rowsNamed(j, "setup")[0]["bytes_per_voxel"] == 3.0);
+
+    const Outcome text = w.run(kBench);
+    CHECK(text.status == 0);
+    CHECK(text.err.empty());
+    for (const char* part : {"memcpy", "sweep, 8 TFs", "jacobian, 9 features", "sweep8_over_8_singles"}) {
+        INFO(part);
+        CHECK(text.out.find(part) != std::string::npos);
+    }
+}
+
+TEST_CASE("bench optimizes and refines as the commands of that name do", "[cli][bench]") {
+    const Workshop w;
+    const json j = bench(w, {"--only", "optimize,refine", "--tf", "tents:3:0.2", "--threads", "2"});
+    REQUIRE(j["rows"].size() == 2);
+    const json found = w.json({"optimize", "sample:shells", "--size", "24", "--engine", "cpu", "--tf", "tents:3:0.2",
+                               "--target", "0.1,0.3,0.6", "--method", "parallel"});
+    const json& optimized = j["rows"][0];
+    CHECK(optimized["name"] == "optimize");
+    CHECK(optimized["converged"] == true);
+    CHECK(optimized["objective"].get<double>() < 0.03);
+    CHECK(optimized["objective"] == found["objective"].back());
+    CHECK(optimized["iterations"] == found["iterations"]);
+    CHECK(optimized["evaluations"] == found["evaluations"]);
+    // The start alone, then eight candidates at a time.
+    CHECK(8 * optimized["sweeps"].get<int>() - 7 == optimized["evaluations"].get<int>());
+    const json refined = w.json({"refine", "sample:shells", "--size", "24", "--tf", "tents:3:0.2"});
+    CHECK(j["rows"][1]["name"] == "refine");
+    CHECK(j["rows"][1]["iterations"] == refined["iterations"]);
+}
+
+TEST_CASE("bench measures only the rows and threads that are asked for", "[cli][bench]") {
+    const Workshop w;
+    const json saliency = bench(w, {"--only", "saliency"});
+    REQUIRE(saliency["rows"].size() == 2);
+    for (const json& row : saliency["rows"]) CHECK(row["name"] == "saliency");
+    CHECK(saliency["ratios"].contains("threads_speedup_saliency"));
+    CHECK_FALSE(saliency["ratios"].contains("sweep8_over_8_singles"));
+
+    const json sweep = bench(w, {"--only", "sweep", "--tf", "tents:2", "--threads", "3"});
+    REQUIRE(sweep["rows"].size() == 2);
+    for (const json& row : sweep["rows"]) {
+        CHECK(row["threads"] == 3);
+        CHECK(row["tf"] == "tents:2");
+        CHECK(row["features"] == 2);
+    }
+    const double single = sweep["rows"][0]["seconds"], eight = sweep["rows"][1]["seconds"];
+    CHECK(sweep["rows"][0]["candidates"] == 1);
+    CHECK(sweep["ratios"].size() == 1);
+    CHECK(sweep["ratios"]["sweep8_over_8_singles"].get<double>() == Approx(eight / (8 * single)));
+}
+
+TEST_CASE("bench without a volume measures the knee and a series of cubes", "[cli][bench]") {
+    const Workshop w;
+    const json j = w.json({"bench", "--only", "saliency", "--repeat", "1", "--threads", "2"});
+    REQUIRE(j["rows"].size() == 3);
+    const std::vector<std::pair<std::string, json>> expected{
+        {"sample:knee", {379, 229, 305}}, {"cube:128", {128, 128, 128}}, {"cube:256", {256, 256, 256}}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(j["rows"][i]["volume"] == expected[i].first);
+        CHECK(j["rows"][i]["dims"] == expected[i].second);
+    }
+}
+
+TEST_CASE("bench takes volumes with nothing to see", "[cli][bench]") {
+    const Workshop w;
+    w.write("flat.dat", std::string(512, '\7'));
+    const std::vector<std::string> bench{"bench",    "flat.dat", "--raw",     "8,8,8,u8", "--engine", "cpu",
+                                         "--repeat", "1",        "--threads", "1",        "--json"};
+    const auto rowsOf = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), bench.begin(), bench.end());
+        const Outcome o = w.run(options);
+        CHECK(o.status == 0);
+        CHECK(o.err == "pellucid-cli: note: all voxels have the value 7\n");
+        return json::parse(o.out)["rows"];
+    };
+    CHECK(rowsOf({"--only", "sweep,saliency,optimize"}).size() == 3 * 2 + 1 + 3);
+    // A transfer function may have no features.
+    w.write("empty.tf.json", R"({"format":"pellucid-tf","version":1,"features":[],
+        "points":[{"x":0.2,"opacity":0.5,"color":"#ff8800"}]})");
+    CHECK(rowsOf({"--only", "sweep", "--tf", "empty.tf.json"}).size() == 2);
+}
