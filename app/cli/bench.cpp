@@ -104,7 +104,8 @@ public:
         for (const int threads : m_bench.threads) m_memcpy.push_back(memcpyGbPerS(threads, job));
     }
     void givenVolume() {
-        const auto [volume, tf] = loadVolumeAndTf(m_options.volume, m_options.tf, m_progress);
+        const auto [volume, tf] =
+            loadVolumeAndTf(m_options.volume, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
         m_results.notices = volume->notices;
         measure(volume, m_options.volume.path,
                 densities(m_options, *volume, tf, m_options.tf.spec.value_or("default")));
@@ -114,7 +115,7 @@ public:
             VolumeOptions knee;
             knee.path = "sample:knee";
             const TfOptions tents{m_options.tf.spec.value_or("tents:3")};
-            const auto [volume, tf] = loadVolumeAndTf(knee, tents, m_progress);
+            const auto [volume, tf] = loadVolumeAndTf(knee, tents, m_progress, {"measuring", kMeasureBytesPerVoxel});
             measure(volume, knee.path, densities(m_options, *volume, tf, *tents.spec));
         }
         const std::set<BenchRow> rows = both(m_options.only, {BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian});
@@ -122,7 +123,7 @@ public:
         VolumeOptions block;
         block.path = "sample:shells";
         block.sampleSize = kCubeSize;
-        auto [volume, tf] = loadVolumeAndTf(block, m_options.tf, m_progress);
+        auto [volume, tf] = loadVolumeAndTf(block, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
         const std::string tfName = m_options.tf.spec.value_or(kDense);
         if (!m_options.tf.spec) tf = denseTf();
         for (int n = 1; n <= (m_options.full ? 4 : 2); n *= 2)

@@ -1,5 +1,6 @@
 // `fields`: what every voxel contributes, as volumes to look at.
 #include <filesystem>
+#include <functional>
 
 #include "commands.h"
 #include "inputs.h"
@@ -65,33 +66,37 @@ Answer run(const Options& o, Progress& progress) {
     const VwsOptions vws = o.saliency.vws();
     checkFolder(o.out);
     o.camera.check();
-    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
+    const auto [volume, tf] =
+        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("measuring", kMeasureBytesPerVoxel));
     const Geometry& geometry = volume->geometry();
     const Camera camera = o.camera.camera(geometry);
-    const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
+    auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
     const WeightFields weights = saliencyFields(*volume, tf, o.saliency.saliency, progress.phase("saliency"));
     const VisibilityField visibility = engine->field(camera, tf, progress.phase("visibility"));
-    const Grid<float> shares = vwsField(visibility.values, weights, vws);
+    const std::string engineName = engine->name();
+    engine.reset(); // and one file after the other: the program keeps no more fields than it needs
 
     createFolder(o.out);
-    const Grid<float> brightness = gridOf(weights, 0), saturation = gridOf(weights, 1);
-    const std::vector<std::pair<const char*, const Grid<float>*>> files{{"visibility.nrrd", &visibility.values},
-                                                                        {"saliency_brightness.nrrd", &brightness},
-                                                                        {"saliency_saturation.nrrd", &saturation},
-                                                                        {"vws.nrrd", &shares}};
+    using Make = std::function<Grid<float>()>;
+    const std::vector<std::pair<const char*, Make>> files{
+        {"saliency_brightness.nrrd", [&] { return gridOf(weights, 0); }},
+        {"saliency_saturation.nrrd", [&] { return gridOf(weights, 1); }},
+        {"vws.nrrd", [&] { return vwsField(visibility.values, weights, vws); }}};
     const JobControl writing = progress.phase("writing");
     std::string text;
     Json names = Json::array();
-    for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto write = [&](const char* file, const Grid<float>& values) {
         writing.throwIfStopped();
-        writing.report(static_cast<double>(i) / static_cast<double>(files.size()));
-        const std::string path = (fs::path(o.out) / files[i].first).string();
-        writeNrrd(geometry, *files[i].second, path);
+        writing.report(static_cast<double>(names.size()) / static_cast<double>(files.size() + 1));
+        const std::string path = (fs::path(o.out) / file).string();
+        writeNrrd(geometry, values, path);
         text += "wrote " + path + "\n";
         names.push_back(path);
-    }
+    };
+    write("visibility.nrrd", visibility.values);
+    for (const auto& [file, make] : files) write(file, make());
     Json json{{"command", "fields"},
-              {"engine", engine->name()},
+              {"engine", engineName},
               {"volume", jsonFromVolume(*volume)},
               {"files", names},
               {"seconds", {{"total", total.seconds()}}}};

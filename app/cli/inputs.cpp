@@ -91,7 +91,7 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
         "seed of a sample's noise (default 1)", kVolumeGroup);
 }
 
-VolumeSource VolumeOptions::source() const {
+VolumeSource VolumeOptions::source(const MemoryUse& then) const {
     if (path.empty()) throw UsageError("the name of the volume is empty", "VOLUME", "name a file or sample:NAME");
     if (!raw && spacing) throw UsageError("--spacing is for headerless data", "--spacing", "give --raw as well");
     if (!raw && skipBytes) throw UsageError("--skip is for headerless data", "--skip", "give --raw as well");
@@ -101,6 +101,7 @@ VolumeSource VolumeOptions::source() const {
 
     VolumeSource source;
     source.path = path;
+    source.then = then;
     source.raw = raw;
     if (raw && spacing) source.raw->spacing = *spacing;
     if (raw && skipBytes) source.raw->skipBytes = *skipBytes;
@@ -112,8 +113,8 @@ VolumeSource VolumeOptions::source() const {
     return source;
 }
 
-std::shared_ptr<const Volume> loadVolume(const VolumeOptions& options, Progress& progress) {
-    return std::make_shared<const Volume>(pellucid::loadVolume(options.source(), progress.phase("loading")));
+std::shared_ptr<const Volume> loadVolume(const VolumeOptions& options, Progress& progress, const MemoryUse& then) {
+    return std::make_shared<const Volume>(pellucid::loadVolume(options.source(then), progress.phase("loading")));
 }
 
 void TfOptions::add(CLI::App& app) {
@@ -128,12 +129,13 @@ void TfOptions::add(CLI::App& app) {
         kVolumeGroup);
 }
 
-VolumeAndTf loadVolumeAndTf(const VolumeOptions& volumeOptions, const TfOptions& tfOptions, Progress& progress) {
+VolumeAndTf loadVolumeAndTf(const VolumeOptions& volumeOptions, const TfOptions& tfOptions, Progress& progress,
+                            const MemoryUse& then) {
     // The transfer function first: it is small, and an error in it should not wait for a large volume.
     std::optional<TransferFunction> tf;
     if (tfOptions.spec) tf = loadTf(*tfOptions.spec);
 
-    std::shared_ptr<const Volume> volume = loadVolume(volumeOptions, progress);
+    std::shared_ptr<const Volume> volume = loadVolume(volumeOptions, progress, then);
     if (tf && tf->range && !volumeOptions.range && *tf->range != volume->range())
         volume = std::make_shared<const Volume>(volume->withRange(*tf->range));
     if (!tf) tf = defaultTf(*volume);
@@ -193,6 +195,10 @@ void EngineOptions::add(CLI::App& app, const std::string& qualityHelp) {
                 throw UsageError("unknown quality '" + text + "'", option, "give normal or high");
         },
         qualityHelp, kEngineGroup);
+}
+
+MemoryUse EngineOptions::memoryFor(const std::string& doing, double bytesPerVoxel) const {
+    return {doing, bytesPerVoxel + (choice == EngineChoice::Reference ? kMoreByReferenceBytesPerVoxel : 0.0)};
 }
 
 void SaliencyInput::add(CLI::App& app) {

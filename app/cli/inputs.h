@@ -34,11 +34,12 @@ struct VolumeOptions {
     enum class SizeIs { Sample, Image };
     void add(CLI::App& app, SizeIs size = SizeIs::Sample);
     /// Throws UsageError for options that do not go together.
-    VolumeSource source() const;
+    /// `then` tells what memory is needed for beside the volume.
+    VolumeSource source(const MemoryUse& then = {}) const;
 };
 
 /// Reads the volume as the options say.
-std::shared_ptr<const Volume> loadVolume(const VolumeOptions& options, Progress& progress);
+std::shared_ptr<const Volume> loadVolume(const VolumeOptions& options, Progress& progress, const MemoryUse& then = {});
 
 /// --tf.
 struct TfOptions {
@@ -53,7 +54,8 @@ struct VolumeAndTf {
 
 /// The volume and the transfer function, which agree on the intensity window: --range, else the file's range, else
 /// the volume's own.
-VolumeAndTf loadVolumeAndTf(const VolumeOptions& volume, const TfOptions& tf, Progress& progress);
+VolumeAndTf loadVolumeAndTf(const VolumeOptions& volume, const TfOptions& tf, Progress& progress,
+                            const MemoryUse& then = {});
 
 /// --camera, --view, --orthographic.
 struct CameraOptions {
@@ -76,6 +78,8 @@ struct EngineOptions {
     EngineChoice choice = EngineChoice::Auto;
     Quality quality = Quality::Normal;
     void add(CLI::App& app, const std::string& qualityHelp);
+    /// What `doing` ("measuring") takes that takes `bytesPerVoxel` with the cpu engine.
+    MemoryUse memoryFor(const std::string& doing, double bytesPerVoxel) const;
 };
 
 /// --sigma, --kernel, --w1, --w2, --u1, --u2, --saliency-background.

@@ -5,12 +5,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
 #include "commands.h"
 #include "interrupt.h"
 #include "parse.h"
+#include "volume/memory.h"
 #include "volume/parallel.h"
 
 namespace pellucid::cli {
@@ -24,6 +26,7 @@ struct CommonOptions {
     bool json = false;
     bool progress = false;
     int threads = 0; ///< 0: all that the machine has
+    std::optional<double> memoryGiB;
 };
 
 void addCommonOptions(CLI::App& app, CommonOptions& common) {
@@ -36,6 +39,13 @@ void addCommonOptions(CLI::App& app, CommonOptions& common) {
             common.threads = static_cast<int>(parseInteger(text, option, 1, 1024));
         },
         "threads to use (default: all cores)", group);
+    addValue(
+        app, "--memory", "GIB",
+        [&common](const std::string& text, const std::string& option) {
+            common.memoryGiB = parseRealAbove(text, option, 0, 1e6);
+        },
+        "memory that the program may use, in GiB; what needs more is refused before it starts (default: what is free)",
+        group);
     app.get_help_ptr()->group(group);
 }
 
@@ -139,6 +149,7 @@ int runCommand(const Command& command, const CommonOptions& common) {
     const std::string where = std::string(kProgram) + " " + command.app->get_name();
     try {
         if (common.threads > 0) setThreadCount(common.threads);
+        if (common.memoryGiB) setMemoryLimit(static_cast<std::uint64_t>(*common.memoryGiB * (1u << 30)));
         const Answer answer = command.run(progress);
         progress.finish();
         if (interruptStatus() != 0) return stoppedStatus();

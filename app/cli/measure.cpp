@@ -82,7 +82,8 @@ Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     const VwsOptions vws = o.saliency.vws();
     o.camera.check();
-    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
+    const auto [volume, tf] =
+        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("measuring", kMeasureBytesPerVoxel));
     const Camera camera = o.camera.camera(volume->geometry());
     const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
 

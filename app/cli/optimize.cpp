@@ -76,7 +76,8 @@ Answer run(const Options& o, Progress& progress) {
     const VwsOptions vws = o.saliency.vws();
     o.optimize.validate();
     o.camera.check();
-    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
+    const auto [volume, tf] =
+        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("optimizing", kOptimizeBytesPerVoxel));
     normalizedTargets(o.targets, tf.features.size());
     const Camera camera = o.camera.camera(volume->geometry());
     const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);

@@ -39,7 +39,7 @@ _pellucid_cli() {
             return
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --view | --step | \
-            --clip | --feature | --threads | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
+            --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
             --max-iterations | --repeat | --fix | --target | --tolerance)
             return
             ;;

@@ -75,7 +75,7 @@ RenderSettings settingsOf(const Options& o, const TransferFunction& tf) {
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     check(o);
-    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
+    const auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress, {"drawing", kViewBytesPerVoxel});
     const Camera camera = o.camera.camera(volume->geometry());
     const RenderSettings settings = settingsOf(o, tf);
     const auto renderer = makeRenderer(o.engine.choice, volume);

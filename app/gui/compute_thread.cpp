@@ -1,12 +1,16 @@
 #include "compute_thread.h"
 
 #include "render/gl/engines.h"
+#include "volume/memory.h"
 
 namespace pellucid::gui {
 
 VisibilityEngine& ComputeCache::engine(const std::shared_ptr<const Volume>& volume) {
     if (m_engineVolume != volume || !m_engine) {
         m_engine.reset();
+        m_weightsVolume.reset(); // what was measured before needs no room any more
+        m_weights = {};
+        requireMemory({"measuring", kMeasureBytesPerVoxel}, volume->title, volume->dims());
         m_engine = makeEngine(EngineChoice::Auto, volume);
         m_engineVolume = volume;
     }

@@ -49,7 +49,9 @@ QString rangeText(const ValueRange& range) {
 LoadedVolume loadForWindow(const VolumeSource& source, const JobControl& job) {
     LoadedVolume loaded;
     loaded.source = source;
-    loaded.volume = std::make_shared<const Volume>(loadVolume(source, job));
+    VolumeSource shown = source;
+    shown.then = {"showing", kViewBytesPerVoxel};
+    loaded.volume = std::make_shared<const Volume>(loadVolume(shown, job));
     job.throwIfStopped();
     loaded.histogram = makeHistogram(*loaded.volume);
     loaded.defaultTf = defaultTf(*loaded.volume);

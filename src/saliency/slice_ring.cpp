@@ -79,7 +79,10 @@ SliceRing::Agreement SliceRing::agreementOf(const Pair* row, const Pair* above, 
         if (block.first == block.end) continue; // outside the volume
         const std::uint64_t bit = std::uint64_t{1} << b;
         const Pair first = row[block.first];
-        if (!allEqual(row + block.first, block.end - block.first)) agreement.inside &= ~bit;
+        if (!allEqual(row + block.first, block.end - block.first)) {
+            agreement.inside &= ~bit; // whatever agrees with it, it is busy
+            continue;
+        }
         if (b + 1 < m_blocks.size() && m_blocks[b + 1].first < m_blocks[b + 1].end &&
             row[m_blocks[b + 1].first] != first)
             agreement.next &= ~bit;

@@ -62,7 +62,8 @@ Volume readFile(const VolumeSource& source, const JobControl& job) {
 Volume sample(const VolumeSource& source, const JobControl& job) {
     if (source.raw) throw UsageError("a sample has no raw layout", source.path, "leave out --raw");
     if (source.component != 0) throw UsageError("a sample has one component", source.path, "leave out --component");
-    Volume volume = makeSample(source.path.substr(kSamplePrefix.size()), source.sampleSize, source.seed, job);
+    Volume volume =
+        makeSample(source.path.substr(kSamplePrefix.size()), source.sampleSize, source.seed, job, source.then);
     if (!source.missing) return volume;
     Volume other(volume.geometry(), volume.samples(), source.missing);
     if (volume.range() != volume.dataRange()) other = other.withRange(volume.range());

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "volume/job.h"
+#include "volume/memory.h"
 #include "volume/volume.h"
 
 namespace pellucid {
@@ -31,6 +32,7 @@ struct VolumeSource {
     int component = 0;               ///< of a multi-component file
     int sampleSize = 0;              ///< --size of a sample, 0 = its default
     std::uint32_t seed = 1;          ///< of a sample
+    MemoryUse then;                  ///< what is done with it next; checked before anything is allocated
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.

@@ -249,7 +249,7 @@ const std::vector<SampleInfo>& samples() {
     return kInfos;
 }
 
-Volume makeSample(const std::string& name, int size, std::uint32_t seed, const JobControl& job) {
+Volume makeSample(const std::string& name, int size, std::uint32_t seed, const JobControl& job, const MemoryUse& then) {
     constexpr int kLeast = 8, kMost = 8192;
     const auto found =
         std::find_if(table().begin(), table().end(), [&](const Sample& s) { return s.info.name == name; });
@@ -262,7 +262,8 @@ Volume makeSample(const std::string& name, int size, std::uint32_t seed, const J
         throw UsageError("the size " + std::to_string(size) + " is not possible", "sample:" + name,
                          "give " + std::to_string(kLeast) + " to " + std::to_string(kMost) + " voxels");
     const Geometry geometry = geometryOf(*found, size);
-    requireMemory("sample:" + name, voxelCount(geometry.dims) * 2, availableMemoryBytes());
+    const std::uint64_t bytes = voxelCount(geometry.dims) * 2; // of 16-bit samples, the largest there are
+    requireMemory(then, "sample:" + name, geometry.dims, bytes, bytes);
     Volume volume = found->make(geometry, seed, job);
     volume.title = name;
     volume.format = "sample";

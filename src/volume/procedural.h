@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volume/job.h"
+#include "volume/memory.h"
 #include "volume/volume.h"
 
 namespace pellucid {
@@ -21,7 +22,9 @@ const std::vector<SampleInfo>& samples();
 
 /// Makes the built-in volume `name`. `size` is the number of voxels along the longest axis (the others follow in
 /// proportion; at least 8), 0 = the default. The same name, size and seed give the same bits.
-/// Throws UsageError for an unknown name (the message lists the known ones) or an impossible size.
-Volume makeSample(const std::string& name, int size = 0, std::uint32_t seed = 1, const JobControl& job = {});
+/// Throws UsageError for an unknown name (the message lists the known ones) or an impossible size; Error where memory
+/// will not do for it, and for what `then` will be done with it.
+Volume makeSample(const std::string& name, int size = 0, std::uint32_t seed = 1, const JobControl& job = {},
+                  const MemoryUse& then = {});
 
 } // namespace pellucid

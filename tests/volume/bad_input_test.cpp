@@ -124,11 +124,6 @@ TEST_CASE("a header that claims more than its file holds is refused", "[bad-inpu
 }
 
 TEST_CASE("a volume that memory cannot hold is refused before it is allocated", "[bad-input]") {
-    CHECK_NOTHROW(requireMemory("a.nrrd", 1000, 1000));
-    CHECK_THROWS_WITH(requireMemory("a.nrrd", 3'000'000'000, 2'000'000'000),
-                      Contains("needs 3 GB") && Contains("2 GB are free") && Contains("a.nrrd"));
-    CHECK(availableMemoryBytes() > 1'000'000);
-
     // A file with a hole is as large as its header claims and takes no space.
     const TempFolder folder;
     const std::string path = folder.write("huge.raw", "x");

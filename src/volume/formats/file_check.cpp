@@ -191,24 +191,6 @@ void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t 
                         "check the sizes in the header, or copy the file again");
 }
 
-std::uint64_t availableMemoryBytes() {
-    std::ifstream in("/proc/meminfo");
-    for (std::string line; std::getline(in, line);) {
-        const std::vector<std::string> words = splitWords(line);
-        std::int64_t kibibytes = 0;
-        if (words.size() >= 2 && words[0] == "MemAvailable:" && parseNumber(words[1], kibibytes))
-            return static_cast<std::uint64_t>(kibibytes) * 1024;
-    }
-    return std::numeric_limits<std::uint64_t>::max();
-}
-
-void requireMemory(const std::string& path, std::uint64_t needed, std::uint64_t available) {
-    if (needed > available)
-        throw FileError("reading it needs " + describeBytes(needed) + " of memory, " + describeBytes(available) +
-                            " are free",
-                        path, "close other programs, use a larger machine or a smaller volume");
-}
-
 std::string describeBytes(std::uint64_t bytes) {
     static constexpr const char* kUnits[] = {"kB", "MB", "GB", "TB", "PB", "EB"};
     if (bytes < 1000) return std::to_string(bytes) + " bytes";

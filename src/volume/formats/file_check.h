@@ -41,11 +41,6 @@ void requireInflates(const std::string& path, std::uint64_t start, bool zlib, st
 /// commas: some libraries go on with the last one where the text ends.
 void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job);
 
-/// Memory that this machine can give without swapping, bytes (MemAvailable); the largest number where unknown.
-std::uint64_t availableMemoryBytes();
-/// Throws FileError where `needed` exceeds `available`.
-void requireMemory(const std::string& path, std::uint64_t needed, std::uint64_t available);
-
 /// "512 bytes", "1.50 GB" (powers of 1000).
 std::string describeBytes(std::uint64_t bytes);
 

@@ -15,6 +15,7 @@
 #include <itkNrrdImageIO.h>
 
 #include "volume/formats/file_check.h"
+#include "volume/memory.h"
 
 namespace pellucid {
 
@@ -224,7 +225,7 @@ Volume readWithItk(ItkFormat format, const VolumeSource& source, const HeaderCla
         // The format libraries hold the file's own bytes beside the result while they decode or convert.
         std::uint64_t needed = layout.values * sizeof(T) + claim.values * claim.bytesPerValue;
         if (layout.values != layout.voxels || !std::is_same_v<T, Stored>) needed += layout.voxels * sizeof(Stored);
-        requireMemory(path, needed, availableMemoryBytes());
+        requireMemory(source.then, path, geometry.dims, needed, layout.voxels * sizeof(Stored));
         samples = readSamples<T>(io, path, layout);
     });
     job.throwIfStopped();

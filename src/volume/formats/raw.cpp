@@ -6,6 +6,7 @@
 
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
+#include "volume/memory.h"
 
 namespace pellucid {
 
@@ -82,7 +83,7 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
         throw FileError("the file has " + std::to_string(fileBytes) + " bytes, but " + claim, path,
                         "correct --raw or --skip");
     }
-    requireMemory(path, bytes, availableMemoryBytes());
+    requireMemory(source.then, path, layout.dims, bytes, bytes);
     const Geometry geometry{layout.dims, layout.spacing, {0, 0, 0}};
     return Volume(geometry, readSamples(path, layout, static_cast<std::size_t>(values), job), source.missing);
 }
