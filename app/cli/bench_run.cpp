@@ -81,8 +81,8 @@ public:
     void prepare(const JobControl& job) {
         const bool weighted = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize);
         if (wanted(BenchRow::Setup)) addSetup();
-        if (wanted(BenchRow::Saliency)) addSaliency(BenchRow::Saliency, saliencyFields);
-        if (wanted(BenchRow::SaliencyDirect)) addSaliency(BenchRow::SaliencyDirect, saliencyFieldsDirect);
+        if (wanted(BenchRow::Saliency)) addSaliency(BenchRow::Saliency, updateSaliencyFields);
+        if (wanted(BenchRow::SaliencyDirect)) addSaliency(BenchRow::SaliencyDirect, updateSaliencyFieldsDirect);
         if (weighted) m_weights = saliencyFields(*m_volume, m_tf.tf, {}, job);
         if (wanted(BenchRow::Sweep)) addSweeps(job);
         if (wanted(BenchRow::Jacobian)) addJacobians(job);
@@ -174,9 +174,11 @@ private:
             [this](BenchResult&, const JobControl&) { makeEngine(m_options.engine, m_volume, m_options.quality); });
     }
 
-    void addSaliency(BenchRow which, decltype(saliencyFields)* make) {
-        add(row(which, "cpu"), 0, [this, make](BenchResult& r, const JobControl& job) {
-            r.bytes = sampleBytes() + voxels() * bytesPerVoxel(make(*m_volume, m_tf.tf, {}, job));
+    /// Into memory that is there, as the window does after an edit.
+    void addSaliency(BenchRow which, decltype(updateSaliencyFields)* update) {
+        add(row(which, "cpu"), 0, [this, update](BenchResult& r, const JobControl& job) {
+            update(m_weights, *m_volume, m_tf.tf, {}, job);
+            r.bytes = sampleBytes() + voxels() * bytesPerVoxel(m_weights);
         });
     }
 

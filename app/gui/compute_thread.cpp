@@ -22,8 +22,7 @@ const WeightFields& ComputeCache::weights(const std::shared_ptr<const Volume>& v
     TransferFunction key = colorsOf(tf);
     if (m_weightsVolume != volume || !(m_weightsTf == key)) {
         m_weightsVolume.reset();
-        m_weights = {}; // before the new ones, so that both never need room at once
-        m_weights = saliencyFields(*volume, tf, {}, job);
+        updateSaliencyFields(m_weights, *volume, tf, {}, job);
         m_weightsTf = std::move(key);
         m_weightsVolume = volume;
     }

@@ -187,4 +187,12 @@ WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options)
     return {dims, w, 1.34 * w};
 }
 
+bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOptions& options) {
+    const WeightFields scales = emptyWeightFields(Int3(0), options);
+    if (fields.dims() == dims && fields.scale(0) == scales.scale(0) && fields.scale(1) == scales.scale(1)) return true;
+    fields = {}; // before the new ones, so that both never need room at once
+    fields = emptyWeightFields(dims, options);
+    return false;
+}
+
 } // namespace pellucid

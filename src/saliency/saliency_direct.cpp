@@ -58,21 +58,20 @@ void sweepTile(const BallPair& balls, const std::array<std::vector<std::vector<f
 
 } // namespace
 
-WeightFields saliencyFieldsDirect(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options,
-                                  const JobControl& job) {
+void updateSaliencyFieldsDirect(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
+                                const SaliencyOptions& options, const JobControl& job) {
     validate(options);
     const BallPair balls = ballsOf(volume.geometry(), options);
     const Tiling tiling(volume.dims(), balls);
     const std::array weights{runWeights(balls[0]), runWeights(balls[1])};
     const AppearanceReader reader(volume, tf, options.background);
-    WeightFields fields = emptyWeightFields(volume.dims(), options);
+    keepWeightFields(fields, volume.dims(), options); // every voxel is written
     std::atomic<std::size_t> done = 0;
     parallelFor(tiling.count(), [&](std::size_t i) {
         job.throwIfStopped();
         sweepTile(balls, weights, reader, options, tiling.tile(i), tiling.stride(), fields);
         job.report(static_cast<double>(++done) / static_cast<double>(tiling.count()));
     });
-    return fields;
 }
 
 } // namespace pellucid

@@ -5,10 +5,10 @@
 
 namespace pellucid {
 
-/// The same fields as saliencyFields(), to within rounding: each voxel's balls are summed voxel by voxel, with the same
+/// The same as updateSaliencyFields(), to within rounding: each voxel's balls are summed voxel by voxel, with the same
 /// vectors, tiles and threads, but without sharing sums between neighbours or leaving out what is of one colour. What
 /// `pellucid-cli bench` compares the fast way with.
-WeightFields saliencyFieldsDirect(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options = {},
-                                  const JobControl& job = {});
+void updateSaliencyFieldsDirect(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
+                                const SaliencyOptions& options = {}, const JobControl& job = {});
 
 } // namespace pellucid

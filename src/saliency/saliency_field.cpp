@@ -27,10 +27,10 @@ void forEachRun(std::uint64_t blocks, const Body& body) {
 class TileSweep {
 public:
     TileSweep(const BallPair& balls, const BallPlan& plan, const AppearanceReader& reader,
-              const SaliencyOptions& options, const Tile& tile, WeightFields& fields)
+              const SaliencyOptions& options, const Tile& tile, WeightFields& fields, bool used)
         : m_plan(plan.sums()), m_kernel(ballSumsKernel()), m_tile(tile), m_dims(fields.dims()), m_fields(fields),
           m_ring(reader, m_dims, tile, balls[1], m_plan.stride),
-          m_scaler(balls, m_dims, tile, m_plan.stride, options, fields),
+          m_scaler(balls, m_dims, tile, m_plan.stride, options, fields), m_used(used),
           m_constantWeight(std::abs(options.w1 - options.w2)), m_reachY(balls[1].reach(1)), m_reachZ(balls[1].reach(2)),
           m_sumsFloats(m_plan.zSumCount * m_plan.stride),
           m_zSums(static_cast<std::size_t>((2 * m_reachY + 1) * m_sumsFloats)),
@@ -83,6 +83,9 @@ private:
             static_cast<std::size_t>(m_dims.x) *
                 (static_cast<std::size_t>(y) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(z));
         if (m_constantWeight > 0) fillRow(y, z, first);
+        if (m_constantWeight == 0 && m_used)
+            std::memset(m_fields.data() + first, 0,
+                        static_cast<std::size_t>(m_tile.x1 - m_tile.x0) * sizeof(std::uint32_t));
         const std::uint64_t blocks = busy(y);
         if (blocks == 0) return;
         const float** rows = m_rows.data() + m_reachY;
@@ -115,6 +118,7 @@ private:
     WeightFields& m_fields;
     SliceRing m_ring;
     RowScaler m_scaler;
+    bool m_used; ///< the fields are not all 0
     double m_constantWeight;
     int m_reachY, m_reachZ;
     std::ptrdiff_t m_sumsFloats; ///< of one row
@@ -130,20 +134,26 @@ private:
 
 WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options,
                             const JobControl& job) {
+    WeightFields fields;
+    updateSaliencyFields(fields, volume, tf, options, job);
+    return fields;
+}
+
+void updateSaliencyFields(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
+                          const SaliencyOptions& options, const JobControl& job) {
     validate(options);
     job.throwIfStopped();
     const BallPair balls = ballsOf(volume.geometry(), options);
     const Tiling tiling(volume.dims(), balls);
     const BallPlan plan(balls, tiling.stride());
     const AppearanceReader reader(volume, tf, options.background);
-    WeightFields fields = emptyWeightFields(volume.dims(), options);
+    const bool used = keepWeightFields(fields, volume.dims(), options);
     std::atomic<std::size_t> done = 0;
     parallelFor(tiling.count(), [&](std::size_t i) {
         job.throwIfStopped();
-        TileSweep(balls, plan, reader, options, tiling.tile(i), fields).run();
+        TileSweep(balls, plan, reader, options, tiling.tile(i), fields, used).run();
         job.report(static_cast<double>(++done) / static_cast<double>(tiling.count()));
     });
-    return fields;
 }
 
 } // namespace pellucid

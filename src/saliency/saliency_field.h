@@ -27,6 +27,8 @@ struct SaliencyOptions {
 /// O_s above 1.34. These bounds do not depend on the colours at hand, so that greys, whose chroma is 0 but for
 /// rounding, get weights of exactly 0.
 WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options);
+/// Makes `fields` such as emptyWeightFields() returns, but keeps memory and values that fit: true where it does.
+bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOptions& options);
 
 /// The part of `tf` that saliency depends on: two with equal parts have the same fields. Opacities and names are gone,
 /// and points between which no colour bends, such as those that scaling a feature inserts.
@@ -35,6 +37,11 @@ TransferFunction colorsOf(const TransferFunction& tf);
 /// Depends on the colours and features of `tf`, never on its opacities. Throws Error for options out of range.
 WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options = {},
                             const JobControl& job = {});
+
+/// The same into `fields`, whose memory is used again where it fits: the system takes longer to hand out new pages than
+/// the sums take. What was there is gone, also where this throws.
+void updateSaliencyFields(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
+                          const SaliencyOptions& options = {}, const JobControl& job = {});
 
 /// The same by the book: double precision, a direct sum over each ball. The oracle; slow.
 WeightFields saliencyFieldsReference(const Volume& volume, const TransferFunction& tf,

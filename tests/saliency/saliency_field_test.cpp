@@ -32,6 +32,12 @@ void checkAgainst(const WeightFields& expected, const WeightFields& fields) {
     CHECK(largestDifference(expected, fields, 1) < 1e-4);
 }
 
+WeightFields direct(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options) {
+    WeightFields fields;
+    updateSaliencyFieldsDirect(fields, volume, tf, options);
+    return fields;
+}
+
 } // namespace
 
 TEST_CASE("nothing stands out of a homogeneous volume", "[saliency]") {
@@ -85,7 +91,7 @@ TEST_CASE("the fast fields equal the direct sums", "[saliency]") {
                 const TransferFunction tf = tents(4);
                 const WeightFields slow = saliencyFieldsReference(*volume, tf, options);
                 checkAgainst(slow, saliencyFields(*volume, tf, options));
-                checkAgainst(slow, saliencyFieldsDirect(*volume, tf, options));
+                checkAgainst(slow, direct(*volume, tf, options));
             }
 }
 
@@ -140,7 +146,7 @@ TEST_CASE("regions of one colour that are left out hold what the sums would", "[
     for (const double w2 : {1.0, 0.25})
         for (const double sigma : {1.0, 2.0, 4.5}) {
             SaliencyOptions options{sigma, SaliencyKernel::Thesis, 1.0, w2, {0.1, 0.3, 0.2}};
-            checkAgainst(saliencyFieldsDirect(*volume, tents(3), options), saliencyFields(*volume, tents(3), options));
+            checkAgainst(direct(*volume, tents(3), options), saliencyFields(*volume, tents(3), options));
         }
 }
 
@@ -279,4 +285,25 @@ TEST_CASE("impossible options are refused, and a stop is heard", "[saliency]") {
     std::stop_source stop;
     stop.request_stop();
     CHECK_THROWS_AS(saliencyFields(*volume, tents(3), {}, {stop.get_token(), {}}), Cancelled);
+}
+
+TEST_CASE("fields made in used memory are those made in new memory", "[saliency]") {
+    std::mt19937 random(8);
+    const auto volume = roughVolume(random, {40, 24, 20}, Vec3(1));
+    for (const double w2 : {1.0, 0.5}) { // where w1 = w2, blocks of one colour are left out
+        SaliencyOptions options;
+        options.w2 = w2;
+        WeightFields fields = saliencyFields(*volume, tents(9), options);
+        const std::uint32_t* const memory = fields.data();
+        updateSaliencyFields(fields, *volume, tents(1), options);
+        CHECK(fields == saliencyFields(*volume, tents(1), options));
+        CHECK(fields.data() == memory);
+        options.w1 = 2; // another scale
+        updateSaliencyFields(fields, *volume, tents(1), options);
+        CHECK(fields == saliencyFields(*volume, tents(1), options));
+    }
+    const auto other = roughVolume(random, {10, 24, 20}, Vec3(1));
+    WeightFields fields = saliencyFields(*volume, tents(3));
+    updateSaliencyFields(fields, *other, tents(3));
+    CHECK(fields == saliencyFields(*other, tents(3)));
 }
