@@ -152,9 +152,16 @@ public:
     void run() {
         startRays();
         int at = m_start; // the sample plane that rays have come to
+        const auto goal = [&](int k) { return (k - m_in.ownSlices) * m_in.stepsPerSlice; };
         for (int k = m_piece.begin; k < m_piece.end; ++k) {
-            for (; at < (k - m_in.ownSlices) * m_in.stepsPerSlice; ++at) advanceRays(at, at + 1);
-            gather(k, at);
+            for (; at < goal(k); ++at) {
+                const Advance advance = advanceTo(at + 1);
+                for (int b = m_b0; b <= m_b1; ++b) advanceRow(advance, b);
+            }
+            // Rows of rays go on as soon as no voxel needs them any more where they are: they are at hand now.
+            const bool goOn = k + 1 < m_piece.end && at < goal(k + 1);
+            gather(k, at, goOn ? advanceTo(at + 1) : Advance{});
+            at += goOn;
             if (k % kFlushEvery == kFlushEvery - 1) flush();
         }
         flush();
@@ -391,11 +398,16 @@ private:
         return false;
     }
 
-    /// Takes every ray from one sample plane to the next, blocks of eight rays at a time; blocks that meet nothing
-    /// opaque on either plane, and exhausted ones, are passed over.
-    void advanceRays(int from, int to) {
-        const double w0 = sampleW(from), w1 = sampleW(to);
-        const RayPlane p0 = rayPlane(w0), p1 = rayPlane(w1);
+    /// What rays go through from one sample plane to the next.
+    struct Advance {
+        int to = kNever;
+        double w0 = 0, w1 = 0;
+        RayPlane p0{}, p1{};
+        int firstBlock = 0, lastBlock = -1; ///< of rays inside the box
+    };
+    Advance advanceTo(int to) const {
+        Advance go{to, sampleW(to - 1), sampleW(to), {}, {}, 0, -1};
+        const RayPlane p0 = go.p0 = rayPlane(go.w0), p1 = go.p1 = rayPlane(go.w1);
         // Rays inside the box on either plane; none are outside on both that come through an edge worth counting.
         double lo = (-0.5 - p1.baseU) / p1.scale, hi = (m_in.nu - 0.5 - p1.baseU) / p1.scale;
         if (p0.scale > 0) {
@@ -403,59 +415,66 @@ private:
             lo = lo0 < lo ? lo0 : lo;
             hi = hi0 > hi ? hi0 : hi;
         }
-        if (hi < m_a0 || lo > m_a1) return;
-        const int firstBlock = lo < m_a0 ? 0 : (ceilInt(lo) - m_a0) / kWide,
-                  lastBlock = hi > m_a1 ? m_blocks - 1 : (floorInt(hi) - m_a0) / kWide;
+        if (hi < m_a0 || lo > m_a1) return go;
+        go.firstBlock = lo < m_a0 ? 0 : (ceilInt(lo) - m_a0) / kWide;
+        go.lastBlock = hi > m_a1 ? m_blocks - 1 : (floorInt(hi) - m_a0) / kWide;
+        return go;
+    }
+
+    /// Takes a row of rays on, blocks of eight at a time; blocks that meet nothing opaque on either plane, and
+    /// exhausted ones, are passed over.
+    void advanceRow(const Advance& go, int b) {
+        const RayPlane &p0 = go.p0, &p1 = go.p1;
+        const double w0 = go.w0, w1 = go.w1;
+        const int from = go.to - 1, to = go.to;
         const float slices = static_cast<float>(w1 - w0);
         const bool look = to % (kExhaustedEvery * m_in.stepsPerSlice) == 0;
-        for (int b = m_b0; b <= m_b1; ++b) {
-            const double v0 = p0.v(b), v1 = p1.v(b);
-            const bool bothInside = insideV(v0) && insideV(v1);
-            if (!bothInside && (larger(v0<-0.5, v0> m_in.nv - 0.5) & larger(v1<-0.5, v1> m_in.nv - 0.5))) continue;
-            const OpaqueRow opaque = opaqueRow(v1, w1);
-            int first = m_blocks, last = -1; // blocks of rays that meet something opaque on either plane
-            const auto widen = [&](const SweepSpan& span, const RayPlane& p) {
-                if (span.last < span.first || !(p.scale > 0)) return;
-                // Half a voxel beyond the blocks; what is clamped to the edge belongs to the outermost block.
-                const double lowU = span.first == 0 ? -1e30 : span.first * kBlockSize - 1,
-                             highU = (span.last + 1) * kBlockSize >= m_in.nu ? 1e30 : (span.last + 1) * kBlockSize;
-                const double low = (lowU - p.baseU) / p.scale, high = (highU - p.baseU) / p.scale;
-                first = smaller(first, low <= m_a0 ? 0 : low > m_a1 ? m_blocks : (floorInt(low) - m_a0) / kWide);
-                last = larger(last, high >= m_a1 ? m_blocks - 1 : high < m_a0 ? -1 : (ceilInt(high) - m_a0) / kWide);
-            };
-            widen(opaqueRow(v0, w0).span, p0);
-            widen(opaque.span, p1);
-            first = larger(first, firstBlock);
-            last = smaller(last, lastBlock);
-            if (first > last) continue;
-            const Rows before = rowsAt(v0, w0), now = rowsAt(v1, w1);
-            for (int block = first; block <= last; ++block) {
-                const std::size_t at = rowOf(b) * static_cast<std::size_t>(m_blocks) + static_cast<std::size_t>(block);
-                if (m_flags[at] & kExhausted) continue;
-                const int a = m_a0 + block * kWide;
-                const double u1 = p1.u(a), end1 = p1.u(a + kWide - 1);
-                const bool active = opaqueBetween(opaque.blocks, u1, end1);
-                const bool wasActive = m_flags[at] & kActive;
-                m_flags[at] = active ? kActive : 0;
-                if (!active && !wasActive) continue;
-                const std::size_t ray = at * kWide;
-                Samples s0;
-                if (m_stamp[at] == from) {
-                    s0.entry = load(m_entry + ray);
-                    if (kInvalid) s0.share = load(m_share + ray);
-                } else {
-                    s0 = sample(before, p0.u(a), p0.scale);
-                }
-                const Samples s1 = sample(now, u1, p1.scale);
-                store(m_entry + ray, s1.entry);
-                if (kInvalid) store(m_share + ray, s1.share);
-                m_stamp[at] = to;
-                Vec8 path = load(m_length + ray) * slices;
-                if (!bothInside || !insideU(u1, end1) || !insideU(p0.u(a), p0.u(a + kWide - 1)))
-                    path *= insideShare(p0, p1, a, b);
-                addDepth(m_depth + ray * K, stretch(s0, s1, path));
-                if (look && exhausted(m_depth + ray * K)) m_flags[at] |= kExhausted;
+        const double v0 = p0.v(b), v1 = p1.v(b);
+        const bool bothInside = insideV(v0) && insideV(v1);
+        if (!bothInside && (larger(v0<-0.5, v0> m_in.nv - 0.5) & larger(v1<-0.5, v1> m_in.nv - 0.5))) return;
+        const OpaqueRow opaque = opaqueRow(v1, w1);
+        int first = m_blocks, last = -1; // blocks of rays that meet something opaque on either plane
+        const auto widen = [&](const SweepSpan& span, const RayPlane& p) {
+            if (span.last < span.first || !(p.scale > 0)) return;
+            // Half a voxel beyond the blocks; what is clamped to the edge belongs to the outermost block.
+            const double lowU = span.first == 0 ? -1e30 : span.first * kBlockSize - 1,
+                         highU = (span.last + 1) * kBlockSize >= m_in.nu ? 1e30 : (span.last + 1) * kBlockSize;
+            const double low = (lowU - p.baseU) / p.scale, high = (highU - p.baseU) / p.scale;
+            first = smaller(first, low <= m_a0 ? 0 : low > m_a1 ? m_blocks : (floorInt(low) - m_a0) / kWide);
+            last = larger(last, high >= m_a1 ? m_blocks - 1 : high < m_a0 ? -1 : (ceilInt(high) - m_a0) / kWide);
+        };
+        widen(opaqueRow(v0, w0).span, p0);
+        widen(opaque.span, p1);
+        first = larger(first, go.firstBlock);
+        last = smaller(last, go.lastBlock);
+        if (first > last) return;
+        const Rows before = rowsAt(v0, w0), now = rowsAt(v1, w1);
+        for (int block = first; block <= last; ++block) {
+            const std::size_t at = rowOf(b) * static_cast<std::size_t>(m_blocks) + static_cast<std::size_t>(block);
+            if (m_flags[at] & kExhausted) continue;
+            const int a = m_a0 + block * kWide;
+            const double u1 = p1.u(a), end1 = p1.u(a + kWide - 1);
+            const bool active = opaqueBetween(opaque.blocks, u1, end1);
+            const bool wasActive = m_flags[at] & kActive;
+            m_flags[at] = active ? kActive : 0;
+            if (!active && !wasActive) continue;
+            const std::size_t ray = at * kWide;
+            Samples s0;
+            if (m_stamp[at] == from) {
+                s0.entry = load(m_entry + ray);
+                if (kInvalid) s0.share = load(m_share + ray);
+            } else {
+                s0 = sample(before, p0.u(a), p0.scale);
             }
+            const Samples s1 = sample(now, u1, p1.scale);
+            store(m_entry + ray, s1.entry);
+            if (kInvalid) store(m_share + ray, s1.share);
+            m_stamp[at] = to;
+            Vec8 path = load(m_length + ray) * slices;
+            if (!bothInside || !insideU(u1, end1) || !insideU(p0.u(a), p0.u(a + kWide - 1)))
+                path *= insideShare(p0, p1, a, b);
+            addDepth(m_depth + ray * K, stretch(s0, s1, path));
+            if (look && exhausted(m_depth + ray * K)) m_flags[at] |= kExhausted;
         }
     }
 
@@ -503,17 +522,23 @@ private:
         float fractionV;   ///< between them
     };
 
-    void gather(int k, int at) {
+    /// Measures the voxels of a slice, for rays at a sample plane; then takes those rays on, where `go` says so.
+    void gather(int k, int at, const Advance& go) {
         const RayPlane p = rayPlane(k);
         const Extent extent = extentOf(k);
-        if (extent.u0 > extent.u1) return;
+        int next = m_b0;
+        const auto goOn = [&](int end) {
+            for (; go.to != kNever && next < end; ++next) advanceRow(go, next);
+        };
         const int firstRow = larger(extent.v0, m_piece.outermostLow ? 0 : floorInt(p.v(m_b0)) - 1),
                   lastRow = smaller(extent.v1, m_piece.outermostHigh ? m_in.nv - 1 : ceilInt(p.v(m_b1)) + 1);
-        for (int v = firstRow; v <= lastRow; ++v) {
+        for (int v = firstRow; v <= lastRow && extent.u0 <= extent.u1; ++v) {
             const double b = (v - p.baseV) / p.scale;
             if ((b < m_b0 && !m_piece.outermostLow) || (b >= m_b1 && !m_piece.outermostHigh)) continue;
+            goOn(clampTo(floorInt(b), m_b0, m_b1 - 1));
             gatherRow(k, v, extent, p, b, at);
         }
+        goOn(m_b1 + 1);
     }
 
     void gatherRow(int k, int v, const Extent& extent, const RayPlane& p, double b, int at) {
@@ -781,6 +806,7 @@ private:
                     depth[n][part] = apart ? own[n][part] : depth[n][part];
                 }
         }
+        const std::ptrdiff_t spread = static_cast<std::ptrdiff_t>(m_in.features + 1) * 3 * K;
         for (int i = 0; i < block.listed; ++i) {
             const int n = block.list[i];
             const int feature = m_in.featureOfCode[block.codes[n]];
@@ -790,10 +816,7 @@ private:
                           load(m_in.alphaTable + static_cast<std::size_t>(block.codes[n]) * K);
             else
                 differentiate(depth[n], block.codes[n], feature, seen);
-            float* sum = m_accumulator +
-                         (static_cast<std::size_t>(i & (kSpread - 1)) * static_cast<std::size_t>(m_in.features + 1) +
-                          static_cast<std::size_t>(feature)) *
-                             3 * K;
+            float* sum = m_accumulator + (i & (kSpread - 1)) * spread + feature * (3 * K);
             add(sum, seen, 1.0f);
             if (!m_in.weights) continue;
             const std::uint32_t both = m_in.weights[block.field + n * m_in.fieldStrides.u];
