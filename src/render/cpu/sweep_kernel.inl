@@ -32,13 +32,6 @@ inline Int8 toInt(Vec8 v) { return __builtin_convertvector(v, Int8); }
 inline Vec8 toFloat(UShort8 v) { return __builtin_convertvector(__builtin_convertvector(v, Int8), Vec8); }
 
 /// from[x[0]], …, from[x[7]].
-inline Vec8 gathered(const float* from, Int8 x) {
-#ifdef __AVX2__
-    return reinterpret_cast<Vec8>(_mm256_i32gather_ps(from, reinterpret_cast<__m256i>(x), 4));
-#else
-    return Vec8{from[x[0]], from[x[1]], from[x[2]], from[x[3]], from[x[4]], from[x[5]], from[x[6]], from[x[7]]};
-#endif
-}
 inline Int8 gathered(const int* from, Int8 x) {
 #ifdef __AVX2__
     return reinterpret_cast<Int8>(_mm256_i32gather_epi32(from, reinterpret_cast<__m256i>(x), 4));
@@ -46,11 +39,15 @@ inline Int8 gathered(const int* from, Int8 x) {
     return Int8{from[x[0]], from[x[1]], from[x[2]], from[x[3]], from[x[4]], from[x[5]], from[x[6]], from[x[7]]};
 #endif
 }
-/// codes[x] and codes[x + 1] for each x; x ascends.
-inline void pairsAt(const std::uint16_t* codes, Int8 x, Vec8& near, Vec8& far) {
+inline Vec8 asFloats(const std::uint16_t* p) { return toFloat(load(p)); }
+inline Vec8 asFloats(const float* p) { return load(p); }
+
+/// from[x] and from[x + 1] for each x; x ascends, and sixteen may be read from x[0] on.
+template <class T>
+inline void pairsAt(const T* from, Int8 x, Vec8& near, Vec8& far) {
 #ifdef __AVX2__
     if (x[kWide - 1] - x[0] < 2 * kWide - 1) { // sixteen neighbours hold them all: cheaper than gathering
-        const Vec8 low = toFloat(load(codes + x[0])), high = toFloat(load(codes + x[0] + kWide));
+        const Vec8 low = asFloats(from + x[0]), high = asFloats(from + x[0] + kWide);
         const auto pick = [&](Int8 index) {
             const __m256i i = reinterpret_cast<__m256i>(index);
             const Vec8 fromLow = reinterpret_cast<Vec8>(_mm256_permutevar8x32_ps(reinterpret_cast<__m256>(low), i)),
@@ -62,16 +59,11 @@ inline void pairsAt(const std::uint16_t* codes, Int8 x, Vec8& near, Vec8& far) {
         far = pick(index + 1);
         return;
     }
-    const Int8 both = reinterpret_cast<Int8>(
-        _mm256_i32gather_epi32(reinterpret_cast<const int*>(codes), reinterpret_cast<__m256i>(x), 2));
-    near = toFloat(both & 0xffff);
-    far = toFloat(reinterpret_cast<Int8>(reinterpret_cast<UInt8>(both) >> 16));
-#else
-    for (int n = 0; n < kWide; ++n) {
-        near[n] = codes[x[n]];
-        far[n] = codes[x[n] + 1];
-    }
 #endif
+    for (int n = 0; n < kWide; ++n) {
+        near[n] = static_cast<float>(from[x[n]]);
+        far[n] = static_cast<float>(from[x[n] + 1]);
+    }
 }
 
 /// True where no bit of a comparison's result is set.
@@ -236,7 +228,7 @@ private:
         m_a1 = floorInt(hi) + 1;
         m_blocks = (m_a1 - m_a0) / kWide + 1;
         const std::size_t rays = rows() * rowRays(), blocks = rows() * static_cast<std::size_t>(m_blocks);
-        m_depth = m_scratch.get<float>(SweepScratch::Depth, rays * K);
+        m_depth = m_scratch.get<float>(SweepScratch::Depth, rays * K + 2 * kWide); // see pairsAt
         m_entry = m_scratch.get<int>(SweepScratch::Entry, rays);
         if (kInvalid) m_share = m_scratch.get<float>(SweepScratch::Share, rays);
         m_length = m_scratch.get<float>(SweepScratch::Length, rays);
@@ -637,6 +629,8 @@ private:
         return length;
     }
 
+    bool oneStretch() const { return m_in.stepsPerSlice == 1 && m_in.ownSlices == 1; }
+
     /// The stretch from the sample plane of the rays, one slice in front, to d0/2 in front of the voxels: intensity
     /// goes linearly to theirs, as it does from slice to slice along rays.
     Stretch lastStretch(const VoxelBlock& block) const {
@@ -708,8 +702,9 @@ private:
     }
 
     void gatherSingle(const VoxelBlock& block) {
-        const Vec8 near0 = gathered(block.near, block.ray), near1 = gathered(block.near + 1, block.ray),
-                   far0 = gathered(block.far, block.ray), far1 = gathered(block.far + 1, block.ray);
+        Vec8 near0, near1, far0, far1;
+        pairsAt(block.near, block.ray, near0, near1);
+        pairsAt(block.far, block.ray, far0, far1);
         const Vec8 near = near0 + block.fraction * (near1 - near0), far = far0 + block.fraction * (far1 - far0);
         Vec8 depth = near + block.fractionV * (far - near);
         const auto follow = [&](Vec8& sum) {
@@ -717,7 +712,7 @@ private:
                 sum += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
             };
         };
-        if (m_in.stepsPerSlice == 1 && m_in.ownSlices == 1)
+        if (oneStretch())
             follow(depth)(lastStretch(block));
         else
             alongOwnLines(block, m_near, follow(depth));
@@ -768,19 +763,34 @@ private:
         const Vec8 f = block.fraction;
         const float fv = block.fractionV;
         const Vec8 near0 = (1.0f - f) * (1.0f - fv), near1 = f * (1.0f - fv), far0 = (1.0f - f) * fv, far1 = f * fv;
+        const auto atRays = [&](int n, int part, const auto& body) {
+            const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(block.ray[n]) * K + part * kWide;
+            const Vec8 d0 = load(block.near + ray), d1 = load(block.near + ray + K), d2 = load(block.far + ray),
+                       d3 = load(block.far + ray + K);
+            body(d0, d1, d2, d3);
+            return near0[n] * d0 + near1[n] * d1 + far0[n] * d2 + far1[n] * d3;
+        };
+        if (!m_follows && oneStretch()) { // nearly always: all in registers
+            const Stretch s = lastStretch(block);
+            for (int i = 0; i < block.listed; ++i) {
+                const int n = block.list[i];
+                Vec8 depth[kVectors];
+                for (int part = 0; part < kVectors; ++part)
+                    depth[part] = atRays(n, part, [](Vec8, Vec8, Vec8, Vec8) {}) +
+                                  s.weight[n] * between(s.low[n], s.high[n], part);
+                account(block, i, depth);
+            }
+            return;
+        }
         Vec8 depth[kWide][kVectors], own[kWide][kVectors];
         Int8 apart = {}; // lanes in which any voxel's rays disagree
         for (int i = 0; i < block.listed; ++i) {
             const int n = block.list[i];
-            const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(block.ray[n]) * K;
-            for (int part = 0; part < kVectors; ++part) {
-                const float* near = block.near + ray + part * kWide;
-                const float* far = block.far + ray + part * kWide;
-                const Vec8 d0 = load(near), d1 = load(near + K), d2 = load(far), d3 = load(far + K);
-                depth[n][part] = near0[n] * d0 + near1[n] * d1 + far0[n] * d2 + far1[n] * d3;
-                if (part > 0 || !m_follows) continue;
-                apart |= disagree(d0, d1, d2, d3, load(m_lightUnit)) & opaqueLanes(block.codes[n]);
-            }
+            for (int part = 0; part < kVectors; ++part)
+                depth[n][part] = atRays(n, part, [&](Vec8 d0, Vec8 d1, Vec8 d2, Vec8 d3) {
+                    if (part == 0 && m_follows)
+                        apart |= disagree(d0, d1, d2, d3, load(m_lightUnit)) & opaqueLanes(block.codes[n]);
+                });
         }
         const auto follow = [&](Vec8(*sum)[kVectors]) {
             return [&, sum](const Stretch& s) {
@@ -791,11 +801,8 @@ private:
                 }
             };
         };
-        if (m_in.stepsPerSlice == 1 && m_in.ownSlices == 1)
-            follow(depth)(lastStretch(block));
-        else
-            alongOwnLines(block, m_near, follow(depth));
-        if (m_follows && !none(apart)) {
+        alongOwnLines(block, m_near, follow(depth));
+        if (!none(apart)) {
             if (kMode == SweepMode::Jacobian) apart = Int8{} - 1; // derivatives go with their depth
             for (auto& voxel : own)
                 for (Vec8& part : voxel) part = Vec8{};
@@ -806,23 +813,26 @@ private:
                     depth[n][part] = apart ? own[n][part] : depth[n][part];
                 }
         }
-        const std::ptrdiff_t spread = static_cast<std::ptrdiff_t>(m_in.features + 1) * 3 * K;
-        for (int i = 0; i < block.listed; ++i) {
-            const int n = block.list[i];
-            const int feature = m_in.featureOfCode[block.codes[n]];
-            Vec8 seen[kVectors];
-            if constexpr (kMode == SweepMode::Batch)
-                seen[0] = expMinus(depth[n][0] * load(m_in.depthUnit)) *
-                          load(m_in.alphaTable + static_cast<std::size_t>(block.codes[n]) * K);
-            else
-                differentiate(depth[n], block.codes[n], feature, seen);
-            float* sum = m_accumulator + (i & (kSpread - 1)) * spread + feature * (3 * K);
-            add(sum, seen, 1.0f);
-            if (!m_in.weights) continue;
-            const std::uint32_t both = m_in.weights[block.field + n * m_in.fieldStrides.u];
-            add(sum + K, seen, static_cast<float>(both & 0xffff));
-            add(sum + 2 * K, seen, static_cast<float>(both >> 16));
-        }
+        for (int i = 0; i < block.listed; ++i) account(block, i, depth[block.list[i]]);
+    }
+
+    /// Adds what the i-th listed voxel of a block shows.
+    void account(const VoxelBlock& block, int i, const Vec8* depth) {
+        const int n = block.list[i];
+        const std::uint16_t code = block.codes[n];
+        const int feature = m_in.featureOfCode[code];
+        Vec8 seen[kVectors];
+        if constexpr (kMode == SweepMode::Batch)
+            seen[0] =
+                expMinus(depth[0] * load(m_in.depthUnit)) * load(m_in.alphaTable + static_cast<std::size_t>(code) * K);
+        else
+            differentiate(depth, code, feature, seen);
+        float* sum = m_accumulator + ((i & (kSpread - 1)) * (m_in.features + 1) + feature) * (3 * K);
+        add(sum, seen, 1.0f);
+        if (!m_in.weights) return;
+        const std::uint32_t both = m_in.weights[block.field + n * m_in.fieldStrides.u];
+        add(sum + K, seen, static_cast<float>(both & 0xffff));
+        add(sum + 2 * K, seen, static_cast<float>(both >> 16));
     }
     static void add(float* sum, const Vec8* seen, float weight) {
         for (int part = 0; part < kVectors; ++part)
