@@ -370,6 +370,7 @@ private:
         in.ownSteps = high ? (small ? 16 : 4) : 6;
         in.tolerance = high ? (small ? 0.01f : 0.3f) : (small ? 0.2f : std::numeric_limits<float>::infinity());
         in.perspective = camera.projection == Projection::Perspective;
+        if (!high && !small && in.perspective) in.raySpacing = 1.2; // at most: nearer to the eye they are denser
         if (!in.perspective) {
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
             in.slopeU = d.x / (sign * d.z);

@@ -144,7 +144,7 @@ public:
     void run() {
         startRays();
         int at = m_start; // the sample plane that rays have come to
-        const auto goal = [&](int k) { return (k - m_in.ownSlices) * m_in.stepsPerSlice; };
+        const auto goal = [&](int k) { return (k - 1) * m_in.stepsPerSlice; };
         for (int k = m_piece.begin; k < m_piece.end; ++k) {
             for (; at < goal(k); ++at) {
                 const Advance advance = advanceTo(at + 1);
@@ -629,8 +629,6 @@ private:
         return length;
     }
 
-    bool oneStretch() const { return m_in.stepsPerSlice == 1 && m_in.ownSlices == 1; }
-
     /// The stretch from the sample plane of the rays, one slice in front, to d0/2 in front of the voxels: intensity
     /// goes linearly to theirs, as it does from slice to slice along rays.
     Stretch lastStretch(const VoxelBlock& block) const {
@@ -712,7 +710,7 @@ private:
                 sum += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
             };
         };
-        if (oneStretch())
+        if (m_in.stepsPerSlice == 1)
             follow(depth)(lastStretch(block));
         else
             alongOwnLines(block, m_near, follow(depth));
@@ -770,7 +768,7 @@ private:
             body(d0, d1, d2, d3);
             return near0[n] * d0 + near1[n] * d1 + far0[n] * d2 + far1[n] * d3;
         };
-        if (!m_follows && oneStretch()) { // nearly always: all in registers
+        if (!m_follows && m_in.stepsPerSlice == 1) { // nearly always: all in registers
             const Stretch s = lastStretch(block);
             for (int i = 0; i < block.listed; ++i) {
                 const int n = block.list[i];
