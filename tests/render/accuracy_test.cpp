@@ -2,12 +2,32 @@
 #include <catch2/catch.hpp>
 
 #include "support/accuracy_check.h"
+#include "support/engine_checks.h"
+#include "volume/procedural.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
 
 TEST_CASE("the cpu engine keeps the tolerances of MEASURES on 50 random cases", "[visibility][cpu][accuracy]") {
     checkRandomCases([](auto volume, Quality quality) { return makeCpuEngine(volume, quality); }, 50);
+}
+
+TEST_CASE("in volumes too large to follow every line alone the cpu engine keeps the tolerances too",
+          "[visibility][cpu][accuracy]") {
+    // Above the 128³ voxels from which on all is left to the rays.
+    const auto volume = std::make_shared<const Volume>(makeSample("knee", 165));
+    REQUIRE(volume->size() > 128 * 128 * 128);
+    const TransferFunction tf = tents(3, 0.3);
+    const WeightFields weights = saliencyFields(*volume, tf);
+    const auto reference = makeReferenceEngine(volume);
+    for (const auto& [azimuth, projection] :
+         {std::pair{30.0, Projection::Perspective}, std::pair{45.0, Projection::Orthographic}}) {
+        const Camera camera = cameraFromView(volume->geometry(), azimuth, 20, 1, projection);
+        const Disagreement d = compare(*reference, *makeCpuEngine(volume), camera, tf, weights);
+        CHECK(d.visibilityRms < 0.015);
+        CHECK(d.visibility < 0.01);
+        CHECK(d.vws < 0.01);
+    }
 }
 
 TEST_CASE("random cases are what they promise", "[visibility][accuracy]") {
