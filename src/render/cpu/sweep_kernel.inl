@@ -340,29 +340,22 @@ private:
 
     /// The parts of eight lines between two planes that lie inside the sides of the box.
     Vec8 insideShare(const RayPlane& from, const RayPlane& to, double a, double b) const {
-        Vec8 share;
-        for (int n = 0; n < kWide; ++n) {
-            double enter = 0, leave = 1;
-            const auto cut = [&](double x0, double x1, double size) {
-                const double lo = -0.5, hi = size - 0.5;
-                if (x0 == x1) {
-                    if (x0 < lo || x0 > hi) leave = -1;
-                    return;
-                }
-                double t0 = (lo - x0) / (x1 - x0), t1 = (hi - x0) / (x1 - x0);
-                if (t0 > t1) {
-                    const double t = t0;
-                    t0 = t1;
-                    t1 = t;
-                }
-                enter = t0 > enter ? t0 : enter;
-                leave = t1 < leave ? t1 : leave;
-            };
-            cut(from.u(a + n), to.u(a + n), m_in.nu);
-            cut(from.v(b), to.v(b), m_in.nv);
-            share[n] = leave > enter ? static_cast<float>(leave - enter) : 0.0f;
-        }
-        return share;
+        constexpr float kParallel = 1e-9f; // to a side, all along
+        const Vec8 zero = {}, fromU = static_cast<float>(from.u(a)) + kIota * static_cast<float>(from.scale),
+                   toU = static_cast<float>(to.u(a)) + kIota * static_cast<float>(to.scale);
+        const float fromV = static_cast<float>(from.v(b)), toV = static_cast<float>(to.v(b));
+        Vec8 enter = zero, leave = zero + 1.0f;
+        const auto cut = [&](Vec8 x0, Vec8 x1, int size) {
+            Vec8 way = x1 - x0;
+            way = (way < 0.0f ? -way : way) < kParallel ? zero + kParallel : way;
+            const Vec8 t0 = (-0.5f - x0) / way, t1 = (static_cast<float>(size) - 0.5f - x0) / way;
+            const Vec8 first = t0 < t1 ? t0 : t1, last = t0 < t1 ? t1 : t0;
+            enter = first > enter ? first : enter;
+            leave = last < leave ? last : leave;
+        };
+        cut(fromU, toU, m_in.nu);
+        cut(zero + fromV, zero + toV, m_in.nv);
+        return leave > enter ? leave - enter : zero;
     }
     bool insideU(double first, double last) const { return first >= -0.5 && last <= m_in.nu - 0.5; }
     bool insideV(double v) const { return v >= -0.5 && v <= m_in.nv - 0.5; }
