@@ -465,18 +465,18 @@ private:
 
     /// Adds what eight rays meet on a stretch.
     void addDepth(float* depth, const Stretch& s) const {
-        const std::int32_t* table = m_in.integralTable;
+        const std::int32_t* table = m_in.integralTable; // stores may not change it, but the compiler cannot know
         if constexpr (kSingle) {
             store(depth, load(depth) + s.weight * toFloat(gathered(table, s.high) - gathered(table, s.low)));
         } else {
             for (int n = 0; n < kWide; ++n)
                 for (int part = 0; part < kVectors; ++part, depth += kWide)
-                    store(depth, load(depth) + s.weight[n] * between(s.low[n], s.high[n], part));
+                    store(depth, load(depth) + s.weight[n] * between(table, s.low[n], s.high[n], part));
         }
     }
     /// The difference of two rows of the integral table.
-    Vec8 between(int low, int high, int part) const {
-        const std::int32_t* table = m_in.integralTable + part * kWide;
+    static Vec8 between(const std::int32_t* table, int low, int high, int part) {
+        table += part * kWide;
         return toFloat(load(table + static_cast<std::ptrdiff_t>(high) * K) -
                        load(table + static_cast<std::ptrdiff_t>(low) * K));
     }
@@ -754,13 +754,16 @@ private:
         const Vec8 f = block.fraction;
         const float fv = block.fractionV;
         const Vec8 near0 = (1.0f - f) * (1.0f - fv), near1 = f * (1.0f - fv), far0 = (1.0f - f) * fv, far1 = f * fv;
-        const auto atRays = [&](int n, int part, const auto& body) {
-            const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(block.ray[n]) * K + part * kWide;
-            const Vec8 d0 = load(block.near + ray), d1 = load(block.near + ray + K), d2 = load(block.far + ray),
-                       d3 = load(block.far + ray + K);
+        const float *nearRow = block.near, *farRow = block.far;
+        const Int8 rays = block.ray;
+        const auto atRays = [=](int n, int part, const auto& body) {
+            const std::ptrdiff_t ray = static_cast<std::ptrdiff_t>(rays[n]) * K + part * kWide;
+            const Vec8 d0 = load(nearRow + ray), d1 = load(nearRow + ray + K), d2 = load(farRow + ray),
+                       d3 = load(farRow + ray + K);
             body(d0, d1, d2, d3);
             return near0[n] * d0 + near1[n] * d1 + far0[n] * d2 + far1[n] * d3;
         };
+        const Ledger ledger = ledgerOf(block);
         if (!m_follows && m_in.stepsPerSlice == 1) { // nearly always: all in registers
             const Stretch s = lastStretch(block);
             for (int i = 0; i < block.listed; ++i) {
@@ -768,8 +771,8 @@ private:
                 Vec8 depth[kVectors];
                 for (int part = 0; part < kVectors; ++part)
                     depth[part] = atRays(n, part, [](Vec8, Vec8, Vec8, Vec8) {}) +
-                                  s.weight[n] * between(s.low[n], s.high[n], part);
-                account(block, i, depth);
+                                  s.weight[n] * between(ledger.integral, s.low[n], s.high[n], part);
+                account(ledger, block, i, depth);
             }
             return;
         }
@@ -788,7 +791,7 @@ private:
                 for (int i = 0; i < block.listed; ++i) {
                     const int n = block.list[i];
                     for (int part = 0; part < kVectors; ++part)
-                        sum[n][part] += s.weight[n] * between(s.low[n], s.high[n], part);
+                        sum[n][part] += s.weight[n] * between(m_in.integralTable, s.low[n], s.high[n], part);
                 }
             };
         };
@@ -804,24 +807,45 @@ private:
                     depth[n][part] = apart ? own[n][part] : depth[n][part];
                 }
         }
-        for (int i = 0; i < block.listed; ++i) account(block, i, depth[block.list[i]]);
+        for (int i = 0; i < block.listed; ++i) account(ledger, block, i, depth[block.list[i]]);
+    }
+
+    /// What accounting needs, in registers: stores may not change it, but the compiler cannot know.
+    struct Ledger {
+        const std::int32_t* integral;
+        const float* alpha;
+        const std::uint8_t* featureOfCode;
+        const std::uint32_t* weights; ///< of the first voxel of the block
+        std::ptrdiff_t weightStep;
+        float* sums;
+        std::ptrdiff_t spread; ///< from one accumulator to the one that takes turns with it
+        Vec8 unit;
+    };
+    Ledger ledgerOf(const VoxelBlock& block) const {
+        return {m_in.integralTable,
+                m_in.alphaTable,
+                m_in.featureOfCode,
+                m_in.weights ? m_in.weights + block.field : nullptr,
+                m_in.fieldStrides.u,
+                m_accumulator,
+                static_cast<std::ptrdiff_t>(m_in.features + 1) * 3 * K,
+                load(m_in.depthUnit)};
     }
 
     /// Adds what the i-th listed voxel of a block shows.
-    void account(const VoxelBlock& block, int i, const Vec8* depth) {
+    void account(const Ledger& ledger, const VoxelBlock& block, int i, const Vec8* depth) const {
         const int n = block.list[i];
         const std::uint16_t code = block.codes[n];
-        const int feature = m_in.featureOfCode[code];
+        const int feature = ledger.featureOfCode[code];
         Vec8 seen[kVectors];
         if constexpr (kMode == SweepMode::Batch)
-            seen[0] =
-                expMinus(depth[0] * load(m_in.depthUnit)) * load(m_in.alphaTable + static_cast<std::size_t>(code) * K);
+            seen[0] = expMinus(depth[0] * ledger.unit) * load(ledger.alpha + static_cast<std::size_t>(code) * K);
         else
             differentiate(depth, code, feature, seen);
-        float* sum = m_accumulator + ((i & (kSpread - 1)) * (m_in.features + 1) + feature) * (3 * K);
+        float* sum = ledger.sums + (i & (kSpread - 1)) * ledger.spread + feature * (3 * K);
         add(sum, seen, 1.0f);
-        if (!m_in.weights) return;
-        const std::uint32_t both = m_in.weights[block.field + n * m_in.fieldStrides.u];
+        if (!ledger.weights) return;
+        const std::uint32_t both = ledger.weights[n * ledger.weightStep];
         add(sum + K, seen, static_cast<float>(both & 0xffff));
         add(sum + 2 * K, seen, static_cast<float>(both >> 16));
     }
