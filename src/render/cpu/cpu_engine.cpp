@@ -23,9 +23,9 @@ constexpr std::size_t kSmallVolume = 128 * 128 * 128; ///< voxels
 constexpr int kTableEntries = 4096; ///< at most; 128 KiB with 8 lanes: stays in the second-level cache
 constexpr int kFineTableEntries = 16384;
 
-/// Rays are given up at this optical depth: what lies behind is seen by less than 1e-3 (small volumes, high quality,
-/// and derivatives, which have no bound: 6e-6).
-constexpr double kExhausted = 6.9, kExhaustedExact = 12;
+/// Rays are given up at this optical depth: what lies behind is seen by less than 1e-3. Derivatives fall off more
+/// slowly, as D·exp(−D); and small volumes and high quality have the time (6e-6).
+constexpr double kExhausted = 6.9, kExhaustedDerivative = 9, kExhaustedExact = 12;
 
 std::size_t asSize(int n) { return static_cast<std::size_t>(n); }
 
@@ -58,11 +58,11 @@ public:
         });
         m_alpha.assign(m_codes * m_lanes, 0.0f);
         fillCodes([&](std::size_t code, double s) {
-            bool opaque = false;
+            unsigned opaque = 0;
             for (std::size_t lane = 0; lane < m_lanes; ++lane) {
                 const double a = samplers[lane].opacity(s);
                 m_alpha[code * m_lanes + lane] = static_cast<float>(a);
-                opaque |= a > 0;
+                if (a > 0) opaque |= 1u << lane;
             }
             return opaque;
         });
@@ -82,21 +82,30 @@ public:
         fillCodes([&](std::size_t code, double s) {
             m_alpha[2 * code] = static_cast<float>(sampler.opacity(s));
             if (featureAt(tf.features, s) >= 0) m_alpha[2 * code + 1] = static_cast<float>(shapes.opacity(s));
-            return m_alpha[2 * code] > 0 || m_alpha[2 * code + 1] > 0;
+            return m_alpha[2 * code] > 0 || m_alpha[2 * code + 1] > 0 ? 1u : 0u;
         });
     }
 
-    /// Per block of kBlockSize³ voxels, of the given ranges of codes: 1 where any lane is opaque anywhere in the range.
+    /// Per block of kBlockSize³ voxels, of the given ranges of codes: a bit per lane that is opaque anywhere in the
+    /// range; for derivatives all bits if any lane is.
     std::vector<std::uint8_t> opaqueBlocks(const std::vector<std::array<std::uint16_t, 2>>& ranges) const {
-        std::vector<std::uint8_t> opaque(ranges.size());
-        for (std::size_t i = 0; i < ranges.size(); ++i) {
-            const auto [low, high] = ranges[i];
-            if (low > high) continue; // nothing valid
-            const auto first = static_cast<std::size_t>(static_cast<float>(low) * m_entryOfCode),
-                       last = static_cast<std::size_t>(static_cast<float>(high) * m_entryOfCode) + 1;
-            opaque[i] = m_opaqueCodes[asSize(high) + 1] != m_opaqueCodes[low] ||
-                        m_opaqueEntries[std::min(last + 1, m_entries)] != m_opaqueEntries[first];
-        }
+        std::vector<std::uint8_t> opaque(ranges.size(), 0);
+        inPieces(ranges.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto [low, high] = ranges[i];
+                if (low > high) continue; // nothing valid
+                const auto first = static_cast<std::size_t>(static_cast<float>(low) * m_entryOfCode),
+                           last = static_cast<std::size_t>(static_cast<float>(high) * m_entryOfCode) + 1;
+                const auto *before = &m_integral[first * m_lanes],
+                           *after = &m_integral[std::min(last + 1, m_entries) * m_lanes];
+                const auto *codesBefore = &m_opaqueCodes[low * m_lanes],
+                           *codesAfter = &m_opaqueCodes[(asSize(high) + 1) * m_lanes];
+                unsigned lanes = 0;
+                for (std::size_t lane = 0; lane < m_lanes; ++lane)
+                    if (after[lane] != before[lane] || codesAfter[lane] != codesBefore[lane]) lanes |= 1u << lane;
+                opaque[i] = static_cast<std::uint8_t>(m_mode == SweepMode::Jacobian && lanes != 0 ? 255 : lanes);
+            }
+        });
         return opaque;
     }
 
@@ -131,7 +140,6 @@ private:
         });
         // 32-bit integers, since differences of floats that large would drown a small τ.
         m_integral.assign((m_entries + 1) * m_lanes, 0);
-        m_opaqueEntries.assign(m_entries + 1, 0);
         for (std::size_t lane = 0; lane < m_lanes; ++lane) {
             double all = 0;
             for (std::size_t i = 0; i < m_entries; ++i) all += tau[i * m_lanes + lane];
@@ -143,30 +151,26 @@ private:
                 m_integral[(i + 1) * m_lanes + lane] = static_cast<std::int32_t>(std::lround(sum / unit));
             }
         }
-        for (std::size_t i = 0; i < m_entries; ++i) {
-            const auto row = tau.begin() + static_cast<std::ptrdiff_t>(i * m_lanes);
-            const bool opaque =
-                std::any_of(row, row + static_cast<std::ptrdiff_t>(m_lanes), [](double t) { return t > 0; });
-            m_opaqueEntries[i + 1] = m_opaqueEntries[i] + (opaque ? 1 : 0);
-        }
     }
 
-    /// `fill(code, s)` fills α and tells whether voxels of that code count.
+    /// `fill(code, s)` fills α and gives a bit per lane in which voxels of that code count.
     template <class Fill>
     void fillCodes(const Fill& fill) {
         m_featureOfCode.assign(65536, kTransparent);
+        std::vector<std::uint16_t> opaque(m_codes);
         inPieces(m_codes, [&](std::size_t first, std::size_t last) {
             for (std::size_t code = first; code < last; ++code) {
                 const double s = static_cast<double>(code) / static_cast<double>(m_codes - 1);
-                if (!fill(code, s)) continue;
+                opaque[code] = static_cast<std::uint16_t>(fill(code, s));
+                if (opaque[code] == 0) continue;
                 const int f = featureAt(*m_features, s);
                 m_featureOfCode[code] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(m_features->size()) : f);
             }
         });
         if (m_someInvalid) m_featureOfCode[kInvalidCode] = kTransparent;
-        m_opaqueCodes.assign(m_codes + 1, 0);
-        for (std::size_t c = 0; c < m_codes; ++c)
-            m_opaqueCodes[c + 1] = m_opaqueCodes[c] + (m_featureOfCode[c] != kTransparent ? 1 : 0);
+        m_opaqueCodes.assign((m_codes + 1) * m_lanes, 0);
+        for (std::size_t i = 0; i < m_codes * m_lanes; ++i)
+            m_opaqueCodes[i + m_lanes] = m_opaqueCodes[i] + (opaque[i / m_lanes] >> (i % m_lanes) & 1);
     }
 
     SweepMode m_mode;
@@ -178,7 +182,7 @@ private:
     std::vector<float> m_alpha;
     std::array<float, kJacobianLanes> m_units{};
     std::vector<std::uint8_t> m_featureOfCode;
-    std::vector<int> m_opaqueEntries, m_opaqueCodes; ///< how many before
+    std::vector<int> m_opaqueCodes; ///< [codes + 1][lanes], how many before
 };
 
 class CpuEngine final : public VisibilityEngine {
@@ -489,8 +493,9 @@ private:
         }
         if (field) in.field = field->data() + start;
         setRays(in, camera, view);
-        const bool exact = m_quality == Quality::High || in.mode == SweepMode::Jacobian || isSmall();
-        in.exhaustedDepth = static_cast<float>(exact ? kExhaustedExact : kExhausted);
+        in.exhaustedDepth = static_cast<float>(m_quality == Quality::High || isSmall() ? kExhaustedExact
+                                               : in.mode == SweepMode::Jacobian        ? kExhaustedDerivative
+                                                                                       : kExhausted);
         return {run(in, job), asSize(in.features), asSize(lanesOf(in.mode)), units};
     }
 

@@ -4,9 +4,9 @@
 // Slices are the voxel planes across the axis along which rays cross most voxels, k = 0 the nearest to the eye. (u, v,
 // w) are voxel coordinates with w across the slices, growing away from the eye. Rays are fixed through the slices: ray
 // (a, b) meets the plane w at u = baseU(w) + a·scale(w), v = baseV(w) + b·scale(w). Each ray keeps the optical depth ∫τ
-// per lane. A voxel of slice k needs it d0/2 in front of its centre (MEASURES §4): it follows the last slice distance along
-// a line of its own and takes what lies before from the rays, interpolated once, so that nothing is resampled from
-// slice to slice.
+// per lane. A voxel of slice k needs it d0/2 in front of its centre (MEASURES §4): it follows the last slice distance
+// along a line of its own and takes what lies before from the rays, interpolated once, so that nothing is resampled
+// from slice to slice.
 #pragma once
 
 #include <cstddef>
@@ -53,8 +53,8 @@ struct SweepInput {
     const std::uint32_t* weights = nullptr; ///< low half L_b, high half L_s; null: no weighted sums; fieldStrides
     float* field = nullptr;                 ///< Single only: where v goes, zero before; null: not wanted; fieldStrides
     SweepStrides fieldStrides;
-    const std::uint8_t* opaque =
-        nullptr; ///< per block, 0: transparent in every lane up to a voxel around; opaqueStrides
+    /// Per block, a bit per lane that is opaque there or up to a voxel around (Jacobian: 255 if any is); opaqueStrides.
+    const std::uint8_t* opaque = nullptr;
     SweepStrides opaqueStrides;
     const SweepSpan* opaqueSpans =
         nullptr;          ///< per row of blocks, of the blocks that are opaque; opaqueSpans[row + rows·slice]
@@ -67,7 +67,7 @@ struct SweepInput {
     const std::uint8_t* featureOfCode = nullptr; ///< [65536]; `features` for "in none", or kTransparent
     int features = 0;
     float depthUnit[kJacobianLanes] = {}; ///< optical depth of one unit of integralTable
-    float exhaustedDepth = 0;             ///< a ray is given up where every lane's depth exceeds this
+    float exhaustedDepth = 0;             ///< a ray is given up in the lanes whose depth exceeds this
     int firstDerivative = 0;              ///< Jacobian: the feature of lane 1
 
     // The rays.
@@ -95,7 +95,7 @@ struct SweepPiece {
 /// Memory that a piece is worked on in, kept between pieces; aligned to 64 bytes.
 class SweepScratch {
 public:
-    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Flags, Near, Far, kSlots };
+    enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Alive, Met, Near, Far, kSlots };
     /// At least `bytes`; contents are kept only while it need not grow.
     template <class T>
     T* get(Slot slot, std::size_t count) {

@@ -75,6 +75,17 @@ inline bool none(Int8 v) {
 #endif
 }
 
+/// A bit per element of a comparison's result.
+inline unsigned bitsOf(Int8 v) {
+#ifdef __AVX2__
+    return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(v)));
+#else
+    unsigned bits = 0;
+    for (int n = 0; n < kWide; ++n) bits |= v[n] ? 1u << n : 0u;
+    return bits;
+#endif
+}
+
 /// exp(−x) for x ≥ 0, relative error below 2e-6; 0 is approached at x = 87.
 inline Vec8 expMinus(Vec8 x) {
     const Vec8 limit = Vec8{} + 87.0f;
@@ -119,7 +130,8 @@ class Sweeper {
     static constexpr bool kSingle = kMode == SweepMode::Single;
     static constexpr int K = lanesOf(kMode);
     static constexpr int kVectors = kSingle ? 1 : K / kWide; ///< that hold the lanes of a line
-    static constexpr int kSpread = 4;         ///< accumulators that take turns, so that no addition waits for the last
+    static constexpr int kSpread = 4; ///< accumulators that take turns, so that no addition waits for the last
+    static constexpr std::uint8_t kAllLanes = 255;
     static constexpr int kExhaustedEvery = 4; ///< slices between looks for exhausted rays
     static constexpr int kFlushEvery = 4;     ///< slices
 
@@ -136,8 +148,6 @@ public:
         const auto planes = static_cast<std::size_t>(in.nw + 2);
         m_near.planes = scratch.get<OwnPlane>(SweepScratch::Near, planes * static_cast<std::size_t>(in.stepsPerSlice));
         m_far.planes = scratch.get<OwnPlane>(SweepScratch::Far, planes * static_cast<std::size_t>(in.ownSteps));
-        if (kMode == SweepMode::Jacobian) // derivatives exhaust nothing
-            for (int lane = 1; lane < K; ++lane) m_limit[lane] = -1e30f;
     }
 
     /// Takes rays from where they start to the slices of the piece, whose voxels ask for them.
@@ -233,11 +243,13 @@ private:
         if (kInvalid) m_share = m_scratch.get<float>(SweepScratch::Share, rays);
         m_length = m_scratch.get<float>(SweepScratch::Length, rays);
         m_stamp = m_scratch.get<int>(SweepScratch::Stamp, blocks);
-        m_flags = m_scratch.get<std::uint8_t>(SweepScratch::Flags, blocks);
+        m_alive = m_scratch.get<std::uint8_t>(SweepScratch::Alive, blocks);
+        m_met = m_scratch.get<std::uint8_t>(SweepScratch::Met, blocks);
         for (std::size_t i = 0; i < rays * K; ++i) m_depth[i] = 0.0f;
         for (std::size_t i = 0; i < blocks; ++i) {
             m_stamp[i] = kNever;
-            m_flags[i] = 0;
+            m_alive[i] = kAllLanes;
+            m_met[i] = 0;
         }
         for (int b = m_b0; b <= m_b1; ++b)
             for (std::size_t i = 0; i < rowRays(); ++i)
@@ -362,8 +374,6 @@ private:
 
     // ---- Along the rays ------------------------------------------------------------------------------------------
 
-    enum Flag : std::uint8_t { kActive = 1, kExhausted = 2 };
-
     /// Of the blocks around (v, w), along u.
     struct OpaqueRow {
         const std::uint8_t* blocks;
@@ -376,11 +386,13 @@ private:
         return {m_in.opaque + row * m_in.opaqueStrides.v + slice * m_in.opaqueStrides.w,
                 m_in.opaqueSpans[row + ((m_in.nv - 1) / kBlockSize + 1) * slice]};
     }
-    bool opaqueBetween(const std::uint8_t* row, double first, double last) const {
+    /// The lanes that are opaque in any block from first to last.
+    unsigned opaqueBetween(const std::uint8_t* row, double first, double last) const {
         const int end = clampTo(static_cast<int>(last + 0.5), 0, m_in.nu - 1) / kBlockSize;
+        unsigned lanes = 0;
         for (int i = clampTo(static_cast<int>(first + 0.5), 0, m_in.nu - 1) / kBlockSize; i <= end; ++i)
-            if (row[i * m_in.opaqueStrides.u]) return true;
-        return false;
+            lanes |= row[i * m_in.opaqueStrides.u];
+        return lanes;
     }
 
     /// What rays go through from one sample plane to the next.
@@ -406,8 +418,8 @@ private:
         return go;
     }
 
-    /// Takes a row of rays on, blocks of eight at a time; blocks that meet nothing opaque on either plane, and
-    /// exhausted ones, are passed over.
+    /// Takes a row of rays on, blocks of eight at a time; blocks that meet nothing opaque on either plane, in any lane
+    /// that is not exhausted, are passed over.
     void advanceRow(const Advance& go, int b) {
         const RayPlane &p0 = go.p0, &p1 = go.p1;
         const double w0 = go.w0, w1 = go.w1;
@@ -436,13 +448,12 @@ private:
         const Rows before = rowsAt(v0, w0), now = rowsAt(v1, w1);
         for (int block = first; block <= last; ++block) {
             const std::size_t at = rowOf(b) * static_cast<std::size_t>(m_blocks) + static_cast<std::size_t>(block);
-            if (m_flags[at] & kExhausted) continue;
+            if (m_alive[at] == 0) continue;
             const int a = m_a0 + block * kWide;
             const double u1 = p1.u(a), end1 = p1.u(a + kWide - 1);
-            const bool active = opaqueBetween(opaque.blocks, u1, end1);
-            const bool wasActive = m_flags[at] & kActive;
-            m_flags[at] = active ? kActive : 0;
-            if (!active && !wasActive) continue;
+            const unsigned meets = opaqueBetween(opaque.blocks, u1, end1), met = m_met[at];
+            m_met[at] = static_cast<std::uint8_t>(meets);
+            if (((met | meets) & m_alive[at]) == 0) continue;
             const std::size_t ray = at * kWide;
             Samples s0;
             if (m_stamp[at] == from) {
@@ -459,7 +470,7 @@ private:
             if (!bothInside || !insideU(u1, end1) || !insideU(p0.u(a), p0.u(a + kWide - 1)))
                 path *= insideShare(p0, p1, a, b);
             addDepth(m_depth + ray * K, stretch(s0, s1, path));
-            if (look && exhausted(m_depth + ray * K)) m_flags[at] |= kExhausted;
+            if (look) m_alive[at] &= static_cast<std::uint8_t>(alive(m_depth + ray * K));
         }
     }
 
@@ -481,14 +492,20 @@ private:
                        load(table + static_cast<std::ptrdiff_t>(low) * K));
     }
 
-    bool exhausted(const float* depth) const {
-        Int8 open = {};
-        for (int n = 0; n < (kSingle ? 1 : kWide); ++n)
-            for (int part = 0; part < kVectors; ++part) {
-                const Vec8 limit = kSingle ? Vec8{} + m_limit[0] : load(m_limit + part * kWide);
-                open |= load(depth + (n * kVectors + part) * kWide) < limit;
-            }
-        return none(open);
+    /// The lanes in which any of eight rays is not exhausted; of derivatives, all of them or none.
+    unsigned alive(const float* depth) const {
+        if constexpr (kMode == SweepMode::Batch) {
+            const Vec8 limit = load(m_limit);
+            Int8 open = {};
+            for (int n = 0; n < kWide; ++n) open |= load(depth + n * kWide) < limit;
+            return bitsOf(open);
+        } else if constexpr (kSingle) {
+            return none(load(depth) < m_limit[0]) ? 0 : kAllLanes;
+        } else {
+            for (int n = 0; n < kWide; ++n)
+                if (depth[n * K] < m_limit[0]) return kAllLanes;
+            return 0;
+        }
     }
 
     // ---- At the voxels -------------------------------------------------------------------------------------------
@@ -538,21 +555,21 @@ private:
         block.fractionV = static_cast<float>(b - row);
         block.near = m_depth + rowOf(row) * rowRays() * K;
         block.far = block.near + rowRays() * K;
-        const std::uint8_t* flags = m_flags + rowOf(row) * static_cast<std::size_t>(m_blocks);
+        const std::uint8_t* alive = m_alive + rowOf(row) * static_cast<std::size_t>(m_blocks);
         const std::uint16_t* codes = m_in.codes + v * m_in.codeStrides.v + k * m_in.codeStrides.w;
         const std::ptrdiff_t field = v * m_in.fieldStrides.v + k * m_in.fieldStrides.w;
         m_near.ready = m_far.ready = false;
         const double perVoxel = 1 / p.scale;
         for (int i = firstBlock; i <= lastBlock; ++i) {
-            if (!opaque.blocks[i * m_in.opaqueStrides.u]) continue;
+            const unsigned opaqueHere = opaque.blocks[i * m_in.opaqueStrides.u];
+            if (opaqueHere == 0) continue;
             block.u = i * kWide;
             const double a = (block.u - p.baseU) * perVoxel - m_a0;
             const int firstRay = clampTo(static_cast<int>(a), 0, m_a1 - m_a0 - 1),
                       lastRay = clampTo(static_cast<int>(a + perVoxel * (kWide - 1)) + 1, 0, m_a1 - m_a0);
-            bool open = false;
-            for (int r = firstRay / kWide; r <= lastRay / kWide && !open; ++r)
-                open = !(flags[r] & flags[r + m_blocks] & kExhausted);
-            if (!open) continue;
+            unsigned lanes = 0; // in which light comes here
+            for (int r = firstRay / kWide; r <= lastRay / kWide; ++r) lanes |= alive[r] | alive[r + m_blocks];
+            if ((opaqueHere & lanes) == 0) continue;
             block.codes = codes + block.u;
             block.listed = 0;
             const int end = smaller(kWide, extent.u1 + 1 - block.u);
@@ -646,7 +663,7 @@ private:
         double end = static_cast<double>(ends[0]); // d0/2 in front of the voxels: of the one where that is farthest off
         for (int n = 1; n < kWide; ++n) end = static_cast<double>(ends[n]) > end ? static_cast<double>(ends[n]) : end;
         const auto opaqueAt = [&](const OwnPlane& p) {
-            return opaqueBetween(p.opaque, p.lines.u(block.u), p.lines.u(block.u + kWide - 1));
+            return opaqueBetween(p.opaque, p.lines.u(block.u), p.lines.u(block.u + kWide - 1)) != 0;
         };
         const auto inside = [&](const OwnPlane& p) {
             return p.insideV && insideU(p.lines.u(block.u), p.lines.u(block.u + kWide - 1));
@@ -892,7 +909,8 @@ private:
     float* m_share = nullptr;        ///< [row][ray], valid corners there
     float* m_length = nullptr;       ///< [row][ray], d0 per slice
     int* m_stamp = nullptr;          ///< [row][block]
-    std::uint8_t* m_flags = nullptr; ///< [row][block]
+    std::uint8_t* m_alive = nullptr; ///< [row][block], a bit per lane that is not exhausted
+    std::uint8_t* m_met = nullptr;   ///< [row][block], the lanes that are opaque around the last sample plane
     float m_limit[K];                ///< a lane at this depth, in units of the table, is exhausted
     float m_lightUnit[kWide];        ///< depthUnit of the lanes that are depths, else 0
     OwnLines m_near;                 ///< from where the rays are to the voxels of a row
