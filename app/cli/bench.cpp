@@ -315,7 +315,7 @@ Command addBench(CLI::App& program) {
         [o](const std::string& text, const std::string& option) {
             o->repeat = static_cast<int>(parseInteger(text, option, 1, 1000));
         },
-        "runs of each row after a first one that does not count; the median is told (default 3)");
+        "runs of each row after a first one that does not count; the fastest is told (default 3)");
     app->add_flag("--full", o->full, "a cube of 512 voxels along each side too: a few minutes, 2 GiB of memory");
     return {app, [o, app](Progress& progress) { return run(*o, app->get_option("--threads")->count() > 0, progress); }};
 }

@@ -32,8 +32,8 @@ struct BenchResult {
     Int3 dims{0, 0, 0};
     int threads = 1;
     std::optional<int> candidates, features;
-    double seconds = 0;    ///< median of the warm runs
-    double cpuSeconds = 0; ///< of all threads together, median too: hardly changes where others use the machine
+    double seconds = 0;    ///< of the fastest warm run
+    double cpuSeconds = 0; ///< of all threads together, the least too: hardly changes where others use the machine
     double bytes = 0;      ///< that have to be read or written at least once, see docs/performance.md
     Json extra;            ///< further fields of this row, an object
 };
@@ -75,7 +75,7 @@ BenchResults benchVolume(const std::shared_ptr<const Volume>& volume, const std:
                          Progress& progress);
 
 /// Bytes read plus bytes written per second, in 1e9, by a plain copy of 256 MiB cut into one piece per thread: what
-/// this machine's memory gives. Median of five.
+/// this machine's memory gives. The fastest of five.
 double memcpyGbPerS(int threads, const JobControl& job);
 
 } // namespace pellucid::cli

@@ -379,7 +379,6 @@ private:
             const Vec3 d = permuted(camera.forward() / g.spacing, axes);
             in.slopeU = d.x / (sign * d.z);
             in.slopeV = d.y / (sign * d.z);
-            if (in.slopeU == 0 && in.slopeV == 0) in.raySpacing = 1; // every ray is a voxel's own line
             return;
         }
         const Vec3 eye = permuted(eyeInVoxels(camera), axes);

@@ -75,6 +75,10 @@ inline bool none(Int8 v) {
 #endif
 }
 
+/// Read from kJacobianLanes − n on: 1 in lane n, else 0; from 0 on: none.
+constexpr float kOneAmongZeros[3 * kJacobianLanes] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+static_assert(kJacobianLanes == 16);
+
 /// A bit per element of a comparison's result.
 inline unsigned bitsOf(Int8 v) {
 #ifdef __AVX2__
@@ -836,17 +840,20 @@ private:
         std::ptrdiff_t weightStep;
         float* sums;
         std::ptrdiff_t spread; ///< from one accumulator to the one that takes turns with it
-        Vec8 unit;
+        Vec8 unit[kVectors];   ///< Jacobian: 0 in lane 0
     };
     Ledger ledgerOf(const VoxelBlock& block) const {
-        return {m_in.integralTable,
-                m_in.alphaTable,
-                m_in.featureOfCode,
-                m_in.weights ? m_in.weights + block.field : nullptr,
-                m_in.fieldStrides.u,
-                m_accumulator,
-                static_cast<std::ptrdiff_t>(m_in.features + 1) * 3 * K,
-                load(m_in.depthUnit)};
+        Ledger ledger{m_in.integralTable,
+                      m_in.alphaTable,
+                      m_in.featureOfCode,
+                      m_in.weights ? m_in.weights + block.field : nullptr,
+                      m_in.fieldStrides.u,
+                      m_accumulator,
+                      static_cast<std::ptrdiff_t>(m_in.features + 1) * 3 * K,
+                      {}};
+        for (int part = 0; part < kVectors; ++part) ledger.unit[part] = load(m_in.depthUnit + part * kWide);
+        if (kMode == SweepMode::Jacobian) ledger.unit[0][0] = 0;
+        return ledger;
     }
 
     /// Adds what the i-th listed voxel of a block shows.
@@ -856,9 +863,9 @@ private:
         const int feature = ledger.featureOfCode[code];
         Vec8 seen[kVectors];
         if constexpr (kMode == SweepMode::Batch)
-            seen[0] = expMinus(depth[0] * ledger.unit) * load(ledger.alpha + static_cast<std::size_t>(code) * K);
+            seen[0] = expMinus(depth[0] * ledger.unit[0]) * load(ledger.alpha + static_cast<std::size_t>(code) * K);
         else
-            differentiate(depth, code, feature, seen);
+            differentiate(ledger, depth, code, feature, seen);
         float* sum = ledger.sums + (i & (kSpread - 1)) * ledger.spread + feature * (3 * K);
         add(sum, seen, 1.0f);
         if (!ledger.weights) return;
@@ -872,14 +879,14 @@ private:
     }
 
     /// v = α·exp(−D) in lane 0, ∂v/∂x_j = exp(−D)·∂α/∂x_j − v·∂D/∂x_j in lane 1 + j.
-    void differentiate(const Vec8* depth, std::uint16_t code, int feature, Vec8* seen) const {
-        const float* alpha = m_in.alphaTable + static_cast<std::size_t>(code) * 2;
-        const Vec8 transmittance = expMinus(Vec8{} + depth[0][0] * m_in.depthUnit[0]);
-        const float light = transmittance[0], v = light * alpha[0];
-        for (int part = 0; part < kVectors; ++part) seen[part] = -v * depth[part] * load(m_in.depthUnit + part * kWide);
-        seen[0][0] = v;
+    void differentiate(const Ledger& ledger, const Vec8* depth, std::uint16_t code, int feature, Vec8* seen) const {
+        const float* alpha = ledger.alpha + static_cast<std::size_t>(code) * 2;
+        const Vec8 light = expMinus(Vec8{} + depth[0][0] * m_in.depthUnit[0]), v = light * alpha[0];
         const int lane = feature - m_in.firstDerivative + 1;
-        if (feature < m_in.features && lane >= 1 && lane < K) seen[lane / kWide][lane % kWide] += light * alpha[1];
+        const bool own = feature < m_in.features && lane >= 1 && lane < K; // lane of the voxel's own feature
+        const float *first = kOneAmongZeros + K, *mine = kOneAmongZeros + K - (own ? lane : K);
+        for (int part = 0; part < kVectors; ++part, first += kWide, mine += kWide)
+            seen[part] = v * (load(first) - depth[part] * ledger.unit[part]) + light * alpha[1] * load(mine);
     }
 
     /// Floats hold a few slices of a piece at most: what they lose stays below 1e-6 of the sum.
