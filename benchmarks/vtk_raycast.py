@@ -16,6 +16,7 @@ import argparse
 import colorsys
 import json
 import math
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -148,7 +149,7 @@ class Picture:
             self.window.Render()
             whole.append(time.perf_counter() - start)
         self.volume.VisibilityOn()
-        return min(whole)
+        return statistics.median(whole)
 
     def write(self, path, view):
         self.look(*view)
@@ -179,16 +180,17 @@ def compare(options, file, picture, peak, view):
                             str(options.threads), "--view", options.view, "--engine", "cpu", "--repeat", "3")["rows"]:
             for key in ("seconds", "cpu_seconds"):
                 swept[row["candidates"]].setdefault(key, []).append(row[key])
+    median = statistics.median
     print(f"\ntents:3:{peak:g}                          time    CPU time  [ms]")
     for label, times in drawn.items():
-        mapper, render, cpu = (1e3 * min(times[key]) for key in ("mapper", "render", "cpu"))
+        mapper, render, cpu = (1e3 * median(times[key]) for key in ("mapper", "render", "cpu"))
         print(f"  VTK, samples every {label:12}  {mapper:9.1f}   {cpu:9.1f}   (whole Render(): {render:.1f})")
     print(f"  VTK, no volume                   {1e3 * picture.display_time(options.frames, view):9.1f}")
     for candidates, times in swept.items():
-        print(f"  Pellucid, sweep of {candidates}             {1e3 * min(times['seconds']):9.1f}   "
-              f"{1e3 * min(times['cpu_seconds']):9.1f}")
-    print(f"  sweep of 8 / picture (d0)        {min(swept[8]['seconds']) / min(drawn['d0']['mapper']):9.2f}   "
-          f"{min(swept[8]['cpu_seconds']) / min(drawn['d0']['cpu']):9.2f}")
+        print(f"  Pellucid, sweep of {candidates}             {1e3 * median(times['seconds']):9.1f}   "
+              f"{1e3 * median(times['cpu_seconds']):9.1f}")
+    print(f"  sweep of 8 / picture (d0)        {median(swept[8]['seconds']) / median(drawn['d0']['mapper']):9.2f}   "
+          f"{median(swept[8]['cpu_seconds']) / median(drawn['d0']['cpu']):9.2f}")
 
 
 def write_pictures(options, file, picture, peak, view):
@@ -226,7 +228,7 @@ def main():
         picture = Picture(voxels, spacing, type_name, options.threads, options.image_size)
         nz, ny, nx = voxels.shape
         print(f"VTK {vtk.vtkVersion.GetVTKVersion()}, {options.sample} {nx} x {ny} x {nz}, {options.image_size}² "
-              f"pixels, {picture.mapper.GetNumberOfThreads()} threads, the fastest of {options.rounds} x {options.frames} "
+              f"pixels, {picture.mapper.GetNumberOfThreads()} threads, medians of {options.rounds} x {options.frames} "
               f"pictures; d0 = {picture.d0:g}")
         for peak in (float(p) for p in options.peaks.split(",")):
             picture.show(*tents(3, peak, low, high))

@@ -21,9 +21,16 @@ namespace {
 constexpr double kBytesPerCode = 2; ///< what engines and renderers read of a voxel, see IntensityGrid
 constexpr double kDensePeak = 0.001;
 constexpr double kSparseShare = 0.03;
+/// Without a number of repetitions. Seconds, of all rows under a transfer function: what else a machine does comes and
+/// goes in tenths of them.
+constexpr int kFewestRounds = 3;
+constexpr double kLeastSeconds = 3;
 
-/// Whatever else a machine does can only add to a time: the least of several says best what the work takes.
-double least(const std::vector<double>& times) { return *std::min_element(times.begin(), times.end()); }
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
 
 /// Processor time of all threads of this process.
 double cpuSeconds() {
@@ -90,21 +97,27 @@ public:
 
     void run(const JobControl& job, BenchResults& results) {
         const JobControl quiet{job.stop, {}}; // reports would cost time
-        const double all = static_cast<double>(m_measurements.size()) * (m_options.repeat + 1);
+        const int rounds = m_options.repeat.value_or(kFewestRounds);
+        const double all = static_cast<double>(m_measurements.size()) * (rounds + 1);
         double done = 0;
-        for (int round = 0; round <= m_options.repeat; ++round) // round 0 warms up
+        const Stopwatch watch;
+        const auto goesOn = [&](int round) { // round 0 warms up
+            return round <= rounds || (!m_options.repeat && watch.seconds() < kLeastSeconds);
+        };
+        for (int round = 0; goesOn(round); ++round)
             for (const int threads : m_options.threads) {
                 setThreadCount(threads);
                 for (Measurement& m : m_measurements) {
                     if (m.result.threads != threads) continue;
                     if (!m.failed) measureOnce(m, round > 0, quiet, results.notices);
-                    job.report(++done / all);
+                    job.report(std::min(1.0, ++done / all));
                 }
             }
         for (Measurement& m : m_measurements) {
             if (m.failed) continue;
-            m.result.seconds = least(m.seconds);
-            m.result.cpuSeconds = least(m.cpuSeconds);
+            m.result.runs = static_cast<int>(m.seconds.size());
+            m.result.seconds = median(m.seconds);
+            m.result.cpuSeconds = median(m.cpuSeconds);
             results.rows.push_back(std::move(m.result));
         }
     }
@@ -363,7 +376,7 @@ double memcpyGbPerS(int threads, const JobControl& job) {
         });
         if (run > 0) seconds.push_back(watch.seconds());
     }
-    return 2.0 * static_cast<double>(kBytes) / least(seconds) / 1e9;
+    return 2.0 * static_cast<double>(kBytes) / median(seconds) / 1e9;
 }
 
 } // namespace pellucid::cli

@@ -32,8 +32,9 @@ struct BenchResult {
     Int3 dims{0, 0, 0};
     int threads = 1;
     std::optional<int> candidates, features;
-    double seconds = 0;    ///< of the fastest warm run
-    double cpuSeconds = 0; ///< of all threads together, the least too: hardly changes where others use the machine
+    int runs = 0;          ///< warm ones
+    double seconds = 0;    ///< median of the warm runs
+    double cpuSeconds = 0; ///< of all threads together, median too: hardly changes where others use the machine
     double bytes = 0;      ///< that have to be read or written at least once, see docs/performance.md
     Json extra;            ///< further fields of this row, an object
 };
@@ -58,8 +59,8 @@ TransferFunction sparseTf(const Volume& volume);
 inline constexpr double kDenseStepScale = 0.002;
 
 struct BenchOptions {
-    std::vector<int> threads; ///< ascending
-    int repeat = 3;           ///< runs of each row after a warm-up
+    std::vector<int> threads;  ///< ascending
+    std::optional<int> repeat; ///< runs of each row after a warm-up; else as many as tell enough, 3 at least
     EngineChoice engine = EngineChoice::Auto;
     Quality quality = Quality::Normal;
 };
@@ -75,7 +76,7 @@ BenchResults benchVolume(const std::shared_ptr<const Volume>& volume, const std:
                          Progress& progress);
 
 /// Bytes read plus bytes written per second, in 1e9, by a plain copy of 256 MiB cut into one piece per thread: what
-/// this machine's memory gives. The fastest of five.
+/// this machine's memory gives. Median of five.
 double memcpyGbPerS(int threads, const JobControl& job);
 
 } // namespace pellucid::cli

@@ -18,8 +18,9 @@ void* SweepScratch::bytes(Slot slot, std::size_t count) {
 
 namespace {
 
-/// One row in thirteen is computed twice; small volumes still give every thread work.
-constexpr int kRowsPerPiece = 12;
+/// The rows of rays of a piece: one more is computed twice. Small volumes get more pieces than that asks for, so that no
+/// thread waits long for the last one.
+constexpr int kFewestRows = 6, kMostRows = 12, kPiecesWanted = 32;
 /// Slices nearer to the eye than this share their rays: there are few.
 constexpr double kNearest = 8;
 
@@ -41,9 +42,9 @@ void addPieces(const SweepInput& in, int begin, int end, double slopeStep, std::
         hi = std::max(hi, (last - base) / scale);
     }
     const int firstRow = static_cast<int>(std::floor(lo)), lastRow = static_cast<int>(std::floor(hi)) + 1;
-    for (int b = firstRow; b < lastRow; b += kRowsPerPiece)
-        pieces.push_back({begin, end, slopeStep, b, std::min(lastRow, b + kRowsPerPiece), b == firstRow,
-                          b + kRowsPerPiece >= lastRow});
+    const int rows = std::clamp((lastRow - firstRow) / kPiecesWanted, kFewestRows, kMostRows);
+    for (int b = firstRow; b < lastRow; b += rows)
+        pieces.push_back({begin, end, slopeStep, b, std::min(lastRow, b + rows), b == firstRow, b + rows >= lastRow});
 }
 
 } // namespace
