@@ -109,6 +109,7 @@ MainWindow::~MainWindow() {
     delete takeCentralWidget();
     delete m_tfDock;
     delete m_featuresDock;
+    delete m_influenceDock;
     delete m_measure;
     delete m_optimizer;
 }
@@ -120,6 +121,11 @@ void MainWindow::makeDocks() {
     m_features->setMinimumWidth(340);
     m_featuresDock->setWidget(m_features);
     addDockWidget(Qt::RightDockWidgetArea, m_featuresDock);
+    m_influenceDock = new QDockWidget(tr("Influence"), this);
+    m_influenceDock->setObjectName("influenceDock");
+    m_influenceDock->setWidget(new InfluencePanel(m_document, m_influenceDock));
+    addDockWidget(Qt::RightDockWidgetArea, m_influenceDock);
+    m_influenceDock->hide(); // costs a sweep more
     m_tfDock = new QDockWidget(tr("Transfer function"), this);
     m_tfDock->setObjectName("tfDock");
     m_tfEditor = new TfEditorWidget(m_document, m_tfDock);
@@ -276,6 +282,10 @@ void MainWindow::makeMenus() {
     viewMenu->addSeparator();
     viewMenu->addAction(m_tfDock->toggleViewAction());
     viewMenu->addAction(m_featuresDock->toggleViewAction());
+    viewMenu->addAction(m_influenceDock->toggleViewAction());
+    m_influenceDock->toggleViewAction()->setObjectName("influenceAction");
+    m_influenceDock->toggleViewAction()->setShortcut(QKeySequence("Ctrl+I"));
+    m_influenceDock->toggleViewAction()->setStatusTip(tr("How each feature's VWS follows each opacity"));
 
     QMenu* help = menuBar()->addMenu(tr("&Help"));
     action(help, tr("&Mouse and keys"), "keysAction", QKeySequence::HelpContents, [this] {
@@ -347,6 +357,8 @@ void MainWindow::connectJobs() {
                 m_notices->addNotice(
                     tr("The figures could not be computed: %1").arg(QStringList{what, where, whatToDo}.join(", ")));
             });
+
+    connect(m_influenceDock, &QDockWidget::visibilityChanged, m_measure, &MeasureJob::setInfluenceWanted);
 
     connect(m_features, &FeaturesPanel::refineRequested, this, &MainWindow::refineTf);
     connect(m_features, &FeaturesPanel::optimizeRequested, this, &MainWindow::startOptimization);

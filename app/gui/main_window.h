@@ -8,6 +8,7 @@
 #include "background_task.h"
 #include "compute_thread.h"
 #include "features_panel.h"
+#include "influence_panel.h"
 #include "measure_job.h"
 #include "models/document.h"
 #include "notice_bar.h"
@@ -94,7 +95,7 @@ private:
     NoticeBar* m_notices;
     TfEditorWidget* m_tfEditor = nullptr;
     FeaturesPanel* m_features = nullptr;
-    QDockWidget *m_tfDock = nullptr, *m_featuresDock = nullptr;
+    QDockWidget *m_tfDock = nullptr, *m_featuresDock = nullptr, *m_influenceDock = nullptr;
     QMenu* m_recentMenu = nullptr;
     QAction *m_undoAction = nullptr, *m_redoAction = nullptr, *m_perspectiveAction = nullptr;
     QAction *m_refineAction = nullptr, *m_optimizeAction = nullptr;

@@ -27,6 +27,12 @@ void MeasureJob::setPaused(bool paused) {
     }
 }
 
+void MeasureJob::setInfluenceWanted(bool wanted) {
+    if (m_influenceWanted == wanted) return;
+    m_influenceWanted = wanted;
+    if (wanted && !m_document.influenceIsCurrent()) request();
+}
+
 void MeasureJob::stop() {
     m_stop.request_stop();
     ++m_run;
@@ -48,19 +54,28 @@ void MeasureJob::start() {
     Q_EMIT busyChanged();
     const JobControl job{m_stop.get_token(), {}};
     // Answers are posted to this object, which goes only after the thread has been joined.
-    m_thread.submit([this, job, run = ++m_run, version = m_document.version(), volume = m_document.volume(),
-                     tf = m_document.tf(), camera = m_document.camera()](ComputeCache& cache) {
+    m_thread.submit([this, job, run = ++m_run, influenceToo = m_influenceWanted, version = m_document.version(),
+                     volume = m_document.volume(), tf = m_document.tf(),
+                     camera = m_document.camera()](ComputeCache& cache) {
         try {
             job.throwIfStopped();
             VisibilityEngine& engine = cache.engine(volume);
             const WeightFields& weights = cache.weights(volume, tf, job);
             Measures measures = measure(engine, camera, tf, weights, {}, job);
             const QString engineName = QString::fromStdString(engine.name());
-            QMetaObject::invokeMethod(this, [this, run, version, engineName, measures = std::move(measures)] {
+            QMetaObject::invokeMethod(this,
+                                      [this, run, version, influenceToo, engineName, measures = std::move(measures)] {
+                                          if (run != m_run) return;
+                                          m_engine = engineName;
+                                          if (!influenceToo) finish(run);
+                                          m_document.setMeasures(measures, version);
+                                      });
+            if (!influenceToo) return;
+            auto influence = vwsJacobian(engine.jacobian(camera, tf, &weights, job));
+            QMetaObject::invokeMethod(this, [this, run, version, influence = std::move(influence)] {
                 if (run != m_run) return;
-                m_engine = engineName;
                 finish(run);
-                m_document.setMeasures(measures, version);
+                m_document.setInfluence(influence, version);
             });
         } catch (const Cancelled&) {
             // Nobody waits for it: whoever stopped it has gone on.

@@ -22,6 +22,8 @@ public:
 
     /// While paused nothing is measured (an optimization uses the thread); going on measures anew.
     void setPaused(bool paused);
+    /// Whether derivatives of VWS are measured too, after the figures.
+    void setInfluenceWanted(bool wanted);
     bool isBusy() const { return m_running || m_delay.isActive(); }
     /// "cpu", "gl": what measured last; empty before.
     const QString& engineName() const { return m_engine; }
@@ -41,7 +43,7 @@ private:
     QTimer m_delay;
     std::stop_source m_stop;
     quint64 m_run = 0; // numbers the requests, so that a late answer of a stopped one is dropped
-    bool m_running = false, m_paused = false;
+    bool m_running = false, m_paused = false, m_influenceWanted = false;
     QString m_engine;
 };
 

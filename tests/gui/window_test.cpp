@@ -7,8 +7,11 @@
 #include <glm/geometric.hpp>
 
 #include <QAction>
+#include <QApplication>
+#include <QClipboard>
 #include <QComboBox>
 #include <QDialog>
+#include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QDragEnterEvent>
 #include <QDropEvent>
@@ -17,6 +20,7 @@
 #include <QMimeData>
 #include <QPushButton>
 #include <QSignalSpy>
+#include <QTableWidget>
 #include <QTemporaryDir>
 #include <QTimer>
 #include <QToolButton>
@@ -328,6 +332,55 @@ TEST_CASE("turning the view changes the picture and measures anew", "[window]") 
     CHECK(w.document().measuresAreCurrent());
     CHECK(w.document().measures()->visibilityHistogram != measures.visibilityHistogram);
     CHECK(w.picture() != before);
+}
+
+TEST_CASE("the influence dock foretells what raising an opacity does", "[window]") {
+    OpenWindow w;
+    CHECK_FALSE(w.document().influence()); // nobody has asked
+    auto& dock = w.child<QDockWidget>("influenceDock");
+    CHECK_FALSE(dock.isVisible());
+    CHECK(w.child<QAction>("influenceAction").shortcut() == QKeySequence("Ctrl+I"));
+    w.child<QAction>("influenceAction").trigger();
+    REQUIRE(dock.isVisible());
+    REQUIRE(waitFor([&] { return w.document().influenceIsCurrent(); }));
+    w.settle();
+    auto& table = w.child<QTableWidget>("influenceTable");
+    REQUIRE(table.rowCount() == 3);
+    REQUIRE(table.columnCount() == 3);
+    const auto influence = *w.document().influence();
+    CHECK(table.item(1, 0)->text() == QString::asprintf("%+.3g", influence[1][0]).replace('-', QChar(0x2212)));
+    CHECK(table.item(1, 0)->toolTip().contains("by 0.01"));
+
+    // W(x + δ) − W(x) = δ·∂W/∂x, up to the curvature (δ², 1e-4) and the engine's deviation.
+    const std::vector<double> before = shownVws(w.document());
+    constexpr double kStep = 0.01;
+    std::vector<double> opacities = featureOpacities(w.document().tf());
+    opacities[0] += kStep;
+    w.document().setTf(withFeatureOpacities(w.document().tf(), opacities), "raise");
+    CHECK_FALSE(w.document().influenceIsCurrent());
+    REQUIRE(waitFor([&] { return w.document().influenceIsCurrent() && w.document().measuresAreCurrent(); }));
+    const std::vector<double> after = shownVws(w.document());
+    double largest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(after[i] - before[i] == Approx(kStep * influence[i][0]).margin(2e-4));
+        largest = std::max(largest, std::abs(after[i] - before[i]));
+    }
+    CHECK(largest > 1.5e-3); // there was something to foretell
+
+    w.child<QAction>("copyInfluenceAction").trigger();
+    const QStringList lines = QApplication::clipboard()->text().split('\n', Qt::SkipEmptyParts);
+    REQUIRE(lines.size() == 4);
+    CHECK(lines[1].split('\t').size() == 4);
+    CHECK(lines[1].split('\t')[1].toDouble() == Approx((*w.document().influence())[0][0]));
+
+    dock.close(); // what nobody sees is not measured
+    w.window.document().setCamera(
+        cameraFromView(w.document().volume()->geometry(), 70, 10, 1, Projection::Perspective));
+    w.settle();
+    CHECK(w.document().measuresAreCurrent());
+    CHECK_FALSE(w.document().influenceIsCurrent());
+    w.child<QAction>("influenceAction").trigger(); // and shown again it is
+    CHECK(waitFor([&] { return w.document().influenceIsCurrent(); }));
 }
 
 TEST_CASE("a saved image can be read, in its size and with its background", "[window]") {

@@ -24,6 +24,7 @@ void Document::setVolume(LoadedVolume loaded, const TransferFunction* tf) {
     m_beforePreview.reset();
     m_undo.clear();
     m_measures.reset();
+    m_influence.reset();
     m_camera = homeCamera(m_loaded.volume->geometry(), projection);
     m_targets.clear();
     ++m_version;
@@ -75,6 +76,7 @@ void Document::applyTf(const TransferFunction& tf) {
             const std::size_t n = m_tf.features.size();
             m_targets.assign(n, n == 0 ? 0.0 : 1.0 / static_cast<double>(n));
             m_measures.reset();
+            m_influence.reset();
         }
         Q_EMIT featuresChanged();
         Q_EMIT targetsChanged();
@@ -110,6 +112,13 @@ void Document::setMeasures(const Measures& measures, quint64 version) {
     m_measures = measures;
     m_measuresVersion = version;
     Q_EMIT measuresChanged();
+}
+
+void Document::setInfluence(std::vector<std::vector<double>> influence, quint64 version) {
+    if (influence.size() != m_tf.features.size()) return; // of another transfer function
+    m_influence = std::move(influence);
+    m_influenceVersion = version;
+    Q_EMIT influenceChanged();
 }
 
 void Document::setVws(const std::vector<double>& vws) {

@@ -72,6 +72,11 @@ public:
     /// Shares of an optimization's latest move, for the bars.
     void setVws(const std::vector<double>& vws);
 
+    /// The latest ∂W_i/∂x_j as [i][j]; those of an older state until new ones come. Empty where nobody wants them.
+    const std::optional<std::vector<std::vector<double>>>& influence() const { return m_influence; }
+    bool influenceIsCurrent() const { return m_influence && m_influenceVersion == m_version; }
+    void setInfluence(std::vector<std::vector<double>> influence, quint64 version);
+
     QString title() const;
 
 Q_SIGNALS:
@@ -81,6 +86,7 @@ Q_SIGNALS:
     void cameraChanged();
     void targetsChanged();
     void measuresChanged();
+    void influenceChanged();
 
 private:
     friend class TfCommand;
@@ -92,7 +98,8 @@ private:
     Camera m_camera;
     std::vector<double> m_targets;
     std::optional<Measures> m_measures;
-    quint64 m_version = 0, m_measuresVersion = 0;
+    std::optional<std::vector<std::vector<double>>> m_influence;
+    quint64 m_version = 0, m_measuresVersion = 0, m_influenceVersion = 0;
     QUndoStack m_undo;
 };
 

@@ -1,0 +1,28 @@
+// The dock that tells how each feature's VWS follows each opacity.
+#pragma once
+
+#include <QWidget>
+
+#include "models/document.h"
+
+class QTableWidget;
+
+namespace pellucid::gui {
+
+/// A square table of ∂W_i/∂x_j of the present state: row i a feature's VWS, column j a feature's opacity. Pale while
+/// the figures are of an older state.
+class InfluencePanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit InfluencePanel(Document& document, QWidget* parent = nullptr);
+
+private:
+    void update();
+    /// The table as lines of tab-separated columns, names first, with all digits.
+    void copy() const;
+
+    Document& m_document;
+    QTableWidget* m_table;
+};
+
+} // namespace pellucid::gui
