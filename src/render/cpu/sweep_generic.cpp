@@ -18,8 +18,8 @@ void* SweepScratch::bytes(Slot slot, std::size_t count) {
 
 namespace {
 
-/// The rows of rays of a piece: one more is computed twice. Small volumes get more pieces than that asks for, so that no
-/// thread waits long for the last one.
+/// The rows of rays of a piece: one more is computed twice. Small volumes get more pieces than that asks for, so that
+/// no thread waits long for the last one.
 constexpr int kFewestRows = 6, kMostRows = 12, kPiecesWanted = 32;
 /// Slices nearer to the eye than this share their rays: there are few.
 constexpr double kNearest = 8;
