@@ -17,7 +17,8 @@ void uploadCodes(const Texture3d& texture, const IntensityGrid& grid, const Int3
 void uploadWeights(const Texture3d& texture, const std::uint32_t* weights, const Int3& dims, const Int3& first,
                    const Int3& size, const Int3& to);
 
-/// A table for tfTexel() of include/tf_segment.glsl: rows of 256 entries, unfiltered. Refilled in place while its size stays.
+/// A table for tfTexel() of include/tf_segment.glsl: rows of 256 entries, unfiltered. Refilled in place while its size
+/// stays.
 class TableTexture {
 public:
     /// `values`: entries × channels floats; channels 1 or 4.
