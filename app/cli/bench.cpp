@@ -319,7 +319,7 @@ Command addBench(CLI::App& program) {
             o->repeat = static_cast<int>(parseInteger(text, option, 1, 1000));
         },
         "runs of each row after a first one that does not count; the median is told (default: 3, and more "
-        "where all rows under a transfer function take less than 3 s)");
+        "where all rows under a transfer function take less than 2 s)");
     app->add_flag("--full", o->full, "a cube of 512 voxels along each side too: a few minutes, 2 GiB of memory");
     return {app, [o, app](Progress& progress) { return run(*o, app->get_option("--threads")->count() > 0, progress); }};
 }

@@ -21,10 +21,10 @@ namespace {
 constexpr double kBytesPerCode = 2; ///< what engines and renderers read of a voxel, see IntensityGrid
 constexpr double kDensePeak = 0.001;
 constexpr double kSparseShare = 0.03;
-/// Without a number of repetitions. Seconds, of all rows under a transfer function: what else a machine does comes and
-/// goes in tenths of them.
+/// Without a number of repetitions. Seconds, of all rows under a transfer function with as many threads: what else a
+/// machine does comes and goes in tenths of them.
 constexpr int kFewestRounds = 3;
-constexpr double kLeastSeconds = 3;
+constexpr double kLeastSeconds = 2;
 
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
@@ -100,19 +100,20 @@ public:
         const int rounds = m_options.repeat.value_or(kFewestRounds);
         const double all = static_cast<double>(m_measurements.size()) * (rounds + 1);
         double done = 0;
-        const Stopwatch watch;
-        const auto goesOn = [&](int round) { // round 0 warms up
-            return round <= rounds || (!m_options.repeat && watch.seconds() < kLeastSeconds);
-        };
-        for (int round = 0; goesOn(round); ++round)
-            for (const int threads : m_options.threads) {
-                setThreadCount(threads);
+        // One number of threads after the other: a core that has been idle takes its time to run at full speed.
+        for (const int threads : m_options.threads) {
+            setThreadCount(threads);
+            const Stopwatch watch;
+            const auto goesOn = [&](int round) { // round 0 warms up
+                return round <= rounds || (!m_options.repeat && watch.seconds() < kLeastSeconds);
+            };
+            for (int round = 0; goesOn(round); ++round)
                 for (Measurement& m : m_measurements) {
                     if (m.result.threads != threads) continue;
                     if (!m.failed) measureOnce(m, round > 0, quiet, results.notices);
-                    job.report(std::min(1.0, ++done / all));
+                    if (round <= rounds) job.report(++done / all);
                 }
-            }
+        }
         for (Measurement& m : m_measurements) {
             if (m.failed) continue;
             m.result.runs = static_cast<int>(m.seconds.size());

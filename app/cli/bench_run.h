@@ -66,7 +66,8 @@ struct BenchOptions {
 };
 
 /// The rows of `volume`, and notes about rows that could not be measured. `camera` looks at it. Repetitions of the rows
-/// under one transfer function alternate, so that a machine that changes its speed changes that of all of them.
+/// under one transfer function with as many threads alternate, so that a machine that changes its speed changes that of
+/// all of them.
 struct BenchResults {
     std::vector<BenchResult> rows;
     std::vector<std::string> notices;

@@ -1,5 +1,7 @@
 #include "volume/parallel.h"
 
+#include <algorithm>
+#include <atomic>
 #include <memory>
 #include <mutex>
 
@@ -41,11 +43,19 @@ int threadCount() {
 }
 
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+    // In order, one by one: who has nothing left to do waits for one call of body at most.
+    std::atomic<std::size_t> next = 0;
     const auto run = [&] {
+        const auto workers = std::min(count, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
         tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, count, 1),
-            [&](const tbb::blocked_range<std::size_t>& r) {
-                for (std::size_t i = r.begin(); i != r.end(); ++i) body(i);
+            tbb::blocked_range<std::size_t>(0, workers, 1),
+            [&](const tbb::blocked_range<std::size_t>&) {
+                try {
+                    for (std::size_t i = next++; i < count; i = next++) body(i);
+                } catch (...) {
+                    next = count; // the others need not go on
+                    throw;
+                }
             },
             tbb::simple_partitioner{});
     };

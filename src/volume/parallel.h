@@ -11,8 +11,8 @@ namespace pellucid {
 void setThreadCount(int threads);
 int threadCount();
 
-/// Calls body(i) for each i in [0, count), in any order, on any thread. The first exception is rethrown here.
-/// For a reduction let piece i write slot i, then add the slots up in order.
+/// Calls body(i) for each i in [0, count), begun in this order, on any thread. The first exception is rethrown here,
+/// and what had not begun is left out. For a reduction let piece i write slot i, then add the slots up in order.
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body);
 
 } // namespace pellucid
