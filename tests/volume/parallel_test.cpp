@@ -49,3 +49,16 @@ TEST_CASE("an exception inside parallelFor comes out", "[parallel]") {
                                 }),
                     std::runtime_error);
 }
+
+TEST_CASE("parallelFor begins in order, and nothing more after an exception", "[parallel]") {
+    setThreadCount(1);
+    std::vector<std::size_t> begun;
+    CHECK_THROWS_AS(parallelFor(100,
+                                [&](std::size_t i) {
+                                    begun.push_back(i);
+                                    if (i == 3) throw std::runtime_error("3");
+                                }),
+                    std::runtime_error);
+    setThreadCount(0);
+    CHECK(begun == std::vector<std::size_t>{0, 1, 2, 3});
+}
