@@ -76,19 +76,7 @@ std::set<BenchRow> both(const std::set<BenchRow>& a, const std::set<BenchRow>& b
     return rows;
 }
 
-/// `tf` with all rows and, unless the user wants this one alone, two of other densities.
-std::vector<BenchTf> densities(const Options& o, const Volume& volume, const TransferFunction& tf,
-                               const std::string& tfName) {
-    const std::set<BenchRow> sweeps{BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize};
-    std::vector<BenchTf> all{{tfName, tf, o.only, true, 1}};
-    if (!o.tf.spec) {
-        all.push_back({kDense, denseTf(), both(o.only, sweeps), false, kDenseStepScale});
-        all.push_back({kSparse, sparseTf(volume), both(o.only, sweeps), false, 1});
-    }
-    return all;
-}
-
-/// All volumes in turn, so that only one is in memory.
+/// Measures, and tells what it found.
 class Run {
 public:
     Run(const Options& options, std::vector<int> threads, Progress& progress)
@@ -107,8 +95,7 @@ public:
         const auto [volume, tf] =
             loadVolumeAndTf(m_options.volume, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
         m_results.notices = volume->notices;
-        measure(volume, m_options.volume.path,
-                densities(m_options, *volume, tf, m_options.tf.spec.value_or("default")));
+        measureMain(volume, m_options.volume.path, tf, m_options.tf.spec.value_or("default"));
     }
     void builtInVolumes() {
         {
@@ -116,19 +103,26 @@ public:
             knee.path = "sample:knee";
             const TfOptions tents{m_options.tf.spec.value_or("tents:3")};
             const auto [volume, tf] = loadVolumeAndTf(knee, tents, m_progress, {"measuring", kMeasureBytesPerVoxel});
-            measure(volume, knee.path, densities(m_options, *volume, tf, *tents.spec));
+            measureMain(volume, knee.path, tf, *tents.spec);
         }
         const std::set<BenchRow> rows = both(m_options.only, {BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian});
         if (rows.empty()) return;
         VolumeOptions block;
         block.path = "sample:shells";
         block.sampleSize = kCubeSize;
-        auto [volume, tf] = loadVolumeAndTf(block, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
-        const std::string tfName = m_options.tf.spec.value_or(kDense);
-        if (!m_options.tf.spec) tf = denseTf();
-        for (int n = 1; n <= (m_options.full ? 4 : 2); n *= 2)
-            measure(n == 1 ? volume : tiled(*volume, n), kCube + std::to_string(n * kCubeSize),
-                    {{tfName, tf, rows, false, m_options.tf.spec ? 1 : kDenseStepScale}});
+        const auto [volume, given] =
+            loadVolumeAndTf(block, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
+        const bool dense = !m_options.tf.spec;
+        const int largest = m_options.full ? 4 : 2;
+        requireMemory({"measuring", kMeasureBytesPerVoxel}, kCube + std::to_string(largest * kCubeSize),
+                      volume->dims() * largest);
+        std::vector<BenchCase> cubes;
+        for (int n = 1; n <= largest; n *= 2) {
+            cubes.push_back(caseOf(n == 1 ? volume : tiled(*volume, n), kCube + std::to_string(n * kCubeSize),
+                                   m_options.tf.spec.value_or(kDense), dense ? denseTf() : given, rows));
+            if (dense) cubes.back().stepScale = kDenseStepScale;
+        }
+        bench(cubes, m_bench, m_progress.phase("cubes"), m_results);
     }
 
     Answer answer() const {
@@ -136,16 +130,29 @@ public:
     }
 
 private:
-    void measure(const std::shared_ptr<const Volume>& volume, const std::string& name, std::vector<BenchTf> tfs) {
-        const Camera camera = m_options.camera.camera(volume->geometry());
-        if (m_mainVolume.empty()) {
-            m_mainVolume = name;
-            m_mainTf = tfs.front().name;
+    BenchCase caseOf(const std::shared_ptr<const Volume>& volume, const std::string& volumeName,
+                     const std::string& tfName, TransferFunction tf, std::set<BenchRow> rows) const {
+        return {volume, volumeName, m_options.camera.camera(volume->geometry()), tfName, std::move(tf), std::move(rows),
+                false,  1};
+    }
+
+    /// All rows under `tf` and, unless the user wants this one alone, some under two of other densities.
+    void measureMain(const std::shared_ptr<const Volume>& volume, const std::string& name, const TransferFunction& tf,
+                     const std::string& tfName) {
+        m_mainVolume = name;
+        m_mainTf = tfName;
+        BenchCase main = caseOf(volume, name, tfName, tf, m_options.only);
+        main.nineFeatures = true;
+        std::vector<BenchCase> cases{std::move(main)};
+        if (!m_options.tf.spec) {
+            const std::set<BenchRow> rows =
+                both(m_options.only, {BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize});
+            cases.push_back(caseOf(volume, name, kDense, denseTf(), rows));
+            cases.back().stepScale = kDenseStepScale;
+            cases.push_back(caseOf(volume, name, kSparse, sparseTf(*volume), rows));
         }
-        std::erase_if(tfs, [](const BenchTf& tf) { return tf.rows.empty(); });
-        BenchResults results = benchVolume(volume, name, camera, tfs, m_bench, m_progress);
-        m_results.rows.insert(m_results.rows.end(), results.rows.begin(), results.rows.end());
-        m_results.notices.insert(m_results.notices.end(), results.notices.begin(), results.notices.end());
+        for (const BenchCase& each : cases) // in turn: only one's fields are in memory
+            if (!each.rows.empty()) bench({each}, m_bench, m_progress.phase(name + ", " + each.tfName), m_results);
     }
 
     double memcpyOf(int threads) const {
@@ -318,9 +325,9 @@ Command addBench(CLI::App& program) {
         [o](const std::string& text, const std::string& option) {
             o->repeat = static_cast<int>(parseInteger(text, option, 1, 1000));
         },
-        "runs of each row after a first one that does not count; the median is told (default: 3, and more "
-        "where all rows under a transfer function take less than 2 s)");
-    app->add_flag("--full", o->full, "a cube of 512 voxels along each side too: a few minutes, 2 GiB of memory");
+        "runs of each row after a first one that does not count; the median is told (default: 3, and more of rows that "
+        "take less than 0.2 s)");
+    app->add_flag("--full", o->full, "a cube of 512 voxels along each side too: some minutes, 2 GiB of memory");
     return {app, [o, app](Progress& progress) { return run(*o, app->get_option("--threads")->count() > 0, progress); }};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
+#include <deque>
 #include <functional>
 #include <numeric>
 
@@ -21,10 +22,10 @@ namespace {
 constexpr double kBytesPerCode = 2; ///< what engines and renderers read of a voxel, see IntensityGrid
 constexpr double kDensePeak = 0.001;
 constexpr double kSparseShare = 0.03;
-/// Without a number of repetitions. Seconds, of all rows under a transfer function with as many threads: what else a
-/// machine does comes and goes in tenths of them.
-constexpr int kFewestRounds = 3;
-constexpr double kLeastSeconds = 2;
+/// Without a number of repetitions: rounds over all rows, and how long each row at least repeats in every round.
+/// Seconds; what else a machine does comes and goes in tenths of them.
+constexpr int kRounds = 3;
+constexpr double kLeastSeconds = 0.2;
 
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
@@ -74,78 +75,34 @@ struct Measurement {
     bool failed = false;
 };
 
-/// The rows under one transfer function. Keeps references: its arguments outlive it.
-class TfBench {
+/// The rows of one case. Keeps a reference to it and the options, which outlive it.
+class CaseBench {
 public:
-    TfBench(const std::shared_ptr<const Volume>& volume, const std::string& volumeName, const Camera& camera,
-            const BenchTf& tf, const BenchOptions& options, VisibilityEngine* engine)
-        : m_volume(volume), m_volumeName(volumeName), m_camera(camera), m_tf(tf), m_options(options), m_engine(engine) {
-    }
-
-    void prepare(const JobControl& job) {
+    CaseBench(const BenchCase& of, const BenchOptions& options, const JobControl& job)
+        : m_case(of), m_options(options) {
+        const auto wanted = [&](BenchRow row) { return of.rows.count(row) > 0; };
         const bool weighted = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize);
+        if (weighted || wanted(BenchRow::Setup)) m_engine = makeEngine(options.engine, of.volume, options.quality);
         if (wanted(BenchRow::Setup)) addSetup();
         if (wanted(BenchRow::Saliency)) addSaliency(BenchRow::Saliency, updateSaliencyFields);
         if (wanted(BenchRow::SaliencyDirect)) addSaliency(BenchRow::SaliencyDirect, updateSaliencyFieldsDirect);
-        if (weighted) m_weights = saliencyFields(*m_volume, m_tf.tf, {}, job);
+        if (weighted) m_weights = saliencyFields(*of.volume, of.tf, {}, job);
         if (wanted(BenchRow::Sweep)) addSweeps(job);
         if (wanted(BenchRow::Jacobian)) addJacobians(job);
         if (wanted(BenchRow::Optimize)) addOptimize();
         if (wanted(BenchRow::Refine)) addRefine();
         if (wanted(BenchRow::Render)) addRender();
     }
+    CaseBench(const CaseBench&) = delete; // the measurements refer to it
+    CaseBench& operator=(const CaseBench&) = delete;
 
-    void run(const JobControl& job, BenchResults& results) {
-        const JobControl quiet{job.stop, {}}; // reports would cost time
-        const int rounds = m_options.repeat.value_or(kFewestRounds);
-        const double all = static_cast<double>(m_measurements.size()) * (rounds + 1);
-        double done = 0;
-        // One number of threads after the other: a core that has been idle takes its time to run at full speed.
-        for (const int threads : m_options.threads) {
-            setThreadCount(threads);
-            const Stopwatch watch;
-            const auto goesOn = [&](int round) { // round 0 warms up
-                return round <= rounds || (!m_options.repeat && watch.seconds() < kLeastSeconds);
-            };
-            for (int round = 0; goesOn(round); ++round)
-                for (Measurement& m : m_measurements) {
-                    if (m.result.threads != threads) continue;
-                    if (!m.failed) measureOnce(m, round > 0, quiet, results.notices);
-                    if (round <= rounds) job.report(++done / all);
-                }
-        }
-        for (Measurement& m : m_measurements) {
-            if (m.failed) continue;
-            m.result.runs = static_cast<int>(m.seconds.size());
-            m.result.seconds = median(m.seconds);
-            m.result.cpuSeconds = median(m.cpuSeconds);
-            results.rows.push_back(std::move(m.result));
-        }
-    }
+    std::vector<Measurement>& measurements() { return m_measurements; }
 
 private:
-    bool wanted(BenchRow row) const { return m_tf.rows.count(row) > 0; }
-    double voxels() const { return static_cast<double>(m_volume->size()); }
-    double sampleBytes() const { return static_cast<double>(m_volume->memoryBytes()); }
+    double voxels() const { return static_cast<double>(m_case.volume->size()); }
+    double sampleBytes() const { return static_cast<double>(m_case.volume->memoryBytes()); }
     /// Codes once, and both weights once: a sweep reads them whatever the number of candidates.
     double sweepBytes() const { return voxels() * (kBytesPerCode + bytesPerVoxel(m_weights)); }
-
-    static void measureOnce(Measurement& m, bool counts, const JobControl& job, std::vector<std::string>& notices) {
-        job.throwIfStopped();
-        try {
-            const Stopwatch watch;
-            const double cpuStart = cpuSeconds();
-            m.work(m.result, job);
-            if (!counts) return;
-            m.seconds.push_back(watch.seconds() / m.times);
-            m.cpuSeconds.push_back((cpuSeconds() - cpuStart) / m.times);
-        } catch (const Error& e) {
-            m.failed = true;
-            const std::string row = std::string("row ") + name(m.result.row) + " of " + m.result.volume;
-            const std::string notice = row + " is left out: " + e.what();
-            if (notices.empty() || notices.back() != notice) notices.push_back(notice);
-        }
-    }
 
     /// Adds the row once per number of threads; once in all where the work is not done by our threads.
     void add(const BenchResult& result, double bytes, const std::function<void(BenchResult&, const JobControl&)>& work,
@@ -164,8 +121,8 @@ private:
         BenchResult r;
         r.row = row;
         r.engine = engine;
-        r.volume = m_volumeName;
-        r.dims = m_volume->dims();
+        r.volume = m_case.volumeName;
+        r.dims = m_case.volume->dims();
         r.tf = tfName;
         r.candidates = candidates;
         r.features = static_cast<int>(tf.features.size());
@@ -173,7 +130,7 @@ private:
         return r;
     }
     BenchResult row(BenchRow which, const std::string& engine, int candidates = 1) const {
-        return row(which, engine, candidates, m_tf.tf, m_tf.name);
+        return row(which, engine, candidates, m_case.tf, m_case.tfName);
     }
 
     void addSetup() {
@@ -181,52 +138,56 @@ private:
         r.tf.reset();
         r.candidates.reset();
         r.features.reset();
-        add(r, sampleBytes() + voxels() * kBytesPerCode,
-            [this](BenchResult&, const JobControl&) { makeEngine(m_options.engine, m_volume, m_options.quality); });
+        add(r, sampleBytes() + voxels() * kBytesPerCode, [this](BenchResult&, const JobControl&) {
+            makeEngine(m_options.engine, m_case.volume, m_options.quality);
+        });
     }
 
     /// Into memory that is there, as the window does after an edit.
     void addSaliency(BenchRow which, decltype(updateSaliencyFields)* update) {
         add(row(which, "cpu"), 0, [this, update](BenchResult& r, const JobControl& job) {
-            update(m_weights, *m_volume, m_tf.tf, {}, job);
+            update(m_weights, *m_case.volume, m_case.tf, {}, job);
             r.bytes = sampleBytes() + voxels() * bytesPerVoxel(m_weights);
         });
     }
 
     void addSweeps(const JobControl& job) {
-        const auto sums = m_engine->sums(m_camera, {&m_tf.tf, 1}, &m_weights, {job.stop, {}});
-        m_candidates = searchCandidates(m_tf.tf, vwsOf(sums[0]), m_tf.stepScale);
+        const auto sums = m_engine->sums(m_case.camera, {&m_case.tf, 1}, &m_weights, {job.stop, {}});
+        m_candidates = searchCandidates(m_case.tf, vwsOf(sums[0]), m_case.stepScale);
         // One by one the same eight, since more opaque ones are done sooner. Where nothing is opaque one stands for
         // all.
-        const int singles = m_tf.stepScale < 1 ? 1 : static_cast<int>(m_candidates.size());
+        const int singles = m_case.stepScale < 1 ? 1 : static_cast<int>(m_candidates.size());
         add(
             row(BenchRow::Sweep, m_engine->name(), 1), sweepBytes(),
             [this, singles](BenchResult&, const JobControl& j) {
                 for (int i = 0; i < singles; ++i)
-                    m_engine->sums(m_camera, {&m_candidates[static_cast<std::size_t>(i)], 1}, &m_weights, j);
+                    m_engine->sums(m_case.camera, {&m_candidates[static_cast<std::size_t>(i)], 1}, &m_weights, j);
             },
             singles);
         add(row(BenchRow::Sweep, m_engine->name(), 8), sweepBytes(),
-            [this](BenchResult&, const JobControl& j) { m_engine->sums(m_camera, m_candidates, &m_weights, j); });
+            [this](BenchResult&, const JobControl& j) { m_engine->sums(m_case.camera, m_candidates, &m_weights, j); });
     }
 
     void addJacobians(const JobControl& job) {
-        if (!m_tf.tf.features.empty())
-            add(row(BenchRow::Jacobian, m_engine->name()), sweepBytes(),
-                [this](BenchResult&, const JobControl& j) { m_engine->jacobian(m_camera, m_tf.tf, &m_weights, j); });
-        if (!m_tf.nineFeatures) return;
+        if (!m_case.tf.features.empty())
+            add(row(BenchRow::Jacobian, m_engine->name()), sweepBytes(), [this](BenchResult&, const JobControl& j) {
+                m_engine->jacobian(m_case.camera, m_case.tf, &m_weights, j);
+            });
+        if (!m_case.nineFeatures) return;
         m_nine = tents(9);
-        m_nineWeights = saliencyFields(*m_volume, m_nine, {}, job);
+        m_nineWeights = saliencyFields(*m_case.volume, m_nine, {}, job);
         add(row(BenchRow::Jacobian, m_engine->name(), 1, m_nine, kNineTents), sweepBytes(),
-            [this](BenchResult&, const JobControl& j) { m_engine->jacobian(m_camera, m_nine, &m_nineWeights, j); });
+            [this](BenchResult&, const JobControl& j) {
+                m_engine->jacobian(m_case.camera, m_nine, &m_nineWeights, j);
+            });
     }
 
     /// The search alone: engine and weights are there.
     void addOptimize() {
-        if (m_tf.tf.features.empty()) return;
+        if (m_case.tf.features.empty()) return;
         add(row(BenchRow::Optimize, m_engine->name(), 8), 0, [this](BenchResult& r, const JobControl& j) {
-            const VwsFunction function(*m_engine, m_camera, m_tf.tf, m_weights);
-            const OptimizeResult found = optimize(function, benchTargets(m_tf.tf.features.size()), {}, j);
+            const VwsFunction function(*m_engine, m_case.camera, m_case.tf, m_weights);
+            const OptimizeResult found = optimize(function, benchTargets(m_case.tf.features.size()), {}, j);
             if (found.reason == StopReason::Cancelled) throw Cancelled{};
             const int sweeps = 1 + (found.evaluations - 1) / 8; // the start, then eight at a time
             r.bytes = sweeps * sweepBytes();
@@ -240,37 +201,48 @@ private:
 
     void addRefine() {
         add(row(BenchRow::Refine, "cpu"), sampleBytes(), [this](BenchResult& r, const JobControl& j) {
-            r.extra = {{"iterations", refine(makeHistogram(*m_volume), m_tf.tf, {}, j).iterations}};
+            r.extra = {{"iterations", refine(makeHistogram(*m_case.volume), m_case.tf, {}, j).iterations}};
         });
     }
 
     void addRender() {
-        const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_volume);
+        const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_case.volume);
         const RenderSettings settings;
         BenchResult r = row(BenchRow::Render, renderer->name());
         r.extra = {{"size", {settings.width, settings.height}}};
         add(r, voxels() * kBytesPerCode, [this, renderer, settings](BenchResult&, const JobControl& j) {
-            renderer->render(m_camera, m_tf.tf, settings, j);
+            renderer->render(m_case.camera, m_case.tf, settings, j);
         });
     }
 
-    const std::shared_ptr<const Volume>& m_volume;
-    const std::string& m_volumeName;
-    const Camera& m_camera;
-    const BenchTf& m_tf;
+    const BenchCase& m_case;
     const BenchOptions& m_options;
-    VisibilityEngine* m_engine; ///< null where no row needs one
+    std::unique_ptr<VisibilityEngine> m_engine; ///< null where no row needs one
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;
     std::vector<TransferFunction> m_candidates; ///< the eight of a search
     std::vector<Measurement> m_measurements;
 };
 
-bool needsEngine(const BenchTf& tf) {
-    return std::any_of(tf.rows.begin(), tf.rows.end(), [](BenchRow row) {
-        return row == BenchRow::Setup || row == BenchRow::Sweep || row == BenchRow::Jacobian ||
-               row == BenchRow::Optimize;
-    });
+/// Runs it once, or several times where that takes less than `least` seconds.
+void measure(Measurement& m, double least, bool counts, const JobControl& job, std::vector<std::string>& notices) {
+    const Stopwatch all;
+    do {
+        job.throwIfStopped();
+        try {
+            const Stopwatch watch;
+            const double cpuStart = cpuSeconds();
+            m.work(m.result, job);
+            if (!counts) return;
+            m.seconds.push_back(watch.seconds() / m.times);
+            m.cpuSeconds.push_back((cpuSeconds() - cpuStart) / m.times);
+        } catch (const Error& e) {
+            m.failed = true;
+            const std::string row = std::string("row ") + name(m.result.row) + " of " + m.result.volume;
+            const std::string notice = row + " is left out: " + e.what();
+            if (notices.empty() || notices.back() != notice) notices.push_back(notice);
+        }
+    } while (!m.failed && all.seconds() < least);
 }
 
 } // namespace
@@ -345,20 +317,36 @@ TransferFunction sparseTf(const Volume& volume) {
     return tf;
 }
 
-BenchResults benchVolume(const std::shared_ptr<const Volume>& volume, const std::string& volumeName,
-                         const Camera& camera, const std::vector<BenchTf>& tfs, const BenchOptions& options,
-                         Progress& progress) {
-    BenchResults results;
-    std::unique_ptr<VisibilityEngine> engine;
-    for (const BenchTf& tf : tfs) {
-        const JobControl job = progress.phase(volumeName + ", " + tf.name);
-        setThreadCount(options.threads.back());
-        if (!engine && needsEngine(tf)) engine = makeEngine(options.engine, volume, options.quality);
-        TfBench bench(volume, volumeName, camera, tf, options, engine.get());
-        bench.prepare({job.stop, {}});
-        bench.run(job, results);
+void bench(const std::vector<BenchCase>& cases, const BenchOptions& options, const JobControl& job,
+           BenchResults& results) {
+    const JobControl quiet{job.stop, {}}; // reports would cost time
+    setThreadCount(options.threads.back());
+    std::deque<CaseBench> benches; // does not move them
+    std::size_t rows = 0;
+    for (const BenchCase& each : cases) rows += benches.emplace_back(each, options, quiet).measurements().size();
+
+    const int rounds = options.repeat.value_or(kRounds);
+    const double all = static_cast<double>(rows) * (rounds + 1);
+    double done = 0;
+    // One number of threads after the other: a core that has been idle takes its time to run at full speed.
+    for (const int threads : options.threads) {
+        setThreadCount(threads);
+        for (int round = 0; round <= rounds; ++round) // the first warms up
+            for (CaseBench& bench : benches)
+                for (Measurement& m : bench.measurements()) {
+                    if (m.result.threads != threads) continue;
+                    if (!m.failed) measure(m, options.repeat ? 0 : kLeastSeconds, round > 0, quiet, results.notices);
+                    job.report(++done / all);
+                }
     }
-    return results;
+    for (CaseBench& bench : benches)
+        for (Measurement& m : bench.measurements()) {
+            if (m.failed) continue;
+            m.result.runs = static_cast<int>(m.seconds.size());
+            m.result.seconds = median(m.seconds);
+            m.result.cpuSeconds = median(m.cpuSeconds);
+            results.rows.push_back(std::move(m.result));
+        }
 }
 
 double memcpyGbPerS(int threads, const JobControl& job) {

@@ -39,9 +39,12 @@ struct BenchResult {
     Json extra;            ///< further fields of this row, an object
 };
 
-/// A transfer function and what is to be measured under it.
-struct BenchTf {
-    std::string name;
+/// A volume under a transfer function, and what is to be measured of them.
+struct BenchCase {
+    std::shared_ptr<const Volume> volume;
+    std::string volumeName;
+    Camera camera; ///< looks at the volume
+    std::string tfName;
     TransferFunction tf;
     std::set<BenchRow> rows;
     bool nineFeatures = false; ///< a Jacobian of kNineTents too
@@ -65,16 +68,15 @@ struct BenchOptions {
     Quality quality = Quality::Normal;
 };
 
-/// The rows of `volume`, and notes about rows that could not be measured. `camera` looks at it. Repetitions of the rows
-/// under one transfer function with as many threads alternate, so that a machine that changes its speed changes that of
-/// all of them.
 struct BenchResults {
     std::vector<BenchResult> rows;
-    std::vector<std::string> notices;
+    std::vector<std::string> notices; ///< about rows that could not be measured
 };
-BenchResults benchVolume(const std::shared_ptr<const Volume>& volume, const std::string& volumeName,
-                         const Camera& camera, const std::vector<BenchTf>& tfs, const BenchOptions& options,
-                         Progress& progress);
+
+/// Appends the rows of `cases`. Their repetitions with as many threads alternate, so that a machine that changes its
+/// speed changes that of all of them, and their ratios hold.
+void bench(const std::vector<BenchCase>& cases, const BenchOptions& options, const JobControl& job,
+           BenchResults& results);
 
 /// Bytes read plus bytes written per second, in 1e9, by a plain copy of 256 MiB cut into one piece per thread: what
 /// this machine's memory gives. Median of five.
