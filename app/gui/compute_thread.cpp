@@ -8,6 +8,7 @@ namespace pellucid::gui {
 VisibilityEngine& ComputeCache::engine(const std::shared_ptr<const Volume>& volume) {
     if (m_engineVolume != volume || !m_engine) {
         m_engine.reset();
+        m_engineVolume.reset();
         m_weightsVolume.reset(); // what was measured before needs no room any more
         m_weights = {};
         requireMemory({"measuring", kMeasureBytesPerVoxel}, volume->title, volume->dims());

@@ -26,7 +26,8 @@ QColor blend(const QColor& from, const QColor& to, double share) {
 } // namespace
 
 InfluencePanel::InfluencePanel(Document& document, QWidget* parent)
-    : QWidget(parent), m_document(document), m_table(new QTableWidget(this)) {
+    : QWidget(parent), m_document(document), m_table(new QTableWidget(this)),
+      m_copyAction(new QAction(tr("Copy the table"), m_table)) {
     auto* label = new QLabel(tr("How fast each VWS (rows) follows each opacity (columns)"), this);
     label->setWordWrap(true);
     label->setToolTip(tr("∂W/∂x: the change of a feature's share per change of an opacity, both from 0 to 1,\n"
@@ -36,40 +37,38 @@ InfluencePanel::InfluencePanel(Document& document, QWidget* parent)
     m_table->setSelectionMode(QAbstractItemView::NoSelection);
     m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
     m_table->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-    auto* copyAction = new QAction(tr("Copy the table"), m_table);
-    copyAction->setObjectName("copyInfluenceAction");
-    copyAction->setShortcut(QKeySequence::Copy);
-    copyAction->setShortcutContext(Qt::WidgetWithChildrenShortcut);
-    m_table->addAction(copyAction);
+    m_copyAction->setObjectName("copyInfluenceAction");
+    m_copyAction->setShortcut(QKeySequence::Copy);
+    m_copyAction->setShortcutContext(Qt::WidgetWithChildrenShortcut);
+    m_table->addAction(m_copyAction);
     m_table->setContextMenuPolicy(Qt::ActionsContextMenu);
-    connect(copyAction, &QAction::triggered, this, &InfluencePanel::copy);
+    connect(m_copyAction, &QAction::triggered, this, &InfluencePanel::copy);
     auto* column = new QVBoxLayout(this);
     column->addWidget(label);
     column->addWidget(m_table, 1);
-    connect(&document, &Document::influenceChanged, this, &InfluencePanel::update);
-    connect(&document, &Document::volumeChanged, this, &InfluencePanel::update);
-    connect(&document, &Document::tfChanged, this, &InfluencePanel::update);
-    connect(&document, &Document::cameraChanged, this, &InfluencePanel::update);
-    update();
+    for (const auto signal : {&Document::volumeChanged, &Document::featuresChanged})
+        connect(&document, signal, this, &InfluencePanel::rebuild);
+    for (const auto signal : {&Document::influenceChanged, &Document::tfChanged, &Document::cameraChanged})
+        connect(&document, signal, this, &InfluencePanel::refresh);
 }
 
-void InfluencePanel::update() {
+void InfluencePanel::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    rebuild(); // while hidden it has followed nothing
+}
+
+void InfluencePanel::rebuild() {
+    if (!isVisible()) return;
     const std::vector<Feature>& features = m_document.tf().features;
-    const auto& influence = m_document.influence();
     const int n = static_cast<int>(features.size());
-    const bool known = influence && influence->size() == features.size(), current = m_document.influenceIsCurrent();
     m_table->setRowCount(n);
     m_table->setColumnCount(n);
-    double largest = 0;
-    if (known)
-        for (const auto& row : *influence)
-            for (const double value : row) largest = std::max(largest, std::abs(value));
-    static const QColor kFalls{0xd9, 0x7a, 0x2b}; // with the accent a pair that everyone can tell apart
     for (int i = 0; i < n; ++i) {
-        const QString name = QString::fromStdString(features[static_cast<std::size_t>(i)].name);
+        const Feature& feature = features[static_cast<std::size_t>(i)];
+        const QString name = QString::fromStdString(feature.name);
         for (const Qt::Orientation side : {Qt::Vertical, Qt::Horizontal}) {
             auto* header = new QTableWidgetItem(name);
-            header->setData(Qt::DecorationRole, colorFromRgb(features[static_cast<std::size_t>(i)].color));
+            header->setData(Qt::DecorationRole, colorFromRgb(feature.color));
             header->setToolTip(side == Qt::Vertical ? tr("VWS of %1").arg(name) : tr("Opacity of %1").arg(name));
             side == Qt::Vertical ? m_table->setVerticalHeaderItem(i, header)
                                  : m_table->setHorizontalHeaderItem(i, header);
@@ -77,25 +76,48 @@ void InfluencePanel::update() {
         for (int j = 0; j < n; ++j) {
             auto* cell = new QTableWidgetItem;
             cell->setTextAlignment(Qt::AlignCenter);
-            if (known) {
-                const double value = (*influence)[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-                const QString cause = QString::fromStdString(features[static_cast<std::size_t>(j)].name);
-                cell->setText(signedText(value));
-                cell->setToolTip(tr("Raising the opacity of %1 by 0.01 changes the VWS of %2 by about %3")
-                                     .arg(cause, name, signedText(0.01 * value)));
-                const double share = largest > 0 ? std::abs(value) / largest : 0;
-                cell->setBackground(
-                    blend(theme::kPanel, value < 0 ? kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
-                cell->setForeground(current ? theme::kText : theme::kFaint);
-            }
             m_table->setItem(i, j, cell);
         }
     }
+    refresh();
+}
+
+void InfluencePanel::refresh() {
+    const auto& influence = m_document.influence();
+    const int n = m_table->rowCount();
+    const bool known = influence && static_cast<int>(influence->size()) == n, current = m_document.influenceIsCurrent();
+    m_copyAction->setEnabled(known && current);
+    if (!isVisible()) return;
+    double largest = 0;
+    if (known)
+        for (const auto& row : *influence)
+            for (const double value : row) largest = std::max(largest, std::abs(value));
+    static const QColor kFalls{0xd9, 0x7a, 0x2b}; // with the accent a pair that everyone can tell apart
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            QTableWidgetItem* const cell = m_table->item(i, j);
+            if (!known) {
+                cell->setText({});
+                cell->setToolTip({});
+                cell->setBackground({});
+                continue;
+            }
+            const double value = (*influence)[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+            const double share = largest > 0 ? std::abs(value) / largest : 0;
+            cell->setText(signedText(value));
+            cell->setToolTip(current ? tr("Raising the opacity of %1 by 0.01 changes the VWS of %2 by about %3")
+                                           .arg(m_table->horizontalHeaderItem(j)->text(),
+                                                m_table->verticalHeaderItem(i)->text(), signedText(0.01 * value))
+                                     : tr("Of an older state; being measured"));
+            cell->setBackground(
+                blend(theme::kPanel, value < 0 ? kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
+            cell->setForeground(current ? theme::kText : theme::kFaint);
+        }
 }
 
 void InfluencePanel::copy() const {
     const auto& influence = m_document.influence();
-    if (!influence || static_cast<int>(influence->size()) != m_table->rowCount()) return;
+    if (!m_document.influenceIsCurrent() || static_cast<int>(influence->size()) != m_table->rowCount()) return;
     QString text;
     for (int j = 0; j < m_table->columnCount(); ++j) text += '\t' + m_table->horizontalHeaderItem(j)->text();
     text += '\n';

@@ -5,6 +5,7 @@
 
 #include "models/document.h"
 
+class QAction;
 class QTableWidget;
 
 namespace pellucid::gui {
@@ -17,12 +18,17 @@ public:
     explicit InfluencePanel(Document& document, QWidget* parent = nullptr);
 
 private:
-    void update();
-    /// The table as lines of tab-separated columns, names first, with all digits.
+    void showEvent(QShowEvent* event) override;
+    void rebuild();
+    /// Values and colours, in the cells that are there.
+    void refresh();
+    /// The table as lines of tab-separated columns, names first, with all digits; nothing while it is of an older
+    /// state.
     void copy() const;
 
     Document& m_document;
     QTableWidget* m_table;
+    QAction* m_copyAction;
 };
 
 } // namespace pellucid::gui

@@ -9,8 +9,10 @@ Measures measure(VisibilityEngine& engine, const Camera& camera, const TransferF
     const auto start = std::chrono::steady_clock::now();
     Measures measures;
     const VisibilityField field = engine.field(camera, tf, job);
-    measures.features = featureMeasures(sumsOfField(engine.volume(), tf.features, field.values, &weights), options);
-    measures.visibilityHistogram = visibilityHistogram(engine.volume(), field.values);
+    const JobControl after{job.stop, {}}; // the job is at its end, and done
+    measures.features =
+        featureMeasures(sumsOfField(engine.volume(), tf.features, field.values, &weights, after), options);
+    measures.visibilityHistogram = visibilityHistogram(engine.volume(), field.values, 256, after);
     measures.opacities = featureOpacities(tf);
     measures.visibilitySeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return measures;

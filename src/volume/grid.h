@@ -43,8 +43,6 @@ public:
     const T& at(int i, int j, int k) const { return m_values[index(i, j, k)]; }
     T& operator[](std::size_t i) { return m_values[i]; }
     const T& operator[](std::size_t i) const { return m_values[i]; }
-    /// The values alone, without a copy.
-    std::vector<T> release() && { return std::move(m_values); }
     T* data() noexcept { return m_values.data(); }
     const T* data() const noexcept { return m_values.data(); }
     auto begin() noexcept { return m_values.begin(); }

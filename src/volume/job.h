@@ -1,6 +1,7 @@
 // How a long computation is watched and stopped.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <stop_token>
 
@@ -18,6 +19,12 @@ struct JobControl {
     }
     void report(double fraction) const {
         if (progress) progress(fraction);
+    }
+    /// For the n-th of `count` equal parts of the work. Refers to this, which outlives it.
+    JobControl part(std::size_t n, std::size_t count) const {
+        if (!progress) return {stop, {}};
+        return {stop,
+                [this, n, count](double f) { progress((static_cast<double>(n) + f) / static_cast<double>(count)); }};
     }
 };
 

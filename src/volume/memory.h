@@ -23,8 +23,8 @@ inline constexpr double kMeasureBytesPerVoxel = 12;
 inline constexpr double kOptimizeBytesPerVoxel = 8;
 /// The reference engine keeps intensities as doubles, and which are valid, in the place of codes: so much more.
 inline constexpr double kMoreByReferenceBytesPerVoxel = 5;
-/// To look at a volume takes its codes.
-inline constexpr double kViewBytesPerVoxel = 2;
+/// To look at a volume takes its codes, and which are valid.
+inline constexpr double kViewBytesPerVoxel = 3;
 
 /// Memory that this process can still take without swapping or being stopped, bytes: the least of what the system calls
 /// available (MemAvailable), what the process's control groups leave, and what its limit on address space leaves

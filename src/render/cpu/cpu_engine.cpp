@@ -12,6 +12,7 @@
 #include "tf/opacity.h"
 #include "volume/intensity_grid.h"
 #include "volume/parallel.h"
+#include "volume/zeroed_memory.h"
 
 namespace pellucid {
 
@@ -23,7 +24,7 @@ constexpr std::size_t kSmallVolume = 128 * 128 * 128; ///< voxels
 constexpr int kTableEntries = 4096; ///< at most; 128 KiB with 8 lanes: stays in the second-level cache
 constexpr int kFineTableEntries = 16384;
 
-/// Rays are given up at this optical depth: what lies behind is seen by less than 1e-3. Derivatives fall off more
+/// Rays are given up at this optical depth: what lies behind is seen by 1e-3 at most. Derivatives fall off more
 /// slowly, as D·exp(−D); and small volumes and high quality have the time (6e-6).
 constexpr double kExhausted = 6.9, kExhaustedDerivative = 9, kExhaustedExact = 12;
 
@@ -71,6 +72,7 @@ public:
     /// A voxel that is transparent now but not under a higher peak counts: its visibility has a derivative.
     SweepTables(const TransferFunction& tf, int firstDerivative, const Codes& codes)
         : SweepTables(SweepMode::Jacobian, tf.features, codes) {
+        m_firstDerivative = firstDerivative;
         const TfSampler sampler(tf), shapes(withFullPeaks(tf));
         fillIntegral([&](double s, double* tau) {
             const double a = sampler.opacity(s);
@@ -116,6 +118,7 @@ public:
         in.alphaTable = m_alpha.data();
         in.featureOfCode = m_featureOfCode.data();
         in.features = static_cast<int>(m_features->size());
+        in.firstDerivative = m_firstDerivative;
         std::copy(m_units.begin(), m_units.end(), in.depthUnit);
     }
 
@@ -177,6 +180,7 @@ private:
     const std::vector<Feature>* m_features;
     std::size_t m_lanes, m_codes, m_entries = 0;
     bool m_someInvalid;
+    int m_firstDerivative = 0;
     float m_entryOfCode = 0;
     std::vector<std::int32_t> m_integral;
     std::vector<float> m_alpha;
@@ -188,21 +192,18 @@ private:
 class CpuEngine final : public VisibilityEngine {
 public:
     CpuEngine(std::shared_ptr<const Volume> volume, Quality quality) : m_volume(std::move(volume)), m_quality(quality) {
-        IntensityGrid grid = makeIntensityGrid(*m_volume);
+        const IntensityGrid grid = makeIntensityGrid(*m_volume);
         const bool someInvalid = !grid.valid.empty();
         // Without gaps, so that tables are short; and with one code for all that is invalid.
         m_codeSpace = {grid.maxCode / grid.codeStep, someInvalid, quality == Quality::High || isSmall()};
-        m_codes = std::move(grid.codes).release();
-        if (grid.codeStep > 1 || someInvalid)
-            inPieces(m_codes.size(), [&](std::size_t first, std::size_t last) {
-                for (std::size_t i = first; i < last; ++i) {
-                    m_codes[i] = static_cast<std::uint16_t>(m_codes[i] / grid.codeStep);
-                    if (someInvalid)
-                        m_codes[i] =
-                            grid.valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
-                }
-            });
-        m_codes.resize(m_codes.size() + kCodePadding);
+        m_codes = ZeroedVector<std::uint16_t>(grid.codes.size() + kCodePadding);
+        inPieces(grid.codes.size(), [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i)
+                m_codes[i] = static_cast<std::uint16_t>(grid.codes[i] / grid.codeStep);
+            if (someInvalid)
+                for (std::size_t i = first; i < last; ++i)
+                    m_codes[i] = grid.valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
+        });
         findRanges();
     }
 
@@ -212,11 +213,13 @@ public:
     std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
                                   const WeightFields* weights, const JobControl& job) override {
         std::vector<FeatureSums> all;
+        for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features == tfs[0].features);
+        const std::size_t batches = (tfs.size() + kSweepLanes - 1) / kSweepLanes;
         for (std::size_t first = 0; first < tfs.size(); first += kSweepLanes) {
             const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
             checkFeatures(batch[0]);
-            for (const TransferFunction& tf : batch) PELLUCID_CHECK(tf.features.size() == tfs[0].features.size());
-            const Sums sums = sweep(camera, SweepTables(batch, m_codeSpace), weights, nullptr, job);
+            const Sums sums = sweep(camera, SweepTables(batch, m_codeSpace), weights, nullptr,
+                                    job.part(first / kSweepLanes, batches));
             for (std::size_t lane = 0; lane < batch.size(); ++lane) all.push_back(sums.ofLane(lane));
         }
         return all;
@@ -226,9 +229,11 @@ public:
                           const JobControl& job) override {
         checkFeatures(tf);
         SumsJacobian result;
-        for (std::size_t first = 0; first == 0 || first < tf.features.size(); first += kJacobianLanes - 1) {
+        constexpr std::size_t kAtOnce = kJacobianLanes - 1;
+        const std::size_t sweeps = std::max<std::size_t>(1, (tf.features.size() + kAtOnce - 1) / kAtOnce);
+        for (std::size_t first = 0; first < sweeps * kAtOnce; first += kAtOnce) {
             const SweepTables tables(tf, static_cast<int>(first), m_codeSpace);
-            const Sums sums = sweep(camera, tables, weights, nullptr, job);
+            const Sums sums = sweep(camera, tables, weights, nullptr, job.part(first / kAtOnce, sweeps));
             if (first == 0) result.sums = sums.ofLane(0);
             for (std::size_t lane = 1; lane < kJacobianLanes && first + lane <= tf.features.size(); ++lane)
                 result.byOpacity.push_back(sums.ofLane(lane));
@@ -399,7 +404,7 @@ private:
             return m_codes.data();
         }
         if (m_codesYZX.empty()) {
-            m_codesYZX.resize(m_codes.size());
+            m_codesYZX = ZeroedVector<std::uint16_t>(m_codes.size());
             parallelFor(asSize(n.z), [&](std::size_t k) {
                 for (std::size_t i = 0; i < asSize(n.x); ++i)
                     for (std::size_t j = 0; j < asSize(n.y); ++j)
@@ -450,9 +455,10 @@ private:
         }
         const std::vector<std::uint8_t> opaque = tables.opaqueBlocks(m_ranges);
         Sums sums;
-        for (const View& view : viewsOf(camera)) {
-            Sums part = sweep(camera, view, tables, opaque, weights, field, job);
-            if (sums.values.empty()) {
+        const std::vector<View> views = viewsOf(camera);
+        for (std::size_t n = 0; n < views.size(); ++n) {
+            Sums part = sweep(camera, views[n], tables, opaque, weights, field, job.part(n, views.size()));
+            if (n == 0) {
                 sums = std::move(part);
                 continue;
             }
@@ -532,10 +538,10 @@ private:
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
     Codes m_codeSpace;
-    std::vector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more
+    ZeroedVector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more
     Int3 m_blocks{0, 0, 0};
     std::vector<std::array<std::uint16_t, 2>> m_ranges; ///< per block: the lowest and highest code
-    std::vector<std::uint16_t> m_codesYZX;              ///< made when a sweep along x first needs it
+    ZeroedVector<std::uint16_t> m_codesYZX;             ///< made when a sweep along x first needs it
     std::mutex m_scratchMutex;
     std::vector<std::shared_ptr<SweepScratch>> m_scratch;
 };

@@ -33,9 +33,8 @@ public:
             const int across = (settings.width + kTile - 1) / kTile, down = (settings.height + kTile - 1) / kTile;
             for (int i = 0; i < across * down; ++i) {
                 const int x = i % across * kTile, y = i / across * kTile;
-                JobControl part = job;
-                if (job.progress) part.progress = [&, i](double f) { job.progress((i + f) / (across * down)); };
-                drawTile(raycaster, camera, settings, x, y, image, part);
+                drawTile(raycaster, camera, settings, x, y, image,
+                         job.part(static_cast<std::size_t>(i), static_cast<std::size_t>(across * down)));
             }
         });
         return image;

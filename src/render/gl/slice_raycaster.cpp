@@ -251,12 +251,8 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
     for (std::size_t i = 0; i < order.size(); ++i) {
         const VolumeBrick& brick = bricks->use(order[i]);
         p.setBrick(brick);
-        JobControl part = job;
-        if (job.progress)
-            part.progress = [&](double f) {
-                job.progress((static_cast<double>(i) + f) / static_cast<double>(order.size()));
-            };
-        drawSlabs(p, slabTriangles(view, g, sampled, glm::max(brick.lo, Vec3(0)), glm::min(brick.hi, Vec3(1))), part);
+        drawSlabs(p, slabTriangles(view, g, sampled, glm::max(brick.lo, Vec3(0)), glm::min(brick.hi, Vec3(1))),
+                  job.part(i, order.size()));
     }
     glBindBuffer(GL_ARRAY_BUFFER, 0);
     glDisable(GL_BLEND);

@@ -267,14 +267,8 @@ void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slot
 void SweepDevice::runSweeps(const SweepRequest& request, int slots, const JobControl& job, const AfterPlanes& after) {
     m_volume.setWeights(request.weights, request.weightsKey);
     uploadTables(request.tables);
-    for (std::size_t i = 0; i < request.sweeps.size(); ++i) {
-        JobControl part = job;
-        if (job.progress)
-            part.progress = [&](double f) {
-                job.progress((static_cast<double>(i) + f) / static_cast<double>(request.sweeps.size()));
-            };
-        runSweep(request, request.sweeps[i], slots, part, after);
-    }
+    for (std::size_t i = 0; i < request.sweeps.size(); ++i)
+        runSweep(request, request.sweeps[i], slots, job.part(i, request.sweeps.size()), after);
     glUseProgram(0);
     throwOnGlError("measuring visibility");
 }

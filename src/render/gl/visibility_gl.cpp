@@ -74,9 +74,7 @@ std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const Tr
     camera.validate(m_volume->geometry(), "camera");
     if (tfs.empty()) return {};
     const std::vector<Feature>& features = tfs.front().features;
-    for (const TransferFunction& tf : tfs)
-        if (tf.features != features)
-            throw Error("transfer functions of one batch must share their features", "transfer function", "");
+    for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features == features);
     if (weights != nullptr) PELLUCID_CHECK(weights->dims() == m_volume->dims());
 
     gl::SweepRequest request;
@@ -91,21 +89,15 @@ std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const Tr
     int atOnce = 0;
     m_device.run([&](gl::SweepDevice& device) { atOnce = device.candidatesAtOnce(request); });
 
+    const std::size_t size = static_cast<std::size_t>(atOnce), groups = (tfs.size() + size - 1) / size;
     std::vector<FeatureSums> results;
     while (results.size() < tfs.size()) {
         const std::size_t first = results.size();
-        const auto group =
-            tfs.subspan(first, std::min<std::size_t>(static_cast<std::size_t>(atOnce), tfs.size() - first));
+        const auto group = tfs.subspan(first, std::min(size, tfs.size() - first));
         const int lanes = group.size() == 1 ? 1 : group.size() <= 4 ? 4 : 8;
         request.tables = gl::makeDepthTables(group, lanes, m_cells);
-        JobControl part = job;
-        if (job.progress)
-            part.progress = [&](double f) {
-                job.progress((static_cast<double>(first) + f * static_cast<double>(group.size())) /
-                             static_cast<double>(tfs.size()));
-            };
         std::vector<double> totals;
-        m_device.run([&](gl::SweepDevice& device) { totals = device.sums(request, part); });
+        m_device.run([&](gl::SweepDevice& device) { totals = device.sums(request, job.part(first / size, groups)); });
 
         const auto stride = static_cast<std::size_t>(lanes);
         for (std::size_t lane = 0; lane < group.size(); ++lane) {
