@@ -67,7 +67,7 @@ Answer run(const Options& o, Progress& progress) {
     checkFolder(o.out);
     o.camera.check();
     const auto [volume, tf] =
-        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("measuring", kMeasureBytesPerVoxel));
+        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("measuring", kFieldsBytesPerVoxel));
     const Geometry& geometry = volume->geometry();
     const Camera camera = o.camera.camera(geometry);
     auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);

@@ -77,7 +77,7 @@ Answer run(const Options& o, Progress& progress) {
     o.optimize.validate();
     o.camera.check();
     const auto [volume, tf] =
-        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("optimizing", kOptimizeBytesPerVoxel));
+        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("optimizing", kMeasureBytesPerVoxel));
     normalizedTargets(o.targets, tf.features.size());
     const Camera camera = o.camera.camera(volume->geometry());
     const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);

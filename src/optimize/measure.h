@@ -12,11 +12,11 @@ namespace pellucid {
 struct Measures {
     std::vector<FeatureMeasures> features;   ///< in the order of tf.features
     std::vector<double> opacities;           ///< peak of each feature
-    std::vector<double> visibilityHistogram; ///< 256 shares, sum 1 or all 0
+    std::vector<double> visibilityHistogram; ///< of all visibility, that of each of 256 bins; sum 1 or all 0
     double visibilitySeconds = 0;
 };
 
-/// One field from the engine, then its sums and histogram. `weights` from saliencyFields() of the same tf.
+/// In one sweep. `weights` from saliencyFields() of the same tf. Throws as VisibilityEngine::sums() does.
 Measures measure(VisibilityEngine& engine, const Camera& camera, const TransferFunction& tf,
                  const WeightFields& weights, const VwsOptions& options = {}, const JobControl& job = {});
 

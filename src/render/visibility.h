@@ -34,8 +34,8 @@ public:
     virtual const Volume& volume() const = 0;
 
     /// Sums per feature of each of `tfs`, which share the features of the first (checked). `weights` may be null.
-    /// Throws Cancelled where `job` was asked to stop, Error where the camera is inside the volume, where the device
-    /// fails and, cpu, where there are more than 254 features. The same holds for the other calls.
+    /// Throws Cancelled where `job` was asked to stop, Error where the camera is inside the volume, and where the
+    /// device fails. The same holds for the other calls.
     virtual std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
                                           const WeightFields* weights, const JobControl& job = {}) = 0;
     /// The sums of `tf` and their exact derivatives with respect to the features' peak opacities, in one sweep

@@ -2,13 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <variant>
-
-#include "volume/check.h"
-#include "volume/histogram.h"
-#include "volume/intensity_grid.h"
-#include "volume/parallel.h"
 
 namespace pellucid {
 
@@ -85,56 +78,6 @@ std::vector<std::vector<double>> vwsJacobian(const SumsJacobian& jacobian, const
         }
     }
     return derivatives;
-}
-
-namespace {
-
-/// body(slice, voxel, v, intensity) for each voxel that is seen; slices on different threads.
-template <class Body>
-void forEachVisible(const Volume& volume, const Grid<float>& visibility, const JobControl& job, const Body& body) {
-    PELLUCID_CHECK(visibility.dims() == volume.dims());
-    const auto slices = static_cast<std::size_t>(volume.dims().z);
-    const std::size_t plane = volume.size() / slices;
-    std::visit(
-        [&](const auto& values) {
-            parallelFor(slices, [&](std::size_t k) {
-                job.throwIfStopped();
-                for (std::size_t i = k * plane; i < (k + 1) * plane; ++i)
-                    if (visibility[i] != 0)
-                        body(k, i, static_cast<double>(visibility[i]),
-                             volume.intensityOfValue(static_cast<double>(values[i])));
-            });
-        },
-        volume.samples());
-}
-
-} // namespace
-
-FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& features, const Grid<float>& visibility,
-                        const WeightFields* weights, const JobControl& job) {
-    std::vector<FeatureSums> parts(static_cast<std::size_t>(volume.dims().z), emptySums(features.size()));
-    forEachVisible(volume, visibility, job, [&](std::size_t slice, std::size_t i, double v, double intensity) {
-        const double lb = weights ? weights->brightness(i) : 0.0, ls = weights ? weights->saturation(i) : 0.0;
-        addVoxel(parts[slice], featureAt(features, intensity), v, lb, ls);
-    });
-    FeatureSums total = emptySums(features.size());
-    for (const FeatureSums& part : parts) add(total, part);
-    return total;
-}
-
-std::vector<double> visibilityHistogram(const Volume& volume, const Grid<float>& visibility, int bins,
-                                        const JobControl& job) {
-    std::vector<std::vector<double>> parts(static_cast<std::size_t>(volume.dims().z),
-                                           std::vector<double>(static_cast<std::size_t>(bins), 0.0));
-    forEachVisible(volume, visibility, job, [&](std::size_t slice, std::size_t, double v, double intensity) {
-        parts[slice][static_cast<std::size_t>(histogramBin(intensity, bins))] += v;
-    });
-    std::vector<double> histogram(static_cast<std::size_t>(bins), 0.0);
-    for (const auto& part : parts)
-        for (std::size_t bin = 0; bin < part.size(); ++bin) histogram[bin] += part[bin];
-    const double total = std::accumulate(histogram.begin(), histogram.end(), 0.0);
-    for (double& h : histogram) h = share(h, total);
-    return histogram;
 }
 
 } // namespace pellucid

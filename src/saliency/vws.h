@@ -8,7 +8,6 @@
 
 #include "saliency/saliency_field.h"
 #include "tf/transfer_function.h"
-#include "volume/job.h"
 
 namespace pellucid {
 
@@ -56,14 +55,5 @@ std::vector<double> vwsOf(const FeatureSums& sums, const VwsOptions& options = {
 
 /// ∂W_i/∂x_j as [i][j], by the quotient rule (docs/method.md, "Derivatives").
 std::vector<std::vector<double>> vwsJacobian(const SumsJacobian& jacobian, const VwsOptions& options = {});
-
-/// Sums of a stored visibility field (shape of the volume). `weights` may be null: then `weighted` stays 0. Throws
-/// Cancelled where `job` was asked to stop.
-FeatureSums sumsOfField(const Volume& volume, const std::vector<Feature>& features, const Grid<float>& visibility,
-                        const WeightFields* weights, const JobControl& job = {});
-/// v_i summed per intensity bin, divided by Σ v_i; 0 where the sum is 0. Throws Cancelled where `job` was asked to
-/// stop.
-std::vector<double> visibilityHistogram(const Volume& volume, const Grid<float>& visibility, int bins = 256,
-                                        const JobControl& job = {});
 
 } // namespace pellucid

@@ -17,10 +17,10 @@ struct MemoryUse {
 };
 
 /// Beside the volume, per voxel: 2 for intensity codes, 2 for the same in the order of sweeps along x, 4 for the two
-/// weights of saliency, 4 for the visibility that is measured.
-inline constexpr double kMeasureBytesPerVoxel = 12;
-/// An optimization stores no visibility.
-inline constexpr double kOptimizeBytesPerVoxel = 8;
+/// weights of saliency. Measuring and optimizing store nothing else.
+inline constexpr double kMeasureBytesPerVoxel = 8;
+/// 4 more for the visibility that is written.
+inline constexpr double kFieldsBytesPerVoxel = 12;
 /// The reference engine keeps intensities as doubles, and which are valid, in the place of codes: so much more.
 inline constexpr double kMoreByReferenceBytesPerVoxel = 5;
 /// To look at a volume takes its codes, and which are valid.

@@ -12,22 +12,96 @@ TEST_CASE("the cpu engine keeps the tolerances of MEASURES on 50 random cases", 
     checkRandomCases([](auto volume, Quality quality) { return makeCpuEngine(volume, quality); }, 50);
 }
 
+// Above 128³ voxels all is left to the rays, in every mode of the sweep.
+constexpr std::size_t kLarge = 128 * 128 * 128;
+
 TEST_CASE("in volumes too large to follow every line alone the cpu engine keeps the tolerances too",
           "[visibility][cpu][accuracy]") {
-    // Above the 128³ voxels from which on all is left to the rays.
     const auto volume = std::make_shared<const Volume>(makeSample("knee", 165));
-    REQUIRE(volume->size() > 128 * 128 * 128);
+    REQUIRE(volume->size() > kLarge);
     const TransferFunction tf = tents(3, 0.3);
     const WeightFields weights = saliencyFields(*volume, tf);
     const auto reference = makeReferenceEngine(volume);
     for (const auto& [azimuth, projection] :
          {std::pair{30.0, Projection::Perspective}, std::pair{45.0, Projection::Orthographic}}) {
         const Camera camera = cameraFromView(volume->geometry(), azimuth, 20, 1, projection);
-        const Disagreement d = compare(*reference, *makeCpuEngine(volume), camera, tf, weights);
+        const Grid<float> expected = reference->field(camera, tf).values;
+        const Disagreement d = compareWithField(expected, *makeCpuEngine(volume), camera, tf, weights);
         CHECK(d.visibilityRms < 0.015);
         CHECK(d.visibility < 0.01);
         CHECK(d.vws < 0.01);
+        const Disagreement high =
+            compareWithField(expected, *makeCpuEngine(volume, Quality::High), camera, tf, weights);
+        CHECK(high.visibilityRms < 0.01);
+        CHECK(high.visibility < 0.005);
+        CHECK(high.vws < 0.005);
     }
+}
+
+TEST_CASE("in large volumes eight candidates, and derivatives, are what single sweeps say", "[visibility][cpu]") {
+    const auto volume = std::make_shared<const Volume>(makeSample("knee", 165));
+    REQUIRE(volume->size() > kLarge);
+    const TransferFunction tf = tents(3, 0.3);
+    const WeightFields weights = saliencyFields(*volume, tf);
+    for (const Quality quality : {Quality::Normal, Quality::High}) {
+        const auto engine = makeCpuEngine(volume, quality);
+        const Camera camera = cameraFromView(volume->geometry(), 30, 20, 1, Projection::Perspective);
+        std::vector<TransferFunction> tfs;
+        for (int i = 0; i < 8; ++i) tfs.push_back(withFeatureOpacities(tf, {0.1 * i, 0.3, 1 - 0.12 * i}));
+        const auto together = engine->sums(camera, tfs, &weights);
+        for (std::size_t i = 0; i < 8; ++i) {
+            const FeatureSums alone = engine->sums(camera, {&tfs[i], 1}, &weights)[0];
+            for (std::size_t f = 0; f < 3; ++f) {
+                const double margin = 1e-5 * alone.allVisibility;
+                CHECK(together[i].visibility[f] == Approx(alone.visibility[f]).epsilon(1e-4).margin(margin));
+                CHECK(together[i].weighted[0][f] == Approx(alone.weighted[0][f]).epsilon(1e-4).margin(margin));
+            }
+        }
+        // W(x + δ) − W(x − δ) = 2δ ∂W/∂x, up to third derivatives: δ² of 1e-4 times something of the order of 10.
+        const SumsJacobian jacobian = engine->jacobian(camera, tf, &weights);
+        const auto derivatives = vwsJacobian(jacobian);
+        constexpr double kStep = 0.01;
+        for (std::size_t j = 0; j < 3; ++j) {
+            std::vector<double> less = featureOpacities(tf), more = less;
+            less[j] -= kStep;
+            more[j] += kStep;
+            const std::vector<TransferFunction> both{withFeatureOpacities(tf, less), withFeatureOpacities(tf, more)};
+            const auto sums = engine->sums(camera, both, &weights);
+            for (std::size_t i = 0; i < 3; ++i)
+                CHECK(derivatives[i][j] ==
+                      Approx((vwsOf(sums[1])[i] - vwsOf(sums[0])[i]) / (2 * kStep)).epsilon(0.01).margin(2e-3));
+        }
+    }
+}
+
+TEST_CASE("in large volumes too voxels without a value hide and show nothing", "[visibility][cpu]") {
+    // A ball of 1 in 0, half of it and a shell around it missing: three values, so that codes are few and their tables
+    // have many entries for each.
+    const Int3 dims(136, 128, 130);
+    std::vector<std::uint8_t> samples;
+    for (int k = 0; k < dims.z; ++k)
+        for (int j = 0; j < dims.y; ++j)
+            for (int i = 0; i < dims.x; ++i) {
+                const double r = glm::length(Vec3(i - 68, j - 64, k - 65));
+                samples.push_back(static_cast<std::uint8_t>(r > 50 && r < 54 ? 255 : r < 40 ? (i < 68 ? 1 : 255) : 0));
+            }
+    const auto volume = std::make_shared<const Volume>(geometryOf(dims), Samples(std::move(samples)), 255.0);
+    REQUIRE(volume->size() > kLarge);
+    REQUIRE(volume->range() == ValueRange{0, 1});
+    TransferFunction tf = tents(2, 0.3);
+    tf.points = {{0, 0.02, {1, 0, 0}, false, {}}, {1, 0.3, {0, 0, 1}, false, {}}};
+    tf.features = {{"low", 0, 0.5, {1, 0, 0}, {}}, {"high", 0.5, 1, {0, 0, 1}, {}}};
+    const WeightFields weights = saliencyFields(*volume, tf);
+    const Camera camera = cameraFromView(volume->geometry(), -60, 25, 1, Projection::Perspective);
+    const auto engine = makeCpuEngine(volume);
+    const Grid<float> field = engine->field(camera, tf).values;
+    for (std::size_t i = 0; i < volume->size(); ++i)
+        if (std::isnan(volume->intensity(i))) REQUIRE(field[i] == 0);
+    const Grid<float> expected = makeReferenceEngine(volume)->field(camera, tf).values;
+    const Disagreement d = compareWithField(expected, *engine, camera, tf, weights);
+    CHECK(d.visibilityRms < 0.015);
+    CHECK(d.visibility < 0.01);
+    CHECK(d.vws < 0.01);
 }
 
 TEST_CASE("random cases are what they promise", "[visibility][accuracy]") {

@@ -2,8 +2,10 @@
 
 #include <limits>
 
+#include "render/cpu/cpu_engine.h"
 #include "render/ray_box.h"
 #include "support/engine_checks.h"
+#include "support/field_sums.h"
 #include "volume/parallel.h"
 
 using namespace pellucid;
@@ -158,17 +160,110 @@ TEST_CASE("no voxel is more visible than it is opaque, nor a solid one behind a 
     for (int j = 4; j < 12; ++j) CHECK(v.at(5, j, 5) < 1e-6);
 }
 
-TEST_CASE("a volume of one voxel, and one of one slice, can be measured", "[visibility]") {
-    for (const Int3 dims : {Int3(1), Int3(1, 9, 9), Int3(9, 1, 9), Int3(9, 9, 1)}) {
-        const auto volume = slab(dims, 0.5);
-        for (const auto& engine : {makeReferenceEngine(volume), makeCpuEngine(volume)})
-            for (const auto projection : {Projection::Perspective, Projection::Orthographic}) {
-                const Camera camera = cameraFromView(volume->geometry(), 40, 30, 1, projection);
-                const TransferFunction tf = homogeneous(0.5);
-                const FeatureSums sums = engine->sums(camera, {&tf, 1}, nullptr)[0];
-                CHECK(sums.visibility[0] > 0);
-                CHECK(sums.visibility[0] <= static_cast<double>(volume->size()));
+TEST_CASE("volumes of one voxel, one row and one slice are measured as the reference does", "[visibility]") {
+    std::mt19937 random(3);
+    for (const Int3 dims : {Int3(1), Int3(9, 1, 1), Int3(1, 9, 9), Int3(9, 1, 9), Int3(9, 9, 1)}) {
+        const auto volume = roughVolume(random, dims, Vec3(1));
+        TransferFunction tf = homogeneous(0.3); // from 0.2 on two features, opaque everywhere
+        tf.points[0].opacity = 0.2;
+        tf.features = {{"low", 0, 0.5, {1, 0, 0}, {}}, {"high", 0.5, 1, {0, 0, 1}, {}}};
+        for (const auto projection : {Projection::Perspective, Projection::Orthographic}) {
+            const Camera camera = cameraFromView(volume->geometry(), 40, 30, 1, projection);
+            const FeatureSums found = makeCpuEngine(volume)->sums(camera, {&tf, 1}, nullptr)[0];
+            const FeatureSums expected = makeReferenceEngine(volume)->sums(camera, {&tf, 1}, nullptr)[0];
+            INFO(dims.x << " x " << dims.y << " x " << dims.z);
+            CHECK(found.allVisibility == Approx(expected.allVisibility).epsilon(0.03));
+            const auto a = featureMeasures(found), b = featureMeasures(expected);
+            for (std::size_t f = 0; f < 2; ++f) CHECK(a[f].visibility == Approx(b[f].visibility).margin(0.005));
+        }
+    }
+}
+
+TEST_CASE("the sweeps for every instruction set measure the same", "[visibility][cpu]") {
+    std::mt19937 random(17);
+    CHECK(sweepKernels().back() == sweepGeneric);
+    // Small volumes follow voxels' own lines, large ones do not.
+    for (const Int3 dims : {Int3(22, 18, 20), Int3(130, 129, 128)}) {
+        const auto rough = roughVolume(random, dims, {1, 1.2, 0.9});
+        for (const bool holes : {false, true}) {
+            std::vector<float> samples(rough->size());
+            for (std::size_t i = 0; i < samples.size(); ++i)
+                samples[i] = holes && i % 97 == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                                  : static_cast<float>(rough->intensity(i));
+            const auto volume = std::make_shared<const Volume>(rough->geometry(), Samples(std::move(samples)));
+            const TransferFunction tf = tents(3, 0.4);
+            const WeightFields weights = saliencyFields(*volume, tf);
+            const Camera camera = cameraFromView(volume->geometry(), 40, 25, 1, Projection::Perspective);
+            const std::vector<TransferFunction> tfs{tf, withFeatureOpacities(tf, {0.1, 0.9, 0})};
+            const auto make = [&](SweepKernel kernel) { return makeCpuEngine(volume, Quality::Normal, kernel); };
+            const auto generic = make(sweepGeneric);
+            const Grid<float> field = generic->field(camera, tf).values;
+            const auto sums = generic->sums(camera, tfs, &weights);
+            const SumsJacobian jacobian = generic->jacobian(camera, tf, &weights);
+            for (const SweepKernel kernel : sweepKernels()) {
+                const auto engine = make(kernel);
+                const Grid<float> found = engine->field(camera, tf).values;
+                // Of 1e5 rays a few round to the other side of a decision: whether a block is exhausted, or followed.
+                double worst = 0, squares = 0;
+                for (std::size_t i = 0; i < field.size(); ++i) {
+                    const double difference = std::abs(static_cast<double>(found[i]) - static_cast<double>(field[i]));
+                    worst = std::max(worst, difference);
+                    squares += difference * difference;
+                }
+                CHECK(worst < 0.02);
+                CHECK(std::sqrt(squares / static_cast<double>(field.size())) < 1e-4);
+                const auto close = [&](const FeatureSums& a, const FeatureSums& b, double all) {
+                    for (std::size_t f = 0; f < 3; ++f) {
+                        CHECK(a.visibility[f] == Approx(b.visibility[f]).epsilon(1e-4).margin(1e-4 * all));
+                        CHECK(a.weighted[1][f] == Approx(b.weighted[1][f]).epsilon(1e-4).margin(1e-4 * all));
+                    }
+                };
+                const auto foundSums = engine->sums(camera, tfs, &weights);
+                for (std::size_t i = 0; i < tfs.size(); ++i) close(foundSums[i], sums[i], sums[i].allVisibility);
+                const SumsJacobian foundJacobian = engine->jacobian(camera, tf, &weights);
+                for (std::size_t j = 0; j < 3; ++j)
+                    close(foundJacobian.byOpacity[j], jacobian.byOpacity[j], jacobian.sums.allVisibility);
             }
+        }
+    }
+}
+
+TEST_CASE("progress grows to 1, however many sweeps there are", "[visibility][cpu]") {
+    std::mt19937 random(9);
+    const auto volume = roughVolume(random, {20, 20, 20}, Vec3(1));
+    Camera camera = cameraFromView(volume->geometry(), 40, 30, 1, Projection::Perspective);
+    camera.eye = volume->geometry().boxMax() + Vec3(1, 1, 1); // so near that several axes share the voxels
+    const std::vector<TransferFunction> tfs(17, tents(3));
+    const TransferFunction many = tents(20);
+    const auto engine = makeCpuEngine(volume);
+    setThreadCount(1); // in order
+    for (const bool derivatives : {false, true}) {
+        std::vector<double> told;
+        const JobControl job{{}, [&](double f) { told.push_back(f); }};
+        if (derivatives)
+            engine->jacobian(camera, many, nullptr, job);
+        else
+            engine->sums(camera, tfs, nullptr, job);
+        REQUIRE(told.size() > 10);
+        CHECK(std::is_sorted(told.begin(), told.end()));
+        CHECK(told.front() < 0.2);
+        CHECK(told.back() == Approx(1));
+    }
+    setThreadCount(0);
+}
+
+TEST_CASE("an engine that was stopped in the middle measures as before", "[visibility]") {
+    std::mt19937 random(13);
+    const auto volume = roughVolume(random, {30, 24, 28}, Vec3(1));
+    const TransferFunction tf = tents(3);
+    const Camera camera = cameraFromView(volume->geometry(), 40, 30, 1, Projection::Perspective);
+    for (const auto& engine : {makeReferenceEngine(volume, 2), makeCpuEngine(volume)}) {
+        const FeatureSums before = engine->sums(camera, {&tf, 1}, nullptr)[0];
+        std::stop_source stop;
+        CHECK_THROWS_AS(
+            engine->sums(camera, {&tf, 1}, nullptr, {stop.get_token(), [&](double) { stop.request_stop(); }}),
+            Cancelled);
+        CHECK(engine->sums(camera, {&tf, 1}, nullptr)[0].visibility == before.visibility);
     }
 }
 

@@ -94,3 +94,23 @@ TEST_CASE("the cpu engine's derivatives match the reference's along axes", "[vis
 TEST_CASE("the cpu engine's derivatives match the reference's from anywhere", "[visibility][cpu][jacobian]") {
     checkJacobianFromAnywhere([](auto volume) { return makeCpuEngine(volume); }, 0.03, 0.01);
 }
+
+TEST_CASE("more features than one sweep has lanes for have their derivatives too", "[visibility][cpu][jacobian]") {
+    std::mt19937 random(21);
+    const auto volume = roughVolume(random, {24, 20, 22}, {1, 1, 1});
+    const TransferFunction tf = tents(40, 0.4);
+    const WeightFields weights = saliencyFields(*volume, tf);
+    const Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
+    const SumsJacobian found = makeCpuEngine(volume)->jacobian(camera, tf, &weights);
+    REQUIRE(found.byOpacity.size() == 40);
+    const Jacobian expected = vwsJacobian(makeReferenceEngine(volume, 128)->jacobian(camera, tf, &weights));
+    CHECK(compareJacobians(vwsJacobian(found), expected).ofLargest < 2e-3);
+    // A higher opacity shows more of the feature itself, whichever sweep it was in.
+    int seen = 0;
+    for (std::size_t j = 0; j < 40; ++j) {
+        if (found.sums.visibility[j] == 0) continue; // no voxel has these intensities
+        ++seen;
+        CHECK(found.byOpacity[j].visibility[j] > 0);
+    }
+    CHECK(seen > 30);
+}

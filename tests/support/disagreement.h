@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/visibility.h"
+#include "support/field_sums.h"
 
 namespace pellucid::test {
 

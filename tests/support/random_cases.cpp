@@ -226,8 +226,9 @@ Samples quantized(const std::vector<double>& values, double scale, double offset
     return samples;
 }
 
-/// A ball of NaN, and a few voxels alone.
-void invalidate(Random& random, const Int3& dims, std::vector<float>& samples) {
+/// A ball of `missing`, and a few voxels alone.
+template <class T>
+void invalidate(Random& random, const Int3& dims, std::vector<T>& samples, T missing) {
     Vec3 center;
     for (int a = 0; a < 3; ++a) center[a] = random.unit() * dims[a];
     const double radius = random.between(3, 9);
@@ -235,8 +236,7 @@ void invalidate(Random& random, const Int3& dims, std::vector<float>& samples) {
     for (int k = 0; k < dims.z; ++k)
         for (int j = 0; j < dims.y; ++j)
             for (int i = 0; i < dims.x; ++i, ++at)
-                if (glm::length(Vec3(i, j, k) - center) < radius || random.chance(0.01))
-                    samples[at] = std::numeric_limits<float>::quiet_NaN();
+                if (glm::length(Vec3(i, j, k) - center) < radius || random.chance(0.01)) samples[at] = missing;
 }
 
 std::shared_ptr<const Volume> randomVolume(std::string& kind, Random& random, double size) {
@@ -257,11 +257,23 @@ std::shared_ptr<const Volume> randomVolume(std::string& kind, Random& random, do
         std::vector<float> floats(values.begin(), values.end());
         kind += " f32";
         if (random.chance(0.4)) {
-            invalidate(random, geometry.dims, floats);
+            invalidate(random, geometry.dims, floats, std::numeric_limits<float>::quiet_NaN());
             kind += " holes";
         }
         samples = std::move(floats);
     }
+    Random holes = random; // a copy: other cases stay what they were
+    if (holes.chance(0.3))
+        std::visit(
+            [&](auto& integers) {
+                using T = typename std::decay_t<decltype(integers)>::value_type;
+                if constexpr (std::is_integral_v<T>) {
+                    invalidate(holes, geometry.dims, integers, std::numeric_limits<T>::max());
+                    missing = static_cast<double>(std::numeric_limits<T>::max());
+                    kind += " holes";
+                }
+            },
+            samples);
     return std::make_shared<const Volume>(geometry, std::move(samples), missing);
 }
 

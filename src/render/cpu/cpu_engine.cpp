@@ -7,8 +7,7 @@
 #include <limits>
 #include <mutex>
 
-#include "render/cpu/sweep.h"
-#include "render/visibility.h"
+#include "render/cpu/cpu_engine.h"
 #include "tf/opacity.h"
 #include "volume/intensity_grid.h"
 #include "volume/parallel.h"
@@ -126,6 +125,9 @@ private:
     SweepTables(SweepMode mode, const std::vector<Feature>& features, const Codes& codes)
         : m_mode(mode), m_features(&features), m_lanes(asSize(lanesOf(mode))), m_codes(asSize(codes.max) + 1),
           m_someInvalid(codes.someInvalid) {
+        if (features.size() >= kTransparent)
+            throw Error("at most " + std::to_string(kTransparent - 1) + " features can be measured",
+                        "transfer function", "join some");
         // Where codes are exact every value has an entry of its own, so that what is constant is measured exactly.
         const int most = codes.fine ? kFineTableEntries : kTableEntries;
         const int perValue = std::max(1, (most - 1) / codes.max);
@@ -167,7 +169,7 @@ private:
                 opaque[code] = static_cast<std::uint16_t>(fill(code, s));
                 if (opaque[code] == 0) continue;
                 const int f = featureAt(*m_features, s);
-                m_featureOfCode[code] = static_cast<std::uint8_t>(f < 0 ? static_cast<int>(m_features->size()) : f);
+                m_featureOfCode[code] = static_cast<std::uint16_t>(f < 0 ? static_cast<int>(m_features->size()) : f);
             }
         });
         if (m_someInvalid) m_featureOfCode[kInvalidCode] = kTransparent;
@@ -185,13 +187,14 @@ private:
     std::vector<std::int32_t> m_integral;
     std::vector<float> m_alpha;
     std::array<float, kJacobianLanes> m_units{};
-    std::vector<std::uint8_t> m_featureOfCode;
+    std::vector<std::uint16_t> m_featureOfCode;
     std::vector<int> m_opaqueCodes; ///< [codes + 1][lanes], how many before
 };
 
 class CpuEngine final : public VisibilityEngine {
 public:
-    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality) : m_volume(std::move(volume)), m_quality(quality) {
+    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality, SweepKernel kernel)
+        : m_volume(std::move(volume)), m_quality(quality), m_kernel(kernel) {
         const IntensityGrid grid = makeIntensityGrid(*m_volume);
         const bool someInvalid = !grid.valid.empty();
         // Without gaps, so that tables are short; and with one code for all that is invalid.
@@ -217,7 +220,6 @@ public:
         const std::size_t batches = (tfs.size() + kSweepLanes - 1) / kSweepLanes;
         for (std::size_t first = 0; first < tfs.size(); first += kSweepLanes) {
             const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
-            checkFeatures(batch[0]);
             const Sums sums = sweep(camera, SweepTables(batch, m_codeSpace), weights, nullptr,
                                     job.part(first / kSweepLanes, batches));
             for (std::size_t lane = 0; lane < batch.size(); ++lane) all.push_back(sums.ofLane(lane));
@@ -227,7 +229,6 @@ public:
 
     SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
-        checkFeatures(tf);
         SumsJacobian result;
         constexpr std::size_t kAtOnce = kJacobianLanes - 1;
         const std::size_t sweeps = std::max<std::size_t>(1, (tf.features.size() + kAtOnce - 1) / kAtOnce);
@@ -242,7 +243,6 @@ public:
     }
 
     VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
-        checkFeatures(tf);
         VisibilityField field{Grid<float>(m_volume->dims())};
         sweep(camera, SweepTables({&tf, 1}, m_codeSpace), nullptr, &field.values, job);
         return field;
@@ -276,11 +276,6 @@ private:
             return sums;
         }
     };
-
-    static void checkFeatures(const TransferFunction& tf) {
-        if (tf.features.size() >= kTransparent)
-            throw Error("at most 254 features can be measured", "transfer function", "join some");
-    }
 
     /// The codes that occur in each block of voxels and one voxel around it: what interpolation there can give.
     void findRanges() {
@@ -513,7 +508,7 @@ private:
             job.throwIfStopped();
             partial[i].assign(size, 0.0);
             const auto scratch = borrowScratch();
-            sweepKernel()(in, pieces[i], *scratch, partial[i].data());
+            m_kernel(in, pieces[i], *scratch, partial[i].data());
             returnScratch(scratch);
             job.report(static_cast<double>(++done) / static_cast<double>(pieces.size()));
         });
@@ -537,6 +532,7 @@ private:
 
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
+    SweepKernel m_kernel;
     Codes m_codeSpace;
     ZeroedVector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more
     Int3 m_blocks{0, 0, 0};
@@ -549,7 +545,12 @@ private:
 } // namespace
 
 std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality) {
-    return std::make_unique<CpuEngine>(std::move(volume), quality);
+    return makeCpuEngine(std::move(volume), quality, sweepKernels().front());
+}
+
+std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality,
+                                                SweepKernel kernel) {
+    return std::make_unique<CpuEngine>(std::move(volume), quality, kernel);
 }
 
 } // namespace pellucid

@@ -11,13 +11,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace pellucid {
 
-inline constexpr int kSweepLanes = 8;             ///< candidates of one sweep
-inline constexpr int kJacobianLanes = 16;         ///< of a sweep for derivatives: the depth itself and up to 15 of them
-inline constexpr std::uint8_t kTransparent = 255; ///< in SweepInput::featureOfCode: opacity 0 in every candidate
+inline constexpr int kSweepLanes = 8;     ///< candidates of one sweep
+inline constexpr int kJacobianLanes = 16; ///< of a sweep for derivatives: the depth itself and up to 15 of them
+inline constexpr std::uint16_t kTransparent = 65535; ///< in SweepInput::featureOfCode: opacity 0 in every candidate
 inline constexpr std::uint16_t kInvalidCode = 65535;
 inline constexpr int kCodePadding = 16; ///< codes that may be read behind the last voxel
 inline constexpr int kBlockSize = 8;    ///< voxels along each edge of a block of the opaque map
@@ -64,7 +65,7 @@ struct SweepInput {
     float tableEntryOfCode = 0;                  ///< entries of integralTable per code
     const std::int32_t* integralTable = nullptr; ///< [entries + 1][lanes], Σ of τ·d0 before the entry, in units below
     const float* alphaTable = nullptr; ///< [maxCode + 1][lanes], α; Jacobian: [maxCode + 1][2], α and ∂α/∂x
-    const std::uint8_t* featureOfCode = nullptr; ///< [65536]; `features` for "in none", or kTransparent
+    const std::uint16_t* featureOfCode = nullptr; ///< [65536]; `features` for "in none", or kTransparent
     int features = 0;
     float depthUnit[kJacobianLanes] = {}; ///< optical depth of one unit of integralTable
     float exhaustedDepth = 0;             ///< a ray is given up in the lanes whose depth exceeds this
@@ -96,14 +97,10 @@ struct SweepPiece {
 class SweepScratch {
 public:
     enum Slot { Accumulator, Depth, Entry, Share, Length, Stamp, Alive, Met, Near, Far, kSlots };
-    /// At least `bytes`; contents are kept only while it need not grow.
-    template <class T>
-    T* get(Slot slot, std::size_t count) {
-        return static_cast<T*>(bytes(slot, count * sizeof(T)));
-    }
+    /// So many at least; contents are kept only while it need not grow.
+    void* bytes(Slot slot, std::size_t count);
 
 private:
-    void* bytes(Slot slot, std::size_t count);
     std::vector<unsigned char> m_memory[kSlots];
 };
 
@@ -115,8 +112,8 @@ using SweepKernel = void (*)(const SweepInput& input, const SweepPiece& piece, S
 /// from the front of the box as soon as they lie too far apart.
 std::vector<SweepPiece> sweepPieces(const SweepInput& input);
 
-/// The best kernel for this processor.
-SweepKernel sweepKernel();
+/// All that this processor can run, the best first.
+std::span<const SweepKernel> sweepKernels();
 
 // One per instruction set (sweep_generic.cpp, sweep_avx2.cpp).
 void sweepGeneric(const SweepInput&, const SweepPiece&, SweepScratch&, double*);

@@ -70,12 +70,15 @@ void sweepGeneric(const SweepInput& in, const SweepPiece& piece, SweepScratch& s
     sweepPiece(in, piece, scratch, sums);
 }
 
-SweepKernel sweepKernel() {
+std::span<const SweepKernel> sweepKernels() {
+    static const std::vector<SweepKernel> kernels = [] {
+        std::vector<SweepKernel> all{sweepGeneric};
 #ifdef PELLUCID_HAVE_AVX2_SWEEP
-    static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (avx2) return sweepAvx2;
+        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) all.insert(all.begin(), sweepAvx2);
 #endif
-    return sweepGeneric;
+        return all;
+    }();
+    return kernels;
 }
 
 } // namespace pellucid

@@ -109,6 +109,11 @@ inline int larger(int a, int b) { return a > b ? a : b; }
 inline int clampTo(int v, int lo, int hi) { return v < lo ? lo : (v > hi ? hi : v); }
 inline double clampTo(double v, double hi) { return v < 0 ? 0 : (v > hi ? hi : v); }
 
+template <class T>
+T* memory(SweepScratch& scratch, SweepScratch::Slot slot, std::size_t count) {
+    return static_cast<T*>(scratch.bytes(slot, count * sizeof(T)));
+}
+
 /// Where rays meet the plane w: coordinate = base + index·scale.
 struct RayPlane {
     double baseU, baseV, scale;
@@ -144,14 +149,15 @@ public:
         : m_in(in), m_piece(piece), m_scratch(scratch), m_sums(sums), m_b0(piece.firstRow), m_b1(piece.lastRow),
           m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5), m_start(floorInt(m_startW * in.stepsPerSlice)),
           m_follows(in.tolerance < 1e30f) {
-        m_accumulator = scratch.get<float>(SweepScratch::Accumulator, accumulatorSize());
+        m_accumulator = memory<float>(scratch, SweepScratch::Accumulator, accumulatorSize());
         for (std::size_t i = 0; i < accumulatorSize(); ++i) m_accumulator[i] = 0.0f;
         for (int lane = 0; lane < K; ++lane) m_limit[lane] = in.exhaustedDepth / in.depthUnit[lane];
         for (int lane = 0; lane < kWide; ++lane) // derivatives are no depths
             m_lightUnit[lane] = kMode == SweepMode::Batch || lane == 0 ? in.depthUnit[lane] : 0.0f;
         const auto planes = static_cast<std::size_t>(in.nw + 2);
-        m_near.planes = scratch.get<OwnPlane>(SweepScratch::Near, planes * static_cast<std::size_t>(in.stepsPerSlice));
-        m_far.planes = scratch.get<OwnPlane>(SweepScratch::Far, planes * static_cast<std::size_t>(in.ownSteps));
+        m_near.planes =
+            memory<OwnPlane>(scratch, SweepScratch::Near, planes * static_cast<std::size_t>(in.stepsPerSlice));
+        m_far.planes = memory<OwnPlane>(scratch, SweepScratch::Far, planes * static_cast<std::size_t>(in.ownSteps));
     }
 
     /// Takes rays from where they start to the slices of the piece, whose voxels ask for them.
@@ -242,13 +248,13 @@ private:
         m_a1 = floorInt(hi) + 1;
         m_blocks = (m_a1 - m_a0) / kWide + 1;
         const std::size_t rays = rows() * rowRays(), blocks = rows() * static_cast<std::size_t>(m_blocks);
-        m_depth = m_scratch.get<float>(SweepScratch::Depth, rays * K + 2 * kWide); // see pairsAt
-        m_entry = m_scratch.get<int>(SweepScratch::Entry, rays);
-        if (kInvalid) m_share = m_scratch.get<float>(SweepScratch::Share, rays);
-        m_length = m_scratch.get<float>(SweepScratch::Length, rays);
-        m_stamp = m_scratch.get<int>(SweepScratch::Stamp, blocks);
-        m_alive = m_scratch.get<std::uint8_t>(SweepScratch::Alive, blocks);
-        m_met = m_scratch.get<std::uint8_t>(SweepScratch::Met, blocks);
+        m_depth = memory<float>(m_scratch, SweepScratch::Depth, rays * K + 2 * kWide); // see pairsAt
+        m_entry = memory<int>(m_scratch, SweepScratch::Entry, rays);
+        if (kInvalid) m_share = memory<float>(m_scratch, SweepScratch::Share, rays);
+        m_length = memory<float>(m_scratch, SweepScratch::Length, rays);
+        m_stamp = memory<int>(m_scratch, SweepScratch::Stamp, blocks);
+        m_alive = memory<std::uint8_t>(m_scratch, SweepScratch::Alive, blocks);
+        m_met = memory<std::uint8_t>(m_scratch, SweepScratch::Met, blocks);
         for (std::size_t i = 0; i < rays * K; ++i) m_depth[i] = 0.0f;
         for (std::size_t i = 0; i < blocks; ++i) {
             m_stamp[i] = kNever;
@@ -838,7 +844,7 @@ private:
     struct Ledger {
         const std::int32_t* integral;
         const float* alpha;
-        const std::uint8_t* featureOfCode;
+        const std::uint16_t* featureOfCode;
         const std::uint32_t* weights; ///< of the first voxel of the block
         std::ptrdiff_t weightStep;
         float* sums;
@@ -896,7 +902,12 @@ private:
     void flush() {
         const std::size_t sums = static_cast<std::size_t>(m_in.features + 1) * 3;
         if (kSingle) {
-            for (std::size_t i = 0; i < sums * kWide; ++i) m_sums[i / kWide] += static_cast<double>(m_accumulator[i]);
+            for (std::size_t i = 0; i < sums; i += 3) { // the three of a feature
+                const float* at = m_accumulator + i * kWide;
+                if (none(load(at) != Vec8{})) continue; // of many features few occur in a piece
+                for (int n = 0; n < 3 * kWide; ++n)
+                    m_sums[i + static_cast<std::size_t>(n / kWide)] += static_cast<double>(at[n]);
+            }
         } else {
             for (std::size_t i = 0; i < sums * K * kSpread; ++i)
                 m_sums[i % (sums * K)] += static_cast<double>(m_accumulator[i]);
