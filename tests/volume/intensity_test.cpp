@@ -48,16 +48,28 @@ TEST_CASE("codes of 16-bit data over its whole range are the values themselves",
     CHECK(std::equal(values.begin(), values.end(), grid.codes.begin()));
 }
 
-TEST_CASE("codes of floats are intensities rounded to 1/65535; invalid voxels are marked", "[intensity]") {
-    const Volume volume = lineOf(std::vector<float>{0, 1, 0.25f, NAN, 0.7f});
+TEST_CASE("codes of floats are intensities rounded to 1/64000; invalid voxels are marked", "[intensity]") {
+    const Volume volume = lineOf(std::vector<float>{0, 1, 0.25f, NAN, 0.7071f});
     const IntensityGrid grid = makeIntensityGrid(volume);
-    CHECK(grid.maxCode == 65535);
+    CHECK(grid.maxCode == 64000);
     CHECK(grid.codes[0] == 0);
-    CHECK(grid.codes[1] == 65535);
-    CHECK(grid.codes[2] == 16384); // 0.25 · 65535 = 16383.75
+    CHECK(grid.codes[1] == 64000);
+    CHECK(grid.codes[2] == 16000);
     CHECK(grid.codes[3] == 0);
-    CHECK(std::abs(grid.codes[4] / 65535.0 - static_cast<double>(0.7f)) <= 0.5 / 65535.0 + 1e-12);
+    CHECK(std::abs(grid.codes[4] / 64000.0 - static_cast<double>(0.7071f)) <= 0.5 / 64000.0 + 1e-12);
     CHECK(grid.valid == std::vector<std::uint8_t>{1, 1, 1, 0, 1});
+}
+
+TEST_CASE("borders of bins and decimals of three digits are codes of floats", "[intensity]") {
+    // A label map stored as floats: whoever makes a feature begin at a label finds the label in it.
+    std::vector<float> values{0, 1};
+    std::vector<double> wanted{0, 1};
+    for (int i = 1; i < 256; ++i) wanted.push_back(i / 256.0);
+    for (int i = 1; i < 1000; ++i) wanted.push_back(i / 1000.0);
+    for (std::size_t i = 2; i < wanted.size(); ++i) values.push_back(static_cast<float>(wanted[i]));
+    const IntensityGrid grid = makeIntensityGrid(lineOf(values));
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+        CHECK(static_cast<double>(grid.codes[i]) / grid.maxCode == wanted[i]);
 }
 
 TEST_CASE("a constant volume has intensity 0 everywhere", "[intensity]") {
