@@ -28,6 +28,10 @@ constexpr const char* kSparse = "sparse";
 constexpr const char* kCube = "cube:"; ///< followed by the number of voxels along each side
 constexpr int kCubeSize = 128;         ///< of the smallest
 
+/// All rows at once: what measuring takes, weights for nine features (4), a renderer's codes (3) and, while `setup`
+/// runs, another engine (5).
+constexpr double kBenchBytesPerVoxel = kMeasureBytesPerVoxel + 4 + 3 + 5;
+
 /// One name per comma.
 std::set<BenchRow> parseRows(const std::string& text, const std::string& option) {
     std::set<BenchRow> rows;
@@ -89,11 +93,11 @@ public:
 
     void memory() {
         const JobControl job = m_progress.phase("memcpy");
+        requireMemory("copying", "memcpy", 2 * kMemcpyBytes);
         for (const int threads : m_bench.threads) m_memcpy.push_back(memcpyGbPerS(threads, job));
     }
     void givenVolume() {
-        const auto [volume, tf] =
-            loadVolumeAndTf(m_options.volume, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
+        const auto [volume, tf] = loadVolumeAndTf(m_options.volume, m_options.tf, m_progress, memoryUse());
         m_results.notices = volume->notices;
         measureMain(volume, m_options.volume.path, tf, m_options.tf.spec.value_or("default"));
     }
@@ -102,7 +106,7 @@ public:
             VolumeOptions knee;
             knee.path = "sample:knee";
             const TfOptions tents{m_options.tf.spec.value_or("tents:3")};
-            const auto [volume, tf] = loadVolumeAndTf(knee, tents, m_progress, {"measuring", kMeasureBytesPerVoxel});
+            const auto [volume, tf] = loadVolumeAndTf(knee, tents, m_progress, memoryUse());
             measureMain(volume, knee.path, tf, *tents.spec);
         }
         const std::set<BenchRow> rows = both(m_options.only, {BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian});
@@ -110,17 +114,15 @@ public:
         VolumeOptions block;
         block.path = "sample:shells";
         block.sampleSize = kCubeSize;
-        const auto [volume, given] =
-            loadVolumeAndTf(block, m_options.tf, m_progress, {"measuring", kMeasureBytesPerVoxel});
+        const auto [volume, given] = loadVolumeAndTf(block, m_options.tf, m_progress, memoryUse());
         const bool dense = !m_options.tf.spec;
         const int largest = m_options.full ? 4 : 2;
-        requireMemory({"measuring", kMeasureBytesPerVoxel}, kCube + std::to_string(largest * kCubeSize),
-                      volume->dims() * largest);
+        requireMemory(memoryUse(), kCube + std::to_string(largest * kCubeSize), volume->dims() * largest);
         std::vector<BenchCase> cubes;
         for (int n = 1; n <= largest; n *= 2) {
             cubes.push_back(caseOf(n == 1 ? volume : tiled(*volume, n), kCube + std::to_string(n * kCubeSize),
-                                   m_options.tf.spec.value_or(kDense), dense ? denseTf() : given, rows));
-            if (dense) cubes.back().stepScale = kDenseStepScale;
+                                   m_options.tf.spec.value_or(kDense), given, rows));
+            if (dense) makeDense(cubes.back());
         }
         bench(cubes, m_bench, m_progress.phase("cubes"), m_results);
     }
@@ -130,10 +132,18 @@ public:
     }
 
 private:
+    MemoryUse memoryUse() const { return m_options.engine.memoryFor("measuring", kBenchBytesPerVoxel); }
+
     BenchCase caseOf(const std::shared_ptr<const Volume>& volume, const std::string& volumeName,
                      const std::string& tfName, TransferFunction tf, std::set<BenchRow> rows) const {
         return {volume, volumeName, m_options.camera.camera(volume->geometry()), tfName, std::move(tf), std::move(rows),
                 false,  1};
+    }
+
+    static void makeDense(BenchCase& of) {
+        of.tf = denseTf();
+        of.stepScale = kDenseStepScale;
+        of.equalCosts = true;
     }
 
     /// All rows under `tf` and, unless the user wants this one alone, some under two of other densities.
@@ -147,8 +157,8 @@ private:
         if (!m_options.tf.spec) {
             const std::set<BenchRow> rows =
                 both(m_options.only, {BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize});
-            cases.push_back(caseOf(volume, name, kDense, denseTf(), rows));
-            cases.back().stepScale = kDenseStepScale;
+            cases.push_back(caseOf(volume, name, kDense, tf, rows));
+            makeDense(cases.back());
             cases.push_back(caseOf(volume, name, kSparse, sparseTf(*volume), rows));
         }
         for (const BenchCase& each : cases) // in turn: only one's fields are in memory
@@ -172,7 +182,8 @@ private:
     const BenchResult* find(BenchRow row, const std::string& volume, const std::string& tf, int threads,
                             int candidates = 1) const {
         for (const BenchResult& r : m_results.rows)
-            if (r.row == row && r.volume == volume && r.tf == tf && r.threads == threads && r.candidates == candidates)
+            if (r.row == row && r.volume == volume && r.tf == tf && r.threads == threads &&
+                r.candidates.value_or(candidates) == candidates)
                 return &r;
         return nullptr;
     }

@@ -124,19 +124,18 @@ private:
         r.volume = m_case.volumeName;
         r.dims = m_case.volume->dims();
         r.tf = tfName;
-        r.candidates = candidates;
+        if (candidates > 0) r.candidates = candidates;
         r.features = static_cast<int>(tf.features.size());
         r.extra = Json::object();
         return r;
     }
-    BenchResult row(BenchRow which, const std::string& engine, int candidates = 1) const {
+    BenchResult row(BenchRow which, const std::string& engine, int candidates = 0) const { ///< 0: none are measured
         return row(which, engine, candidates, m_case.tf, m_case.tfName);
     }
 
     void addSetup() {
         BenchResult r = row(BenchRow::Setup, m_engine->name());
         r.tf.reset();
-        r.candidates.reset();
         r.features.reset();
         add(r, sampleBytes() + voxels() * kBytesPerCode, [this](BenchResult&, const JobControl&) {
             makeEngine(m_options.engine, m_case.volume, m_options.quality);
@@ -156,7 +155,7 @@ private:
         m_candidates = searchCandidates(m_case.tf, vwsOf(sums[0]), m_case.stepScale);
         // One by one the same eight, since more opaque ones are done sooner. Where nothing is opaque one stands for
         // all.
-        const int singles = m_case.stepScale < 1 ? 1 : static_cast<int>(m_candidates.size());
+        const int singles = m_case.equalCosts ? 1 : static_cast<int>(m_candidates.size());
         add(
             row(BenchRow::Sweep, m_engine->name(), 1), sweepBytes(),
             [this, singles](BenchResult&, const JobControl& j) {
@@ -170,7 +169,7 @@ private:
 
     void addJacobians(const JobControl& job) {
         if (!m_case.tf.features.empty())
-            add(row(BenchRow::Jacobian, m_engine->name()), sweepBytes(), [this](BenchResult&, const JobControl& j) {
+            add(row(BenchRow::Jacobian, m_engine->name(), 1), sweepBytes(), [this](BenchResult&, const JobControl& j) {
                 m_engine->jacobian(m_case.camera, m_case.tf, &m_weights, j);
             });
         if (!m_case.nineFeatures) return;
@@ -350,9 +349,8 @@ void bench(const std::vector<BenchCase>& cases, const BenchOptions& options, con
 }
 
 double memcpyGbPerS(int threads, const JobControl& job) {
-    constexpr std::size_t kBytes = std::size_t{256} << 20;
-    const std::vector<char> from(kBytes, 1); // written, so that every page is there
-    std::vector<char> to(kBytes, 0);
+    const std::vector<char> from(kMemcpyBytes, 1); // written, so that every page is there
+    std::vector<char> to(kMemcpyBytes, 0);
     const auto pieces = static_cast<std::size_t>(threads);
     setThreadCount(threads);
     std::vector<double> seconds;
@@ -360,12 +358,12 @@ double memcpyGbPerS(int threads, const JobControl& job) {
         job.throwIfStopped();
         const Stopwatch watch;
         parallelFor(pieces, [&](std::size_t i) {
-            const std::size_t begin = kBytes * i / pieces, end = kBytes * (i + 1) / pieces;
+            const std::size_t begin = kMemcpyBytes * i / pieces, end = kMemcpyBytes * (i + 1) / pieces;
             std::memcpy(to.data() + begin, from.data() + begin, end - begin);
         });
         if (run > 0) seconds.push_back(watch.seconds());
     }
-    return 2.0 * static_cast<double>(kBytes) / median(seconds) / 1e9;
+    return 2.0 * static_cast<double>(kMemcpyBytes) / median(seconds) / 1e9;
 }
 
 } // namespace pellucid::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <set>
 #include <string>
@@ -50,6 +51,7 @@ struct BenchCase {
     bool nineFeatures = false; ///< a Jacobian of kNineTents too
     /// Length of the steps of the eight candidates in those of a line search, (0, 1].
     double stepScale = 1;
+    bool equalCosts = false; ///< nothing is left out whatever the candidate: one stands for all in the row of 1 TF
 };
 
 inline constexpr const char* kNineTents = "tents:9";
@@ -78,8 +80,9 @@ struct BenchResults {
 void bench(const std::vector<BenchCase>& cases, const BenchOptions& options, const JobControl& job,
            BenchResults& results);
 
-/// Bytes read plus bytes written per second, in 1e9, by a plain copy of 256 MiB cut into one piece per thread: what
-/// this machine's memory gives. Median of five.
+inline constexpr std::size_t kMemcpyBytes = std::size_t{256} << 20;
+/// Bytes read plus bytes written per second, in 1e9, by a plain copy of kMemcpyBytes cut into one piece per thread:
+/// what this machine's memory gives. Median of five.
 double memcpyGbPerS(int threads, const JobControl& job);
 
 } // namespace pellucid::cli

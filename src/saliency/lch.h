@@ -12,9 +12,9 @@ struct Appearance {
 };
 
 struct Lch {
-    double lightness = 0; ///< L*, [0,100]
-    double chroma = 0;    ///< C*ab
-    double hueDegrees = 0;
+    double lightness = 0;  ///< L*, [0,100]
+    double chroma = 0;     ///< C*ab, [0, about 134] for sRGB colours
+    double hueDegrees = 0; ///< [0, 360); 0 for greys
 };
 
 Lch lchFromSrgb(const Rgb& srgb);

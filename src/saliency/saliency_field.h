@@ -18,8 +18,8 @@ enum class SaliencyKernel {
 struct SaliencyOptions {
     double sigma = 2.0; ///< in d0, (0, 8]
     SaliencyKernel kernel = SaliencyKernel::Thesis;
-    double w1 = 1.0, w2 = 1.0;
-    Rgb background; ///< colour of voxels in no feature, and of invalid ones
+    double w1 = 1.0, w2 = 1.0; ///< of centre and surround (4.8), finite, ≥ 0, no unit
+    Rgb background;            ///< colour of voxels in no feature, and of invalid ones
     bool operator==(const SaliencyOptions&) const = default;
 };
 

@@ -11,6 +11,7 @@ namespace {
 // Tiles are large enough that their halos cost little, and small enough that a ring of slices stays in the
 // second-level cache: 7 · 38 rows of 192 + 32 voxels are 477 KB.
 constexpr int kTileWidth = 192, kTileRows = 32, kTileSlices = 96;
+static_assert(kTileWidth <= kLargestTileWidth);
 
 /// `count` cut into equal parts of at most `most`.
 int partSize(int count, int most) {

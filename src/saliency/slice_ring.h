@@ -57,8 +57,6 @@ public:
               std::ptrdiff_t stride);
 
     void load(int z); ///< in ascending order, inside the volume
-    int firstRow() const { return m_firstRow; }
-    int endRow() const { return m_endRow; }
     /// One row's floats; halo first. Zeros where (y, z) lies outside the volume.
     const float* row(int y, int z) const;
 

@@ -154,12 +154,12 @@ TEST_CASE("what memory will not do for fails before it starts", "[cli][errors]")
     // 200³ voxels: the volume takes 16 MB, measuring 96 MB more, optimizing 64 MB.
     const Words volume{"sample:disks", "--size", "200", "--tf", "tents:3", "--memory", "0.07"};
     const std::string what = "200 x 200 x 200 voxels needs ";
-    checkFails(w, Words{"measure"} + volume, 1, "reading and measuring " + what + "112 MB of memory");
-    checkFails(w, Words{"measure", "--engine", "reference"} + volume, 1, what + "152 MB of memory");
+    checkFails(w, Words{"measure"} + volume, 1, "reading and measuring " + what + "80 MB of memory");
+    checkFails(w, Words{"measure", "--engine", "reference"} + volume, 1, what + "120 MB of memory");
     checkFails(w, Words{"fields", "--out", "d"} + volume, 1, what + "112 MB of memory");
     checkFails(w, Words{"optimize", "--target", "1,1,1"} + volume, 1, "reading and optimizing " + what + "80 MB");
     checkFails(w, {"render", "sample:disks", "--sample-size", "400", "--out", "a.png", "--memory", "0.1"}, 1,
-               "reading and drawing 400 x 400 x 400 voxels needs 256 MB");
+               "reading and drawing 400 x 400 x 400 voxels needs 320 MB");
     checkFails(w, {"info", "sample:disks", "--size", "400", "--memory", "0.1"}, 1, "allow more with --memory");
     for (const char* bad : {"0", "-1", "much", "inf", ""})
         checkFails(w, {"measure", "sample:disks", "--memory", bad}, 2, "--memory");

@@ -404,9 +404,6 @@ TEST_CASE("what the device or the caller cannot do is an error", "[gl]") {
     CHECK_THROWS_AS(engine->field(inside, tents(3)), Error);
 
     const Camera camera = perspective(volume->geometry(), {0, -20, 0});
-    const std::vector<TransferFunction> different{tents(3), tents(2)};
-    CHECK_THROWS_AS(engine->sums(camera, different, nullptr), Error);
-
     std::stop_source stop;
     stop.request_stop();
     JobControl job;

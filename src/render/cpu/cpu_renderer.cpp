@@ -20,7 +20,7 @@ namespace pellucid {
 namespace {
 
 constexpr int kTableSize = 4096;
-constexpr double kDark = 1e-4; ///< transmittance below which a ray ends: a quarter of an 8-bit level at most
+constexpr double kDark = 1e-4; ///< transmittance below which a ray ends: a fortieth of an 8-bit level
 
 // Light from the eye; the same numbers stand in shaders/include/shading.glsl.
 constexpr double kAmbient = 0.35, kDiffuse = 0.65, kSpecular = 0.25, kShininess = 24;
