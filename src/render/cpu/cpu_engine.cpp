@@ -20,6 +20,7 @@ namespace {
 /// In voxels. The rays of an eye farther off are parallel: over 4096 voxels they diverge by less than 0.2.
 constexpr double kFarEye = 1e8;
 constexpr std::size_t kSmallVolume = 128 * 128 * 128; ///< voxels
+constexpr int kMostFollowedFinely = 512;              ///< slices
 constexpr int kTableEntries = 4096; ///< at most; 128 KiB with 8 lanes: stays in the second-level cache
 constexpr int kFineTableEntries = 16384;
 
@@ -371,8 +372,13 @@ private:
         // What is off averages out over many voxels, which small volumes do not have; but they have the time.
         const bool small = isSmall();
         in.stepsPerSlice = high ? (small ? 4 : 2) : (small ? 3 : 1);
-        in.ownSteps = high ? (small ? 16 : 4) : 6;
-        in.tolerance = high ? (small ? 0.01f : 0.3f) : (small ? 0.2f : std::numeric_limits<float>::infinity());
+        // To follow lines from the front takes time as the square of the slices.
+        const bool finest = small && in.nw <= kMostFollowedFinely;
+        in.ownSteps = high ? (finest ? 16 : small ? 8 : 4) : 6;
+        in.tolerance = high ? (finest  ? 0.01f
+                               : small ? 0.1f
+                                       : 0.3f)
+                            : (small ? 0.2f : std::numeric_limits<float>::infinity());
         in.perspective = camera.projection == Projection::Perspective;
         if (!high && !small && in.perspective) in.raySpacing = 1.2; // at most: nearer to the eye they are denser
         if (!in.perspective) {

@@ -143,6 +143,7 @@ class Sweeper {
     static constexpr std::uint8_t kAllLanes = 255;
     static constexpr int kExhaustedEvery = 4; ///< slices between looks for exhausted rays
     static constexpr int kFlushEvery = 4;     ///< slices
+    static constexpr float kDark = 10;        ///< times the depth at which rays are given up: exp(−60) at most
 
 public:
     Sweeper(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums)
@@ -608,10 +609,11 @@ private:
         bool insideV;
         const std::uint8_t* opaque;
     };
-    /// Those on the way to one row of voxels, from far to near; room for one more.
+    /// Those on the way to one row of voxels, the farthest first; room for one more.
     struct OwnLines {
         OwnPlane* planes = nullptr;
         int count = 0;
+        int begin = 0, end = 0; ///< those of [0, count) that have been computed
         bool ready = false;
     };
 
@@ -625,17 +627,42 @@ private:
         m_near.ready = true;
         m_near.count = 0;
         for (int i = at; i == at || sampleW(i) < k; ++i) m_near.planes[m_near.count++] = ownPlane(sampleW(i), v, k);
+        m_near.begin = 0;
+        m_near.end = m_near.count;
     }
-    /// From where rays start.
-    const OwnLines& farLines(const VoxelBlock& block) {
+    /// From where rays start. Planes are computed when they are asked for: most lines begin at a side of the box, or
+    /// end in the dark, long before they have met all slices.
+    OwnLines& farLines(const VoxelBlock& block) {
         if (m_far.ready) return m_far;
         m_far.ready = true;
-        m_far.count = 0;
-        const int first = floorInt(m_startW * m_in.ownSteps);
-        for (int i = first; i == first || i < block.k * m_in.ownSteps; ++i)
-            m_far.planes[m_far.count++] =
-                ownPlane(i == first ? m_startW : static_cast<double>(i) / m_in.ownSteps, block.v, block.k);
+        m_far.count = larger(1, block.k * m_in.ownSteps - farStart());
+        m_far.begin = m_far.end = 0;
         return m_far;
+    }
+    int farStart() const { return floorInt(m_startW * m_in.ownSteps); }
+    double farW(int i) const { return i == 0 ? m_startW : static_cast<double>(farStart() + i) / m_in.ownSteps; }
+    const OwnPlane& planeAt(OwnLines& own, int i, const VoxelBlock& block) const {
+        if (own.begin == own.end) own.begin = own.end = i;
+        for (; own.end <= i; ++own.end) own.planes[own.end] = ownPlane(farW(own.end), block.v, block.k);
+        while (own.begin > i) {
+            --own.begin;
+            own.planes[own.begin] = ownPlane(farW(own.begin), block.v, block.k);
+        }
+        return own.planes[i];
+    }
+    /// The last plane before any line of the block enters the box; the first one where they start inside.
+    int entryOf(const VoxelBlock& block, const OwnLines& own) const {
+        const auto inside = [&](int i) { // from one plane on to the voxels, which are inside
+            const RayPlane lines = voxelPlane(farW(i), block.k);
+            return insideV(lines.v(block.v)) && lines.u(block.u) <= m_in.nu - 0.5 &&
+                   lines.u(block.u + kWide - 1) >= -0.5;
+        };
+        int outside = -1, in = own.count - 1;
+        while (in - outside > 1) {
+            const int middle = outside + (in - outside) / 2;
+            (inside(middle) ? in : outside) = middle;
+        }
+        return larger(0, outside);
     }
 
     /// Of the voxels' own lines, d0 per slice.
@@ -669,9 +696,10 @@ private:
         return stretch(from, to, path);
     }
 
-    /// Calls body(stretch) for each stretch of the voxels' own lines that is not transparent.
+    /// Calls body(stretch) for each stretch of the voxels' own lines that is not transparent, from the plane `first` on
+    /// until it says false.
     template <class Body>
-    void alongOwnLines(const VoxelBlock& block, const OwnLines& own, const Body& body) const {
+    void alongOwnLines(const VoxelBlock& block, OwnLines& own, int first, const Body& body) const {
         const Vec8 length = voxelLengths(block), zero = {}, ends = static_cast<float>(block.k) - 0.5f / length;
         double end = static_cast<double>(ends[0]); // d0/2 in front of the voxels: of the one where that is farthest off
         for (int n = 1; n < kWide; ++n) end = static_cast<double>(ends[n]) > end ? static_cast<double>(ends[n]) : end;
@@ -683,10 +711,10 @@ private:
         };
         const auto at = [&](const OwnPlane& p) { return sample(p.rows, p.lines.u(block.u), p.lines.scale); };
         Samples before = {};
-        bool known = false, wasOpaque = opaqueAt(own.planes[0]);
-        for (int i = 1;; ++i) {
+        bool known = false, wasOpaque = opaqueAt(planeAt(own, first, block));
+        for (int i = first + 1;; ++i) {
             const OwnPlane& p0 = own.planes[i - 1];
-            const bool isLast = i >= own.count || own.planes[i].w >= end;
+            const bool isLast = i >= own.count || planeAt(own, i, block).w >= end;
             const OwnPlane p1 = isLast ? ownPlane(end > p0.w ? end : p0.w, block.v, block.k) : own.planes[i];
             const bool opaque = opaqueAt(p1);
             if (!opaque && !wasOpaque) {
@@ -698,7 +726,7 @@ private:
                            reach = (upTo < ends ? upTo : ends) - static_cast<float>(p0.w);
                 Vec8 path = length * (reach > zero ? reach : zero);
                 if (!inside(p0) || !inside(p1)) path *= insideShare(p0.lines, p1.lines, block.u, block.v);
-                body(stretch(before, now, path));
+                if (!body(stretch(before, now, path))) return;
                 before = now;
                 known = true;
             }
@@ -728,21 +756,28 @@ private:
         pairsAt(block.far, block.ray, far0, far1);
         const Vec8 near = near0 + block.fraction * (near1 - near0), far = far0 + block.fraction * (far1 - far0);
         Vec8 depth = near + block.fractionV * (far - near);
-        const auto follow = [&](Vec8& sum) {
-            return [&sum, this](const Stretch& s) {
-                sum += s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
-            };
+        const auto depthOf = [this](const Stretch& s) {
+            return s.weight * toFloat(gathered(m_in.integralTable, s.high) - gathered(m_in.integralTable, s.low));
         };
         if (m_in.stepsPerSlice == 1)
-            follow(depth)(lastStretch(block));
+            depth += depthOf(lastStretch(block));
         else
-            alongOwnLines(block, m_near, follow(depth));
+            alongOwnLines(block, m_near, 0, [&](const Stretch& s) {
+                depth += depthOf(s);
+                return true;
+            });
         if (m_follows) {
             Int8 listed = {};
             for (int i = 0; i < block.listed; ++i) listed[block.list[i]] = -1;
             if (!none(disagree(near0, near1, far0, far1, Vec8{} + m_in.depthUnit[0]) & listed)) {
                 depth = Vec8{};
-                alongOwnLines(block, farLines(block), follow(depth));
+                OwnLines& own = farLines(block);
+                alongOwnLines(block, own, entryOf(block, own), [&](const Stretch& s) {
+                    depth += depthOf(s);
+                    if (!none((depth < m_limit[0]) & listed)) return true;
+                    depth *= kDark; // a little light in each of many voxels would be much
+                    return false;
+                });
             }
         }
         Vec8 alpha = {}, weights[2] = {};
@@ -816,21 +851,32 @@ private:
                         apart |= disagree(d0, d1, d2, d3, load(m_lightUnit)) & opaqueLanes(block.codes[n]);
                 });
         }
-        const auto follow = [&](Vec8(*sum)[kVectors]) {
-            return [&, sum](const Stretch& s) {
-                for (int i = 0; i < block.listed; ++i) {
-                    const int n = block.list[i];
-                    for (int part = 0; part < kVectors; ++part)
-                        sum[n][part] += s.weight[n] * between(m_in.integralTable, s.low[n], s.high[n], part);
-                }
-            };
+        const auto addTo = [&](Vec8(*sum)[kVectors], const Stretch& s) {
+            for (int i = 0; i < block.listed; ++i) {
+                const int n = block.list[i];
+                for (int part = 0; part < kVectors; ++part)
+                    sum[n][part] += s.weight[n] * between(m_in.integralTable, s.low[n], s.high[n], part);
+            }
         };
-        alongOwnLines(block, m_near, follow(depth));
+        alongOwnLines(block, m_near, 0, [&](const Stretch& s) {
+            addTo(depth, s);
+            return true;
+        });
         if (!none(apart)) {
             if (kMode == SweepMode::Jacobian) apart = Int8{} - 1; // derivatives go with their depth
             for (auto& voxel : own)
                 for (Vec8& part : voxel) part = Vec8{};
-            alongOwnLines(block, farLines(block), follow(own));
+            // Lanes that are depths, and whose depths are asked for.
+            const Int8 counts = (load(m_lightUnit) > Vec8{}) & apart;
+            OwnLines& lines = farLines(block);
+            alongOwnLines(block, lines, entryOf(block, lines), [&](const Stretch& s) {
+                addTo(own, s);
+                Int8 light = {};
+                for (int i = 0; i < block.listed; ++i) light |= own[block.list[i]][0] < load(m_limit);
+                if (!none(light & counts)) return true;
+                for (int i = 0; i < block.listed; ++i) own[block.list[i]][0] *= kDark;
+                return false;
+            });
             for (int i = 0; i < block.listed; ++i)
                 for (int part = 0; part < kVectors; ++part) {
                     const int n = block.list[i];
