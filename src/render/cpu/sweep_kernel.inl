@@ -143,6 +143,7 @@ class Sweeper {
     static constexpr std::uint8_t kAllLanes = 255;
     static constexpr int kExhaustedEvery = 4; ///< slices between looks for exhausted rays
     static constexpr int kFlushEvery = 4;     ///< slices
+    static constexpr int kLookEvery = 8;      ///< stretches of an own line between looks for light
     static constexpr float kDark = 10;        ///< times the depth at which rays are given up: exp(−60) at most
 
 public:
@@ -613,7 +614,7 @@ private:
     struct OwnLines {
         OwnPlane* planes = nullptr;
         int count = 0;
-        int begin = 0, end = 0; ///< those of [0, count) that have been computed
+        int begin = 0, end = 0; ///< far: those of [0, count) that have been computed
         bool ready = false;
     };
 
@@ -627,8 +628,6 @@ private:
         m_near.ready = true;
         m_near.count = 0;
         for (int i = at; i == at || sampleW(i) < k; ++i) m_near.planes[m_near.count++] = ownPlane(sampleW(i), v, k);
-        m_near.begin = 0;
-        m_near.end = m_near.count;
     }
     /// From where rays start. Planes are computed when they are asked for: most lines begin at a side of the box, or
     /// end in the dark, long before they have met all slices.
@@ -641,14 +640,16 @@ private:
     }
     int farStart() const { return floorInt(m_startW * m_in.ownSteps); }
     double farW(int i) const { return i == 0 ? m_startW : static_cast<double>(farStart() + i) / m_in.ownSteps; }
-    const OwnPlane& planeAt(OwnLines& own, int i, const VoxelBlock& block) const {
+    /// Computes the plane i and some behind it.
+    __attribute__((noinline)) void computePlanes(OwnLines& own, int i, const VoxelBlock& block) const {
+        constexpr int kAhead = 16;
         if (own.begin == own.end) own.begin = own.end = i;
-        for (; own.end <= i; ++own.end) own.planes[own.end] = ownPlane(farW(own.end), block.v, block.k);
+        for (const int end = smaller(own.count, i + kAhead); own.end < end; ++own.end)
+            own.planes[own.end] = ownPlane(farW(own.end), block.v, block.k);
         while (own.begin > i) {
             --own.begin;
             own.planes[own.begin] = ownPlane(farW(own.begin), block.v, block.k);
         }
-        return own.planes[i];
     }
     /// The last plane before any line of the block enters the box; the first one where they start inside.
     int entryOf(const VoxelBlock& block, const OwnLines& own) const {
@@ -697,9 +698,13 @@ private:
     }
 
     /// Calls body(stretch) for each stretch of the voxels' own lines that is not transparent, from the plane `first` on
-    /// until it says false.
-    template <class Body>
+    /// until it says false. kFar: planes are computed when they are come to.
+    template <bool kFar, class Body>
     void alongOwnLines(const VoxelBlock& block, OwnLines& own, int first, const Body& body) const {
+        const auto plane = [&](int i) -> const OwnPlane& {
+            if (kFar && i >= own.end) computePlanes(own, i, block);
+            return own.planes[i];
+        };
         const Vec8 length = voxelLengths(block), zero = {}, ends = static_cast<float>(block.k) - 0.5f / length;
         double end = static_cast<double>(ends[0]); // d0/2 in front of the voxels: of the one where that is farthest off
         for (int n = 1; n < kWide; ++n) end = static_cast<double>(ends[n]) > end ? static_cast<double>(ends[n]) : end;
@@ -710,11 +715,12 @@ private:
             return p.insideV && insideU(p.lines.u(block.u), p.lines.u(block.u + kWide - 1));
         };
         const auto at = [&](const OwnPlane& p) { return sample(p.rows, p.lines.u(block.u), p.lines.scale); };
+        if (kFar) computePlanes(own, first, block);
         Samples before = {};
-        bool known = false, wasOpaque = opaqueAt(planeAt(own, first, block));
+        bool known = false, wasOpaque = opaqueAt(plane(first));
         for (int i = first + 1;; ++i) {
             const OwnPlane& p0 = own.planes[i - 1];
-            const bool isLast = i >= own.count || planeAt(own, i, block).w >= end;
+            const bool isLast = i >= own.count || plane(i).w >= end;
             const OwnPlane p1 = isLast ? ownPlane(end > p0.w ? end : p0.w, block.v, block.k) : own.planes[i];
             const bool opaque = opaqueAt(p1);
             if (!opaque && !wasOpaque) {
@@ -762,7 +768,7 @@ private:
         if (m_in.stepsPerSlice == 1)
             depth += depthOf(lastStretch(block));
         else
-            alongOwnLines(block, m_near, 0, [&](const Stretch& s) {
+            alongOwnLines<false>(block, m_near, 0, [&](const Stretch& s) {
                 depth += depthOf(s);
                 return true;
             });
@@ -772,8 +778,10 @@ private:
             if (!none(disagree(near0, near1, far0, far1, Vec8{} + m_in.depthUnit[0]) & listed)) {
                 depth = Vec8{};
                 OwnLines& own = farLines(block);
-                alongOwnLines(block, own, entryOf(block, own), [&](const Stretch& s) {
+                int stretches = 0;
+                alongOwnLines<true>(block, own, entryOf(block, own), [&](const Stretch& s) {
                     depth += depthOf(s);
+                    if (++stretches % kLookEvery != 0) return true;
                     if (!none((depth < m_limit[0]) & listed)) return true;
                     depth *= kDark; // a little light in each of many voxels would be much
                     return false;
@@ -851,14 +859,14 @@ private:
                         apart |= disagree(d0, d1, d2, d3, load(m_lightUnit)) & opaqueLanes(block.codes[n]);
                 });
         }
-        const auto addTo = [&](Vec8(*sum)[kVectors], const Stretch& s) {
+        const auto addTo = [&](Vec8(*sum)[kVectors], const Stretch& s) __attribute__((always_inline)) {
             for (int i = 0; i < block.listed; ++i) {
                 const int n = block.list[i];
                 for (int part = 0; part < kVectors; ++part)
                     sum[n][part] += s.weight[n] * between(m_in.integralTable, s.low[n], s.high[n], part);
             }
         };
-        alongOwnLines(block, m_near, 0, [&](const Stretch& s) {
+        alongOwnLines<false>(block, m_near, 0, [&](const Stretch& s) {
             addTo(depth, s);
             return true;
         });
@@ -869,8 +877,10 @@ private:
             // Lanes that are depths, and whose depths are asked for.
             const Int8 counts = (load(m_lightUnit) > Vec8{}) & apart;
             OwnLines& lines = farLines(block);
-            alongOwnLines(block, lines, entryOf(block, lines), [&](const Stretch& s) {
+            int stretches = 0;
+            alongOwnLines<true>(block, lines, entryOf(block, lines), [&](const Stretch& s) {
                 addTo(own, s);
+                if (++stretches % kLookEvery != 0) return true;
                 Int8 light = {};
                 for (int i = 0; i < block.listed; ++i) light |= own[block.list[i]][0] < load(m_limit);
                 if (!none(light & counts)) return true;
