@@ -136,10 +136,15 @@ void setMemoryLimit(std::optional<std::uint64_t> bytes) { g_limit = bytes.value_
 void requireMemory(const std::string& doing, const std::string& where, std::uint64_t needed) {
     const std::uint64_t available = availableMemoryBytes();
     if (needed <= available) return;
-    throw FileError(doing + " needs " + describeBytes(needed) + " of memory, " + describeBytes(available) + " are free",
-                    where,
-                    g_limit != kUnknown ? "allow more with --memory, or use a smaller volume"
-                                        : "close other programs, use a larger machine or a smaller volume");
+    const std::string needs = doing + " needs " + describeBytes(needed) + " of memory, ";
+    const std::uint64_t limit = g_limit;
+    if (limit == kUnknown)
+        throw FileError(needs + describeBytes(available) + " are free", where,
+                        "close other programs, use a larger machine or a smaller volume");
+    const std::uint64_t taken = pagesOfThisProcess().resident * pageBytes();
+    throw FileError(needs + describeBytes(available) + " are free: the program itself takes " + describeBytes(taken) +
+                        " of the " + describeBytes(limit) + " allowed",
+                    where, "allow more with --memory, or use a smaller volume");
 }
 
 void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims) {

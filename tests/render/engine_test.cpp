@@ -179,6 +179,37 @@ TEST_CASE("volumes of one voxel, one row and one slice are measured as the refer
     }
 }
 
+TEST_CASE("long thin volumes are measured as the reference does, along them too", "[visibility][cpu]") {
+    // More slices than are followed finely; lines enter through the sides, or run through all of them.
+    std::mt19937 random(29);
+    for (const Int3 dims : {Int3(700, 1, 1), Int3(3, 600, 2), Int3(2, 2, 900)}) {
+        const auto volume = roughVolume(random, dims, Vec3(1));
+        for (const double peak : {0.02, 0.5}) {
+            const TransferFunction tf = tents(3, peak);
+            const WeightFields weights = saliencyFields(*volume, tf);
+            for (const auto& [azimuth, elevation] : {std::pair{90.0, 0.0}, {80.0, 3.0}, {0.0, 0.0}, {10.0, 80.0}})
+                for (const auto projection : {Projection::Perspective, Projection::Orthographic}) {
+                    const Camera camera = cameraFromView(volume->geometry(), azimuth, elevation, 1, projection);
+                    const Grid<float> expected = makeReferenceEngine(volume)->field(camera, tf).values;
+                    for (const Quality quality : {Quality::Normal, Quality::High}) {
+                        const auto engine = makeCpuEngine(volume, quality);
+                        INFO(dims.x << " x " << dims.y << " x " << dims.z << " from " << azimuth << ", " << elevation);
+                        const Disagreement d = compareWithField(expected, *engine, camera, tf, weights);
+                        const double allowed = quality == Quality::High ? 0.005 : 0.01;
+                        CHECK(d.visibility < allowed);
+                        CHECK(d.vws < allowed);
+                        const std::vector<TransferFunction> two{tf, tf};
+                        const FeatureSums batch = engine->sums(camera, two, &weights)[1],
+                                          alone = engine->sums(camera, {&tf, 1}, &weights)[0];
+                        for (std::size_t f = 0; f < 3; ++f)
+                            CHECK(batch.visibility[f] ==
+                                  Approx(alone.visibility[f]).epsilon(1e-4).margin(1e-4 * alone.allVisibility));
+                    }
+                }
+        }
+    }
+}
+
 TEST_CASE("the sweeps for every instruction set measure the same", "[visibility][cpu]") {
     std::mt19937 random(17);
     CHECK(sweepKernels().back() == sweepGeneric);
