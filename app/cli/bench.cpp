@@ -136,8 +136,8 @@ private:
 
     BenchCase caseOf(const std::shared_ptr<const Volume>& volume, const std::string& volumeName,
                      const std::string& tfName, TransferFunction tf, std::set<BenchRow> rows) const {
-        return {volume, volumeName, m_options.camera.camera(volume->geometry()), tfName, std::move(tf), std::move(rows),
-                false,  1};
+        return {volume, volumeName,    m_options.camera.camera(volume->geometry()),
+                tfName, std::move(tf), std::move(rows)};
     }
 
     static void makeDense(BenchCase& of) {
@@ -162,7 +162,7 @@ private:
             cases.push_back(caseOf(volume, name, kSparse, sparseTf(*volume), rows));
         }
         for (const BenchCase& each : cases) // in turn: only one's fields are in memory
-            if (!each.rows.empty()) bench({each}, m_bench, m_progress.phase(name + ", " + each.tfName), m_results);
+            if (!each.rows.empty()) bench({&each, 1}, m_bench, m_progress.phase(name + ", " + each.tfName), m_results);
     }
 
     double memcpyOf(int threads) const {

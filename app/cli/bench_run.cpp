@@ -316,7 +316,7 @@ TransferFunction sparseTf(const Volume& volume) {
     return tf;
 }
 
-void bench(const std::vector<BenchCase>& cases, const BenchOptions& options, const JobControl& job,
+void bench(std::span<const BenchCase> cases, const BenchOptions& options, const JobControl& job,
            BenchResults& results) {
     const JobControl quiet{job.stop, {}}; // reports would cost time
     setThreadCount(options.threads.back());

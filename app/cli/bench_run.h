@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,8 +78,7 @@ struct BenchResults {
 
 /// Appends the rows of `cases`. Their repetitions with as many threads alternate, so that a machine that changes its
 /// speed changes that of all of them, and their ratios hold.
-void bench(const std::vector<BenchCase>& cases, const BenchOptions& options, const JobControl& job,
-           BenchResults& results);
+void bench(std::span<const BenchCase> cases, const BenchOptions& options, const JobControl& job, BenchResults& results);
 
 inline constexpr std::size_t kMemcpyBytes = std::size_t{256} << 20;
 /// Bytes read plus bytes written per second, in 1e9, by a plain copy of kMemcpyBytes cut into one piece per thread:

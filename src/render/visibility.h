@@ -21,7 +21,7 @@ struct VisibilityField {
     Grid<float> values;
 };
 
-/// High: about half the error for about twice the time and more (docs/method.md, "Deviations"; MEASURES §10).
+/// High: about half the error for about twice the time and more (docs/method.md, "Measured deviations"; MEASURES §10).
 enum class Quality { Normal, High };
 
 /// Anything that can tell visibility from a camera. One call takes many transfer functions, so that a line search is

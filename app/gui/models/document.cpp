@@ -69,13 +69,13 @@ void Document::cancelPreview() {
 void Document::applyTf(const TransferFunction& tf) {
     const bool sameFeatures = tf.features == m_tf.features && m_targets.size() == tf.features.size();
     const bool changed = !(tf == m_tf);
-    const std::vector<Feature> before = m_tf.features;
+    const bool sameNames =
+        std::equal(m_tf.features.begin(), m_tf.features.end(), tf.features.begin(), tf.features.end(),
+                   [](const Feature& a, const Feature& b) { return a.name == b.name; });
     m_tf = tf;
     if (changed) ++m_version;
     if (!sameFeatures) {
-        const auto sameName = [](const Feature& a, const Feature& b) { return a.name == b.name; };
-        if (!std::equal(before.begin(), before.end(), tf.features.begin(), tf.features.end(), sameName))
-            m_influence.reset(); // it would stand under other names
+        if (!sameNames) m_influence.reset(); // it would stand under other names
         if (m_targets.size() != m_tf.features.size()) {
             const std::size_t n = m_tf.features.size();
             m_targets.assign(n, n == 0 ? 0.0 : 1.0 / static_cast<double>(n));

@@ -20,7 +20,16 @@ namespace {
 /// In voxels. The rays of an eye farther off are parallel: over 4096 voxels they diverge by less than 0.2.
 constexpr double kFarEye = 1e8;
 constexpr std::size_t kSmallVolume = 128 * 128 * 128; ///< voxels
-constexpr int kMostFollowedFinely = 512;              ///< slices
+
+/// How lines are sampled, see SweepInput (docs/method.md has the same as a table).
+struct Sampling {
+    int stepsPerSlice, ownSteps;
+    float tolerance;
+};
+constexpr Sampling kSmall{3, 6, 0.2f}, kSmallHigh{4, 16, 0.01f}, kSmallHighLong{4, 8, 0.1f},
+    kLarge{1, 6, std::numeric_limits<float>::infinity()}, kLargeHigh{2, 4, 0.3f};
+constexpr int kMostFollowedFinely = 512; ///< slices: to follow lines to their end takes time as their square
+
 constexpr int kTableEntries = 4096; ///< at most; 128 KiB with 8 lanes: stays in the second-level cache
 constexpr int kFineTableEntries = 16384;
 
@@ -371,14 +380,13 @@ private:
         const bool high = m_quality == Quality::High;
         // What is off averages out over many voxels, which small volumes do not have; but they have the time.
         const bool small = isSmall();
-        in.stepsPerSlice = high ? (small ? 4 : 2) : (small ? 3 : 1);
-        // To follow lines from the front takes time as the square of the slices.
-        const bool finest = small && in.nw <= kMostFollowedFinely;
-        in.ownSteps = high ? (finest ? 16 : small ? 8 : 4) : 6;
-        in.tolerance = high ? (finest  ? 0.01f
-                               : small ? 0.1f
-                                       : 0.3f)
-                            : (small ? 0.2f : std::numeric_limits<float>::infinity());
+        const Sampling& sampling = !small                        ? (high ? kLargeHigh : kLarge)
+                                   : !high                       ? kSmall
+                                   : in.nw > kMostFollowedFinely ? kSmallHighLong
+                                                                 : kSmallHigh;
+        in.stepsPerSlice = sampling.stepsPerSlice;
+        in.ownSteps = sampling.ownSteps;
+        in.tolerance = sampling.tolerance;
         in.perspective = camera.projection == Projection::Perspective;
         if (!high && !small && in.perspective) in.raySpacing = 1.2; // at most: nearer to the eye they are denser
         if (!in.perspective) {

@@ -640,7 +640,7 @@ private:
     }
     int farStart() const { return floorInt(m_startW * m_in.ownSteps); }
     double farW(int i) const { return i == 0 ? m_startW : static_cast<double>(farStart() + i) / m_in.ownSteps; }
-    /// Computes the plane i and some behind it.
+    /// Computes the plane i and some behind it. Not inlined: it is rare in a loop that wants the registers.
     __attribute__((noinline)) void computePlanes(OwnLines& own, int i, const VoxelBlock& block) const {
         constexpr int kAhead = 16;
         if (own.begin == own.end) own.begin = own.end = i;
@@ -859,7 +859,7 @@ private:
                         apart |= disagree(d0, d1, d2, d3, load(m_lightUnit)) & opaqueLanes(block.codes[n]);
                 });
         }
-        const auto addTo = [&](Vec8(*sum)[kVectors], const Stretch& s) __attribute__((always_inline)) {
+        const auto addTo = [&](Vec8(*sum)[kVectors], const Stretch& s) {
             for (int i = 0; i < block.listed; ++i) {
                 const int n = block.list[i];
                 for (int part = 0; part < kVectors; ++part)
