@@ -1,13 +1,14 @@
 // `bench`: how fast this machine measures, as a table (docs/performance.md says what the rows mean).
 #include <algorithm>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "bench_run.h"
 #include "commands.h"
 #include "inputs.h"
 #include "parse.h"
 #include "tf/formats/tf_json.h"
 #include "tf/sample_tf.h"
-#include "volume/parallel.h"
 
 namespace pellucid::cli {
 

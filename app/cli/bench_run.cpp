@@ -8,12 +8,12 @@
 #include <functional>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "commands.h"
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
 #include "saliency/saliency_direct.h"
 #include "volume/histogram.h"
-#include "volume/parallel.h"
 
 namespace pellucid::cli {
 

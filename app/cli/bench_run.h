@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "base/job.h"
 #include "output.h"
 #include "progress.h"
 #include "render/camera.h"
 #include "render/gl/engines.h"
 #include "tf/transfer_function.h"
-#include "volume/job.h"
 #include "volume/volume.h"
 
 namespace pellucid::cli {

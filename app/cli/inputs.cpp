@@ -6,10 +6,10 @@
 
 #include <unistd.h>
 
+#include "base/error.h"
 #include "parse.h"
 #include "tf/formats/tf_json.h"
 #include "tf/sample_tf.h"
-#include "volume/error.h"
 
 namespace pellucid::cli {
 
@@ -49,7 +49,9 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
         ->type_name("");
     addValue(
         app, "--raw", "NX,NY,NZ,TYPE[,ENDIAN]",
-        [this](const std::string& text, const std::string&) { raw = parseRawLayout(text); },
+        [this](const std::string& text, const std::string& option) {
+            raw = atOption(option + " " + text, [&] { return parseRawLayout(text); });
+        },
         "the file is headerless; TYPE is u8 i8 u16 i16 u32 i32 f32 f64, ENDIAN little (default) or big", kVolumeGroup);
     addValue(
         app, "--spacing", "SX,SY,SZ",
@@ -182,7 +184,9 @@ Camera CameraOptions::camera(const Geometry& geometry) const {
 void EngineOptions::add(CLI::App& app, const std::string& qualityHelp) {
     addValue(
         app, "--engine", "auto|gl|cpu|reference",
-        [this](const std::string& text, const std::string&) { choice = engineChoiceFromName(text); },
+        [this](const std::string& text, const std::string& option) {
+            choice = atOption(option, [&] { return engineChoiceFromName(text); });
+        },
         "what computes; auto (default): gl on a real GPU, else cpu", kEngineGroup);
     addValue(
         app, "--quality", "normal|high",

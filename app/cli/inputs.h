@@ -10,6 +10,7 @@
 #include "progress.h"
 #include "render/camera.h"
 #include "render/gl/engines.h"
+#include "render/memory_needs.h"
 #include "render/visibility.h"
 #include "saliency/saliency_field.h"
 #include "saliency/vws.h"

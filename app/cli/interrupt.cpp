@@ -8,8 +8,8 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include "base/atomic_file.h"
 #include "progress.h"
-#include "volume/atomic_file.h"
 
 namespace pellucid::cli {
 

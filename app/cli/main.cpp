@@ -9,11 +9,11 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "parse.h"
-#include "volume/memory.h"
-#include "volume/parallel.h"
 
 namespace pellucid::cli {
 
@@ -115,13 +115,38 @@ std::string problem(const CLI::App& program, const CLI::ParseError& error) {
     return text;
 }
 
+/// "WHAT, WHERE, WHAT TO DO": where a setting would help, by the name of its option.
+std::string lineOf(const Error& e) {
+    const auto advice = [&]() -> std::string {
+        const std::string said = e.whatToDo().empty() ? "" : e.whatToDo() + ", or ";
+        switch (e.remedy()) {
+        case Remedy::AllowMoreMemory:
+            return "allow more with --memory, or use a smaller volume";
+        case Remedy::GiveRawLayout:
+            return said + "give --raw NX,NY,NZ,TYPE for headerless data";
+        case Remedy::CorrectRawLayout:
+            return "correct --raw or --skip";
+        case Remedy::GiveSpacing:
+            return said + "give --spacing SX,SY,SZ";
+        case Remedy::NoComponent:
+            return "leave out --component";
+        case Remedy::OtherEngine:
+            return said + "use --engine cpu";
+        case Remedy::AsSaid:
+            break;
+        }
+        return e.whatToDo();
+    };
+    return Error(e.problem(), e.where(), advice()).what();
+}
+
 Failure failureOf(const std::exception_ptr& thrown, const std::string& where) {
     try {
         std::rethrow_exception(thrown);
     } catch (const UsageError& e) {
-        return {2, e.what()};
+        return {2, lineOf(e)};
     } catch (const Error& e) {
-        return {1, e.what()};
+        return {1, lineOf(e)};
     } catch (const std::bad_alloc&) {
         return {1, "out of memory, " + where + ", use a smaller volume, --size or machine with more"};
     } catch (const std::length_error&) {
@@ -154,7 +179,7 @@ int runCommand(const Command& command, const CommonOptions& common) {
         progress.finish();
         if (interruptStatus() != 0) return stoppedStatus();
         writeAnswer(common.json ? jsonText(answer.json) : answer.text);
-        if (answer.failure) return fail({1, answer.failure->what()});
+        if (answer.failure) return fail({1, lineOf(*answer.failure)});
         for (const std::string& notice : answer.notices)
             std::fprintf(stderr, "%s: note: %s\n", kProgram, oneLine(notice).c_str());
         return 0;

@@ -78,7 +78,7 @@ Answer run(const Options& o, Progress& progress) {
     o.camera.check();
     const auto [volume, tf] =
         loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("optimizing", kMeasureBytesPerVoxel));
-    normalizedTargets(o.targets, tf.features.size());
+    atOption("--target", [&] { return normalizedTargets(o.targets, tf.features.size()); });
     const Camera camera = o.camera.camera(volume->geometry());
     const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
 
@@ -120,7 +120,9 @@ Command addOptimize(CLI::App& program) {
         ->required();
     addValue(
         *app, "--method", "fixed|line|parallel",
-        [o](const std::string& text, const std::string&) { o->optimize.method = searchMethodFromName(text); },
+        [o](const std::string& text, const std::string& option) {
+            o->optimize.method = atOption(option, [&] { return searchMethodFromName(text); });
+        },
         "fixed step, line search, or line search with all steps at once (default parallel)");
     addValue(
         *app, "--direction", "gradient",

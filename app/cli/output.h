@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "volume/error.h"
+#include "base/error.h"
 #include "volume/volume.h"
 
 namespace pellucid::cli {

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/error.h"
 #include "output.h"
-#include "volume/error.h"
 
 namespace pellucid::cli {
 

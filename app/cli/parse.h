@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/error.h"
 #include "tf/color.h"
 #include "volume/volume.h"
 
@@ -44,6 +45,16 @@ Clip parseClip(const std::string& text, const std::string& option);
 /// Whether `text` means to be one: it starts with an axis and a colon.
 bool looksLikeClip(const std::string& text);
 bool looksLikeNumber(const std::string& text);
+
+/// What `parse()` returns; a UsageError of it gets the option as its place.
+template <class Parse>
+auto atOption(const std::string& option, const Parse& parse) {
+    try {
+        return parse();
+    } catch (const UsageError& e) {
+        throw UsageError(e.problem(), option, e.whatToDo(), e.remedy());
+    }
+}
 
 /// Adds an option with one value, which `take(text, option name)` checks and stores. A throw inside ends the parsing.
 CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName,

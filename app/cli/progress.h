@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "volume/job.h"
+#include "base/job.h"
 
 namespace pellucid::cli {
 

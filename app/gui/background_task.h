@@ -8,7 +8,7 @@
 #include <QObject>
 #include <QString>
 
-#include "volume/job.h"
+#include "base/job.h"
 
 namespace pellucid::gui {
 

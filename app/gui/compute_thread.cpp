@@ -1,7 +1,8 @@
 #include "compute_thread.h"
 
 #include "render/gl/engines.h"
-#include "volume/memory.h"
+#include "render/memory_needs.h"
+#include "volume/memory_use.h"
 
 namespace pellucid::gui {
 

@@ -29,6 +29,27 @@ QLabel* selectable(const QString& text, const char* name, QWidget* parent) {
 
 } // namespace
 
+QString adviceFor(const Error& error) {
+    const QString said = QString::fromStdString(error.whatToDo());
+    const auto orElse = [&](const QString& more) {
+        return said.isEmpty() ? more : QObject::tr("%1, or %2").arg(said, more);
+    };
+    switch (error.remedy()) {
+    case Remedy::AllowMoreMemory:
+        return QObject::tr("close other programs, or open a smaller volume");
+    case Remedy::GiveRawLayout:
+        return orElse(QObject::tr("open it with File ▸ Open raw data and say how its bytes lie"));
+    case Remedy::OtherEngine:
+        return orElse(QObject::tr("choose the CPU as engine and renderer"));
+    case Remedy::CorrectRawLayout:
+    case Remedy::GiveSpacing:
+    case Remedy::NoComponent:
+    case Remedy::AsSaid:
+        break;
+    }
+    return said;
+}
+
 void showError(QWidget* parent, const QString& title, const QString& what, const QString& where,
                const QString& whatToDo) {
     auto* dialog = new QDialog(parent);

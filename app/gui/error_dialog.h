@@ -3,9 +3,14 @@
 
 #include <QString>
 
+#include "base/error.h"
+
 class QWidget;
 
 namespace pellucid::gui {
+
+/// What to do about an error, in the words of the window's own controls.
+QString adviceFor(const Error& error);
 
 /// Does not wait for an answer. The parts are labels named errorWhat, errorWhere and errorWhatToDo.
 void showError(QWidget* parent, const QString& title, const QString& what, const QString& where,

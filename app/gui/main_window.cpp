@@ -23,6 +23,7 @@
 #include "optimize/refine.h"
 #include "raw_dialog.h"
 #include "render/gl/engines.h"
+#include "render/memory_needs.h"
 #include "tf/formats/tf_json.h"
 #include "tf/sample_tf.h"
 #include "theme.h"

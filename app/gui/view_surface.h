@@ -6,10 +6,10 @@
 
 #include <QString>
 
+#include "base/error.h"
 #include "render/camera.h"
 #include "render/render_settings.h"
 #include "tf/transfer_function.h"
-#include "volume/error.h"
 
 class QWidget;
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid {
 
@@ -12,15 +12,15 @@ std::vector<double> normalizedTargets(std::vector<double> targets, std::size_t f
                          "give one with features, such as tents:3");
     if (targets.size() != features)
         throw UsageError(std::to_string(targets.size()) + " targets for " + std::to_string(features) + " features",
-                         "--target", "give one number per feature");
+                         "targets", "give one number per feature");
     double sum = 0;
     for (const double t : targets) {
         if (!std::isfinite(t) || t < 0)
-            throw UsageError("a target is finite and not negative", "--target", "correct it");
+            throw UsageError("a target is finite and not negative", "targets", "correct it");
         sum += t;
     }
     if (!(sum > 0) || !std::isfinite(sum))
-        throw UsageError("all targets are 0", "--target", "give at least one above 0");
+        throw UsageError("all targets are 0", "targets", "give at least one above 0");
     for (double& t : targets) t /= sum;
     return targets;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid {
 
@@ -140,7 +140,7 @@ const char* name(SearchMethod method) {
 SearchMethod searchMethodFromName(const std::string& text) {
     for (const SearchMethod m : {SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel})
         if (text == name(m)) return m;
-    throw UsageError("there is no search method '" + text + "'", "--method", "choose fixed, line or parallel");
+    throw UsageError("there is no search method '" + text + "'", "search method", "choose fixed, line or parallel");
 }
 
 const char* name(StopReason reason) {
@@ -158,11 +158,11 @@ const char* name(StopReason reason) {
 }
 
 void OptimizeOptions::validate() const {
-    if (!(step > 0 && step <= 10)) throw UsageError("the step lies in (0,10]", "optimize", "correct --step");
+    if (!(step > 0 && step <= 10)) throw UsageError("the step lies in (0,10]", "optimize", "correct the step");
     if (!(tolerance > 0) || !std::isfinite(tolerance))
-        throw UsageError("the tolerance is positive", "optimize", "correct --tolerance");
+        throw UsageError("the tolerance is positive", "optimize", "correct the tolerance");
     if (maxIterations < 0)
-        throw UsageError("the number of iterations is not negative", "optimize", "correct --max-iterations");
+        throw UsageError("the number of iterations is not negative", "optimize", "correct it");
 }
 
 OptimizeResult optimize(const VwsFunction& function, const std::vector<double>& targets, const OptimizeOptions& options,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid {
 
@@ -107,11 +107,11 @@ double stepUp(const RefineOptions& options, double loweredSignificance, double r
 
 void RefineOptions::validate() const {
     if (!(stepDown > 0 && stepDown <= 1))
-        throw UsageError("the step down lies in (0,1]", "refine", "correct --step-down");
+        throw UsageError("the step down lies in (0,1]", "refine", "correct the step");
     if (stepUp && !(*stepUp > 0 && *stepUp <= 1))
-        throw UsageError("the step up lies in (0,1]", "refine", "correct --step-up");
+        throw UsageError("the step up lies in (0,1]", "refine", "correct the step");
     if (maxIterations < 0)
-        throw UsageError("the number of iterations is not negative", "refine", "correct --max-iterations");
+        throw UsageError("the number of iterations is not negative", "refine", "correct it");
 }
 
 std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf) {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/job.h"
 #include "tf/transfer_function.h"
 #include "volume/histogram.h"
-#include "volume/job.h"
 
 namespace pellucid {
 

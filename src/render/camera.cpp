@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "tf/formats/json_file.h"
-#include "volume/error.h"
+#include "base/error.h"
+#include "base/json_file.h"
 
 namespace pellucid {
 

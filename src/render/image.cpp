@@ -6,8 +6,8 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include "volume/atomic_file.h"
-#include "volume/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 
 namespace pellucid {
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
+#include "base/job.h"
 #include "render/image.h"
 #include "render/render_settings.h"
 #include "tf/transfer_function.h"
-#include "volume/job.h"
 
 namespace pellucid {
 

@@ -1,6 +1,6 @@
 #include "render/render_settings.h"
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "base/job.h"
 #include "render/camera.h"
 #include "saliency/vws.h"
 #include "tf/transfer_function.h"
-#include "volume/job.h"
 
 namespace pellucid {
 

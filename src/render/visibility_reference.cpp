@@ -3,12 +3,12 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/check.h"
+#include "base/parallel.h"
 #include "render/ray_box.h"
 #include "render/trilinear.h"
 #include "render/visibility.h"
 #include "tf/opacity.h"
-#include "volume/check.h"
-#include "volume/parallel.h"
 
 namespace pellucid {
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "volume/error.h"
-#include "volume/parallel.h"
+#include "base/error.h"
+#include "base/parallel.h"
 
 namespace pellucid {
 
@@ -164,9 +164,9 @@ BallKernel::BallKernel(const Geometry& geometry, double radiusInD0, SaliencyKern
 
 void validate(const SaliencyOptions& o) {
     if (!(o.sigma > 0) || !(o.sigma <= 8))
-        throw UsageError("sigma lies in (0, 8] reference lengths", "saliency", "give --sigma such a value");
+        throw UsageError("sigma lies in (0, 8] reference lengths", "saliency", "give such a sigma");
     if (!std::isfinite(o.w1) || !std::isfinite(o.w2) || o.w1 < 0 || o.w2 < 0)
-        throw UsageError("w1 and w2 are finite and not negative", "saliency", "correct --w1, --w2");
+        throw UsageError("w1 and w2 are finite and not negative", "saliency", "correct them");
 }
 
 TransferFunction colorsOf(const TransferFunction& tf) {

@@ -3,8 +3,8 @@
 #include <atomic>
 #include <cstring>
 
+#include "base/parallel.h"
 #include "saliency/slice_ring.h"
-#include "volume/parallel.h"
 
 namespace pellucid {
 

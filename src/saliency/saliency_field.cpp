@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/parallel.h"
 #include "saliency/slice_ring.h"
-#include "volume/parallel.h"
 
 namespace pellucid {
 

@@ -3,9 +3,9 @@
 
 #include <array>
 
+#include "base/job.h"
 #include "saliency/weight_fields.h"
 #include "tf/transfer_function.h"
-#include "volume/job.h"
 #include "volume/volume.h"
 
 namespace pellucid {

@@ -1,8 +1,8 @@
 // Saliency by the book: each voxel, each neighbour, double precision.
 #include <cmath>
 
+#include "base/parallel.h"
 #include "saliency/appearance.h"
-#include "volume/parallel.h"
 
 namespace pellucid {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "base/zeroed_memory.h"
 #include "volume/grid.h"
-#include "volume/zeroed_memory.h"
 
 namespace pellucid {
 

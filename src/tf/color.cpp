@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid {
 

@@ -1,7 +1,7 @@
 #include "tf/tf_table.h"
 
+#include "base/check.h"
 #include "tf/opacity.h"
-#include "volume/check.h"
 
 namespace pellucid {
 

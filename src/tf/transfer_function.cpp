@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid {
 

@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "volume/check.h"
+#include "base/check.h"
 
 namespace pellucid {
 

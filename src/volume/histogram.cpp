@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/parallel.h"
+#include "base/parallel.h"
 
 namespace pellucid {
 

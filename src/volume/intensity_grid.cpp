@@ -3,7 +3,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "volume/parallel.h"
+#include "base/parallel.h"
 
 namespace pellucid {
 

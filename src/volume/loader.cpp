@@ -47,9 +47,8 @@ Volume readFile(const VolumeSource& source, const JobControl& job) {
         if (reader == nullptr) {
             const bool named = lowerCase(source.path).ends_with(".raw");
             throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format",
-                            source.path,
-                            named ? "give --raw NX,NY,NZ,TYPE"
-                                  : "give one of " + knownSuffixes() + ", or --raw NX,NY,NZ,TYPE for headerless data");
+                            source.path, named ? "say how its bytes lie" : "give one of " + knownSuffixes(),
+                            Remedy::GiveRawLayout);
         }
         Volume read = reader->read(source, job);
         read.format = reader->name();
@@ -60,8 +59,9 @@ Volume readFile(const VolumeSource& source, const JobControl& job) {
 }
 
 Volume sample(const VolumeSource& source, const JobControl& job) {
-    if (source.raw) throw UsageError("a sample has no raw layout", source.path, "leave out --raw");
-    if (source.component != 0) throw UsageError("a sample has one component", source.path, "leave out --component");
+    if (source.raw) throw UsageError("a sample has no raw layout", source.path, "ask for none");
+    if (source.component != 0)
+        throw UsageError("a sample has one component", source.path, "ask for none", Remedy::NoComponent);
     Volume volume =
         makeSample(source.path.substr(kSamplePrefix.size()), source.sampleSize, source.seed, job, source.then);
     if (!source.missing) return volume;
@@ -83,7 +83,7 @@ std::string plainNumber(double value) {
 
 RawLayout parseRawLayout(const std::string& text) {
     const auto fail = [&](const std::string& why) {
-        return UsageError(why, "--raw " + text,
+        return UsageError(why, "raw layout " + text,
                           "give NX,NY,NZ,TYPE[,little|big], TYPE one of u8 i8 u16 i16 u32 i32 f32 f64");
     };
     std::vector<std::string> parts(1);

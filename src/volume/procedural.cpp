@@ -7,9 +7,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/parallel.h"
 #include "volume/formats/file_check.h"
 #include "volume/noise.h"
-#include "volume/parallel.h"
 
 namespace pellucid {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "volume/job.h"
-#include "volume/memory.h"
+#include "base/job.h"
+#include "volume/memory_use.h"
 #include "volume/volume.h"
 
 namespace pellucid {

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <type_traits>
 
-#include "volume/error.h"
-#include "volume/parallel.h"
+#include "base/error.h"
+#include "base/parallel.h"
 
 namespace pellucid {
 
@@ -78,8 +78,8 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
     if (d.x < 1 || d.y < 1 || d.z < 1) throw Error("a volume needs at least one voxel along each axis", "", "");
     for (int a = 0; a < 3; ++a)
         if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
-            throw Error("spacing must be positive and finite, origin finite", "",
-                        "correct the header or give --spacing");
+            throw Error("spacing must be positive and finite, origin finite", "", "correct the header",
+                        Remedy::GiveSpacing);
     const std::size_t count = std::visit([](const auto& v) { return v.size(); }, samples);
     if (count != voxelCount(d)) throw Error("number of samples and dimensions disagree", "", "");
     m_samples = std::make_shared<const Samples>(std::move(samples));
@@ -96,7 +96,8 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
 
 Volume Volume::withRange(const ValueRange& range) const {
     if (!std::isfinite(range.lo) || !std::isfinite(range.hi) || !(range.lo < range.hi))
-        throw UsageError("the intensity range needs LO < HI, both finite", "--range", "give LO,HI in data units");
+        throw UsageError("the intensity range needs LO < HI, both finite", "intensity range",
+                         "give two such numbers, in data units");
     Volume other = *this;
     other.m_range = range;
     return other;

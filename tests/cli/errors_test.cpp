@@ -208,6 +208,7 @@ TEST_CASE("bad volume files fail with their name", "[cli][errors]") {
     checkFails(w, {"info", "absurd.mhd"}, 1, "good.nrrd");
     checkFails(w, {"info", "orphan.mhd"}, 1, "no.raw");
     checkFails(w, {"info", "new\nline.nrrd"}, 1, "new line.nrrd");
+    checkFails(w, {"info", "v.raw"}, 1, "give --raw NX,NY,NZ,TYPE");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,3,u8"}, 1, "v.raw");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,1,u8"}, 1, "v.raw");
     checkFails(w, {"info", "v.raw", "--raw", "10000,10000,10000,f64"}, 1, "v.raw");

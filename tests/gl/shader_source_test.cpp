@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
+#include "base/error.h"
 #include "render/gl/shader_source.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 using namespace pellucid::gl;

@@ -2,11 +2,11 @@
 
 #include <array>
 
+#include "base/parallel.h"
 #include "render/gl/engines.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/visibility_gl.h"
 #include "support/field_sums.h"
-#include "volume/parallel.h"
 
 using namespace pellucid;
 using namespace pellucid::testing;

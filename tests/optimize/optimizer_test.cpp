@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "optimize/history_io.h"
 #include "optimize/measure.h"
 #include "optimize/optimizer.h"
 #include "support/volumes.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 using namespace pellucid::test;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/error.h"
 #include "optimize/refine.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 

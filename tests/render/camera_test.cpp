@@ -3,10 +3,10 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "render/camera.h"
 #include "render/ray_box.h"
 #include "support/volumes.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 using namespace pellucid::test;

@@ -2,11 +2,11 @@
 
 #include <limits>
 
+#include "base/parallel.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/ray_box.h"
 #include "support/engine_checks.h"
 #include "support/field_sums.h"
-#include "volume/parallel.h"
 
 using namespace pellucid;
 using namespace pellucid::test;

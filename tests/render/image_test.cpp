@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
+#include "base/error.h"
 #include "render/image_renderer.h"
 #include "support/temp_folder.h"
 #include "support/volumes.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 using namespace pellucid::test;

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error.h"
+#include "base/parallel.h"
 #include "saliency/ball_plan.h"
 #include "saliency/lch.h"
 #include "saliency/saliency_direct.h"
 #include "saliency/saliency_field.h"
 #include "support/volumes.h"
-#include "volume/error.h"
-#include "volume/parallel.h"
 
 using namespace pellucid;
 using namespace pellucid::test;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
+#include "base/error.h"
 #include "tf/color.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "support/temp_folder.h"
 #include "tf/formats/tf_json.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 using nlohmann::json;

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "tf/opacity.h"
 #include "tf/sample_tf.h"
 #include "tf/tf_table.h"
 #include "tf/transfer_function.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 

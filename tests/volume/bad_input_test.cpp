@@ -79,10 +79,19 @@ TEST_CASE("an empty file is refused in every format", "[bad-input]") {
 TEST_CASE("an unknown suffix lists what can be read", "[bad-input]") {
     const TempFolder folder;
     const std::string line = errorOf(folder.write("a.xyz", "abc"));
-    for (const char* part : {".nrrd", ".nhdr", ".mhd", ".mha", ".nii", ".nii.gz", "--raw"})
+    for (const char* part : {".nrrd", ".nhdr", ".mhd", ".mha", ".nii", ".nii.gz"})
         CHECK_THAT(line, Contains(part));
     CHECK_THAT(errorOf(folder.write("nrrd", "abc")), Contains("suffix"));
-    CHECK_THAT(errorOf(folder.write("a.raw", "abc")), Contains("--raw NX,NY,NZ,TYPE"));
+    for (const char* name : {"a.xyz", "a.raw"}) { // each door names its own way to tell a layout
+        VolumeSource source;
+        source.path = folder.write(name, "abc");
+        try {
+            loadVolume(source);
+            FAIL("it was read");
+        } catch (const FileError& e) {
+            CHECK(e.remedy() == Remedy::GiveRawLayout);
+        }
+    }
 }
 
 TEST_CASE("a file of another type under a volume's name is told what it is", "[bad-input]") {

@@ -4,9 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/parallel.h"
 #include "volume/histogram.h"
 #include "volume/intensity_grid.h"
-#include "volume/parallel.h"
 #include "volume/procedural.h"
 
 using namespace pellucid;

@@ -5,10 +5,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/error.h"
+#include "base/parallel.h"
 #include "volume/analytic.h"
-#include "volume/error.h"
 #include "volume/noise.h"
-#include "volume/parallel.h"
 #include "volume/procedural.h"
 
 using namespace pellucid;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "volume/error.h"
+#include "base/error.h"
 #include "volume/volume.h"
 
 using namespace pellucid;

@@ -7,11 +7,11 @@
 #include <limits>
 #include <mutex>
 
+#include "base/parallel.h"
+#include "base/zeroed_memory.h"
 #include "render/cpu/cpu_engine.h"
 #include "tf/opacity.h"
 #include "volume/intensity_grid.h"
-#include "volume/parallel.h"
-#include "volume/zeroed_memory.h"
 
 namespace pellucid {
 

@@ -8,12 +8,12 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "base/parallel.h"
 #include "render/image_renderer.h"
 #include "render/ray_box.h"
 #include "render/trilinear.h"
 #include "tf/tf_table.h"
 #include "volume/intensity_grid.h"
-#include "volume/parallel.h"
 
 namespace pellucid {
 

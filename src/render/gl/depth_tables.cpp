@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/check.h"
 #include "tf/opacity.h"
-#include "volume/check.h"
 #include "volume/intensity_grid.h"
 
 namespace pellucid::gl {

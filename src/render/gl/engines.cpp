@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "base/error.h"
 #include "render/gl/headless_context.h"
-#include "volume/error.h"
 
 namespace pellucid {
 
@@ -20,7 +20,7 @@ EngineChoice engineChoiceFromName(const std::string& name) {
     if (name == "gl") return EngineChoice::Gl;
     if (name == "cpu") return EngineChoice::Cpu;
     if (name == "reference") return EngineChoice::Reference;
-    throw UsageError("unknown engine \"" + name + "\"", "--engine", "use auto, gl, cpu or reference");
+    throw UsageError("unknown engine \"" + name + "\"", "engine", "use auto, gl, cpu or reference");
 }
 
 std::optional<GlInfo> probeGl() {

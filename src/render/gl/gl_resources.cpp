@@ -25,12 +25,12 @@ const char* errorName(GLenum error) {
 }
 
 const char* kOutOfMemory = "the graphics device is out of memory while ";
-const char* kUseCpu = "use --engine cpu";
 
 std::atomic<double> allocationLimit = std::numeric_limits<double>::infinity();
 
 void throwIfTooMuch(double bytes, const std::string& what) {
-    if (bytes > allocationLimit) throw OutOfMemory(kOutOfMemory + ("making room for " + what), "OpenGL", kUseCpu);
+    if (bytes > allocationLimit)
+        throw OutOfMemory(kOutOfMemory + ("making room for " + what), "OpenGL", "", Remedy::OtherEngine);
 }
 
 double bytesPerTexel(GLenum format) {
@@ -49,7 +49,7 @@ void checkSize(int largest, GLenum limitName, const std::string& what) {
     if (largest > limit)
         throw Error(what + " needs a texture of " + std::to_string(largest) + " along one axis, the device takes " +
                         std::to_string(limit),
-                    "OpenGL", kUseCpu);
+                    "OpenGL", "", Remedy::OtherEngine);
 }
 
 void clampToEdge(GLenum target, GLenum filter) {
@@ -73,8 +73,9 @@ void throwOnGlError(const std::string& doing) {
     // A lost context reports errors for ever: take a bounded number away.
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
     }
-    if (error == GL_OUT_OF_MEMORY) throw OutOfMemory(kOutOfMemory + doing, "OpenGL", kUseCpu);
-    throw Error(std::string("OpenGL reports ") + errorName(error) + " while " + doing, "OpenGL", kUseCpu);
+    if (error == GL_OUT_OF_MEMORY) throw OutOfMemory(kOutOfMemory + doing, "OpenGL", "", Remedy::OtherEngine);
+    throw Error(std::string("OpenGL reports ") + errorName(error) + " while " + doing, "OpenGL", "",
+                Remedy::OtherEngine);
 }
 
 int glInteger(GLenum parameter) {
@@ -116,8 +117,8 @@ ColorTarget makeColorTarget(glm::ivec2 size, GLenum format, GLenum filter, const
     const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     if (status != GL_FRAMEBUFFER_COMPLETE)
-        throw Error("the device cannot draw into a float image (status " + std::to_string(status) + ")", "OpenGL",
-                    kUseCpu);
+        throw Error("the device cannot draw into a float image (status " + std::to_string(status) + ")", "OpenGL", "",
+                    Remedy::OtherEngine);
     throwOnGlError("making the framebuffer for " + what);
     return target;
 }

@@ -7,8 +7,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "base/error.h"
 #include "render/gl/gl_object.h"
-#include "volume/error.h"
 
 namespace pellucid::gl {
 

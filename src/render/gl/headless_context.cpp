@@ -10,11 +10,11 @@
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 
+#include "base/check.h"
+#include "base/error.h"
 #include "render/gl/gl.h"
 #include "render/gl/osmesa.h"
 #include "render/gl/shader_program.h"
-#include "volume/check.h"
-#include "volume/error.h"
 
 namespace pellucid::gl {
 
@@ -169,7 +169,7 @@ CurrentContext makeAnyCurrent() {
     }
     note("OSMesa", why);
     throw Error("no OpenGL 4.3 context without a window (" + reasons + ")", "OpenGL",
-                "install a graphics driver or Mesa, or use --engine cpu");
+                "install a graphics driver or Mesa", Remedy::OtherEngine);
 }
 
 } // namespace

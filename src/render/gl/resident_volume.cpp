@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid::gl {
 
@@ -102,7 +102,7 @@ void ResidentVolume::makeRoom(const Planes& planes) {
                           " planes of the volume at a time (" +
                           std::to_string(static_cast<long long>(planeBytes * needed)) +
                           " bytes in textures of at most " + std::to_string(m_longest) + " along one axis)",
-                      "OpenGL", "use --engine cpu");
+                      "OpenGL", "", Remedy::OtherEngine);
 }
 
 void ResidentVolume::uploadBox(Texture3d& texture, const void* data, bool weights) const {

@@ -1,8 +1,8 @@
 #include "render/gl/shader_program.h"
 #include <cstring>
 
+#include "base/error.h"
 #include "render/gl/gl_resources.h"
-#include "volume/error.h"
 
 namespace pellucid::gl {
 
@@ -39,7 +39,7 @@ void compileInto(GLuint program, const std::string& file, const std::vector<std:
         glGetShaderInfoLog(shader.id, length, nullptr, log.data());
         log.resize(std::strlen(log.c_str())); // drivers count the 0 at the end
         throw Error("a shader does not compile: " + mapShaderLog(log, source), file,
-                    "use --engine cpu and report this with your driver's version");
+                    "report this with your driver's version", Remedy::OtherEngine);
     }
     glAttachShader(program, shader.id);
 }
@@ -59,7 +59,7 @@ ProgramName makeProgram(const std::vector<std::string>& files, const std::vector
         glGetProgramInfoLog(program.id(), length, nullptr, log.data());
         log.resize(std::strlen(log.c_str())); // drivers count the 0 at the end
         throw Error(std::string("a shader program does not link: ") + log, files.front(),
-                    "use --engine cpu and report this with your driver's version");
+                    "report this with your driver's version", Remedy::OtherEngine);
     }
     return program;
 }
@@ -67,13 +67,13 @@ ProgramName makeProgram(const std::vector<std::string>& files, const std::vector
 void requireGl43() {
     // Not epoxy's own questions: they look for EGL, which a machine that falls back to OSMesa may lack.
     const GLubyte* text = glGetString(GL_VERSION);
-    if (text == nullptr) throw Error("no OpenGL context is current", "OpenGL", "use --engine cpu");
+    if (text == nullptr) throw Error("no OpenGL context is current", "OpenGL", "", Remedy::OtherEngine);
     const std::string version = reinterpret_cast<const char*>(text);
     const bool desktop = version.rfind("OpenGL ES", 0) != 0;
     const int number = 10 * glInteger(GL_MAJOR_VERSION) + glInteger(GL_MINOR_VERSION);
     if (!desktop || number < 43)
-        throw Error("this is OpenGL \"" + version + "\", 4.3 is needed", "OpenGL",
-                    "update the graphics driver, or use --engine cpu");
+        throw Error("this is OpenGL \"" + version + "\", 4.3 is needed", "OpenGL", "update the graphics driver",
+                    Remedy::OtherEngine);
 }
 
 } // namespace pellucid::gl

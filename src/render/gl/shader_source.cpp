@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid::gl {
 

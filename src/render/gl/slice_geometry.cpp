@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid::gl {
 

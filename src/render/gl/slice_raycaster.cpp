@@ -8,13 +8,13 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec4.hpp>
 
+#include "base/error.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/shader_program.h"
 #include "render/gl/slice_geometry.h"
 #include "render/gl/volume_bricks.h"
 #include "render/gl/volume_texture.h"
 #include "tf/tf_table.h"
-#include "volume/error.h"
 
 namespace pellucid::gl {
 

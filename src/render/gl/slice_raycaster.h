@@ -4,9 +4,9 @@
 
 #include <memory>
 
+#include "base/job.h"
 #include "render/render_settings.h"
 #include "tf/transfer_function.h"
-#include "volume/job.h"
 #include "volume/volume.h"
 
 namespace pellucid::gl {

@@ -5,8 +5,8 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
+#include "base/error.h"
 #include "render/gl/shader_program.h"
-#include "volume/error.h"
 
 namespace pellucid::gl {
 
@@ -165,7 +165,7 @@ int SweepDevice::candidatesAtOnce(const SweepRequest& request) const {
     throw Error("the light of " + std::to_string(static_cast<long long>(rays)) + " rays at " + std::to_string(planes) +
                     " planes does not fit into the device's buffers of " +
                     std::to_string(static_cast<long long>(bufferLimit())) + " bytes",
-                "OpenGL", "use --engine cpu");
+                "OpenGL", "", Remedy::OtherEngine);
 }
 
 const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots) {
@@ -210,7 +210,7 @@ int SweepDevice::prepare(const Sweep& s, int candidates, int slots) {
     if (light < 1 || output < 1)
         throw Error("a single plane of voxels needs more than the device's buffers of " +
                         std::to_string(static_cast<long long>(bufferLimit())) + " bytes",
-                    "OpenGL", "use --engine cpu");
+                    "OpenGL", "", Remedy::OtherEngine);
     // Few enough planes that a step takes well under a second.
     const double wanted = std::max(1.0, m_budget.voxelsPerStep / area);
     int planes = static_cast<int>(std::min({wanted, light, output, static_cast<double>(s.dims.z)}));
@@ -317,7 +317,7 @@ void SweepDevice::field(const SweepRequest& request, const JobControl& job,
         const void* data = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * sizeof(float)),
                                             GL_MAP_READ_BIT);
         throwOnGlError("reading the visibility");
-        if (data == nullptr) throw Error("the visibility cannot be read back", "OpenGL", "use --engine cpu");
+        if (data == nullptr) throw Error("the visibility cannot be read back", "OpenGL", "", Remedy::OtherEngine);
         const struct Unmap {
             ~Unmap() { glUnmapBuffer(GL_SHADER_STORAGE_BUFFER); }
         } unmap;

@@ -1,11 +1,11 @@
 // makeGlEngine: the VisibilityEngine on OpenGL; sweep_device.h does the work in the context.
 #include <array>
 
+#include "base/parallel.h"
 #include "render/gl/engines.h"
 #include "render/gl/headless_context.h"
 #include "render/gl/sweep_device.h"
 #include "render/gl/visibility_gl.h"
-#include "volume/parallel.h"
 
 namespace pellucid {
 

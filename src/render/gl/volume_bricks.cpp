@@ -5,7 +5,7 @@
 
 #include <glm/common.hpp>
 
-#include "volume/check.h"
+#include "base/check.h"
 
 namespace pellucid::gl {
 

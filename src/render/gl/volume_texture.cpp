@@ -1,6 +1,6 @@
 #include "render/gl/volume_texture.h"
 
-#include "volume/check.h"
+#include "base/check.h"
 
 namespace pellucid::gl {
 

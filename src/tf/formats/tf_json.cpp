@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tf/formats/json_file.h"
-#include "volume/atomic_file.h"
-#include "volume/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/json_file.h"
 
 namespace pellucid {
 

@@ -11,8 +11,8 @@
 
 #include <zlib.h>
 
-#include "volume/check.h"
-#include "volume/error.h"
+#include "base/check.h"
+#include "base/error.h"
 
 namespace pellucid {
 
@@ -190,61 +190,5 @@ void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t 
         throw FileError("the data has " + std::to_string(count) + " of " + std::to_string(wanted) + " values", path,
                         "check the sizes in the header, or copy the file again");
 }
-
-std::string describeBytes(std::uint64_t bytes) {
-    static constexpr const char* kUnits[] = {"kB", "MB", "GB", "TB", "PB", "EB"};
-    if (bytes < 1000) return std::to_string(bytes) + " bytes";
-    double value = static_cast<double>(bytes) / 1000;
-    std::size_t unit = 0;
-    for (; value >= 999.5 && unit + 1 < std::size(kUnits); ++unit) value /= 1000;
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return std::string(text) + " " + kUnits[unit];
-}
-
-std::string inQuotes(std::string_view text) {
-    constexpr std::size_t kMost = 40;
-    std::string quote("'");
-    quote += text.substr(0, kMost);
-    return quote + (text.size() > kMost ? "…'" : "'");
-}
-
-std::vector<std::string> splitWords(std::string_view text) {
-    std::vector<std::string> words;
-    const auto blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
-    for (auto it = text.begin(); it != text.end();) {
-        const auto begin = std::find_if_not(it, text.end(), blank);
-        it = std::find_if(begin, text.end(), blank);
-        if (begin != it) words.emplace_back(begin, it);
-    }
-    return words;
-}
-
-std::string trimmed(std::string_view text) {
-    constexpr std::string_view kBlank = " \t\r\n";
-    const std::size_t begin = text.find_first_not_of(kBlank);
-    if (begin == std::string_view::npos) return {};
-    return std::string(text.substr(begin, text.find_last_not_of(kBlank) - begin + 1));
-}
-
-std::string lowerCase(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return lower;
-}
-
-namespace {
-
-template <class Number>
-bool parseWhole(std::string_view text, Number& value) {
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc{} && end == text.data() + text.size();
-}
-
-} // namespace
-
-bool parseNumber(std::string_view text, std::int64_t& value) { return parseWhole(text, value); }
-bool parseNumber(std::string_view text, double& value) { return parseWhole(text, value); }
 
 } // namespace pellucid

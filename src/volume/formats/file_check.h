@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "volume/job.h"
+#include "base/job.h"
+#include "base/text.h"
 
 namespace pellucid {
 
@@ -40,18 +41,5 @@ void requireInflates(const std::string& path, std::uint64_t start, bool zlib, st
 /// Throws FileError unless the text that begins at byte `start` of a file holds `wanted` numbers, between blanks or
 /// commas: some libraries go on with the last one where the text ends.
 void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job);
-
-/// "512 bytes", "1.50 GB" (powers of 1000).
-std::string describeBytes(std::uint64_t bytes);
-
-/// A text out of a header, in quotes and cut to 40 bytes: a damaged one may go on for long.
-std::string inQuotes(std::string_view text);
-/// Blank-separated words.
-std::vector<std::string> splitWords(std::string_view text);
-std::string trimmed(std::string_view text);
-std::string lowerCase(std::string_view text);
-/// Numbers independent of the locale; the whole text must be the number. Return false otherwise.
-bool parseNumber(std::string_view text, std::int64_t& value);
-bool parseNumber(std::string_view text, double& value);
 
 } // namespace pellucid

@@ -15,7 +15,7 @@
 #include <itkNrrdImageIO.h>
 
 #include "volume/formats/file_check.h"
-#include "volume/memory.h"
+#include "volume/memory_use.h"
 
 namespace pellucid {
 

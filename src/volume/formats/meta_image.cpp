@@ -46,7 +46,7 @@ MetaHeader parseHeader(const std::string& path) {
     header.dataStart = begin;
     if (header.fields.count("NDims") == 0 && header.fields.count("ObjectType") == 0)
         throw FileError("this is not a MetaImage file but " + describeContent(head.substr(0, 1024)), path,
-                        "give it the suffix of its own format, or --raw");
+                        "give it the suffix of its own format", Remedy::GiveRawLayout);
     for (const char* name : {"NDims", "DimSize", "ElementType", "ElementDataFile"})
         if (header.get(name).empty())
             throw FileError("the header has no " + std::string(name), path,

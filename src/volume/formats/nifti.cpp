@@ -34,7 +34,7 @@ public:
     explicit NiftiHeader(const std::string& path) : m_bytes(headerBytes(path)) {
         const auto foreign = [&](std::string_view sort) {
             return FileError("this is not a NIfTI file but " + std::string(sort), path,
-                             "give it the suffix of its own format, or --raw");
+                             "give it the suffix of its own format", Remedy::GiveRawLayout);
         };
         if (m_bytes.size() < kHeaderBytes) {
             const std::string head = fileHead(path, 1024);

@@ -34,7 +34,7 @@ NrrdHeader parseHeader(const std::string& path) {
     const std::string head = fileHead(path, kMostHeaderBytes);
     if (head.rfind("NRRD000", 0) != 0)
         throw FileError("this is not an NRRD file but " + describeContent(head.substr(0, 1024)), path,
-                        "give it the suffix of its own format, or --raw");
+                        "give it the suffix of its own format", Remedy::GiveRawLayout);
     NrrdHeader header;
     std::size_t begin = 0;
     for (bool first = true; begin < head.size(); first = false) {

@@ -6,8 +6,8 @@
 
 #include <zlib.h>
 
-#include "volume/atomic_file.h"
-#include "volume/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "volume/loader.h"
 
 namespace pellucid {

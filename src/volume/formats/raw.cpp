@@ -6,7 +6,7 @@
 
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
-#include "volume/memory.h"
+#include "volume/memory_use.h"
 
 namespace pellucid {
 
@@ -65,12 +65,13 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     const std::string& path = source.path;
     const RawLayout& layout = *source.raw;
     if (layout.dims.x < 1 || layout.dims.y < 1 || layout.dims.z < 1)
-        throw UsageError("every dimension of --raw must be at least 1", path, "give NX,NY,NZ,TYPE");
+        throw UsageError("a volume has at least one voxel along each axis", path, "correct the layout",
+                         Remedy::CorrectRawLayout);
     for (int a = 0; a < 3; ++a)
         if (!(layout.spacing[a] > 0) || !std::isfinite(layout.spacing[a]))
-            throw UsageError("the spacing must be positive and finite", path, "give --spacing SX,SY,SZ");
+            throw UsageError("the spacing must be positive and finite", path, "correct it", Remedy::GiveSpacing);
     if (source.component != 0)
-        throw UsageError("headerless data has one component, number 0", path, "leave out --component");
+        throw UsageError("headerless data has one component, number 0", path, "ask for none", Remedy::NoComponent);
     const std::uint64_t fileBytes = readableFileBytes(path);
     const std::uint64_t bytesPer = bytesPerSample(layout.type);
     const std::int64_t sizes[] = {layout.dims.x, layout.dims.y, layout.dims.z};
@@ -81,7 +82,7 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
                             std::to_string(sizes[2]) + " of " + name(layout.type) + " are " + std::to_string(bytes);
         if (layout.skipBytes > 0) claim += " after " + std::to_string(layout.skipBytes) + " skipped";
         throw FileError("the file has " + std::to_string(fileBytes) + " bytes, but " + claim, path,
-                        "correct --raw or --skip");
+                        "correct its layout", Remedy::CorrectRawLayout);
     }
     requireMemory(source.then, path, layout.dims, bytes, bytes);
     const Geometry geometry{layout.dims, layout.spacing, {0, 0, 0}};

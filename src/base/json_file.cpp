@@ -1,9 +1,9 @@
-#include "tf/formats/json_file.h"
+#include "base/json_file.h"
 
 #include <nlohmann/json.hpp>
 
-#include "volume/atomic_file.h"
-#include "volume/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 
 namespace pellucid {
 

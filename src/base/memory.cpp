@@ -1,12 +1,12 @@
-#include "volume/memory.h"
+#include "base/memory.h"
 
 #include <algorithm>
 #include <atomic>
 #include <fstream>
 #include <limits>
 
-#include "volume/error.h"
-#include "volume/formats/file_check.h"
+#include "base/error.h"
+#include "base/text.h"
 
 #if defined(__linux__)
 #include <sys/resource.h>
@@ -91,14 +91,6 @@ std::uint64_t pageBytes() {
 #endif
 }
 
-std::string voxels(const Int3& dims) {
-    return std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z) + " voxels";
-}
-
-std::uint64_t bytesOf(const MemoryUse& use, const Int3& dims) {
-    return static_cast<std::uint64_t>(use.bytesPerVoxel * static_cast<double>(voxelCount(dims)));
-}
-
 } // namespace
 
 std::uint64_t availableMemoryBytes(const fs::path& root) {
@@ -144,20 +136,7 @@ void requireMemory(const std::string& doing, const std::string& where, std::uint
     const std::uint64_t taken = pagesOfThisProcess().resident * pageBytes();
     throw FileError(needs + describeBytes(available) + " are free: the program itself takes " + describeBytes(taken) +
                         " of the " + describeBytes(limit) + " allowed",
-                    where, "allow more with --memory, or use a smaller volume");
-}
-
-void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims) {
-    requireMemory(use.doing + " " + voxels(dims), where, bytesOf(use, dims));
-}
-
-void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims, std::uint64_t reading,
-                   std::uint64_t kept) {
-    const std::uint64_t later = kept + bytesOf(use, dims);
-    if (later > reading)
-        requireMemory((use.doing.empty() ? "reading" : "reading and " + use.doing) + " " + voxels(dims), where, later);
-    else
-        requireMemory("reading " + voxels(dims), where, reading);
+                    where, "allow more, or use a smaller volume", Remedy::AllowMoreMemory);
 }
 
 } // namespace pellucid

@@ -1,4 +1,4 @@
-#include "volume/atomic_file.h"
+#include "base/atomic_file.h"
 
 #include <atomic>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 #include <unistd.h>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid {
 

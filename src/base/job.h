@@ -5,7 +5,7 @@
 #include <functional>
 #include <stop_token>
 
-#include "volume/error.h"
+#include "base/error.h"
 
 namespace pellucid {
 

@@ -1,4 +1,4 @@
-#include "volume/zeroed_memory.h"
+#include "base/zeroed_memory.h"
 
 #include <cstdint>
 #include <cstdlib>

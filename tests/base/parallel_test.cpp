@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "volume/parallel.h"
+#include "base/parallel.h"
 
 using namespace pellucid;
 

@@ -4,9 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "support/temp_folder.h"
-#include "volume/atomic_file.h"
-#include "volume/error.h"
 
 using namespace pellucid;
 using pellucid::test::TempFolder;

@@ -1,0 +1,24 @@
+// Texts of files and messages: words, numbers, sizes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pellucid {
+
+/// "512 bytes", "1.50 GB" (powers of 1000).
+std::string describeBytes(std::uint64_t bytes);
+
+/// A text out of a header, in quotes and cut to 40 bytes: a damaged one may go on for long.
+std::string inQuotes(std::string_view text);
+/// Blank-separated words.
+std::vector<std::string> splitWords(std::string_view text);
+std::string trimmed(std::string_view text);
+std::string lowerCase(std::string_view text);
+/// Numbers independent of the locale; the whole text must be the number. Return false otherwise.
+bool parseNumber(std::string_view text, std::int64_t& value);
+bool parseNumber(std::string_view text, double& value);
+
+} // namespace pellucid
