@@ -13,7 +13,7 @@
 #include "output.h"
 #include "progress.h"
 #include "render/camera.h"
-#include "render/gl/engines.h"
+#include "engines/engines.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 

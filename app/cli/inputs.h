@@ -9,7 +9,7 @@
 
 #include "progress.h"
 #include "render/camera.h"
-#include "render/gl/engines.h"
+#include "engines/engines.h"
 #include "render/memory_needs.h"
 #include "render/visibility.h"
 #include "saliency/saliency_field.h"

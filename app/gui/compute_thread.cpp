@@ -1,6 +1,6 @@
 #include "compute_thread.h"
 
-#include "render/gl/engines.h"
+#include "engines/engines.h"
 #include "render/memory_needs.h"
 #include "volume/memory_use.h"
 

@@ -8,7 +8,7 @@
 #include <QOpenGLFramebufferObject>
 #include <QOpenGLFunctions>
 
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 #include "render/gl/slice_raycaster.h"
 #include "theme.h"
 

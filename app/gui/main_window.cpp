@@ -18,11 +18,11 @@
 #include <QVBoxLayout>
 
 #include "axis_ticks.h"
-#include "camera_motion.h"
+#include "render/camera_motion.h"
 #include "error_dialog.h"
 #include "optimize/refine.h"
 #include "raw_dialog.h"
-#include "render/gl/engines.h"
+#include "engines/engines.h"
 #include "render/memory_needs.h"
 #include "tf/formats/tf_json.h"
 #include "tf/sample_tf.h"

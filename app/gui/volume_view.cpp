@@ -7,7 +7,7 @@
 #include <QVBoxLayout>
 #include <QWheelEvent>
 
-#include "camera_motion.h"
+#include "render/camera_motion.h"
 #include "cpu_surface.h"
 #include "gl_surface.h"
 

@@ -29,6 +29,7 @@ struct OptimizeOptions {
     double tolerance = 0.03; ///< on F, > 0
     int maxIterations = 200; ///< moves, ≥ 0
     void validate() const;   ///< throws UsageError
+    bool operator==(const OptimizeOptions&) const = default;
 };
 
 /// One state of the search: the start first, then one after each move.
@@ -36,6 +37,7 @@ struct OptimizeState {
     double objective = 0;
     std::vector<double> vws;     ///< per feature
     std::vector<double> opacity; ///< per feature
+    bool operator==(const OptimizeState&) const = default;
 };
 
 struct OptimizeResult {

@@ -20,23 +20,10 @@ constexpr double kDefaultFov = 30.0;
 
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-const json& need(const json& j, const char* key, const std::string& where) {
-    const auto it = j.find(key);
-    if (it == j.end()) throw Error(std::string("the key '") + key + "' is missing", where, "add it to the camera");
-    return *it;
-}
-
-double needNumber(const json& j, const char* key, const std::string& where) {
-    const json& v = need(j, key, where);
-    if (!v.is_number()) throw Error("a number is expected", where + " at /" + key, "correct the camera");
-    return v.get<double>();
-}
-
-Vec3 needVec3(const json& j, const char* key, const std::string& where) {
-    const json& v = need(j, key, where);
-    if (!v.is_array() || v.size() != 3 || !v[0].is_number() || !v[1].is_number() || !v[2].is_number())
-        throw Error("three numbers [x,y,z] are expected", where + " at /" + key, "correct the camera");
-    return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
+Vec3 vec3FromJson(const JsonValue& value) {
+    if (!value.json().is_array() || value.json().size() != 3) value.fail("three numbers [x,y,z] are expected");
+    const std::vector<double> v = value.numbers();
+    return {v[0], v[1], v[2]};
 }
 
 json jsonFromVec3(const Vec3& v) { return {v.x, v.y, v.z}; }
@@ -100,22 +87,21 @@ Camera cameraFromView(const Geometry& geometry, double azimuth, double elevation
     return camera;
 }
 
-Camera cameraFromJson(const json& j, const std::string& where) {
-    if (!j.is_object()) throw Error("a JSON object is expected", where, "give a camera file");
-    const json& projection = need(j, "projection", where);
+Camera cameraFromJson(const JsonValue& j) {
+    j.requireObject();
+    const json& projection = j["projection"].json();
     Camera camera;
-    camera.eye = needVec3(j, "eye", where);
-    camera.center = needVec3(j, "center", where);
-    camera.up = needVec3(j, "up", where);
+    camera.eye = vec3FromJson(j["eye"]);
+    camera.center = vec3FromJson(j["center"]);
+    camera.up = vec3FromJson(j["up"]);
     if (projection == "perspective") {
         camera.projection = Projection::Perspective;
-        camera.fovY = needNumber(j, "fov_y", where);
+        camera.fovY = j["fov_y"].number();
     } else if (projection == "orthographic") {
         camera.projection = Projection::Orthographic;
-        camera.height = needNumber(j, "height", where);
+        camera.height = j["height"].number();
     } else {
-        throw Error("the projection is neither \"perspective\" nor \"orthographic\"", where + " at /projection",
-                    "correct the camera");
+        j["projection"].fail("the projection is neither \"perspective\" nor \"orthographic\"");
     }
     return camera;
 }
@@ -132,6 +118,9 @@ json jsonFromCamera(const Camera& camera) {
     return j;
 }
 
-Camera readCamera(const std::string& path) { return cameraFromJson(readJson(path), path); }
+Camera readCamera(const std::string& path) { 
+    const json document = readJson(path);
+    return cameraFromJson(document, path);
+}
 
 } // namespace pellucid

@@ -7,6 +7,7 @@
 #include <glm/mat4x4.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/json_value.h"
 #include "volume/volume.h"
 
 namespace pellucid {
@@ -47,8 +48,11 @@ Ray pixelRay(const Camera& camera, double x, double y, int width, int height);
 /// +x, positive elevation toward +z. zoom 1 fits the box's bounding sphere into the image, 2 is twice as large.
 Camera cameraFromView(const Geometry& geometry, double azimuth, double elevation, double zoom, Projection projection);
 
-/// *.camera.json (CLI.md, "Files"). Throw Error with place and reason.
-Camera cameraFromJson(const nlohmann::json& json, const std::string& where);
+/// *.camera.json (docs/guide.md). Throw Error with place and reason.
+Camera cameraFromJson(const JsonValue& json);
+inline Camera cameraFromJson(const nlohmann::json& json, const std::string& where) {
+    return cameraFromJson(JsonValue(json, where));
+}
 nlohmann::json jsonFromCamera(const Camera& camera);
 Camera readCamera(const std::string& path);
 

@@ -19,6 +19,7 @@ struct RenderSettings {
     int onlyFeature = -1; ///< index: draw the voxels of this feature alone; −1: all
 
     void validate() const; ///< throws UsageError
+    bool operator==(const RenderSettings&) const = default;
 };
 
 } // namespace pellucid

@@ -46,4 +46,12 @@ IntensityGrid makeIntensityGrid(const Volume& volume) {
     return grid;
 }
 
+std::shared_ptr<const IntensityGrid> sharedIntensityGrid(const Volume& volume) {
+    SharedCodes& shared = volume.sharedCodes();
+    const std::lock_guard lock(shared.mutex); // who comes second waits for the first, and takes what that made
+    std::shared_ptr<const IntensityGrid> grid = shared.grid.lock();
+    if (!grid) shared.grid = grid = std::make_shared<const IntensityGrid>(makeIntensityGrid(volume));
+    return grid;
+}
+
 } // namespace pellucid

@@ -39,4 +39,8 @@ struct IntensityGrid {
 
 IntensityGrid makeIntensityGrid(const Volume& volume);
 
+/// The same, made once for a volume in its window and shared by all who hold it at a time: picture and measure. Made on
+/// the calling thread; gone with the last holder. Any thread may call.
+std::shared_ptr<const IntensityGrid> sharedIntensityGrid(const Volume& volume);
+
 } // namespace pellucid

@@ -18,6 +18,7 @@ struct RawLayout {
     bool bigEndian = false;
     Vec3 spacing{1, 1, 1};
     std::uint64_t skipBytes = 0;
+    bool operator==(const RawLayout&) const = default;
 };
 
 /// "NX,NY,NZ,TYPE[,little|big]"; throws UsageError.
@@ -33,6 +34,13 @@ struct VolumeSource {
     int sampleSize = 0;              ///< --size of a sample, 0 = its default
     std::uint32_t seed = 1;          ///< of a sample
     MemoryUse then;                  ///< what is done with it next; checked before anything is allocated
+
+    bool isSample() const { return path.starts_with("sample:"); }
+    /// Whether both name the same data, whatever is done with it.
+    bool operator==(const VolumeSource& o) const {
+        return path == o.path && raw == o.raw && missing == o.missing && range == o.range && component == o.component &&
+               sampleSize == o.sampleSize && seed == o.seed;
+    }
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.

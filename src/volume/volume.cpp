@@ -100,6 +100,7 @@ Volume Volume::withRange(const ValueRange& range) const {
                          "give two such numbers, in data units");
     Volume other = *this;
     other.m_range = range;
+    other.m_codes = std::make_shared<SharedCodes>();
     return other;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <variant>
@@ -46,6 +47,14 @@ struct Geometry {
     Vec3 voxelFromWorld(const Vec3& world) const { return (world - origin) / spacing; }
 };
 
+struct IntensityGrid;
+
+/// Where the holders of a volume's intensity codes find each other, see sharedIntensityGrid().
+struct SharedCodes {
+    std::mutex mutex;
+    std::weak_ptr<const IntensityGrid> grid;
+};
+
 /// Immutable once made; cheap to share by std::shared_ptr<const Volume>.
 /// Invalid voxels (NaN, infinite, or the declared missing value) count nowhere and are never drawn (MEASURES §1).
 class Volume {
@@ -79,6 +88,7 @@ public:
     double intensityOfValue(double value) const;
     double valueOfIntensity(double s) const { return m_range.lo + s * (m_range.hi - m_range.lo); }
 
+    SharedCodes& sharedCodes() const noexcept { return *m_codes; }
     std::size_t memoryBytes() const noexcept { return size() * bytesPerSample(sampleType()); }
 
     /// Free text for people, set by readers and generators.
@@ -93,6 +103,7 @@ private:
     std::optional<double> m_missing;
     ValueRange m_dataRange, m_range;
     std::size_t m_invalidCount = 0;
+    std::shared_ptr<SharedCodes> m_codes = std::make_shared<SharedCodes>(); // of this window
 };
 
 } // namespace pellucid

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 #include "support/disagreement.h"
 #include "support/orbit_check.h"
 #include "support/random_cases.h"

@@ -4,7 +4,8 @@
 
 #include <epoxy/egl.h>
 
-#include "render/gl/engines.h"
+#include "engines/engines.h"
+#include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
 
 using namespace pellucid;

@@ -1,6 +1,6 @@
 #include "gl_test.h"
 
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/slice_raycaster.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "gl_test.h"
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 #include "support/engine_checks.h"
 #include "volume/loader.h"
 

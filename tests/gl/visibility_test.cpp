@@ -3,7 +3,7 @@
 #include <array>
 
 #include "base/parallel.h"
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/visibility_gl.h"
 #include "support/field_sums.h"

@@ -27,7 +27,7 @@
 #include <QUrl>
 #include <QWheelEvent>
 
-#include "camera_motion.h"
+#include "render/camera_motion.h"
 #include "optimize/refine.h"
 #include "render/image.h"
 #include "tf/formats/tf_json.h"

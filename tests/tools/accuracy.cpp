@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 #include "support/disagreement.h"
 #include "support/random_cases.h"
 

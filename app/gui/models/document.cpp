@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "camera_motion.h"
+#include "render/camera_motion.h"
 #include "models/tf_command.h"
 
 namespace pellucid::gui {

@@ -205,7 +205,8 @@ class CpuEngine final : public VisibilityEngine {
 public:
     CpuEngine(std::shared_ptr<const Volume> volume, Quality quality, SweepKernel kernel)
         : m_volume(std::move(volume)), m_quality(quality), m_kernel(kernel) {
-        const IntensityGrid grid = makeIntensityGrid(*m_volume);
+        const std::shared_ptr<const IntensityGrid> shared = sharedIntensityGrid(*m_volume);
+        const IntensityGrid& grid = *shared;
         const bool someInvalid = !grid.valid.empty();
         // Without gaps, so that tables are short; and with one code for all that is invalid.
         m_codeSpace = {grid.maxCode / grid.codeStep, someInvalid, quality == Quality::High || isSmall()};

@@ -58,7 +58,7 @@ private:
 class CpuRenderer final : public ImageRenderer {
 public:
     explicit CpuRenderer(std::shared_ptr<const Volume> volume)
-        : m_volume(std::move(volume)), m_grid(makeIntensityGrid(*m_volume)) {}
+        : m_volume(std::move(volume)), m_shared(sharedIntensityGrid(*m_volume)), m_grid(*m_shared) {}
 
     std::string name() const override { return "cpu"; }
 
@@ -153,7 +153,8 @@ private:
     }
 
     std::shared_ptr<const Volume> m_volume;
-    IntensityGrid m_grid;
+    std::shared_ptr<const IntensityGrid> m_shared;
+    const IntensityGrid& m_grid;
 };
 
 } // namespace

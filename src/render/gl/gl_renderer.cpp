@@ -1,7 +1,7 @@
 // makeGlRenderer: the slice ray caster on a context of its own, tile by tile into memory.
 #include <algorithm>
 
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/headless_context.h"
 #include "render/gl/slice_raycaster.h"

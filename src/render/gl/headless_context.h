@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 
 namespace pellucid::gl {
 

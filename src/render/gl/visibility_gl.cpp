@@ -2,7 +2,7 @@
 #include <array>
 
 #include "base/parallel.h"
-#include "render/gl/engines.h"
+#include "render/gl/gl_engines.h"
 #include "render/gl/headless_context.h"
 #include "render/gl/sweep_device.h"
 #include "render/gl/visibility_gl.h"
@@ -30,7 +30,7 @@ std::uint64_t keyOf(const std::uint32_t* words, std::size_t count) {
 class GlEngine final : public VisibilityEngine {
 public:
     GlEngine(std::shared_ptr<const Volume> volume, Quality quality, const gl::VisibilityBudget& budget)
-        : m_volume(std::move(volume)), m_quality(quality), m_grid(makeIntensityGrid(*m_volume)),
+        : m_volume(std::move(volume)), m_quality(quality), m_codes(sharedIntensityGrid(*m_volume)), m_grid(*m_codes),
           m_cells(gl::tableCells(*m_volume, quality)) {
         m_device.emplace([&] { return std::make_unique<gl::SweepDevice>(m_grid, budget); });
     }
@@ -54,7 +54,8 @@ private:
 
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
-    IntensityGrid m_grid;
+    std::shared_ptr<const IntensityGrid> m_codes;
+    const IntensityGrid& m_grid;
     int m_cells;
     gl::InContext<gl::SweepDevice> m_device;
     std::unique_ptr<VisibilityEngine> m_cpu; ///< made when first needed

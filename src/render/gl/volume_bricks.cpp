@@ -18,13 +18,13 @@ constexpr int kShortest = 2 * kMargin + 8; ///< texture, voxels: shorter ones wo
 } // namespace
 
 BrickedVolume::BrickedVolume(const Volume& volume, int longest)
-    : m_geometry(volume.geometry()), m_grid(makeIntensityGrid(volume)), m_hasInvalid(!m_grid.valid.empty()),
-      m_maxCode(m_grid.maxCode) {
+    : m_geometry(volume.geometry()), m_grid(sharedIntensityGrid(volume)), m_hasInvalid(!m_grid->valid.empty()),
+      m_maxCode(m_grid->maxCode) {
     longest = std::min(longest, glInteger(GL_MAX_3D_TEXTURE_SIZE));
     PELLUCID_CHECK(longest >= kShortest);
     cut(Int3(longest));
     if (uploadAll()) {
-        m_grid = {}; // the device has it now
+        m_grid.reset(); // the device has it now
         return;
     }
     // One brick at a time, half as long until it fits.
@@ -75,7 +75,7 @@ bool BrickedVolume::uploadAll() {
     try {
         for (const VolumeBrick& brick : m_bricks) {
             m_textures.push_back(makeTexture3d(brick.size, m_hasInvalid ? GL_RG16 : GL_R16, GL_LINEAR, "the volume"));
-            uploadCodes(m_textures.back(), m_grid, brick.first, brick.size, Int3(0));
+            uploadCodes(m_textures.back(), *m_grid, brick.first, brick.size, Int3(0));
         }
         return true;
     } catch (const OutOfMemory&) {
@@ -106,7 +106,7 @@ const VolumeBrick& BrickedVolume::use(std::size_t index) {
     VolumeBrick& brick = m_bricks[index];
     const bool shared = m_textures.size() < m_bricks.size();
     Texture3d& texture = m_textures[shared ? 0 : index];
-    if (shared) uploadCodes(texture, m_grid, brick.first, brick.size, Int3(0));
+    if (shared) uploadCodes(texture, *m_grid, brick.first, brick.size, Int3(0));
     const Vec3 dims(m_geometry.dims), size(texture.size);
     brick.textureFromBox = dims / size;
     brick.textureOffset = -Vec3(brick.first) / size;

@@ -43,7 +43,7 @@ private:
     bool uploadAll();
 
     Geometry m_geometry;
-    IntensityGrid m_grid; ///< kept only where bricks are uploaded time and again
+    std::shared_ptr<const IntensityGrid> m_grid; ///< kept only where bricks are uploaded time and again
     bool m_hasInvalid;
     int m_maxCode;
     std::vector<VolumeBrick> m_bricks;

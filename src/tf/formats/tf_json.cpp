@@ -1,7 +1,6 @@
 #include "tf/formats/tf_json.h"
 
-#include <cmath>
-#include <set>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -15,144 +14,101 @@ using nlohmann::json;
 
 namespace {
 
+constexpr const char* kFormat = "pellucid-tf";
 constexpr int kVersion = 1;
 
-/// A place inside the document, for messages: file and JSON pointer.
-struct Place {
-    std::string file, pointer;
-    Place operator/(const std::string& key) const { return {file, pointer + "/" + key}; }
-    std::string text() const { return file + (pointer.empty() ? "" : " at " + pointer); }
-};
-
-[[noreturn]] void fail(const std::string& what, const Place& place, const std::string& whatToDo = "correct the file") {
-    throw Error(what, place.text(), whatToDo);
-}
-
-const json& need(const json& object, const char* key, const Place& place) {
-    const auto it = object.find(key);
-    if (it == object.end()) fail(std::string("the key '") + key + "' is missing", place);
-    return *it;
-}
-
-double needNumber(const json& object, const char* key, const Place& place) {
-    const json& v = need(object, key, place);
-    if (!v.is_number() || !std::isfinite(v.get<double>())) fail("a finite number is expected", place / key);
-    return v.get<double>();
-}
-
-Rgb needColor(const json& object, const char* key, const Place& place) {
-    const json& v = need(object, key, place);
-    if (!v.is_string()) fail("a colour #rrggbb is expected", place / key);
-    try {
-        return rgbFromHex(v.get<std::string>());
-    } catch (const Error& e) {
-        fail(e.problem(), place / key, e.whatToDo());
-    }
-}
-
-std::pair<double, double> needRange(const json& object, const char* key, const Place& place) {
-    const json& v = need(object, key, place);
-    if (!v.is_array() || v.size() != 2 || !v[0].is_number() || !v[1].is_number())
-        fail("two numbers [a,b] are expected", place / key);
-    return {v[0].get<double>(), v[1].get<double>()};
-}
-
-std::string unknownKeys(const json& object, const std::set<std::string>& known) {
-    json rest = json::object();
-    for (const auto& [key, value] : object.items())
-        if (!known.count(key)) rest[key] = value;
-    return rest.empty() ? std::string() : rest.dump();
-}
-
-void addUnknownKeys(json& object, const std::string& extra) {
-    if (extra.empty()) return;
-    const json rest = json::parse(extra);
-    for (const auto& [key, value] : rest.items()) object[key] = value;
-}
-
-ControlPoint pointFromJson(const json& j, const Place& place) {
-    if (!j.is_object()) fail("an object is expected", place);
+ControlPoint pointFromJson(const JsonValue& j) {
     ControlPoint p;
-    p.x = needNumber(j, "x", place);
-    p.opacity = needNumber(j, "opacity", place);
-    p.color = needColor(j, "color", place);
-    if (const auto it = j.find("fixed"); it != j.end()) {
-        if (!it->is_boolean()) fail("true or false is expected", place / "fixed");
-        p.fixed = it->get<bool>();
-    }
-    p.extraJson = unknownKeys(j, {"x", "opacity", "color", "fixed"});
+    p.x = j["x"].number();
+    p.opacity = j["opacity"].number();
+    p.color = colorFromJson(j["color"]);
+    if (j.has("fixed")) p.fixed = j["fixed"].boolean();
+    p.extraJson = j.unknownKeys({"x", "opacity", "color", "fixed"});
     return p;
 }
 
-Feature featureFromJson(const json& j, const Place& place) {
-    if (!j.is_object()) fail("an object is expected", place);
+ValueRange rangeFromJson(const JsonValue& j) {
+    if (!j.json().is_array() || j.json().size() != 2) j.fail("two numbers [a,b] are expected");
+    const auto ends = j.items();
+    for (const JsonValue& end : ends)
+        if (!end.json().is_number()) j.fail("two numbers [a,b] are expected");
+    return {ends[0].json().get<double>(), ends[1].json().get<double>()};
+}
+
+Feature featureFromJson(const JsonValue& j, Identities identities) {
     Feature f;
-    const json& name = need(j, "name", place);
-    if (!name.is_string()) fail("a text is expected", place / "name");
-    f.name = name.get<std::string>();
-    std::tie(f.a, f.b) = needRange(j, "range", place);
-    f.color = needColor(j, "color", place);
-    f.extraJson = unknownKeys(j, {"name", "range", "color"});
+    f.name = j["name"].text();
+    const ValueRange range = rangeFromJson(j["range"]);
+    f.a = range.lo;
+    f.b = range.hi;
+    f.color = colorFromJson(j["color"]);
+    if (identities == Identities::Keep && j.has("id"))
+        f.id = static_cast<FeatureId>(j["id"].integer(1, std::numeric_limits<std::int64_t>::max() / 2));
+    f.extraJson = identities == Identities::Keep ? j.unknownKeys({"name", "range", "color", "id"})
+                                                 : j.unknownKeys({"name", "range", "color"});
     return f;
 }
 
 } // namespace
 
-TransferFunction tfFromJson(const json& j, const std::string& where) {
-    const Place top{where, ""};
-    if (!j.is_object()) fail("a JSON object is expected", top);
-    const json& format = need(j, "format", top);
-    if (format != "pellucid-tf")
-        fail("the format is not \"pellucid-tf\"", top / "format", "give a transfer-function file");
-    const json& version = need(j, "version", top);
-    if (!version.is_number_integer() || version.get<long long>() < 1)
-        fail("the version is not a whole number from 1", top / "version");
-    if (version.get<long long>() > kVersion)
-        fail("version " + version.dump() + " is newer than this program knows", top / "version", "update Pellucid");
+Rgb colorFromJson(const JsonValue& value) {
+    if (value.json().is_array()) {
+        const auto parts = value.items(3);
+        return {parts[0].number(0, 1), parts[1].number(0, 1), parts[2].number(0, 1)};
+    }
+    if (!value.json().is_string()) value.fail("a colour is expected", "write \"#rrggbb\" or [r,g,b] from 0 to 1");
+    try {
+        return rgbFromHex(value.text());
+    } catch (const Error& e) {
+        value.fail(e.problem(), e.whatToDo());
+    }
+}
 
+json jsonFromColor(const Rgb& color) {
+    const std::string hex = hexFromRgb(color);
+    if (rgbFromHex(hex) == color) return hex;
+    return {color.r, color.g, color.b};
+}
+
+TransferFunction tfFromJson(const JsonValue& j, Identities identities) {
+    requireFormat(j, kFormat, kVersion, "give a transfer-function file");
     TransferFunction tf;
-    const json& points = need(j, "points", top);
-    if (!points.is_array()) fail("a list is expected", top / "points");
-    for (std::size_t i = 0; i < points.size(); ++i)
-        tf.points.push_back(pointFromJson(points[i], top / "points" / std::to_string(i)));
-    const auto features = j.find("features");
-    if (features != j.end()) {
-        if (!features->is_array()) fail("a list is expected", top / "features");
-        for (std::size_t i = 0; i < features->size(); ++i)
-            tf.features.push_back(featureFromJson((*features)[i], top / "features" / std::to_string(i)));
-    }
-    if (j.contains("range")) {
-        const auto [lo, hi] = needRange(j, "range", top);
-        tf.range = ValueRange{lo, hi};
-    }
-    tf.extraJson = unknownKeys(j, {"format", "version", "range", "points", "features"});
+    for (const JsonValue& point : j["points"].items()) tf.points.push_back(pointFromJson(point));
+    if (j.has("features"))
+        for (const JsonValue& f : j["features"].items()) tf.features.push_back(featureFromJson(f, identities));
+    if (j.has("range")) tf.range = rangeFromJson(j["range"]);
+    tf.extraJson = j.unknownKeys({"format", "version", "range", "points", "features"});
     try {
         tf.validate();
     } catch (const Error& e) {
-        fail(e.problem(), Place{where, e.where()}, e.whatToDo());
+        throw Error(e.problem(), j.placeOf(e.where()), e.whatToDo());
     }
-    if (features == j.end()) tf.features = deriveFeatures(tf);
+    if (!j.has("features")) tf.features = deriveFeatures(tf);
     return tf;
 }
 
-json jsonFromTf(const TransferFunction& tf) {
-    json j = {{"format", "pellucid-tf"}, {"version", kVersion}, {"points", json::array()}, {"features", json::array()}};
+json jsonFromTf(const TransferFunction& tf, Identities identities) {
+    json j = {{"format", kFormat}, {"version", kVersion}, {"points", json::array()}, {"features", json::array()}};
     if (tf.range) j["range"] = {tf.range->lo, tf.range->hi};
     for (const ControlPoint& p : tf.points) {
-        json point = {{"x", p.x}, {"opacity", p.opacity}, {"color", hexFromRgb(p.color)}, {"fixed", p.fixed}};
+        json point = {{"x", p.x}, {"opacity", p.opacity}, {"color", jsonFromColor(p.color)}, {"fixed", p.fixed}};
         addUnknownKeys(point, p.extraJson);
         j["points"].push_back(std::move(point));
     }
     for (const Feature& f : tf.features) {
-        json feature = {{"name", f.name}, {"range", {f.a, f.b}}, {"color", hexFromRgb(f.color)}};
+        json feature = {{"name", f.name}, {"range", {f.a, f.b}}, {"color", jsonFromColor(f.color)}};
         addUnknownKeys(feature, f.extraJson);
+        if (identities == Identities::Keep && f.id != 0) feature["id"] = f.id;
         j["features"].push_back(std::move(feature));
     }
     addUnknownKeys(j, tf.extraJson);
     return j;
 }
 
-TransferFunction readTf(const std::string& path) { return tfFromJson(readJson(path), path); }
+TransferFunction readTf(const std::string& path) {
+    const json document = readJson(path);
+    return tfFromJson(document, path);
+}
 
 void writeTf(const TransferFunction& tf, const std::string& path) {
     writeTextAtomically(path, jsonFromTf(tf).dump(2) + "\n");

@@ -1,25 +1,38 @@
-// *.tf.json, Pellucid's own transfer-function file (CLI.md, "Files").
+// *.tf.json, Pellucid's own transfer-function file.
 #pragma once
 
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/json_value.h"
 #include "tf/transfer_function.h"
 
 namespace pellucid {
 
+/// A colour: "#rrggbb", or [r,g,b] with components in [0,1].
+Rgb colorFromJson(const JsonValue& value);
+/// "#rrggbb" where eight bits hold the colour, else three numbers: read back it is the same colour, bit for bit.
+nlohmann::json jsonFromColor(const Rgb& color);
+
+/// Whether features carry their identities ("id"): inside a session they do, in a file of their own they do not.
+enum class Identities { Keep, Drop };
+
 /// Throws Error naming the place (`/points/3/x`) and the reason: wrong JSON, unknown `format`, newer `version`, x
-/// outside [0,1], unsorted points, NaN, a missing key. `where` is the file's name for the message. A file without
-/// features gets deriveFeatures().
-TransferFunction tfFromJson(const nlohmann::json& json, const std::string& where);
-nlohmann::json jsonFromTf(const TransferFunction& tf);
+/// outside [0,1], unsorted points, NaN, a missing key. A file without features gets deriveFeatures().
+TransferFunction tfFromJson(const JsonValue& json, Identities identities = Identities::Drop);
+/// A whole document; `where` is the file's name for messages.
+inline TransferFunction tfFromJson(const nlohmann::json& json, const std::string& where) {
+    return tfFromJson(JsonValue(json, where));
+}
+/// Read back it is equal to `tf`.
+nlohmann::json jsonFromTf(const TransferFunction& tf, Identities identities = Identities::Drop);
 
 TransferFunction readTf(const std::string& path);
 /// Through a temporary file beside `path` that is renamed.
 void writeTf(const TransferFunction& tf, const std::string& path);
 
-/// What --tf takes: "tents:N[:PEAK]", "ramp:N" or a file.
+/// What a user may name: "tents:N[:PEAK]", "ramp:N" or a file.
 TransferFunction loadTf(const std::string& specOrPath);
 
 } // namespace pellucid

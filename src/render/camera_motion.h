@@ -3,7 +3,7 @@
 
 #include "render/camera.h"
 
-namespace pellucid::gui {
+namespace pellucid {
 
 /// Full vertical angle of a perspective view that has not been narrowed to look closer, degrees.
 inline constexpr double kNormalFovY = 30.0;
@@ -41,4 +41,4 @@ struct ViewAngles {
 };
 ViewAngles viewAngles(const Camera& camera, const Geometry& geometry);
 
-} // namespace pellucid::gui
+} // namespace pellucid

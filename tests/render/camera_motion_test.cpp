@@ -1,11 +1,9 @@
-#include "gui_support.h"
-
+#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
-#include "camera_motion.h"
+#include "render/camera_motion.h"
 
 using namespace pellucid;
-using namespace pellucid::gui;
 
 namespace {
 

@@ -1,35 +1,9 @@
-#include "render/gl/engines.h"
-
-#include <algorithm>
-#include <cctype>
+#include "engines/engines.h"
 
 #include "base/error.h"
-#include "render/gl/headless_context.h"
+#include "render/gl/gl_engines.h"
 
 namespace pellucid {
-
-bool isSoftwareRenderer(std::string renderer) {
-    std::transform(renderer.begin(), renderer.end(), renderer.begin(), [](unsigned char c) { return std::tolower(c); });
-    for (const char* name : {"llvmpipe", "softpipe", "swrast", "software", "swiftshader", "swr"})
-        if (renderer.find(name) != std::string::npos) return true;
-    return false;
-}
-
-EngineChoice engineChoiceFromName(const std::string& name) {
-    if (name == "auto") return EngineChoice::Auto;
-    if (name == "gl") return EngineChoice::Gl;
-    if (name == "cpu") return EngineChoice::Cpu;
-    if (name == "reference") return EngineChoice::Reference;
-    throw UsageError("unknown engine \"" + name + "\"", "engine", "use auto, gl, cpu or reference");
-}
-
-std::optional<GlInfo> probeGl() {
-    try {
-        return gl::HeadlessContext().info();
-    } catch (const Error&) {
-        return {};
-    }
-}
 
 namespace {
 

@@ -1,4 +1,4 @@
-// Which engine does the work: the one place that knows all of them.
+// The ways into OpenGL for everybody else: engine, renderer, and what a driver is.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,6 @@
 #include "render/visibility.h"
 
 namespace pellucid {
-
-enum class EngineChoice { Auto, Gl, Cpu, Reference };
-
-/// "auto", "gl", "cpu", "reference"; throws UsageError.
-EngineChoice engineChoiceFromName(const std::string& name);
 
 /// The OpenGL engine on a headless context of its own (EGL surfaceless, else OSMesa), which is made current inside each
 /// call, so that any thread may call. Throws Error where there is no GL 4.3.
@@ -30,11 +25,5 @@ struct GlInfo {
     bool software = false; ///< isSoftwareRenderer(renderer)
 };
 std::optional<GlInfo> probeGl();
-
-/// Auto: gl on a real GPU, cpu on a software rasterizer, without GL, or where the volume is too large for the GPU.
-std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
-                                             Quality quality = Quality::Normal);
-/// The reference choice draws with the cpu renderer, since MEASURES sets no other image.
-std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);
 
 } // namespace pellucid

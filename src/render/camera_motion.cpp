@@ -1,4 +1,4 @@
-#include "camera_motion.h"
+#include "render/camera_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-namespace pellucid::gui {
+namespace pellucid {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
@@ -171,4 +171,4 @@ ViewAngles viewAngles(const Camera& camera, const Geometry& geometry) {
     return angles;
 }
 
-} // namespace pellucid::gui
+} // namespace pellucid

@@ -1,0 +1,17 @@
+// Which engine does the work: the one place that knows all of them.
+#pragma once
+
+#include <memory>
+
+#include "render/engine_choice.h"
+#include "render/image_renderer.h"
+
+namespace pellucid {
+
+/// Auto: gl on a real GPU, cpu on a software rasterizer, without GL, or where the volume is too large for the GPU.
+std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
+                                             Quality quality = Quality::Normal);
+/// The reference choice draws with the cpu renderer, since no other image is defined.
+std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);
+
+} // namespace pellucid

@@ -1,0 +1,137 @@
+#include "session/scene.h"
+
+#include <utility>
+
+#include "render/camera_motion.h"
+#include "tf/formats/tf_json.h"
+#include "tf/sample_tf.h"
+#include "tf/tf_range.h"
+
+namespace pellucid {
+
+namespace {
+
+/// Whether a window of these ends can stand for data of these values; constant data has no window but its value.
+bool isWindow(const ValueRange& range) { return range.lo < range.hi; }
+
+std::shared_ptr<const Volume> throughWindow(const std::shared_ptr<const Volume>& data,
+                                            const std::optional<ValueRange>& window) {
+    if (!window || *window == data->range()) return data;
+    return std::make_shared<const Volume>(data->withRange(*window));
+}
+
+std::shared_ptr<const Volume> read(VolumeSource source, const MemoryUse& then, const JobControl& job) {
+    source.range.reset();
+    source.then = then;
+    return std::make_shared<const Volume>(loadVolume(source, job));
+}
+
+/// The session's transfer function in the window; the default one, which the session gets, where it has none.
+void resolveTf(Scene& scene) {
+    const ValueRange& window = scene.volume->range();
+    if (scene.session.tf() == nullptr) {
+        TransferFunction tf = defaultTf(*scene.volume);
+        if (isWindow(window)) tf.range = window;
+        scene.session.setTf(std::move(tf));
+    }
+    const TransferFunction& tf = *scene.session.tf();
+    if (!isWindow(window)) {
+        scene.tf = tf;
+    } else if (tf.range) {
+        scene.tf = inRange(tf, window);
+    } else { // it says of no values: it is of whatever the window is
+        TransferFunction placed = tf;
+        placed.range = window;
+        scene.session.setTf(placed);
+        scene.tf = *scene.session.tf();
+    }
+}
+
+} // namespace
+
+int Scene::onlyFeature() const {
+    const FeatureId id = session.display->onlyFeature;
+    if (id == 0) return -1;
+    for (std::size_t i = 0; i < tf.features.size(); ++i)
+        if (tf.features[i].id == id) return static_cast<int>(i);
+    return -1;
+}
+
+Session sessionOf(const VolumeSource& source) {
+    Session session;
+    Variable variable;
+    variable.source = source;
+    variable.window = source.range;
+    variable.source.range.reset();
+    variable.source.then = {};
+    session.variables = std::vector<Variable>{std::move(variable)};
+    return session;
+}
+
+bool needsData(const Session& session, const Scene& basis) {
+    if (session.isEmpty() || basis.data == nullptr) return !session.isEmpty();
+    const Variable &now = session.variable(), &then = basis.session.variable();
+    return !(now.source == then.source) || now.window != then.window;
+}
+
+Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const JobControl& job) {
+    Scene scene;
+    scene.session = std::move(session);
+    if (scene.session.isEmpty()) return scene;
+    const Variable& variable = scene.session.variable();
+    const bool sameData = basis.data && basis.session.variable().source == variable.source;
+    scene.data = sameData ? basis.data : read(variable.source, then, job);
+    const bool sameWindow = sameData && basis.session.variable().window == variable.window;
+    scene.volume = sameWindow ? basis.volume : throughWindow(scene.data, variable.window);
+    if (sameWindow && scene.session.tf() != nullptr && scene.session.tf() == basis.session.tf()) {
+        scene.tf = basis.tf; // the very same
+    } else {
+        resolveTf(scene);
+    }
+    if (scene.session.camera) {
+        scene.camera = *scene.session.camera;
+    } else {
+        scene.camera = homeCamera(scene.volume->geometry(), Projection::Perspective);
+    }
+    return scene;
+}
+
+Scene openScene(const SceneInputs& inputs, const JobControl& job) {
+    if (inputs.session.isEmpty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
+    Session session = inputs.session;
+    // The transfer function first: it is small, and an error in it should not wait for a large volume.
+    std::optional<TransferFunction> tf;
+    if (inputs.tf) tf = loadTf(*inputs.tf);
+    std::optional<ValueRange> window = inputs.range;
+    if (!window && tf && tf->range) window = tf->range;
+    if (window) session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
+    if (tf) session.setTf(std::move(*tf));
+    if (inputs.camera) session.camera = inputs.camera;
+    Scene scene = resolve(std::move(session), {}, inputs.then, job);
+    if (!scene.session.camera && inputs.projection)
+        scene.session.camera = scene.camera = homeCamera(scene.volume->geometry(), *inputs.projection);
+    scene.camera.validate(scene.volume->geometry(), "camera");
+    return scene;
+}
+
+MeasureInput measureInput(const Scene& scene) { return {scene.volume, scene.tf, scene.camera, *scene.session.measure}; }
+
+PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent) {
+    PictureInput input{scene.volume, scene.tf, scene.camera, {}};
+    RenderSettings& s = input.settings;
+    const DisplaySettings& display = *scene.session.display;
+    s.width = width;
+    s.height = height;
+    if (transparent)
+        s.background.reset();
+    else
+        s.background = display.background;
+    s.stepInD0 = scene.session.measure->quality == Quality::High ? 0.25 : 0.5;
+    s.shading = display.shading;
+    s.clipLo = scene.session.clipping->lo;
+    s.clipHi = scene.session.clipping->hi;
+    s.onlyFeature = scene.onlyFeature();
+    return input;
+}
+
+} // namespace pellucid

@@ -1,0 +1,72 @@
+// From what a user named to what can be drawn and measured: the one way, for the window, the command line and tests.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "session/session.h"
+#include "volume/histogram.h"
+#include "volume/intensity_grid.h"
+
+namespace pellucid {
+
+/// A session together with the data that it speaks of. Immutable parts are shared: copies are cheap.
+struct Scene {
+    Session session;
+    std::shared_ptr<const Volume> data;   ///< as read, in the range of its values; null where nothing is open
+    std::shared_ptr<const Volume> volume; ///< the same through the variable's window
+    TransferFunction tf;                  ///< of the present frame, written for the window
+    Camera camera;                        ///< the session's, else the home view
+
+    std::vector<double> targets() const { return targetsOf(tf, *session.goals); }
+    /// Index in tf.features of the feature that is drawn alone; −1: all are.
+    int onlyFeature() const;
+};
+
+/// What a user may name beside a session, or in place of one. Everything given overrides the session.
+struct SceneInputs {
+    Session session;                      ///< what to start from: its variable's source is what is opened
+    std::optional<std::string> tf;        ///< a file, tents:N[:PEAK] or ramp:N
+    std::optional<ValueRange> range;      ///< intensity window, data units
+    std::optional<Projection> projection; ///< of the home view, where the session has no camera
+    std::optional<Camera> camera;
+    MemoryUse then; ///< what is done with the volume, see VolumeSource
+};
+
+/// Opens everything. The intensity window is `range`, else that of the named transfer-function file, else the
+/// session's, else the range of the values. A transfer function keeps its data values whatever the window is. Throws
+/// FileError, UsageError (no source; a camera inside the box), Cancelled.
+Scene openScene(const SceneInputs& inputs, const JobControl& job = {});
+
+/// The scene of a session. Data that `basis` has is taken from there: where source and window are the same this costs
+/// next to nothing, where only the window differs no file is read.
+Scene resolve(Session session, const Scene& basis, const MemoryUse& then = {}, const JobControl& job = {});
+/// Whether resolve() would read a file or go over all voxels.
+bool needsData(const Session& session, const Scene& basis);
+
+/// Source of the variable and nothing else: a session in which nothing has been decided yet.
+Session sessionOf(const VolumeSource& source);
+
+/// Everything that figures depend on: equal inputs have equal figures.
+struct MeasureInput {
+    std::shared_ptr<const Volume> volume;
+    TransferFunction tf;
+    Camera camera;
+    MeasureSettings settings;
+    bool operator==(const MeasureInput&) const = default;
+};
+MeasureInput measureInput(const Scene& scene);
+
+/// Everything that a picture depends on.
+struct PictureInput {
+    std::shared_ptr<const Volume> volume; ///< null: nothing but the background
+    TransferFunction tf;
+    Camera camera;
+    RenderSettings settings; ///< size, background, step, light, clipping, feature
+    bool operator==(const PictureInput&) const = default;
+};
+/// Samples at half of d0 (quality high: a quarter). `transparent`: without the background.
+PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent = false);
+
+} // namespace pellucid

@@ -1,0 +1,124 @@
+// All that a user has decided, as one value: what is shown, how it is shown, from where, and what it should become.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "optimize/optimizer.h"
+#include "render/engine_choice.h"
+#include "render/render_settings.h"
+#include "saliency/saliency_field.h"
+#include "session/part.h"
+#include "tf/transfer_function.h"
+#include "volume/loader.h"
+
+namespace pellucid {
+
+/// The transfer function of a variable over time: from each key frame on, until the next one.
+struct TfTrack {
+    std::map<int, Part<TransferFunction>> keys; ///< frame → transfer function, in the data units of its `range`
+
+    /// The one of the latest key that is not after `frame`, else the first. Empty where there are no keys.
+    const Part<TransferFunction>* at(int frame) const;
+    bool operator==(const TfTrack&) const = default;
+};
+
+/// One variable of the data: where it comes from, and how its values are read and drawn.
+struct Variable {
+    std::string name = "x";
+    VolumeSource source;              ///< its `range` and `then` are not used: the window is below
+    std::optional<ValueRange> window; ///< data units of intensity 0 and 1; empty: smallest and largest value
+    TfTrack track;
+    std::string extraJson; ///< unknown keys of the file it came from
+
+    bool operator==(const Variable&) const = default;
+};
+
+/// What belongs to a feature, wherever its interval goes.
+struct FeatureGoal {
+    double target = 0;              ///< wanted share of saliency, ≥ 0; shares are scaled to sum 1 over a TF
+    bool locked = false;            ///< an optimization leaves its opacity alone
+    double lowest = 0, highest = 1; ///< bounds of its opacity, 0 ≤ lowest ≤ highest ≤ 1
+    bool operator==(const FeatureGoal&) const = default;
+};
+
+/// Goals of all features that the session has seen: one that comes back (an undo, a preset) finds its own.
+using FeatureGoals = std::map<FeatureId, FeatureGoal>;
+
+/// What is cut away of the volume in pictures.
+struct Clipping {
+    Vec3 lo{0, 0, 0}, hi{1, 1, 1}; ///< the part of the box that is left, in fractions of it, lo < hi
+    bool operator==(const Clipping&) const = default;
+};
+
+/// How the picture looks. No figure depends on it.
+struct DisplaySettings {
+    bool shading = false; ///< light from the eye, by the gradient
+    Rgb background{0, 0, 0};
+    FeatureId onlyFeature = 0; ///< draw the voxels of this feature alone; 0: all
+    bool operator==(const DisplaySettings&) const = default;
+};
+
+/// How figures are computed.
+struct MeasureSettings {
+    SaliencyOptions saliency; ///< σ, kernel, w1, w2, background
+    VwsOptions vws;           ///< u1, u2
+    Quality quality = Quality::Normal;
+    EngineChoice engine = EngineChoice::Auto;
+    bool operator==(const MeasureSettings&) const = default;
+};
+
+/// An optimization or refinement that was run, with what came of it.
+struct Run {
+    std::string kind;                   ///< "optimize", "refine"
+    std::string ended;                  ///< name(StopReason), or "done"
+    std::vector<std::string> features;  ///< their names then
+    std::vector<double> targets;        ///< shares; of an optimization
+    std::vector<OptimizeState> history; ///< of an optimization: the start, then each move
+    std::size_t best = 0;               ///< index into history
+    double before = 0, after = 0;       ///< F of an optimization, movable energy of a refinement
+    int iterations = 0;
+    bool operator==(const Run&) const = default;
+};
+
+/// A value: copies share their parts, so that they cost next to nothing, and comparing parts tells what has changed.
+struct Session {
+    Part<std::vector<Variable>> variables; ///< one today; empty: nothing is open
+    int frame = 0;
+    Part<FeatureGoals> goals;
+    std::optional<Camera> camera; ///< empty: the home view of the volume
+    Part<Clipping> clipping;
+    Part<DisplaySettings> display;
+    Part<MeasureSettings> measure;
+    Part<OptimizeOptions> optimize;
+    Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns
+    std::string extraJson;       ///< unknown keys of the file it came from, as one JSON object; written back
+
+    bool operator==(const Session&) const = default;
+
+    bool isEmpty() const { return variables->empty(); }
+    const Variable& variable() const { return variables->front(); } ///< the one that is drawn; isEmpty() is false
+    /// The transfer function of this frame, in its own range; null before there is one.
+    const TransferFunction* tf() const;
+
+    /// Sets the transfer function of this frame's key. Its features that have no identity yet get one: that of the
+    /// feature in the same place by name and interval, then by name, then by interval, of the present transfer function
+    /// and of `known` (those that the session has seen); else a new one.
+    void setTf(TransferFunction tf);
+    void addRun(Run run);
+};
+
+inline constexpr std::size_t kMostRuns = 50;
+
+/// Shares that the features of `tf` are wanted to have, in their order, sum 1: their goals, scaled. A feature without a
+/// goal has the mean of the others; where all are 0 or none has one, shares are equal. Empty without features.
+std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& goals);
+/// The goals after the features of `tf` (which have identities) got `targets`, in their order.
+FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const std::vector<double>& targets);
+/// One share set to `value` in [0,1]; the others divide the rest in their old proportion.
+std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value);
+
+} // namespace pellucid

@@ -1,0 +1,376 @@
+#include "session/session_json.h"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <mutex>
+
+#include <nlohmann/json.hpp>
+#include <zlib.h>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/json_file.h"
+#include "tf/formats/tf_json.h"
+
+namespace pellucid {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kFormat = "pellucid-session";
+constexpr int kVersion = 1;
+constexpr double kHuge = std::numeric_limits<double>::max();
+
+// ---- data files
+
+/// Which bytes a data file has: enough to tell that it is not the one that was saved.
+struct Fingerprint {
+    std::uint64_t bytes = 0;
+    std::string crc32; ///< eight hexadecimal digits
+    bool operator==(const Fingerprint&) const = default;
+};
+
+/// Empty where there is no such file. A file that has not been touched since is not read again.
+std::optional<Fingerprint> fingerprintOf(const std::string& path) {
+    struct Known {
+        std::uintmax_t bytes;
+        fs::file_time_type time;
+        Fingerprint fingerprint;
+    };
+    static std::mutex s_mutex;
+    static std::map<std::string, Known> s_known;
+    std::error_code ec;
+    if (!fs::is_regular_file(path, ec)) return {};
+    const std::uintmax_t bytes = fs::file_size(path, ec);
+    const fs::file_time_type time = fs::last_write_time(path, ec);
+    if (ec) return {};
+    {
+        const std::lock_guard lock(s_mutex);
+        const auto known = s_known.find(path);
+        if (known != s_known.end() && known->second.bytes == bytes && known->second.time == time)
+            return known->second.fingerprint;
+    }
+    std::ifstream in(path, std::ios::binary);
+    std::vector<char> piece(1u << 20);
+    uLong crc = ::crc32(0, nullptr, 0);
+    std::uint64_t count = 0;
+    while (in) {
+        in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        crc = ::crc32(crc, reinterpret_cast<const Bytef*>(piece.data()), static_cast<uInt>(in.gcount()));
+        count += static_cast<std::uint64_t>(in.gcount());
+    }
+    std::array<char, 9> text{};
+    std::snprintf(text.data(), text.size(), "%08lx", static_cast<unsigned long>(crc));
+    const Fingerprint fingerprint{count, text.data()};
+    const std::lock_guard lock(s_mutex);
+    s_known[path] = {bytes, time, fingerprint};
+    return fingerprint;
+}
+
+std::string storedPath(const std::string& path, const std::string& folder, DataPaths paths) {
+    std::error_code ec;
+    const fs::path absolute = fs::absolute(path, ec);
+    if (ec) return path;
+    if (paths == DataPaths::Absolute) return absolute.lexically_normal().string();
+    const fs::path base = fs::absolute(folder.empty() ? "." : folder, ec);
+    const fs::path relative = fs::proximate(absolute, base, ec);
+    return (ec || relative.empty() ? absolute : relative).generic_string();
+}
+
+// ---- writers and readers of the parts, each beside the other
+
+json fromRange(const ValueRange& r) { return {r.lo, r.hi}; }
+ValueRange toRange(const JsonValue& j) {
+    const auto ends = j.items(2);
+    const ValueRange range{ends[0].number(), ends[1].number()};
+    if (!(range.lo < range.hi)) j.fail("a range needs its lower end below its upper one");
+    return range;
+}
+
+json fromVec(const Vec3& v) { return {v.x, v.y, v.z}; }
+Vec3 toVec(const JsonValue& j, double lo, double hi) {
+    const auto parts = j.items(3);
+    return {parts[0].number(lo, hi), parts[1].number(lo, hi), parts[2].number(lo, hi)};
+}
+
+json fromSource(const VolumeSource& s, const std::string& folder, DataPaths paths) {
+    json j = json::object();
+    if (s.isSample()) {
+        j["sample"] = s.path.substr(s.path.find(':') + 1);
+        if (s.sampleSize != 0) j["size"] = s.sampleSize;
+        j["seed"] = s.seed;
+    } else {
+        j["path"] = storedPath(s.path, folder, paths);
+        if (const auto fingerprint = fingerprintOf(s.path)) {
+            j["bytes"] = fingerprint->bytes;
+            j["crc32"] = fingerprint->crc32;
+        }
+    }
+    if (s.raw) {
+        j["raw"] = {{"dims", {s.raw->dims.x, s.raw->dims.y, s.raw->dims.z}},
+                    {"type", name(s.raw->type)},
+                    {"endian", s.raw->bigEndian ? "big" : "little"},
+                    {"spacing", fromVec(s.raw->spacing)},
+                    {"skip", s.raw->skipBytes}};
+    }
+    if (s.component != 0) j["component"] = s.component;
+    if (s.missing) j["missing"] = *s.missing;
+    return j;
+}
+
+RawLayout toRawLayout(const JsonValue& j) {
+    RawLayout raw;
+    constexpr int kMost = std::numeric_limits<int>::max();
+    const auto dims = j["dims"].items(3);
+    for (int a = 0; a < 3; ++a) raw.dims[a] = static_cast<int>(dims[static_cast<std::size_t>(a)].integer(1, kMost));
+    const auto type = sampleTypeFromName(j["type"].text());
+    if (!type) j["type"].fail("no such sample type", "write u8 i8 u16 i16 u32 i32 f32 or f64");
+    raw.type = *type;
+    const std::string endian = j["endian"].text();
+    if (endian != "big" && endian != "little") j["endian"].fail("no such byte order", "write little or big");
+    raw.bigEndian = endian == "big";
+    raw.spacing = toVec(j["spacing"], std::numeric_limits<double>::min(), kHuge);
+    raw.skipBytes = static_cast<std::uint64_t>(j["skip"].integer(0, std::numeric_limits<std::int64_t>::max()));
+    return raw;
+}
+
+VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
+    j.requireObject();
+    VolumeSource s;
+    if (j.has("sample")) {
+        s.path = "sample:" + j["sample"].text();
+        if (j.has("size")) s.sampleSize = static_cast<int>(j["size"].integer(8, 65536));
+        if (j.has("seed"))
+            s.seed = static_cast<std::uint32_t>(j["seed"].integer(0, std::numeric_limits<std::uint32_t>::max()));
+    } else {
+        const fs::path path = j["path"].text();
+        if (path.empty()) j["path"].fail("the name of the data file is empty");
+        s.path = (path.is_absolute() ? path : (fs::path(folder) / path).lexically_normal()).string();
+        const auto now = fingerprintOf(s.path);
+        if (now && j.has("bytes") && j.has("crc32")) {
+            const Fingerprint saved{static_cast<std::uint64_t>(j["bytes"].integer(0, INT64_MAX)), j["crc32"].text()};
+            if (!(*now == saved))
+                notices.push_back(path.filename().string() +
+                                  " is not the file that the session was saved with: its content has changed");
+        }
+    }
+    if (j.has("raw")) s.raw = toRawLayout(j["raw"]);
+    if (j.has("component")) s.component = static_cast<int>(j["component"].integer(0, 1'000'000));
+    if (j.has("missing")) s.missing = j["missing"].number();
+    return s;
+}
+
+json fromVariable(const Variable& v, const std::string& folder, DataPaths paths) {
+    json j{{"name", v.name}, {"source", fromSource(v.source, folder, paths)}, {"transfer_functions", json::array()}};
+    if (v.window) j["window"] = fromRange(*v.window);
+    for (const auto& [frame, tf] : v.track.keys)
+        j["transfer_functions"].push_back({{"frame", frame}, {"tf", jsonFromTf(*tf, Identities::Keep)}});
+    addUnknownKeys(j, v.extraJson);
+    return j;
+}
+
+Variable toVariable(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
+    Variable v;
+    v.name = j["name"].text();
+    v.source = toSource(j["source"], folder, notices);
+    if (j.has("window")) v.window = toRange(j["window"]);
+    for (const JsonValue& key : j["transfer_functions"].items())
+        v.track.keys[static_cast<int>(key["frame"].integer(0, 1'000'000'000))] =
+            Part<TransferFunction>(tfFromJson(key["tf"], Identities::Keep));
+    v.extraJson = j.unknownKeys({"name", "source", "window", "transfer_functions"});
+    return v;
+}
+
+json fromGoals(const FeatureGoals& goals) {
+    json all = json::array();
+    for (const auto& [id, g] : goals)
+        all.push_back(
+            {{"id", id}, {"target", g.target}, {"locked", g.locked}, {"lowest", g.lowest}, {"highest", g.highest}});
+    return all;
+}
+
+FeatureGoals toGoals(const JsonValue& j) {
+    FeatureGoals goals;
+    for (const JsonValue& item : j.items()) {
+        FeatureGoal g;
+        g.target = item["target"].number(0, kHuge);
+        if (item.has("locked")) g.locked = item["locked"].boolean();
+        if (item.has("lowest")) g.lowest = item["lowest"].number(0, 1);
+        if (item.has("highest")) g.highest = item["highest"].number(g.lowest, 1);
+        goals[static_cast<FeatureId>(item["id"].integer(1, INT64_MAX / 2))] = g;
+    }
+    return goals;
+}
+
+json fromMeasure(const MeasureSettings& m) {
+    return {{"sigma", m.saliency.sigma},
+            {"kernel", m.saliency.kernel == SaliencyKernel::Narrow ? "narrow" : "thesis"},
+            {"w1", m.saliency.w1},
+            {"w2", m.saliency.w2},
+            {"background", jsonFromColor(m.saliency.background)},
+            {"u1", m.vws.u1},
+            {"u2", m.vws.u2},
+            {"quality", name(m.quality)},
+            {"engine", name(m.engine)}};
+}
+
+/// What `parse` makes of a text; what it says against it is said of this place.
+template <class Parse>
+auto named(const JsonValue& j, const Parse& parse) {
+    try {
+        return parse(j.text());
+    } catch (const UsageError& e) {
+        j.fail(e.problem(), e.whatToDo());
+    }
+}
+
+MeasureSettings toMeasure(const JsonValue& j) {
+    MeasureSettings m;
+    constexpr double kMostWeight = 1e6;
+    if (j.has("sigma")) {
+        m.saliency.sigma = j["sigma"].number(0, 8);
+        if (m.saliency.sigma == 0) j["sigma"].fail("sigma is above 0");
+    }
+    if (j.has("kernel"))
+        m.saliency.kernel = named(j["kernel"], [](const std::string& text) {
+            if (text != "narrow" && text != "thesis") throw UsageError("no such kernel", "", "write thesis or narrow");
+            return text == "narrow" ? SaliencyKernel::Narrow : SaliencyKernel::Thesis;
+        });
+    if (j.has("w1")) m.saliency.w1 = j["w1"].number(0, kMostWeight);
+    if (j.has("w2")) m.saliency.w2 = j["w2"].number(0, kMostWeight);
+    if (j.has("background")) m.saliency.background = colorFromJson(j["background"]);
+    if (j.has("u1") || j.has("u2")) {
+        m.vws = {j["u1"].number(0, 1), j["u2"].number(0, 1)};
+        if (std::abs(m.vws.u1 + m.vws.u2 - 1) > 1e-9) j["u1"].fail("u1 and u2 do not sum to 1");
+    }
+    if (j.has("quality")) m.quality = named(j["quality"], qualityFromName);
+    if (j.has("engine")) m.engine = named(j["engine"], engineChoiceFromName);
+    return m;
+}
+
+json fromOptimize(const OptimizeOptions& o) {
+    return {{"method", name(o.method)},
+            {"normalize", o.normalize},
+            {"step", o.step},
+            {"tolerance", o.tolerance},
+            {"max_iterations", o.maxIterations}};
+}
+
+OptimizeOptions toOptimize(const JsonValue& j) {
+    OptimizeOptions o;
+    if (j.has("method")) o.method = named(j["method"], searchMethodFromName);
+    if (j.has("normalize")) o.normalize = j["normalize"].boolean();
+    if (j.has("step")) o.step = j["step"].number();
+    if (j.has("tolerance")) o.tolerance = j["tolerance"].number();
+    if (j.has("max_iterations")) o.maxIterations = static_cast<int>(j["max_iterations"].integer(0, 1'000'000'000));
+    try {
+        o.validate();
+    } catch (const UsageError& e) {
+        j.fail(e.problem(), e.whatToDo());
+    }
+    return o;
+}
+
+json fromRun(const Run& r) {
+    json history = json::array();
+    for (const OptimizeState& s : r.history)
+        history.push_back({{"objective", s.objective}, {"vws", s.vws}, {"opacity", s.opacity}});
+    return {{"kind", r.kind},       {"ended", r.ended},   {"features", r.features},
+            {"targets", r.targets}, {"history", history}, {"best", r.best},
+            {"before", r.before},   {"after", r.after},   {"iterations", r.iterations}};
+}
+
+Run toRun(const JsonValue& j) {
+    Run r;
+    r.kind = j["kind"].text();
+    r.ended = j["ended"].text();
+    for (const JsonValue& name : j["features"].items()) r.features.push_back(name.text());
+    r.targets = j["targets"].numbers();
+    for (const JsonValue& s : j["history"].items())
+        r.history.push_back({s["objective"].number(), s["vws"].numbers(), s["opacity"].numbers()});
+    r.best = static_cast<std::size_t>(j["best"].integer(0, INT64_MAX));
+    if (r.best > 0 && r.best >= r.history.size()) j["best"].fail("the history has no such state");
+    r.before = j["before"].number();
+    r.after = j["after"].number();
+    r.iterations = static_cast<int>(j["iterations"].integer(0, 1'000'000'000));
+    return r;
+}
+
+DisplaySettings toDisplay(const JsonValue& j) {
+    DisplaySettings d;
+    if (j.has("shading")) d.shading = j["shading"].boolean();
+    if (j.has("background")) d.background = colorFromJson(j["background"]);
+    if (j.has("only_feature")) d.onlyFeature = static_cast<FeatureId>(j["only_feature"].integer(0, INT64_MAX / 2));
+    return d;
+}
+
+Clipping toClipping(const JsonValue& j) {
+    const Clipping c{toVec(j["lo"], 0, 1), toVec(j["hi"], 0, 1)};
+    for (int a = 0; a < 3; ++a)
+        if (!(c.lo[a] < c.hi[a])) j.fail("a clip interval needs its lower end below its upper one");
+    return c;
+}
+
+} // namespace
+
+json jsonFromSession(const Session& s, const std::string& folder, DataPaths paths) {
+    json j{{"format", kFormat},
+           {"version", kVersion},
+           {"variables", json::array()},
+           {"frame", s.frame},
+           {"features", fromGoals(*s.goals)},
+           {"clip", {{"lo", fromVec(s.clipping->lo)}, {"hi", fromVec(s.clipping->hi)}}},
+           {"display",
+            {{"shading", s.display->shading},
+             {"background", jsonFromColor(s.display->background)},
+             {"only_feature", s.display->onlyFeature}}},
+           {"measure", fromMeasure(*s.measure)},
+           {"optimize", fromOptimize(*s.optimize)},
+           {"runs", json::array()}};
+    for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
+    for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
+    if (s.camera) j["camera"] = jsonFromCamera(*s.camera);
+    addUnknownKeys(j, s.extraJson);
+    return j;
+}
+
+SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
+    requireFormat(j, kFormat, kVersion, "give a session file");
+    SessionFile file;
+    Session& s = file.session;
+    std::vector<Variable> variables;
+    for (const JsonValue& v : j["variables"].items()) variables.push_back(toVariable(v, folder, file.notices));
+    if (variables.size() > 1)
+        j["variables"].fail("it has more than one variable", "leave one: this program draws one at a time");
+    s.variables = std::move(variables);
+    if (j.has("frame")) s.frame = static_cast<int>(j["frame"].integer(0, 1'000'000'000));
+    if (j.has("features")) s.goals = toGoals(j["features"]);
+    if (j.has("camera")) s.camera = cameraFromJson(j["camera"]);
+    if (j.has("clip")) s.clipping = toClipping(j["clip"]);
+    if (j.has("display")) s.display = toDisplay(j["display"]);
+    if (j.has("measure")) s.measure = toMeasure(j["measure"]);
+    if (j.has("optimize")) s.optimize = toOptimize(j["optimize"]);
+    if (j.has("runs")) {
+        std::vector<Run> runs;
+        for (const JsonValue& run : j["runs"].items()) runs.push_back(toRun(run));
+        s.runs = std::move(runs);
+    }
+    s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "camera", "clip", "display",
+                                 "measure", "optimize", "runs", "title"});
+    return file;
+}
+
+SessionFile readSession(const std::string& path) {
+    const json document = readJson(path);
+    return sessionFromJson({document, path}, fs::path(path).parent_path().string());
+}
+
+void writeSession(const Session& session, const std::string& path, DataPaths paths) {
+    writeTextAtomically(path, jsonFromSession(session, fs::path(path).parent_path().string(), paths).dump(1) + "\n");
+}
+
+} // namespace pellucid

@@ -1,0 +1,35 @@
+// *.pellucid.json: a session as a file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "session/session.h"
+
+namespace pellucid {
+
+/// How data files are named in a session file.
+enum class DataPaths {
+    Relative, ///< to the session file's folder, so that both can be moved together; a file on another drive: absolute
+    Absolute  ///< for files that are kept elsewhere, such as recovery files
+};
+
+/// What readSession() found.
+struct SessionFile {
+    Session session;
+    std::vector<std::string> notices; ///< remarks for the user: a data file that is not the one that was saved
+};
+
+/// Throws Error with place and reason: wrong JSON, another format, a newer version, a missing key, a number out of its
+/// range. Unknown keys are kept. Data files need not be there; where they are, their size and checksum are compared.
+SessionFile readSession(const std::string& path);
+/// Through a temporary file beside `path` that is renamed. Reading it back gives an equal session. Throws FileError.
+void writeSession(const Session& session, const std::string& path, DataPaths paths = DataPaths::Relative);
+
+/// The document; `folder` is that of the file, which relative paths are relative to.
+nlohmann::json jsonFromSession(const Session& session, const std::string& folder, DataPaths paths);
+SessionFile sessionFromJson(const JsonValue& document, const std::string& folder);
+
+} // namespace pellucid

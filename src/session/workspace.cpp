@@ -1,0 +1,108 @@
+#include "session/workspace.h"
+
+#include <chrono>
+
+#include "engines/engines.h"
+#include "render/memory_needs.h"
+
+namespace pellucid {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+} // namespace
+
+VisibilityEngine& Workspace::engine(const MeasureInput& input) {
+    const MeasureSettings& settings = input.settings;
+    if (m_engineVolume != input.volume || !m_engine || m_choice != settings.engine || m_quality != settings.quality) {
+        m_engine.reset();
+        if (m_weightsVolume != input.volume) { // what was measured before needs no room any more
+            m_weightsVolume.reset();
+            m_weights = {};
+        }
+        const double more = settings.engine == EngineChoice::Reference ? kMoreByReferenceBytesPerVoxel : 0.0;
+        requireMemory({"measuring", kMeasureBytesPerVoxel + more}, input.volume->title, input.volume->dims());
+        m_engine = makeEngine(settings.engine, input.volume, settings.quality);
+        m_engineVolume = input.volume;
+        m_choice = settings.engine;
+        m_quality = settings.quality;
+    }
+    return *m_engine;
+}
+
+const WeightFields& Workspace::weights(const MeasureInput& input, const JobControl& job) {
+    TransferFunction key = colorsOf(input.tf);
+    m_seconds.saliency = 0;
+    if (m_weightsVolume != input.volume || !(m_weightsTf == key) || !(m_weightsOptions == input.settings.saliency)) {
+        const auto start = Clock::now();
+        m_weightsVolume.reset();
+        updateSaliencyFields(m_weights, *input.volume, input.tf, input.settings.saliency, job);
+        m_weightsTf = std::move(key);
+        m_weightsOptions = input.settings.saliency;
+        m_weightsVolume = input.volume;
+        m_seconds.saliency = secondsSince(start);
+    }
+    return m_weights;
+}
+
+namespace {
+
+/// Runs `work(engine)`. An engine that failed is not trusted again: `release` lets go of it.
+template <class Work, class Release>
+auto guarded(const Work& work, const Release& release) {
+    try {
+        return work();
+    } catch (const Cancelled&) {
+        throw;
+    } catch (...) {
+        release();
+        throw;
+    }
+}
+
+} // namespace
+
+Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, job);
+            const Measures measures = pellucid::measure(e, input.camera, input.tf, w, input.settings.vws, job);
+            m_seconds.visibility = measures.visibilitySeconds;
+            return measures;
+        },
+        [this] { releaseEngine(); });
+}
+
+std::vector<std::vector<double>> Workspace::jacobian(const MeasureInput& input, const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, job);
+            const auto start = Clock::now();
+            auto matrix = vwsJacobian(e.jacobian(input.camera, input.tf, &w, job), input.settings.vws);
+            m_seconds.visibility = secondsSince(start);
+            return matrix;
+        },
+        [this] { releaseEngine(); });
+}
+
+OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
+                                   const OptimizeOptions& options, const JobControl& job,
+                                   const std::function<void(const OptimizeState&)>& watch) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, job);
+            const auto start = Clock::now();
+            const VwsFunction function(e, input.camera, input.tf, w, input.settings.vws);
+            OptimizeResult result = pellucid::optimize(function, targets, options, job, watch);
+            m_seconds.visibility = secondsSince(start);
+            return result;
+        },
+        [this] { releaseEngine(); });
+}
+
+} // namespace pellucid

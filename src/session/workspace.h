@@ -1,0 +1,47 @@
+// Where figures are computed: an engine and the saliency of one volume, kept from one computation to the next.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "optimize/measure.h"
+#include "session/scene.h"
+
+namespace pellucid {
+
+/// Used by one thread at a time. The same input gives the same figures, whatever was computed before.
+class Workspace {
+public:
+    struct Seconds {
+        double saliency = 0;   ///< 0 where it was there already
+        double visibility = 0; ///< the sweeps
+    };
+
+    /// The figures of one view. Throws FileError where memory does not suffice, Error, Cancelled.
+    Measures measure(const MeasureInput& input, const JobControl& job = {});
+    /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
+    std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
+    OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
+                            const OptimizeOptions& options, const JobControl& job = {},
+                            const std::function<void(const OptimizeState&)>& watch = {});
+
+    VisibilityEngine& engine(const MeasureInput& input);
+    /// The fields depend on colours and features alone, so that they outlive changes of opacity.
+    const WeightFields& weights(const MeasureInput& input, const JobControl& job = {});
+    void releaseEngine() { m_engine.reset(); } ///< its memory is wanted for something else
+
+    const Seconds& seconds() const { return m_seconds; } ///< of the latest computation
+
+private:
+    std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
+    EngineChoice m_choice = EngineChoice::Auto;
+    Quality m_quality = Quality::Normal;
+    std::unique_ptr<VisibilityEngine> m_engine;
+    TransferFunction m_weightsTf; // its colorsOf()
+    SaliencyOptions m_weightsOptions;
+    WeightFields m_weights;
+    Seconds m_seconds;
+};
+
+} // namespace pellucid
