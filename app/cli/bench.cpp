@@ -5,23 +5,21 @@
 #include "base/parallel.h"
 #include "bench_run.h"
 #include "commands.h"
-#include "inputs.h"
 #include "parse.h"
-#include "tf/formats/tf_json.h"
-#include "tf/sample_tf.h"
+#include "render/memory_needs.h"
+#include "resolve.h"
 
 namespace pellucid::cli {
 
 namespace {
 
 struct Options {
-    VolumeOptions volume;
-    TfOptions tf;
-    CameraOptions camera;
-    EngineOptions engine;
+    SceneOptions scene;
     std::set<BenchRow> only{kBenchRows.begin(), kBenchRows.end()};
     std::optional<int> repeat;
     bool full = false;
+
+    bool onBuiltIn() const { return !scene.volume.path && !scene.session.file; }
 };
 
 constexpr const char* kDense = "dense";
@@ -32,6 +30,8 @@ constexpr int kCubeSize = 128;         ///< of the smallest
 /// All rows at once: what measuring takes, weights for nine features (4), a renderer's codes (3) and, while `setup`
 /// runs, another engine (5).
 constexpr double kBenchBytesPerVoxel = kMeasureBytesPerVoxel + 4 + 3 + 5;
+
+const Work kWork{"measuring", kBenchBytesPerVoxel, true};
 
 /// One name per comma.
 std::set<BenchRow> parseRows(const std::string& text, const std::string& option) {
@@ -44,13 +44,9 @@ std::set<BenchRow> parseRows(const std::string& text, const std::string& option)
 }
 
 void check(const Options& o) {
-    o.camera.check();
-    if (!o.volume.path.empty()) {
-        if (o.full) throw UsageError("--full is about the built-in volumes", "--full", "leave it or VOLUME out");
-        return;
-    }
-    const VolumeOptions& v = o.volume;
-    if (v.raw || v.spacing || v.skipBytes || v.missing || v.range || v.sampleSize || v.component != 0)
+    if (!o.onBuiltIn() && o.full)
+        throw UsageError("--full is about the built-in volumes", "--full", "leave it or VOLUME out");
+    if (o.onBuiltIn() && o.scene.volume.anyDetail())
         throw UsageError("options of the volume are given, but no volume", "bench", "name a file or sample:NAME");
 }
 
@@ -86,10 +82,18 @@ class Run {
 public:
     Run(const Options& options, std::vector<int> threads, Progress& progress)
         : m_options(options), m_progress(progress) {
+        SceneOptions scene = options.scene;
+        if (options.onBuiltIn()) {
+            scene.volume.path = "sample:knee";
+            if (!scene.tf.spec) scene.tf.spec = "tents:3";
+        }
+        m_inputs = inputsOf(scene, kWork, m_results.notices);
+        m_mainVolume = m_inputs.session.variable().source.path;
+        m_mainTf = scene.tf.spec.value_or(scene.session.file ? "session" : "default");
         m_bench.threads = std::move(threads);
         m_bench.repeat = options.repeat;
-        m_bench.engine = options.engine.choice;
-        m_bench.quality = options.engine.quality;
+        m_bench.engine = m_inputs.session.measure->engine;
+        m_bench.quality = m_inputs.session.measure->quality;
     }
 
     void memory() {
@@ -98,31 +102,27 @@ public:
         for (const int threads : m_bench.threads) m_memcpy.push_back(memcpyGbPerS(threads, job));
     }
     void givenVolume() {
-        const auto [volume, tf] = loadVolumeAndTf(m_options.volume, m_options.tf, m_progress, memoryUse());
-        m_results.notices = volume->notices;
-        measureMain(volume, m_options.volume.path, tf, m_options.tf.spec.value_or("default"));
+        const Scene scene = openScene(m_inputs, m_progress.phase("loading"));
+        m_results.notices.insert(m_results.notices.end(), scene.volume->notices.begin(), scene.volume->notices.end());
+        measureMain(scene);
     }
     void builtInVolumes() {
-        {
-            VolumeOptions knee;
-            knee.path = "sample:knee";
-            const TfOptions tents{m_options.tf.spec.value_or("tents:3")};
-            const auto [volume, tf] = loadVolumeAndTf(knee, tents, m_progress, memoryUse());
-            measureMain(volume, knee.path, tf, *tents.spec);
-        }
+        measureMain(openScene(m_inputs, m_progress.phase("loading")));
         const std::set<BenchRow> rows = both(m_options.only, {BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian});
         if (rows.empty()) return;
-        VolumeOptions block;
-        block.path = "sample:shells";
-        block.sampleSize = kCubeSize;
-        const auto [volume, given] = loadVolumeAndTf(block, m_options.tf, m_progress, memoryUse());
-        const bool dense = !m_options.tf.spec;
+        SceneOptions blockOptions = m_options.scene;
+        blockOptions.volume.path = "sample:shells";
+        blockOptions.volume.sampleSize = kCubeSize;
+        const SceneInputs inputs = inputsOf(blockOptions, kWork, m_results.notices);
+        const Scene block = openScene(inputs, m_progress.phase("loading"));
+        const bool dense = !m_options.scene.tf.spec;
         const int largest = m_options.full ? 4 : 2;
-        requireMemory(memoryUse(), kCube + std::to_string(largest * kCubeSize), volume->dims() * largest);
+        requireMemory(inputs.then, kCube + std::to_string(largest * kCubeSize), block.volume->dims() * largest);
         std::vector<BenchCase> cubes;
         for (int n = 1; n <= largest; n *= 2) {
-            cubes.push_back(caseOf(n == 1 ? volume : tiled(*volume, n), kCube + std::to_string(n * kCubeSize),
-                                   m_options.tf.spec.value_or(kDense), given, rows));
+            const auto volume = n == 1 ? block.volume : tiled(*block.volume, n);
+            cubes.push_back({volume, kCube + std::to_string(n * kCubeSize), cameraOf(inputs, volume->geometry()),
+                             m_options.scene.tf.spec.value_or(kDense), block.tf, rows});
             if (dense) makeDense(cubes.back());
         }
         bench(cubes, m_bench, m_progress.phase("cubes"), m_results);
@@ -133,14 +133,6 @@ public:
     }
 
 private:
-    MemoryUse memoryUse() const { return m_options.engine.memoryFor("measuring", kBenchBytesPerVoxel); }
-
-    BenchCase caseOf(const std::shared_ptr<const Volume>& volume, const std::string& volumeName,
-                     const std::string& tfName, TransferFunction tf, std::set<BenchRow> rows) const {
-        return {volume, volumeName,    m_options.camera.camera(volume->geometry()),
-                tfName, std::move(tf), std::move(rows)};
-    }
-
     static void makeDense(BenchCase& of) {
         of.tf = denseTf();
         of.stepScale = kDenseStepScale;
@@ -148,22 +140,23 @@ private:
     }
 
     /// All rows under `tf` and, unless the user wants this one alone, some under two of other densities.
-    void measureMain(const std::shared_ptr<const Volume>& volume, const std::string& name, const TransferFunction& tf,
-                     const std::string& tfName) {
-        m_mainVolume = name;
-        m_mainTf = tfName;
-        BenchCase main = caseOf(volume, name, tfName, tf, m_options.only);
+    void measureMain(const Scene& scene) {
+        const auto caseOf = [&](const std::string& tfName, TransferFunction tf, std::set<BenchRow> rows) {
+            return BenchCase{scene.volume, m_mainVolume, scene.camera, tfName, std::move(tf), std::move(rows)};
+        };
+        BenchCase main = caseOf(m_mainTf, scene.tf, m_options.only);
         main.nineFeatures = true;
         std::vector<BenchCase> cases{std::move(main)};
-        if (!m_options.tf.spec) {
+        if (!m_options.scene.tf.spec) {
             const std::set<BenchRow> rows =
                 both(m_options.only, {BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize});
-            cases.push_back(caseOf(volume, name, kDense, tf, rows));
+            cases.push_back(caseOf(kDense, scene.tf, rows));
             makeDense(cases.back());
-            cases.push_back(caseOf(volume, name, kSparse, sparseTf(*volume), rows));
+            cases.push_back(caseOf(kSparse, sparseTf(*scene.volume), rows));
         }
         for (const BenchCase& each : cases) // in turn: only one's fields are in memory
-            if (!each.rows.empty()) bench({&each, 1}, m_bench, m_progress.phase(name + ", " + each.tfName), m_results);
+            if (!each.rows.empty())
+                bench({&each, 1}, m_bench, m_progress.phase(m_mainVolume + ", " + each.tfName), m_results);
     }
 
     double memcpyOf(int threads) const {
@@ -296,6 +289,7 @@ private:
 
     const Options& m_options;
     Progress& m_progress;
+    SceneInputs m_inputs; ///< of the first volume
     BenchOptions m_bench;
     std::vector<double> m_memcpy; ///< GB/s, per number of threads
     BenchResults m_results;
@@ -306,7 +300,7 @@ Answer run(const Options& o, bool threadsGiven, Progress& progress) {
     check(o);
     Run bench(o, threadsGiven ? std::vector{threadCount()} : std::vector{1, 2}, progress);
     bench.memory();
-    if (o.volume.path.empty())
+    if (o.onBuiltIn())
         bench.builtInVolumes();
     else
         bench.givenVolume();
@@ -319,15 +313,17 @@ Command addBench(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "bench", "Measures how fast this machine measures, with 1 and 2 threads (or --threads N)");
     const auto o = std::make_shared<Options>();
-    o->volume.add(*app);
-    app->get_option("VOLUME")->required(false)->description(
+    o->scene.camera.fallback = ViewAngles{30, 20, 1}; // whatever the window opens on: figures stay comparable
+    o->scene.volume.add(*app);
+    app->get_option("VOLUME")->description(
         "what to measure on, as in other commands; without it sample:knee under tents:3, and cubes of 128 and 256 "
         "voxels along each side");
-    o->tf.add(*app);
+    o->scene.session.add(*app);
+    o->scene.tf.add(*app);
     app->get_option("--tf")->description("transfer function; without it that of the volume, one that gives every voxel "
                                          "a little opacity (dense), and one that gives it to 3 % of them (sparse)");
-    o->camera.add(*app);
-    o->engine.add(*app, "high: half the error, more time");
+    o->scene.camera.add(*app);
+    o->scene.engine.add(*app, "high: half the error, more time");
     addValue(
         *app, "--only", "ROW,...",
         [o](const std::string& text, const std::string& option) { o->only = parseRows(text, option); },

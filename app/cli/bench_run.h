@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "base/job.h"
+#include "engines/engines.h"
 #include "output.h"
 #include "progress.h"
 #include "render/camera.h"
-#include "engines/engines.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 

@@ -3,9 +3,10 @@
 #include <functional>
 
 #include "commands.h"
-#include "inputs.h"
 #include "parse.h"
-#include "render/visibility.h"
+#include "prepare.h"
+#include "render/memory_needs.h"
+#include "resolve.h"
 
 namespace pellucid::cli {
 
@@ -14,11 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-    VolumeOptions volume;
-    TfOptions tf;
-    CameraOptions camera;
-    EngineOptions engine;
-    SaliencyInput saliency;
+    SceneOptions scene;
     std::string out;
 };
 
@@ -63,25 +60,22 @@ Grid<float> vwsField(const Grid<float>& visibility, const WeightFields& weights,
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    const VwsOptions vws = o.saliency.vws();
     checkFolder(o.out);
-    o.camera.check();
-    const auto [volume, tf] =
-        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("measuring", kFieldsBytesPerVoxel));
-    const Geometry& geometry = volume->geometry();
-    const Camera camera = o.camera.camera(geometry);
-    auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
-    const WeightFields weights = saliencyFields(*volume, tf, o.saliency.saliency, progress.phase("saliency"));
-    const VisibilityField visibility = engine->field(camera, tf, progress.phase("visibility"));
-    const std::string engineName = engine->name();
-    engine.reset(); // and one file after the other: the program keeps no more fields than it needs
+    const Opened opened = resolve(o.scene, progress, {"measuring", kFieldsBytesPerVoxel, true});
+    const MeasureInput input = measureInput(opened.scene);
+    Workspace workspace;
+    const std::string engineName = prepare(workspace, input, progress).engine;
+    const WeightFields& weights = workspace.weights(input);
+    const VisibilityField visibility =
+        workspace.engine(input).field(input.camera, input.tf, progress.phase("visibility"));
+    workspace.releaseEngine(); // and one file after the other: the program keeps no more fields than it needs
 
     createFolder(o.out);
     using Make = std::function<Grid<float>()>;
     const std::vector<std::pair<const char*, Make>> files{
         {"saliency_brightness.nrrd", [&] { return gridOf(weights, 0); }},
         {"saliency_saturation.nrrd", [&] { return gridOf(weights, 1); }},
-        {"vws.nrrd", [&] { return vwsField(visibility.values, weights, vws); }}};
+        {"vws.nrrd", [&] { return vwsField(visibility.values, weights, input.settings.vws); }}};
     const JobControl writing = progress.phase("writing");
     std::string text;
     Json names = Json::array();
@@ -89,7 +83,7 @@ Answer run(const Options& o, Progress& progress) {
         writing.throwIfStopped();
         writing.report(static_cast<double>(names.size()) / static_cast<double>(files.size() + 1));
         const std::string path = (fs::path(o.out) / file).string();
-        writeNrrd(geometry, values, path);
+        writeNrrd(input.volume->geometry(), values, path);
         text += "wrote " + path + "\n";
         names.push_back(path);
     };
@@ -97,10 +91,10 @@ Answer run(const Options& o, Progress& progress) {
     for (const auto& [file, make] : files) write(file, make());
     Json json{{"command", "fields"},
               {"engine", engineName},
-              {"volume", jsonFromVolume(*volume)},
+              {"volume", jsonFromVolume(*input.volume)},
               {"files", names},
               {"seconds", {{"total", total.seconds()}}}};
-    return {text, std::move(json), volume->notices, {}};
+    return {text, std::move(json), opened.notices(), {}};
 }
 
 } // namespace
@@ -110,11 +104,12 @@ Command addFields(CLI::App& program) {
         "fields",
         "Writes visibility, saliency and each voxel's share of the VWS as NRRD files (float32, the volume's grid)");
     const auto o = std::make_shared<Options>();
-    o->volume.add(*app);
-    o->tf.add(*app);
-    o->camera.add(*app);
-    o->engine.add(*app, "high: half the error, more time");
-    o->saliency.add(*app);
+    o->scene.volume.add(*app);
+    o->scene.session.add(*app);
+    o->scene.tf.add(*app);
+    o->scene.camera.add(*app);
+    o->scene.engine.add(*app, "high: half the error, more time");
+    o->scene.saliency.add(*app);
     addValue(
         *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },
         "folder for visibility.nrrd, saliency_brightness.nrrd, saliency_saturation.nrrd, vws.nrrd; made where missing")

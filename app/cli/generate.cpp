@@ -2,8 +2,9 @@
 #include <filesystem>
 
 #include "commands.h"
-#include "inputs.h"
+#include "output_file.h"
 #include "parse.h"
+#include "volume/loader.h"
 #include "volume/procedural.h"
 
 namespace pellucid::cli {

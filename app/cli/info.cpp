@@ -1,6 +1,6 @@
 // `info`: what a volume file holds.
 #include "commands.h"
-#include "inputs.h"
+#include "resolve.h"
 
 namespace pellucid::cli {
 
@@ -42,11 +42,13 @@ Json jsonOf(const Volume& v) {
 
 Command addInfo(CLI::App& program) {
     CLI::App* app = program.add_subcommand("info", "What a volume holds: size, type, spacing, range, invalid voxels");
-    const auto options = std::make_shared<VolumeOptions>();
-    options->add(*app);
+    const auto options = std::make_shared<SceneOptions>();
+    options->volume.add(*app);
+    options->session.add(*app);
     return {app, [options](Progress& progress) {
-                const auto volume = loadVolume(*options, progress);
-                return Answer{textOf(*volume), jsonOf(*volume), {}, {}};
+                const Opened opened = resolve(*options, progress);
+                const Volume& volume = *opened.scene.volume;
+                return Answer{textOf(volume), jsonOf(volume), opened.sessionNotices, {}};
             }};
 }
 

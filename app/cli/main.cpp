@@ -110,8 +110,9 @@ std::string problem(const CLI::App& program, const CLI::ParseError& error) {
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && text.starts_with("--"))
         return text.substr(0, text.find(':')) +
                (text.find("At Most") != std::string::npos ? " is given more than once" : " has no value");
-    if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
-    if (text.starts_with("vOLUME")) text.front() = 'V';
+    const auto isLower = [](char c) { return std::islower(static_cast<unsigned char>(c)) != 0; };
+    if (text.size() > 1 && isLower(text[1])) // not NAME
+        text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
     return text;
 }
 

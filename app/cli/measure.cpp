@@ -1,18 +1,15 @@
 // `measure`: what each feature shows from one view.
-#include "optimize/measure.h"
 #include "commands.h"
-#include "inputs.h"
+#include "prepare.h"
+#include "render/memory_needs.h"
+#include "resolve.h"
 
 namespace pellucid::cli {
 
 namespace {
 
 struct Options {
-    VolumeOptions volume;
-    TfOptions tf;
-    CameraOptions camera;
-    EngineOptions engine;
-    SaliencyInput saliency;
+    SceneOptions scene;
     bool jacobian = false;
 };
 
@@ -80,29 +77,24 @@ Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m,
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    const VwsOptions vws = o.saliency.vws();
-    o.camera.check();
-    const auto [volume, tf] =
-        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("measuring", kMeasureBytesPerVoxel));
-    const Camera camera = o.camera.camera(volume->geometry());
-    const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
+    const Opened opened = resolve(o.scene, progress, {"measuring", kMeasureBytesPerVoxel, true});
+    const MeasureInput input = measureInput(opened.scene);
+    Workspace workspace;
+    const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
 
     Seconds seconds;
-    const Stopwatch saliency;
-    const WeightFields weights = saliencyFields(*volume, tf, o.saliency.saliency, progress.phase("saliency"));
-    seconds.saliency = saliency.seconds();
-    const Measures m = measure(*engine, camera, tf, weights, vws, progress.phase("visibility"));
-    seconds.visibility = m.visibilitySeconds;
+    seconds.saliency = saliencySeconds;
+    const Measures m = workspace.measure(input, progress.phase("visibility"));
+    seconds.visibility = workspace.seconds().visibility;
     std::optional<Matrix> jacobian;
     if (o.jacobian) {
-        const Stopwatch derivatives;
-        jacobian = vwsJacobian(engine->jacobian(camera, tf, &weights, progress.phase("derivatives")), vws);
-        seconds.jacobian = derivatives.seconds();
+        jacobian = workspace.jacobian(input, progress.phase("derivatives"));
+        seconds.jacobian = workspace.seconds().visibility;
     }
     seconds.total = total.seconds();
-    return {textOf(tf, m, jacobian, engine->name(), seconds),
-            jsonOf(*volume, tf, m, jacobian, engine->name(), seconds),
-            volume->notices,
+    return {textOf(input.tf, m, jacobian, engine, seconds),
+            jsonOf(*input.volume, input.tf, m, jacobian, engine, seconds),
+            opened.notices(),
             {}};
 }
 
@@ -111,11 +103,12 @@ Answer run(const Options& o, Progress& progress) {
 Command addMeasure(CLI::App& program) {
     CLI::App* app = program.add_subcommand("measure", "Visibility and visibility-weighted saliency of each feature");
     const auto o = std::make_shared<Options>();
-    o->volume.add(*app);
-    o->tf.add(*app);
-    o->camera.add(*app);
-    o->engine.add(*app, "high: half the error, more time");
-    o->saliency.add(*app);
+    o->scene.volume.add(*app);
+    o->scene.session.add(*app);
+    o->scene.tf.add(*app);
+    o->scene.camera.add(*app);
+    o->scene.engine.add(*app, "high: half the error, more time");
+    o->scene.saliency.add(*app);
     app->add_flag("--jacobian", o->jacobian, "the derivatives of each VWS with respect to each feature's opacity too");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

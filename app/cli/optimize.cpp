@@ -1,23 +1,39 @@
 // `optimize`: the opacities that give each feature its share of attention.
 #include "commands.h"
-#include "inputs.h"
-#include "optimize/history_io.h"
-#include "optimize/optimizer.h"
+#include "output_file.h"
 #include "parse.h"
+#include "prepare.h"
+#include "render/memory_needs.h"
+#include "resolve.h"
+#include "results_json.h"
 #include "tf/formats/tf_json.h"
 
 namespace pellucid::cli {
 
 namespace {
 
+/// --method, --normalize, --step, --tolerance, --max-iterations: what is not given is as in the session.
+struct SearchOptions {
+    std::optional<SearchMethod> method;
+    bool normalize = false;
+    std::optional<double> step, tolerance;
+    std::optional<int> maxIterations;
+
+    void add(CLI::App& app);
+    OptimizeOptions over(OptimizeOptions options) const {
+        options.method = method.value_or(options.method);
+        options.normalize = normalize || options.normalize;
+        options.step = step.value_or(options.step);
+        options.tolerance = tolerance.value_or(options.tolerance);
+        options.maxIterations = maxIterations.value_or(options.maxIterations);
+        return options;
+    }
+};
+
 struct Options {
-    VolumeOptions volume;
-    TfOptions tf;
-    CameraOptions camera;
-    EngineOptions engine;
-    SaliencyInput saliency;
-    OptimizeOptions optimize;
-    std::vector<double> targets;
+    SceneOptions scene;
+    SearchOptions search;
+    std::optional<std::vector<double>> targets;
     std::optional<std::string> outTf;
     bool requireConverged = false;
 };
@@ -55,17 +71,17 @@ std::string textOf(const OptimizeResult& r, const std::string& engine, const Sec
 
 Json jsonOf(const OptimizeResult& r, const OptimizeOptions& options, const Volume& volume, const std::string& engine,
             const Seconds& seconds) {
-    Json json(jsonFromOptimization(r, options));
+    Json json = jsonFromOptimization(r, options);
     json["engine"] = engine;
     json["volume"] = jsonFromVolume(volume);
     json["seconds"] = {{"saliency", seconds.saliency}, {"search", seconds.search}, {"total", seconds.total}};
     return json;
 }
 
-std::optional<Error> failureOf(const Options& o, const OptimizeResult& r) {
+std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options, const OptimizeResult& r) {
     if (!o.requireConverged || r.converged()) return {};
     return Error("the targets were not reached (objective " + plainText(r.history[r.best].objective) +
-                     ", wanted below " + plainText(o.optimize.tolerance) + ")",
+                     ", wanted below " + plainText(options.tolerance) + ")",
                  std::string(name(r.reason)) + " after " + std::to_string(r.iterations()) + " iterations",
                  "raise --max-iterations or --tolerance, or choose other targets");
 }
@@ -73,33 +89,58 @@ std::optional<Error> failureOf(const Options& o, const OptimizeResult& r) {
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf");
-    const VwsOptions vws = o.saliency.vws();
-    o.optimize.validate();
-    o.camera.check();
-    const auto [volume, tf] =
-        loadVolumeAndTf(o.volume, o.tf, progress, o.engine.memoryFor("optimizing", kMeasureBytesPerVoxel));
-    atOption("--target", [&] { return normalizedTargets(o.targets, tf.features.size()); });
-    const Camera camera = o.camera.camera(volume->geometry());
-    const auto engine = makeEngine(o.engine.choice, volume, o.engine.quality);
+    if (!o.targets && !o.scene.session.file)
+        throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
+    const Opened opened = resolve(o.scene, progress, {"optimizing", kMeasureBytesPerVoxel, true});
+    const Scene& scene = opened.scene;
+    const std::vector<double> targets = o.targets.value_or(scene.targets());
+    atOption("--target", [&] { return normalizedTargets(targets, scene.tf.features.size()); });
+    const OptimizeOptions options = o.search.over(*scene.session.optimize);
+    const MeasureInput input = measureInput(scene);
+    Workspace workspace;
+    const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
 
-    Seconds seconds;
-    const Stopwatch saliency;
-    const WeightFields weights = saliencyFields(*volume, tf, o.saliency.saliency, progress.phase("saliency"));
-    seconds.saliency = saliency.seconds();
-    const Stopwatch search;
-    const VwsFunction function(*engine, camera, tf, weights, vws);
     JobControl job = progress.phase("optimizing");
     job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
     int moves = -1;
-    const OptimizeResult result = optimize(function, o.targets, o.optimize, job, [&](const OptimizeState& state) {
+    const OptimizeResult result = workspace.optimize(input, targets, options, job, [&](const OptimizeState& state) {
         progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
     });
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
-    seconds.search = search.seconds();
+    const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    seconds.total = total.seconds();
-    return {textOf(result, engine->name(), seconds), jsonOf(result, o.optimize, *volume, engine->name(), seconds),
-            volume->notices, failureOf(o, result)};
+    return {textOf(result, engine, seconds), jsonOf(result, options, *input.volume, engine, seconds), opened.notices(),
+            failureOf(o, options, result)};
+}
+
+void SearchOptions::add(CLI::App& app) {
+    addValue(
+        app, "--method", "fixed|line|parallel",
+        [this](const std::string& text, const std::string& option) {
+            method = atOption(option, [&] { return searchMethodFromName(text); });
+        },
+        "fixed step, line search, or line search with all steps at once (default parallel)");
+    addValue(
+        app, "--direction", "gradient",
+        [](const std::string& text, const std::string& option) {
+            if (text != "gradient") throw UsageError("unknown direction '" + text + "'", option, "give gradient");
+        },
+        "descent along 2(W - target) (the default)");
+    app.add_flag("--normalize", normalize, "scale the direction to length 1, as section 5.3.4 prints it");
+    addValue(
+        app, "--step", "S",
+        [this](const std::string& text, const std::string& option) { step = parseRealAbove(text, option, 0, 10); },
+        "base step (default 0.05)");
+    addValue(
+        app, "--tolerance", "F",
+        [this](const std::string& text, const std::string& option) { tolerance = parseRealAbove(text, option, 0, 1); },
+        "converged below this distance from the targets (default 0.03)");
+    addValue(
+        app, "--max-iterations", "N",
+        [this](const std::string& text, const std::string& option) {
+            maxIterations = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
+        },
+        "at most so many moves (default 200)");
 }
 
 } // namespace
@@ -108,47 +149,17 @@ Command addOptimize(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("optimize", "Finds the opacities that give each feature its target saliency");
     const auto o = std::make_shared<Options>();
-    o->volume.add(*app);
-    o->tf.add(*app);
-    o->camera.add(*app);
-    o->engine.add(*app, "high: half the error, more time");
-    o->saliency.add(*app);
+    o->scene.volume.add(*app);
+    o->scene.session.add(*app);
+    o->scene.tf.add(*app);
+    o->scene.camera.add(*app);
+    o->scene.engine.add(*app, "high: half the error, more time");
+    o->scene.saliency.add(*app);
     addValue(
         *app, "--target", "T1,T2,...",
         [o](const std::string& text, const std::string& option) { o->targets = parseTargets(text, option); },
-        "one number for each feature, from 0 on; scaled to sum 1")
-        ->required();
-    addValue(
-        *app, "--method", "fixed|line|parallel",
-        [o](const std::string& text, const std::string& option) {
-            o->optimize.method = atOption(option, [&] { return searchMethodFromName(text); });
-        },
-        "fixed step, line search, or line search with all steps at once (default parallel)");
-    addValue(
-        *app, "--direction", "gradient",
-        [](const std::string& text, const std::string& option) {
-            if (text != "gradient") throw UsageError("unknown direction '" + text + "'", option, "give gradient");
-        },
-        "descent along 2(W - target) (the default)");
-    app->add_flag("--normalize", o->optimize.normalize, "scale the direction to length 1, as section 5.3.4 prints it");
-    addValue(
-        *app, "--step", "S",
-        [o](const std::string& text, const std::string& option) {
-            o->optimize.step = parseRealAbove(text, option, 0, 10);
-        },
-        "base step (default 0.05)");
-    addValue(
-        *app, "--tolerance", "F",
-        [o](const std::string& text, const std::string& option) {
-            o->optimize.tolerance = parseRealAbove(text, option, 0, 1);
-        },
-        "converged below this distance from the targets (default 0.03)");
-    addValue(
-        *app, "--max-iterations", "N",
-        [o](const std::string& text, const std::string& option) {
-            o->optimize.maxIterations = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
-        },
-        "at most so many moves (default 200)");
+        "one number for each feature, from 0 on; scaled to sum 1; required unless a session has targets");
+    o->search.add(*app);
     addValue(
         *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
         "write the optimized transfer function (the best one seen)");

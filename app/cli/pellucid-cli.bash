@@ -33,7 +33,7 @@ _pellucid_cli() {
             COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --out | --out-tf)
+        --camera | --session | --out | --out-tf)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return

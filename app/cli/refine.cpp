@@ -4,19 +4,18 @@
 #include <cmath>
 
 #include "commands.h"
-#include "inputs.h"
-#include "optimize/history_io.h"
+#include "output_file.h"
 #include "parse.h"
+#include "resolve.h"
+#include "results_json.h"
 #include "tf/formats/tf_json.h"
-#include "volume/histogram.h"
 
 namespace pellucid::cli {
 
 namespace {
 
 struct Options {
-    VolumeOptions volume;
-    TfOptions tf;
+    SceneOptions scene;
     RefineOptions refine;
     std::vector<double> fixed;
     std::optional<std::string> outTf;
@@ -53,14 +52,15 @@ std::string textOf(const RefineResult& r, double seconds) {
 Answer run(const Options& o, Progress& progress) {
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf");
     o.refine.validate();
-    auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
+    const Opened opened = resolve(o.scene, progress);
+    TransferFunction tf = opened.scene.tf;
     for (const double x : o.fixed) fixPoint(tf, x);
-    const Histogram histogram = makeHistogram(*volume);
+    const Histogram histogram = makeHistogram(*opened.scene.volume);
     const Stopwatch refining;
     const RefineResult result = refine(histogram, tf, o.refine, progress.phase("refining"));
     const double seconds = refining.seconds();
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(result, seconds), Json(jsonFromRefinement(result)), volume->notices, {}};
+    return {textOf(result, seconds), jsonFromRefinement(result), opened.notices(), {}};
 }
 
 } // namespace
@@ -68,8 +68,9 @@ Answer run(const Options& o, Progress& progress) {
 Command addRefine(CLI::App& program) {
     CLI::App* app = program.add_subcommand("refine", "Evens out the information along the transfer function (entropy)");
     const auto o = std::make_shared<Options>();
-    o->volume.add(*app);
-    o->tf.add(*app);
+    o->scene.volume.add(*app);
+    o->scene.session.add(*app);
+    o->scene.tf.add(*app);
     addValue(
         *app, "--step-down", "D",
         [o](const std::string& text, const std::string& option) {

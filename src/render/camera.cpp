@@ -38,7 +38,7 @@ Vec3 Camera::towardEye(const Vec3& point) const {
     return projection == Projection::Orthographic ? -forward() : glm::normalize(eye - point);
 }
 
-void Camera::validate(const Geometry& geometry, const std::string& where) const {
+void Camera::validate(const std::string& where) const {
     const char* correct = "correct the camera";
     if (!finite(eye) || !finite(center) || !finite(up))
         throw Error("the camera has a number that is not finite", where, correct);
@@ -50,6 +50,11 @@ void Camera::validate(const Geometry& geometry, const std::string& where) const 
         return;
     }
     if (!(fovY > 0 && fovY < 180)) throw Error("fov_y lies between 0 and 180 degrees", where, correct);
+}
+
+void Camera::validate(const Geometry& geometry, const std::string& where) const {
+    validate(where);
+    if (projection == Projection::Orthographic) return;
     const Vec3 lo = geometry.boxMin(), hi = geometry.boxMax();
     bool inside = true;
     for (int a = 0; a < 3; ++a) inside = inside && eye[a] > lo[a] && eye[a] < hi[a];
@@ -97,12 +102,15 @@ Camera cameraFromJson(const JsonValue& j) {
     if (projection == "perspective") {
         camera.projection = Projection::Perspective;
         camera.fovY = j["fov_y"].number();
+        if (j.has("height")) camera.height = j["height"].number();
     } else if (projection == "orthographic") {
         camera.projection = Projection::Orthographic;
         camera.height = j["height"].number();
+        if (j.has("fov_y")) camera.fovY = j["fov_y"].number();
     } else {
         j["projection"].fail("the projection is neither \"perspective\" nor \"orthographic\"");
     }
+    camera.validate(j.place());
     return camera;
 }
 
@@ -118,7 +126,7 @@ json jsonFromCamera(const Camera& camera) {
     return j;
 }
 
-Camera readCamera(const std::string& path) { 
+Camera readCamera(const std::string& path) {
     const json document = readJson(path);
     return cameraFromJson(document, path);
 }

@@ -31,8 +31,10 @@ struct Camera {
     /// Unit direction from `point` toward the eye: the way light of a voxel goes.
     Vec3 towardEye(const Vec3& point) const;
 
-    /// Throws Error: not finite, eye = center, up parallel to the view, fov or height out of range, and — for
-    /// perspective — the eye inside the box. `where` names the camera's origin (a file, an option) in the message.
+    /// Throws Error: not finite, eye = center, up parallel to the view, fov or height out of range. `where` names the
+    /// camera's origin (a file, an option) in the message.
+    void validate(const std::string& where) const;
+    /// The same and, for perspective, the eye inside the box.
     void validate(const Geometry& geometry, const std::string& where) const;
 };
 
@@ -48,7 +50,8 @@ Ray pixelRay(const Camera& camera, double x, double y, int width, int height);
 /// +x, positive elevation toward +z. zoom 1 fits the box's bounding sphere into the image, 2 is twice as large.
 Camera cameraFromView(const Geometry& geometry, double azimuth, double elevation, double zoom, Projection projection);
 
-/// *.camera.json (docs/guide.md). Throw Error with place and reason.
+/// *.camera.json (docs/guide.md). Throw Error with place and reason. A perspective camera may say its "height" too, a
+/// parallel one its "fov_y": what the other projection would take up again.
 Camera cameraFromJson(const JsonValue& json);
 inline Camera cameraFromJson(const nlohmann::json& json, const std::string& where) {
     return cameraFromJson(JsonValue(json, where));

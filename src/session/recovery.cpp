@@ -55,8 +55,9 @@ RecoveryFile::RecoveryFile(const std::string& folder) {
     m_path = (fs::path(folder) / name).string();
     m_lockPath = m_path + kLockSuffix;
     m_lock = ::open(m_lockPath.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    if (m_lock < 0 || ::flock(m_lock, LOCK_EX | LOCK_NB) != 0)
-        throw FileError("cannot keep unsaved work", m_lockPath, "check permissions and space");
+    if (m_lock >= 0 && ::flock(m_lock, LOCK_EX | LOCK_NB) == 0) return;
+    if (m_lock >= 0) ::close(m_lock);
+    throw FileError("cannot keep unsaved work", m_lockPath, "check permissions and space");
 }
 
 RecoveryFile::~RecoveryFile() {

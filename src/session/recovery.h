@@ -14,7 +14,7 @@ class RecoveryFile {
 public:
     /// In `folder`, which is made where it is missing. Throws FileError where that cannot be.
     explicit RecoveryFile(const std::string& folder);
-    ~RecoveryFile(); ///< lets go of the lock; the file goes too, unless keep() was called
+    ~RecoveryFile(); ///< removes the file: who ends in order has saved what is wanted
     RecoveryFile(const RecoveryFile&) = delete;
     RecoveryFile& operator=(const RecoveryFile&) = delete;
 

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "render/camera_motion.h"
 #include "tf/formats/tf_json.h"
 #include "tf/sample_tf.h"
 #include "tf/tf_range.h"
@@ -96,6 +95,26 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     return scene;
 }
 
+Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry) {
+    const Projection projection = inputs.projection.value_or(Projection::Perspective);
+    Camera camera;
+    std::string where = "the camera of the session";
+    if (inputs.camera) {
+        camera = *inputs.camera;
+        where = inputs.cameraName;
+    } else if (inputs.view) {
+        camera = cameraFromView(geometry, inputs.view->azimuth, inputs.view->elevation, inputs.view->zoom, projection);
+        where = "view";
+    } else if (inputs.session.camera) {
+        camera = *inputs.session.camera;
+        if (inputs.projection) camera = withProjection(camera, geometry, projection);
+    } else {
+        camera = homeCamera(geometry, projection);
+    }
+    camera.validate(geometry, where);
+    return camera;
+}
+
 Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (inputs.session.isEmpty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
     Session session = inputs.session;
@@ -106,11 +125,9 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (!window && tf && tf->range) window = tf->range;
     if (window) session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
     if (tf) session.setTf(std::move(*tf));
-    if (inputs.camera) session.camera = inputs.camera;
     Scene scene = resolve(std::move(session), {}, inputs.then, job);
-    if (!scene.session.camera && inputs.projection)
-        scene.session.camera = scene.camera = homeCamera(scene.volume->geometry(), *inputs.projection);
-    scene.camera.validate(scene.volume->geometry(), "camera");
+    scene.camera = cameraOf(inputs, scene.volume->geometry());
+    if (inputs.camera || inputs.view || inputs.projection) scene.session.camera = scene.camera;
     return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "render/camera_motion.h"
 #include "session/session.h"
 #include "volume/histogram.h"
 #include "volume/intensity_grid.h"
@@ -26,17 +27,23 @@ struct Scene {
 
 /// What a user may name beside a session, or in place of one. Everything given overrides the session.
 struct SceneInputs {
-    Session session;                      ///< what to start from: its variable's source is what is opened
-    std::optional<std::string> tf;        ///< a file, tents:N[:PEAK] or ramp:N
-    std::optional<ValueRange> range;      ///< intensity window, data units
-    std::optional<Projection> projection; ///< of the home view, where the session has no camera
+    Session session;                 ///< what to start from: its variable's source is what is opened
+    std::optional<std::string> tf;   ///< a file, tents:N[:PEAK] or ramp:N
+    std::optional<ValueRange> range; ///< intensity window, data units
     std::optional<Camera> camera;
-    MemoryUse then; ///< what is done with the volume, see VolumeSource
+    std::string cameraName;               ///< of `camera` in messages, such as its file
+    std::optional<ViewAngles> view;       ///< in place of `camera`, see cameraFromView()
+    std::optional<Projection> projection; ///< of `view`, else of the session's camera, else of the home view
+    MemoryUse then;                       ///< what is done with the volume, see VolumeSource
 };
+
+/// From where the inputs look at a volume: `camera`, else `view`, else the session's camera, else the home view. Throws
+/// Error where that is inside its box.
+Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry);
 
 /// Opens everything. The intensity window is `range`, else that of the named transfer-function file, else the
 /// session's, else the range of the values. A transfer function keeps its data values whatever the window is. Throws
-/// FileError, UsageError (no source; a camera inside the box), Cancelled.
+/// FileError, Error (a camera inside the box), UsageError (no source), Cancelled.
 Scene openScene(const SceneInputs& inputs, const JobControl& job = {});
 
 /// The scene of a session. Data that `basis` has is taken from there: where source and window are the same this costs

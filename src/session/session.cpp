@@ -6,6 +6,8 @@
 #include <numeric>
 #include <set>
 
+#include "base/check.h"
+
 namespace pellucid {
 
 const Part<TransferFunction>* TfTrack::at(int frame) const {
@@ -22,57 +24,147 @@ const TransferFunction* Session::tf() const {
 
 namespace {
 
-/// Gives the features of `tf` that have no identity that of a feature of `before` which `same` calls the same, if
-/// nobody else has it.
-void adopt(TransferFunction& tf, const TransferFunction& before, std::set<FeatureId>& taken,
-           const std::function<bool(const Feature&, const Feature&)>& same) {
-    for (Feature& f : tf.features) {
-        if (f.id != 0) continue;
-        const auto match = std::find_if(before.features.begin(), before.features.end(), [&](const Feature& b) {
-            return b.id != 0 && taken.count(b.id) == 0 && same(f, b);
-        });
-        if (match == before.features.end()) continue;
-        f.id = match->id;
-        taken.insert(f.id);
+/// Gives the features of a transfer function their identities.
+class Identification {
+public:
+    explicit Identification(TransferFunction& tf) : m_tf(tf) {
+        for (Feature& f : tf.features)
+            if (f.id != 0 && !m_taken.insert(f.id).second) f.id = 0; // a copy of a feature is another one
     }
+
+    /// `before`: the transfer function that this one replaces.
+    void adopt(const TransferFunction* before, const FeatureGoals& goals) {
+        std::vector<Known> present, gone;
+        if (before != nullptr)
+            for (const Feature& f : before->features) present.push_back({f.id, f.name, f.a, f.b});
+        for (const auto& [id, goal] : goals)
+            if (goal.departed &&
+                std::none_of(present.begin(), present.end(), [id = id](const Known& k) { return k.id == id; }))
+                gone.push_back({id, goal.departed->name, goal.departed->a, goal.departed->b});
+        const auto sameName = [](const Feature& f, const Known& k) { return f.name == k.name; };
+        const auto samePlace = [](const Feature& f, const Known& k) { return f.a == k.a && f.b == k.b; };
+        const auto same = [&](const Feature& f, const Known& k) { return sameName(f, k) && samePlace(f, k); };
+        for (const auto& [by, among] :
+             std::initializer_list<std::pair<Rule, const std::vector<Known>*>>{{same, &present},
+                                                                               {same, &gone},
+                                                                               {sameName, &present},
+                                                                               {sameName, &gone},
+                                                                               {samePlace, &present},
+                                                                               {samePlace, &gone}})
+            adopt(*among, by);
+    }
+
+    /// From `next` on.
+    void addNew(FeatureId next) {
+        for (const FeatureId id : m_taken) next = std::max(next, id + 1);
+        for (Feature& f : m_tf.features)
+            if (f.id == 0) f.id = next++;
+    }
+
+private:
+    struct Known {
+        FeatureId id;
+        std::string name;
+        double a, b;
+    };
+    using Rule = std::function<bool(const Feature&, const Known&)>;
+
+    void adopt(const std::vector<Known>& among, const Rule& isSame) {
+        for (Feature& f : m_tf.features) {
+            if (f.id != 0) continue;
+            const auto match = std::find_if(among.begin(), among.end(), [&](const Known& k) {
+                return k.id != 0 && m_taken.count(k.id) == 0 && isSame(f, k);
+            });
+            if (match == among.end()) continue;
+            f.id = match->id;
+            m_taken.insert(f.id);
+        }
+    }
+
+    TransferFunction& m_tf;
+    std::set<FeatureId> m_taken;
+};
+
+/// Above all that the session has ever given.
+FeatureId firstUnused(const Session& session) {
+    FeatureId most = session.goals->empty() ? 0 : session.goals->rbegin()->first;
+    for (const Variable& v : *session.variables)
+        for (const auto& [from, tf] : v.track.keys)
+            for (const Feature& f : tf->features) most = std::max(most, f.id);
+    return most + 1;
+}
+
+const Feature* featureOf(const TransferFunction& tf, FeatureId id) {
+    for (const Feature& f : tf.features)
+        if (f.id == id) return &f;
+    return nullptr;
+}
+
+/// What a feature without a goal is given: it is wanted as much as the others of its transfer function on average.
+double averageTarget(const TransferFunction& tf, const FeatureGoals& goals) {
+    double sum = 0;
+    std::size_t known = 0;
+    for (const Feature& f : tf.features)
+        if (const auto goal = goals.find(f.id); goal != goals.end()) {
+            sum += goal->second.target;
+            ++known;
+        }
+    return known > 0 ? sum / static_cast<double>(known) : 1.0 / static_cast<double>(tf.features.size());
+}
+
+bool sameIdentities(const TransferFunction& a, const TransferFunction& b) {
+    return std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(),
+                      [](const Feature& f, const Feature& g) { return f.id == g.id; });
 }
 
 } // namespace
 
 void Session::setTf(TransferFunction tf) {
-    std::set<FeatureId> taken;
-    for (Feature& f : tf.features)
-        if (f.id != 0 && !taken.insert(f.id).second) f.id = 0; // a copy of a feature is another one
-    if (const TransferFunction* before = this->tf()) {
-        const auto sameName = [](const Feature& a, const Feature& b) { return a.name == b.name; };
-        const auto samePlace = [](const Feature& a, const Feature& b) { return a.a == b.a && a.b == b.b; };
-        adopt(tf, *before, taken,
-              [&](const Feature& a, const Feature& b) { return sameName(a, b) && samePlace(a, b); });
-        adopt(tf, *before, taken, sameName);
-        adopt(tf, *before, taken, samePlace);
-    }
-    FeatureId next = goals->empty() ? 1 : goals->rbegin()->first + 1;
-    for (const FeatureId id : taken) next = std::max(next, id + 1);
-    for (Feature& f : tf.features)
-        if (f.id == 0) f.id = next++;
-    // Every feature has a goal from its first day on; a new one is wanted as much as the others are on average.
-    const std::vector<double> targets = targetsOf(tf, *goals);
+    PELLUCID_CHECK(!isEmpty());
+    const TransferFunction* const before = this->tf();
+    Identification identification(tf);
+    identification.adopt(before, *goals);
+    identification.addNew(firstUnused(*this));
+
+    // Every feature has a goal from its first day on, and is remembered when it leaves.
     goals.edit([&](FeatureGoals& all) {
-        for (std::size_t i = 0; i < tf.features.size(); ++i)
-            all.try_emplace(tf.features[i].id, FeatureGoal{targets[i], false, 0, 1});
+        const double target = averageTarget(tf, all);
+        for (const Feature& f : tf.features) all.try_emplace(f.id, FeatureGoal{target, false, 0, 1});
+        if (before == nullptr) return;
+        for (const Feature& f : before->features)
+            if (f.id != 0 && featureOf(tf, f.id) == nullptr) all[f.id].departed = {f.name, f.a, f.b};
     });
-    variables.edit([&](std::vector<Variable>& all) {
-        auto& keys = all.front().track.keys;
-        const auto after = keys.upper_bound(frame);
-        const int key = keys.empty() ? 0 : after == keys.begin() ? after->first : std::prev(after)->first;
-        const auto there = keys.find(key);
-        const auto sameIdentities = [&](const TransferFunction& old) {
-            return std::equal(old.features.begin(), old.features.end(), tf.features.begin(), tf.features.end(),
-                              [](const Feature& a, const Feature& b) { return a.id == b.id; });
-        };
-        if (there != keys.end() && *there->second == tf && sameIdentities(*there->second)) return;
-        keys[key] = Part<TransferFunction>(std::move(tf));
-    });
+
+    std::vector<Variable> all = *variables;
+    auto& keys = all.front().track.keys;
+    const auto after = keys.upper_bound(frame);
+    const int key = keys.empty() ? 0 : after == keys.begin() ? after->first : std::prev(after)->first;
+    const auto there = keys.find(key);
+    if (there != keys.end() && *there->second == tf && sameIdentities(*there->second, tf)) return;
+    keys[key] = Part<TransferFunction>(std::move(tf));
+    variables = std::move(all); // not edit(): equal features may have become other ones
+}
+
+void Session::identifyFeatures() {
+    std::vector<Variable> all = *variables;
+    FeatureId next = firstUnused(*this);
+    bool changed = false;
+    for (Variable& v : all) {
+        const TransferFunction* before = nullptr;
+        for (auto& [from, part] : v.track.keys) {
+            TransferFunction tf = *part;
+            Identification identification(tf);
+            identification.adopt(before, *goals);
+            identification.addNew(next);
+            for (const Feature& f : tf.features) next = std::max(next, f.id + 1);
+            if (!sameIdentities(tf, *part)) {
+                part = Part<TransferFunction>(std::move(tf));
+                changed = true;
+            }
+            before = &*part;
+        }
+    }
+    if (changed) variables = std::move(all);
 }
 
 void Session::addRun(Run run) {

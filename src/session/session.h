@@ -37,11 +37,21 @@ struct Variable {
     bool operator==(const Variable&) const = default;
 };
 
+inline constexpr double kLargestTarget = 1e9; ///< only proportions count
+
 /// What belongs to a feature, wherever its interval goes.
 struct FeatureGoal {
-    double target = 0;              ///< wanted share of saliency, ≥ 0; shares are scaled to sum 1 over a TF
+    double target = 0;              ///< wanted share of saliency, [0, 1e9]; shares are scaled to sum 1 over a TF
     bool locked = false;            ///< an optimization leaves its opacity alone
     double lowest = 0, highest = 1; ///< bounds of its opacity, 0 ≤ lowest ≤ highest ≤ 1
+
+    /// What the feature was when it left the transfer function, by which it is known again; empty: it never left.
+    struct Departed {
+        std::string name;
+        double a = 0, b = 1;
+        bool operator==(const Departed&) const = default;
+    };
+    std::optional<Departed> departed = {};
     bool operator==(const FeatureGoal&) const = default;
 };
 
@@ -104,10 +114,12 @@ struct Session {
     /// The transfer function of this frame, in its own range; null before there is one.
     const TransferFunction* tf() const;
 
-    /// Sets the transfer function of this frame's key. Its features that have no identity yet get one: that of the
-    /// feature in the same place by name and interval, then by name, then by interval, of the present transfer function
-    /// and of `known` (those that the session has seen); else a new one.
+    /// Sets the transfer function of this frame's key; isEmpty() is false. Its features that have no identity yet get
+    /// that of a feature with the same name and interval, else the same name, else the same interval; each time of the
+    /// present transfer function, else of those that have left it. Else they get a new one.
     void setTf(TransferFunction tf);
+    /// Gives the features of all keys that have no identity one, as setTf() does from key to key.
+    void identifyFeatures();
     void addRun(Run run);
 };
 

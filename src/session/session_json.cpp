@@ -76,9 +76,22 @@ std::string storedPath(const std::string& path, const std::string& folder, DataP
     const fs::path absolute = fs::absolute(path, ec);
     if (ec) return path;
     if (paths == DataPaths::Absolute) return absolute.lexically_normal().string();
-    const fs::path base = fs::absolute(folder.empty() ? "." : folder, ec);
-    const fs::path relative = fs::proximate(absolute, base, ec);
+    // As they are written: who reads puts both together again, whatever links they lead through.
+    const fs::path base = fs::absolute(folder.empty() ? "." : folder, ec).lexically_normal();
+    const fs::path relative = absolute.lexically_normal().lexically_proximate(base);
     return (ec || relative.empty() ? absolute : relative).generic_string();
+}
+
+/// Where a stored path leads from `folder`.
+std::string foundPath(const fs::path& stored, const std::string& folder) {
+    if (stored.is_absolute()) return stored.string();
+    const std::string path = (fs::path(folder) / stored).lexically_normal().string();
+    std::error_code ec;
+    if (fs::exists(path, ec)) return path;
+    // The folder may have been reached through a link this time.
+    const fs::path real = fs::canonical(folder.empty() ? "." : folder, ec);
+    const std::string other = ec ? path : (real / stored).lexically_normal().string();
+    return fs::exists(other, ec) ? other : path;
 }
 
 // ---- writers and readers of the parts, each beside the other
@@ -87,7 +100,8 @@ json fromRange(const ValueRange& r) { return {r.lo, r.hi}; }
 ValueRange toRange(const JsonValue& j) {
     const auto ends = j.items(2);
     const ValueRange range{ends[0].number(), ends[1].number()};
-    if (!(range.lo < range.hi)) j.fail("a range needs its lower end below its upper one");
+    if (!(range.lo < range.hi) || !std::isfinite(range.hi - range.lo))
+        j.fail("a range needs its lower end below its upper one");
     return range;
 }
 
@@ -149,11 +163,11 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
     } else {
         const fs::path path = j["path"].text();
         if (path.empty()) j["path"].fail("the name of the data file is empty");
-        s.path = (path.is_absolute() ? path : (fs::path(folder) / path).lexically_normal()).string();
-        const auto now = fingerprintOf(s.path);
-        if (now && j.has("bytes") && j.has("crc32")) {
+        s.path = foundPath(path, folder);
+        if (j.has("bytes") && j.has("crc32")) {
             const Fingerprint saved{static_cast<std::uint64_t>(j["bytes"].integer(0, INT64_MAX)), j["crc32"].text()};
-            if (!(*now == saved))
+            const auto now = fingerprintOf(s.path);
+            if (now && !(*now == saved))
                 notices.push_back(path.filename().string() +
                                   " is not the file that the session was saved with: its content has changed");
         }
@@ -187,9 +201,12 @@ Variable toVariable(const JsonValue& j, const std::string& folder, std::vector<s
 
 json fromGoals(const FeatureGoals& goals) {
     json all = json::array();
-    for (const auto& [id, g] : goals)
+    for (const auto& [id, g] : goals) {
         all.push_back(
             {{"id", id}, {"target", g.target}, {"locked", g.locked}, {"lowest", g.lowest}, {"highest", g.highest}});
+        if (g.departed)
+            all.back()["departed"] = {{"name", g.departed->name}, {"range", {g.departed->a, g.departed->b}}};
+    }
     return all;
 }
 
@@ -197,11 +214,17 @@ FeatureGoals toGoals(const JsonValue& j) {
     FeatureGoals goals;
     for (const JsonValue& item : j.items()) {
         FeatureGoal g;
-        g.target = item["target"].number(0, kHuge);
+        g.target = item["target"].number(0, kLargestTarget);
         if (item.has("locked")) g.locked = item["locked"].boolean();
         if (item.has("lowest")) g.lowest = item["lowest"].number(0, 1);
         if (item.has("highest")) g.highest = item["highest"].number(g.lowest, 1);
-        goals[static_cast<FeatureId>(item["id"].integer(1, INT64_MAX / 2))] = g;
+        if (item.has("departed")) {
+            const JsonValue departed = item["departed"];
+            const auto range = departed["range"].items(2);
+            g.departed = {departed["name"].text(), range[0].number(0, 1), range[1].number(0, 1)};
+        }
+        const auto id = static_cast<FeatureId>(item["id"].integer(1, INT64_MAX / 2));
+        if (!goals.emplace(id, g).second) item["id"].fail("another feature has this number");
     }
     return goals;
 }
@@ -229,6 +252,7 @@ auto named(const JsonValue& j, const Parse& parse) {
 }
 
 MeasureSettings toMeasure(const JsonValue& j) {
+    j.requireObject();
     MeasureSettings m;
     constexpr double kMostWeight = 1e6;
     if (j.has("sigma")) {
@@ -261,6 +285,7 @@ json fromOptimize(const OptimizeOptions& o) {
 }
 
 OptimizeOptions toOptimize(const JsonValue& j) {
+    j.requireObject();
     OptimizeOptions o;
     if (j.has("method")) o.method = named(j["method"], searchMethodFromName);
     if (j.has("normalize")) o.normalize = j["normalize"].boolean();
@@ -301,6 +326,7 @@ Run toRun(const JsonValue& j) {
 }
 
 DisplaySettings toDisplay(const JsonValue& j) {
+    j.requireObject();
     DisplaySettings d;
     if (j.has("shading")) d.shading = j["shading"].boolean();
     if (j.has("background")) d.background = colorFromJson(j["background"]);
@@ -333,7 +359,12 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
-    if (s.camera) j["camera"] = jsonFromCamera(*s.camera);
+    if (s.camera) {
+        j["camera"] = jsonFromCamera(*s.camera);
+        // What the other projection would take up again.
+        j["camera"]["fov_y"] = s.camera->fovY;
+        j["camera"]["height"] = s.camera->height;
+    }
     addUnknownKeys(j, s.extraJson);
     return j;
 }
@@ -361,6 +392,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     }
     s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "camera", "clip", "display",
                                  "measure", "optimize", "runs", "title"});
+    s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }
 
@@ -370,7 +402,14 @@ SessionFile readSession(const std::string& path) {
 }
 
 void writeSession(const Session& session, const std::string& path, DataPaths paths) {
-    writeTextAtomically(path, jsonFromSession(session, fs::path(path).parent_path().string(), paths).dump(1) + "\n");
+    std::string text;
+    try {
+        text = jsonFromSession(session, fs::path(path).parent_path().string(), paths).dump(1) + "\n";
+    } catch (const json::type_error&) { // the other texts came from JSON themselves
+        throw FileError("the name of the data file is not UTF-8 text, which a session file is made of", path,
+                        "rename the data file");
+    }
+    writeTextAtomically(path, text);
 }
 
 } // namespace pellucid

@@ -25,7 +25,8 @@ struct SessionFile {
 /// Throws Error with place and reason: wrong JSON, another format, a newer version, a missing key, a number out of its
 /// range. Unknown keys are kept. Data files need not be there; where they are, their size and checksum are compared.
 SessionFile readSession(const std::string& path);
-/// Through a temporary file beside `path` that is renamed. Reading it back gives an equal session. Throws FileError.
+/// Through a temporary file beside `path` that is renamed. Reading it back gives an equal session, with the absolute
+/// path of the data where it was relative to another folder. Throws FileError.
 void writeSession(const Session& session, const std::string& path, DataPaths paths = DataPaths::Relative);
 
 /// The document; `folder` is that of the file, which relative paths are relative to.

@@ -32,14 +32,23 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
     return *m_engine;
 }
 
+void Workspace::releaseEngine() {
+    m_engine.reset();
+    m_engineVolume.reset();
+}
+
+bool Workspace::haveWeights(const MeasureInput& input) const {
+    return m_weightsVolume == input.volume && m_weightsOptions == input.settings.saliency &&
+           m_weightsTf == colorsOf(input.tf);
+}
+
 const WeightFields& Workspace::weights(const MeasureInput& input, const JobControl& job) {
-    TransferFunction key = colorsOf(input.tf);
     m_seconds.saliency = 0;
-    if (m_weightsVolume != input.volume || !(m_weightsTf == key) || !(m_weightsOptions == input.settings.saliency)) {
+    if (!haveWeights(input)) {
         const auto start = Clock::now();
         m_weightsVolume.reset();
         updateSaliencyFields(m_weights, *input.volume, input.tf, input.settings.saliency, job);
-        m_weightsTf = std::move(key);
+        m_weightsTf = colorsOf(input.tf);
         m_weightsOptions = input.settings.saliency;
         m_weightsVolume = input.volume;
         m_seconds.saliency = secondsSince(start);
@@ -68,8 +77,10 @@ Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
     return guarded(
         [&] {
             VisibilityEngine& e = engine(input);
-            const WeightFields& w = weights(input, job);
-            const Measures measures = pellucid::measure(e, input.camera, input.tf, w, input.settings.vws, job);
+            const bool all = !haveWeights(input); // half of the work, or none
+            const WeightFields& w = weights(input, all ? job.part(0, 2) : job);
+            const Measures measures =
+                pellucid::measure(e, input.camera, input.tf, w, input.settings.vws, all ? job.part(1, 2) : job);
             m_seconds.visibility = measures.visibilitySeconds;
             return measures;
         },
@@ -80,9 +91,11 @@ std::vector<std::vector<double>> Workspace::jacobian(const MeasureInput& input, 
     return guarded(
         [&] {
             VisibilityEngine& e = engine(input);
-            const WeightFields& w = weights(input, job);
+            const bool all = !haveWeights(input);
+            const WeightFields& w = weights(input, all ? job.part(0, 2) : job);
             const auto start = Clock::now();
-            auto matrix = vwsJacobian(e.jacobian(input.camera, input.tf, &w, job), input.settings.vws);
+            auto matrix =
+                vwsJacobian(e.jacobian(input.camera, input.tf, &w, all ? job.part(1, 2) : job), input.settings.vws);
             m_seconds.visibility = secondsSince(start);
             return matrix;
         },

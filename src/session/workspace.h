@@ -10,7 +10,8 @@
 
 namespace pellucid {
 
-/// Used by one thread at a time. The same input gives the same figures, whatever was computed before.
+/// Used by one thread at a time. The same input gives the same figures, whatever was computed before. An engine that
+/// has failed is not kept.
 class Workspace {
 public:
     struct Seconds {
@@ -29,11 +30,14 @@ public:
     VisibilityEngine& engine(const MeasureInput& input);
     /// The fields depend on colours and features alone, so that they outlive changes of opacity.
     const WeightFields& weights(const MeasureInput& input, const JobControl& job = {});
-    void releaseEngine() { m_engine.reset(); } ///< its memory is wanted for something else
+    /// Its memory, and that of the volume it was made for, is wanted for something else.
+    void releaseEngine();
 
     const Seconds& seconds() const { return m_seconds; } ///< of the latest computation
 
 private:
+    bool haveWeights(const MeasureInput& input) const;
+
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
     Quality m_quality = Quality::Normal;

@@ -1,55 +1,73 @@
 #include "tf/tf_range.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pellucid {
 
 namespace {
 
-/// From intensities of one window to those of another, by way of data values.
+/// From intensities of one window to those of another, by way of data values. The ends of the one are met exactly where
+/// the windows share them.
 struct Rescale {
     ValueRange from, to;
-    double operator()(double x) const {
-        const double value = from.lo + x * (from.hi - from.lo);
-        return (value - to.lo) / (to.hi - to.lo);
-    }
+    double operator()(double x) const { return (std::lerp(from.lo, from.hi, x) - to.lo) / (to.hi - to.lo); }
 };
 
-/// `tf` in the intensities of the new window, which may lie outside [0,1]. The ends that go without saying are written
-/// out where the curve meets them and they are ends no longer.
-std::vector<ControlPoint> rescaledPoints(const TransferFunction& tf, const Rescale& rescale) {
-    std::vector<ControlPoint> points = tf.points;
-    if (points.empty()) return points;
-    const auto implied = [](double x, const ControlPoint& neighbour) {
-        return ControlPoint{x, 0.0, neighbour.color, true, {}};
-    };
-    const bool startsInside = points.front().x > 0, endsInside = points.back().x < 1;
-    if (startsInside && points.front().opacity > 0 && rescale(0) != 0)
-        points.insert(points.begin(), implied(0, points.front()));
-    if (endsInside && points.back().opacity > 0 && rescale(1) != 1) points.push_back(implied(1, points.back()));
-    for (ControlPoint& p : points) p.x = rescale(p.x);
-    // Values beyond the old window were drawn as its ends are.
-    if (!startsInside && points.front().x > 0 && points.front().opacity > 0) {
-        points.insert(points.begin(), points.front());
-        points.front().x = 0;
-    }
-    if (!endsInside && points.back().x < 1 && points.back().opacity > 0) {
-        points.push_back(points.back());
-        points.back().x = 1;
-    }
-    return points;
+/// A point of the curve in the intensities of the new window, which may lie outside [0,1].
+struct CurvePoint {
+    ControlPoint point;
+    bool made = false; ///< by us: it goes again where the curve is the same without it
+    double x() const { return point.x; }
+};
+
+CurvePoint madeAt(double x, const ControlPoint& like) { return {{x, like.opacity, like.color, true, {}}, true}; }
+
+CurvePoint between(const ControlPoint& p, const ControlPoint& q, double x) {
+    const double t = (x - p.x) / (q.x - p.x);
+    const auto mix = [t](double a, double b) { return a + (b - a) * t; };
+    const Rgb color{mix(p.color.r, q.color.r), mix(p.color.g, q.color.g), mix(p.color.b, q.color.b)};
+    return {{x, mix(p.opacity, q.opacity), color, p.fixed && q.fixed, {}}, true};
 }
 
-/// The curve at x between two points, as a point.
-ControlPoint between(const ControlPoint& p, const ControlPoint& q, double x) {
-    const double t = q.x > p.x ? (x - p.x) / (q.x - p.x) : 1;
-    ControlPoint cut;
-    cut.x = x;
-    cut.opacity = p.opacity + (q.opacity - p.opacity) * t;
-    cut.color = {p.color.r + (q.color.r - p.color.r) * t, p.color.g + (q.color.g - p.color.g) * t,
-                 p.color.b + (q.color.b - p.color.b) * t};
-    cut.fixed = p.fixed && q.fixed;
-    return cut;
+/// The whole curve, from x ≤ 0 to x ≥ 1.
+std::vector<CurvePoint> wholeCurve(const TransferFunction& tf, const Rescale& rescale) {
+    std::vector<CurvePoint> curve;
+    for (const ControlPoint& p : tf.pointsWithEnds()) {
+        curve.push_back({p, false});
+        curve.back().point.x = rescale(p.x);
+    }
+    curve.front().made = tf.points.empty() || tf.points.front().x > 0;
+    curve.back().made = tf.points.empty() || tf.points.back().x < 1;
+    // Values beyond the old window were drawn as its ends are.
+    if (curve.front().x() > 0) curve.insert(curve.begin(), madeAt(0, curve.front().point));
+    if (curve.back().x() < 1) curve.push_back(madeAt(1, curve.back().point));
+    return curve;
+}
+
+std::vector<CurvePoint> cut(const std::vector<CurvePoint>& curve) {
+    std::vector<CurvePoint> inside;
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        if (i > 0)
+            for (const double x : {0.0, 1.0})
+                if (curve[i - 1].x() < x && curve[i].x() > x)
+                    inside.push_back(between(curve[i - 1].point, curve[i].point, x));
+        if (curve[i].x() >= 0 && curve[i].x() <= 1) inside.push_back(curve[i]);
+    }
+    return inside;
+}
+
+/// Whether TransferFunction::pointsWithEnds() makes up for the outermost point, which lies at `end` or inward of it.
+bool goesWithoutSaying(const CurvePoint& outermost, const CurvePoint& next, double end) {
+    return outermost.made && outermost.point.opacity == 0 && outermost.point.color == next.point.color &&
+           (outermost.x() == end || next.point.opacity == 0);
+}
+
+void removeNeedless(std::vector<CurvePoint>& points) {
+    while (points.size() > 1 && goesWithoutSaying(points[0], points[1], 0)) points.erase(points.begin());
+    while (points.size() > 1 && goesWithoutSaying(points.back(), points[points.size() - 2], 1)) points.pop_back();
+    const CurvePoint black{{}, false}; // what there is without any point
+    if (points.size() == 1 && goesWithoutSaying(points[0], black, points[0].x())) points.clear();
 }
 
 } // namespace
@@ -60,15 +78,10 @@ TransferFunction inRange(const TransferFunction& tf, const ValueRange& range) {
     if (!tf.range || *tf.range == range || !(range.lo < range.hi)) return result;
     const Rescale rescale{*tf.range, range};
 
-    const std::vector<ControlPoint> points = rescaledPoints(tf, rescale);
+    std::vector<CurvePoint> points = cut(wholeCurve(tf, rescale));
+    removeNeedless(points);
     result.points.clear();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (i > 0 && points[i - 1].x < 0 && points[i].x > 0)
-            result.points.push_back(between(points[i - 1], points[i], 0));
-        if (i > 0 && points[i - 1].x < 1 && points[i].x > 1)
-            result.points.push_back(between(points[i - 1], points[i], 1));
-        if (points[i].x >= 0 && points[i].x <= 1) result.points.push_back(points[i]);
-    }
+    for (CurvePoint& p : points) result.points.push_back(std::move(p.point));
 
     result.features.clear();
     for (Feature f : tf.features) {

@@ -134,7 +134,7 @@ void TransferFunction::validate() const {
                 throw Error("features '" + features[j].name + "' and '" + f.name + "' overlap", place,
                             "make them disjoint");
     }
-    if (range && (!std::isfinite(range->lo) || !std::isfinite(range->hi) || !(range->lo < range->hi)))
+    if (range && (!std::isfinite(range->hi - range->lo) || !(range->lo < range->hi)))
         throw Error("the range needs lo < hi, both finite", "/range", "correct it");
 }
 

@@ -93,7 +93,7 @@ TEST_CASE("bench optimizes and refines as the commands of that name do", "[cli][
     const json j = bench(w, {"--only", "optimize,refine", "--tf", "tents:3:0.2", "--threads", "2"});
     REQUIRE(j["rows"].size() == 2);
     const json found = w.json({"optimize", "sample:shells", "--size", "24", "--engine", "cpu", "--tf", "tents:3:0.2",
-                               "--target", "0.1,0.3,0.6", "--method", "parallel"});
+                               "--target", "0.1,0.3,0.6", "--method", "parallel", "--view", "30,20"});
     const json& optimized = j["rows"][0];
     CHECK(optimized["name"] == "optimize");
     CHECK(optimized["converged"] == true);

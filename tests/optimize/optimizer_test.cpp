@@ -1,9 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include <nlohmann/json.hpp>
-
 #include "base/error.h"
-#include "optimize/history_io.h"
 #include "optimize/measure.h"
 #include "optimize/optimizer.h"
 #include "support/volumes.h"
@@ -190,23 +187,6 @@ TEST_CASE("optimizing a real volume makes its core visible", "[optimize]") {
     double sum = 0;
     for (const double h : after.visibilityHistogram) sum += h;
     CHECK(sum == Approx(1));
-}
-
-TEST_CASE("histories are written as CLI.md promises", "[optimize][json]") {
-    ProportionalEngine engine({20, 3, 1});
-    const VwsFunction f(engine, {}, tents(3, 0.5), kNoWeights);
-    const OptimizeResult r = optimize(f, {1, 3, 6}, {});
-    const auto j = jsonFromOptimization(r, {});
-    CHECK(j["command"] == "optimize");
-    CHECK(j["method"] == "parallel");
-    CHECK(j["direction"] == "gradient");
-    CHECK(j["converged"] == true);
-    CHECK(j["iterations"] == r.iterations());
-    CHECK(j["objective"].size() == r.history.size());
-    CHECK(j["vws"][0].size() == 3);
-    CHECK(j["opacity"].back() == r.history.back().opacity);
-    CHECK(j["target"][2] == 0.6);
-    CHECK(j["tf"]["format"] == "pellucid-tf");
 }
 
 TEST_CASE("impossible optimization options are refused", "[optimize]") {

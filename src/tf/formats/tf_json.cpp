@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* kFormat = "pellucid-tf";
 constexpr int kVersion = 1;
+constexpr const char* kIdentity = "identity"; ///< of a feature; "id" is a key that other programs may have used
 
 ControlPoint pointFromJson(const JsonValue& j) {
     ControlPoint p;
@@ -42,9 +43,9 @@ Feature featureFromJson(const JsonValue& j, Identities identities) {
     f.a = range.lo;
     f.b = range.hi;
     f.color = colorFromJson(j["color"]);
-    if (identities == Identities::Keep && j.has("id"))
-        f.id = static_cast<FeatureId>(j["id"].integer(1, std::numeric_limits<std::int64_t>::max() / 2));
-    f.extraJson = identities == Identities::Keep ? j.unknownKeys({"name", "range", "color", "id"})
+    if (identities == Identities::Keep && j.has(kIdentity))
+        f.id = static_cast<FeatureId>(j[kIdentity].integer(1, std::numeric_limits<std::int64_t>::max() / 2));
+    f.extraJson = identities == Identities::Keep ? j.unknownKeys({"name", "range", "color", kIdentity})
                                                  : j.unknownKeys({"name", "range", "color"});
     return f;
 }
@@ -98,7 +99,7 @@ json jsonFromTf(const TransferFunction& tf, Identities identities) {
     for (const Feature& f : tf.features) {
         json feature = {{"name", f.name}, {"range", {f.a, f.b}}, {"color", jsonFromColor(f.color)}};
         addUnknownKeys(feature, f.extraJson);
-        if (identities == Identities::Keep && f.id != 0) feature["id"] = f.id;
+        if (identities == Identities::Keep && f.id != 0) feature[kIdentity] = f.id;
         j["features"].push_back(std::move(feature));
     }
     addUnknownKeys(j, tf.extraJson);

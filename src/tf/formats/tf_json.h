@@ -15,7 +15,7 @@ Rgb colorFromJson(const JsonValue& value);
 /// "#rrggbb" where eight bits hold the colour, else three numbers: read back it is the same colour, bit for bit.
 nlohmann::json jsonFromColor(const Rgb& color);
 
-/// Whether features carry their identities ("id"): inside a session they do, in a file of their own they do not.
+/// Whether features carry their identities ("identity"): inside a session they do, in a file of their own they do not.
 enum class Identities { Keep, Drop };
 
 /// Throws Error naming the place (`/points/3/x`) and the reason: wrong JSON, unknown `format`, newer `version`, x

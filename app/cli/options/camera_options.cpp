@@ -1,0 +1,61 @@
+#include "options/camera_options.h"
+
+#include <cmath>
+
+#include "parse.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr const char* kGroup = "View";
+
+ViewAngles parseView(const std::string& text, const std::string& option) {
+    const auto v = parseReals(text, option);
+    const std::string form = "give AZIMUTH,ELEVATION[,ZOOM] in degrees";
+    if (v.size() != 2 && v.size() != 3) throw UsageError("'" + text + "' is not a view", option, form);
+    if (std::abs(v[1]) > 90) throw UsageError("the elevation is not between -90 and 90 degrees", option, form);
+    const ViewAngles view{v[0], v[1], v.size() == 3 ? v[2] : 1.0};
+    constexpr double kMostZoom = 1e6; // beyond that the angle of view is 0 or 180 degrees to within rounding
+    if (!(view.zoom >= 1 / kMostZoom && view.zoom <= kMostZoom))
+        throw UsageError("the zoom is not a number from 1e-6 to 1e6", option,
+                         "1 fits the whole volume, 2 is twice as large");
+    return view;
+}
+
+} // namespace
+
+void CameraOptions::add(CLI::App& app) {
+    m_added = true;
+    addValue(
+        app, "--camera", "FILE", [this](const std::string& text, const std::string&) { file = text; },
+        "camera file (JSON)", kGroup);
+    addValue(
+        app, "--view", "AZIMUTH,ELEVATION[,ZOOM]",
+        [this](const std::string& text, const std::string& option) { view = parseView(text, option); },
+        "degrees; 0,0 looks along +y from the front, z up; zoom 1 fits the sphere around the box (default: the "
+        "session's camera, else " +
+            std::string(fallback ? "30,20)" : "30,20 with the box as large as it fits, as the window opens)"),
+        kGroup);
+    app.add_flag("--orthographic", orthographic, "parallel rays (default: perspective)")->group(kGroup);
+}
+
+void CameraOptions::applyTo(SceneInputs& inputs) const {
+    if (!m_added) { // nobody looks
+        inputs.session.camera.reset();
+        return;
+    }
+    if (file) {
+        if (view) throw UsageError("two views are given", "--camera and --view", "leave one out");
+        if (orthographic)
+            throw UsageError("a camera file states its own projection", "--orthographic", "leave it out or use --view");
+        inputs.camera = readCamera(*file);
+        inputs.cameraName = *file;
+        return;
+    }
+    inputs.view = view;
+    if (!view && !inputs.session.camera) inputs.view = fallback;
+    if (orthographic) inputs.projection = Projection::Orthographic;
+}
+
+} // namespace pellucid::cli

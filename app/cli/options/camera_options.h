@@ -1,0 +1,27 @@
+// --camera, --view, --orthographic: from where.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "session/scene.h"
+
+namespace pellucid::cli {
+
+struct CameraOptions {
+    std::optional<std::string> file;
+    std::optional<ViewAngles> view;
+    bool orthographic = false;
+    std::optional<ViewAngles> fallback; ///< the command's own, where neither options nor session say
+
+    void add(CLI::App& app);
+    /// Reads the camera's file. Throws UsageError for options that do not go together, Error for the file.
+    void applyTo(SceneInputs& inputs) const;
+
+private:
+    bool m_added = false;
+};
+
+} // namespace pellucid::cli

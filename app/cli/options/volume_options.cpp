@@ -1,0 +1,112 @@
+#include "options/volume_options.h"
+
+#include <limits>
+
+#include "parse.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr const char* kGroup = "Volume";
+
+Vec3 parseSpacing(const std::string& text, const std::string& option) {
+    const auto v = parseReals(text, option, 3, "SX,SY,SZ in world units");
+    for (const double s : v)
+        if (!(s > 0))
+            throw UsageError("the spacing " + text + " is not positive", option, "give three numbers above 0");
+    return {v[0], v[1], v[2]};
+}
+
+} // namespace
+
+void VolumeOptions::add(CLI::App& app, SizeIs size) {
+    m_command = "pellucid-cli " + app.get_name();
+    app.add_option_function<std::string>(
+           "VOLUME", [this](const std::string& text) { path = text; },
+           "a NRRD, MetaImage, NIfTI or (with --raw) headerless file, or sample:NAME; not needed with --session")
+        ->type_name("");
+    addValue(
+        app, "--raw", "NX,NY,NZ,TYPE[,ENDIAN]",
+        [this](const std::string& text, const std::string& option) {
+            raw = atOption(option + " " + text, [&] { return parseRawLayout(text); });
+        },
+        "the file is headerless; TYPE is u8 i8 u16 i16 u32 i32 f32 f64, ENDIAN little (default) or big", kGroup);
+    addValue(
+        app, "--spacing", "SX,SY,SZ",
+        [this](const std::string& text, const std::string& option) { spacing = parseSpacing(text, option); },
+        "voxel distances of --raw data in world units (default 1,1,1)", kGroup);
+    addValue(
+        app, "--skip", "BYTES",
+        [this](const std::string& text, const std::string& option) {
+            skipBytes =
+                static_cast<std::uint64_t>(parseInteger(text, option, 0, std::numeric_limits<long long>::max()));
+        },
+        "bytes before the --raw data", kGroup);
+    addValue(
+        app, "--missing", "VALUE",
+        [this](const std::string& text, const std::string& option) { missing = parseReal(text, option); },
+        "voxels of this value are invalid: never drawn, never counted", kGroup);
+    addValue(
+        app, "--range", "LO,HI",
+        [this](const std::string& text, const std::string& option) { range = parseRange(text, option); },
+        "the values of intensity 0 and 1 (default: those of the TF file, else of the session, else smallest and "
+        "largest value)",
+        kGroup);
+    addValue(
+        app, "--component", "N",
+        [this](const std::string& text, const std::string& option) {
+            component = static_cast<int>(parseInteger(text, option, 0, 1'000'000));
+        },
+        "component of a multi-component file, from 0", kGroup);
+    addValue(
+        app, size == SizeIs::Sample ? "--size,--sample-size" : "--sample-size", "N",
+        [this](const std::string& text, const std::string& option) {
+            sampleSize = static_cast<int>(parseInteger(text, option, 8, 65536));
+        },
+        "voxels along the longest axis of a sample", kGroup);
+    addValue(
+        app, "--seed", "N",
+        [this](const std::string& text, const std::string& option) {
+            seed = static_cast<std::uint32_t>(parseInteger(text, option, 0, std::numeric_limits<std::uint32_t>::max()));
+        },
+        "seed of a sample's noise (default 1)", kGroup);
+}
+
+bool VolumeOptions::anyDetail() const {
+    return raw || spacing || skipBytes || missing || range || component || sampleSize || seed;
+}
+
+void VolumeOptions::applyTo(SceneInputs& inputs) const {
+    Session& session = inputs.session;
+    if (path && path->empty())
+        throw UsageError("the name of the volume is empty", "VOLUME", "name a file or sample:NAME");
+    if (!path && session.isEmpty()) throw UsageError("VOLUME is required", m_command, "see " + m_command + " --help");
+
+    VolumeSource source;
+    if (path)
+        source.path = *path;
+    else
+        source = session.variable().source;
+    if (raw) source.raw = raw;
+    if (spacing && !source.raw) throw UsageError("--spacing is for headerless data", "--spacing", "give --raw as well");
+    if (skipBytes && !source.raw) throw UsageError("--skip is for headerless data", "--skip", "give --raw as well");
+    if (source.isSample() && source.raw)
+        throw UsageError("a built-in sample is no headerless file", "--raw", "leave it out");
+    if (sampleSize && !source.isSample())
+        throw UsageError("only built-in samples come in any size", "--sample-size", "leave it out or use sample:NAME");
+    if (spacing) source.raw->spacing = *spacing;
+    if (skipBytes) source.raw->skipBytes = *skipBytes;
+    if (missing) source.missing = missing;
+    if (component) source.component = *component;
+    if (sampleSize) source.sampleSize = *sampleSize;
+    if (seed) source.seed = *seed;
+
+    session.variables.edit([&](std::vector<Variable>& all) {
+        if (all.empty()) all.emplace_back();
+        all.front().source = source;
+    });
+    inputs.range = range;
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,38 @@
+// VOLUME, --raw, --spacing, --skip, --missing, --range, --component, --sample-size, --seed: what is opened.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "session/scene.h"
+
+namespace pellucid::cli {
+
+struct VolumeOptions {
+    std::optional<std::string> path;
+    std::optional<RawLayout> raw;
+    std::optional<Vec3> spacing;
+    std::optional<std::uint64_t> skipBytes;
+    std::optional<double> missing;
+    std::optional<ValueRange> range;
+    std::optional<int> component;
+    std::optional<int> sampleSize;
+    std::optional<std::uint32_t> seed;
+
+    /// --size is a second name of --sample-size, except in commands whose --size is an image's.
+    enum class SizeIs { Sample, Image };
+    void add(CLI::App& app, SizeIs size = SizeIs::Sample);
+    /// Whether any of them but VOLUME is given.
+    bool anyDetail() const;
+    /// VOLUME replaces the source of the session; the others change it. Throws UsageError where there is none, and for
+    /// options that do not go together.
+    void applyTo(SceneInputs& inputs) const;
+
+private:
+    std::string m_command; ///< "pellucid-cli measure"
+};
+
+} // namespace pellucid::cli

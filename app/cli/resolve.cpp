@@ -1,0 +1,37 @@
+#include "resolve.h"
+
+#include "render/memory_needs.h"
+
+namespace pellucid::cli {
+
+SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<std::string>& notices) {
+    SessionFile file = options.session.read();
+    notices.insert(notices.end(), file.notices.begin(), file.notices.end());
+    SceneInputs inputs;
+    inputs.session = std::move(file.session);
+    options.volume.applyTo(inputs);
+    options.tf.applyTo(inputs);
+    options.camera.applyTo(inputs);
+    options.engine.applyTo(inputs);
+    options.saliency.applyTo(inputs);
+    options.picture.applyTo(inputs);
+    const bool byReference = work.byEngine && inputs.session.measure->engine == EngineChoice::Reference;
+    inputs.then = {work.doing, work.bytesPerVoxel + (byReference ? kMoreByReferenceBytesPerVoxel : 0.0)};
+    return inputs;
+}
+
+std::vector<std::string> Opened::notices() const {
+    std::vector<std::string> all = sessionNotices;
+    all.insert(all.end(), scene.volume->notices.begin(), scene.volume->notices.end());
+    return all;
+}
+
+Opened resolve(const SceneOptions& options, Progress& progress, const Work& work) {
+    Opened opened;
+    const SceneInputs inputs = inputsOf(options, work, opened.sessionNotices);
+    opened.scene = openScene(inputs, progress.phase("loading"));
+    options.picture.applyTo(opened.scene);
+    return opened;
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,50 @@
+// From the words on the command line to what commands work on: the one way for all of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "options/camera_options.h"
+#include "options/engine_options.h"
+#include "options/picture_options.h"
+#include "options/saliency_options.h"
+#include "options/session_options.h"
+#include "options/tf_options.h"
+#include "options/volume_options.h"
+#include "progress.h"
+
+namespace pellucid::cli {
+
+/// What is worked on, and how. A command adds the groups that it takes; those that it does not add change nothing.
+struct SceneOptions {
+    SessionOptions session;
+    VolumeOptions volume;
+    TfOptions tf;
+    CameraOptions camera;
+    EngineOptions engine;
+    SaliencyInput saliency;
+    PictureOptions picture;
+};
+
+/// What a command does with the volume, and the memory that it takes beside it, bytes per voxel.
+struct Work {
+    std::string doing; ///< "measuring"; empty: nothing
+    double bytesPerVoxel = 0;
+    bool byEngine = false; ///< the reference engine takes more
+};
+
+/// Everything that can be told before a transfer function or volume is read. Throws UsageError for options that do not
+/// go together, Error for files. `notices` gets remarks about the session.
+SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<std::string>& notices);
+
+struct Opened {
+    Scene scene;
+    std::vector<std::string> sessionNotices;
+    /// Those of the session, then those of the data.
+    std::vector<std::string> notices() const;
+};
+
+/// Opens what the options say. Throws as inputsOf() and openScene() do.
+Opened resolve(const SceneOptions& options, Progress& progress, const Work& work = {});
+
+} // namespace pellucid::cli

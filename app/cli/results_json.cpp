@@ -1,0 +1,34 @@
+#include "results_json.h"
+
+#include "tf/formats/tf_json.h"
+
+namespace pellucid::cli {
+
+Json jsonFromRefinement(const RefineResult& r) {
+    return {{"command", "refine"},
+            {"iterations", r.iterations},
+            {"energy_before", r.energyBefore},
+            {"energy_after", r.energyAfter},
+            {"energy_movable_before", r.energyMovableBefore},
+            {"energy_movable_after", r.energyMovableAfter},
+            {"edges_before", r.edgesBefore},
+            {"edges_after", r.edgesAfter},
+            {"tf", Json(jsonFromTf(r.tf))}};
+}
+
+Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& options) {
+    Json j{{"command", "optimize"},        {"method", name(options.method)},
+           {"direction", "gradient"},      {"converged", r.converged()},
+           {"stopped", name(r.reason)},    {"iterations", r.iterations()},
+           {"evaluations", r.evaluations}, {"target", r.targets},
+           {"objective", Json::array()},   {"vws", Json::array()},
+           {"opacity", Json::array()},     {"tf", Json(jsonFromTf(r.tf))}};
+    for (const OptimizeState& state : r.history) {
+        j["objective"].push_back(state.objective);
+        j["vws"].push_back(state.vws);
+        j["opacity"].push_back(state.opacity);
+    }
+    return j;
+}
+
+} // namespace pellucid::cli
