@@ -12,7 +12,8 @@
 
 namespace pellucid {
 
-/// A session together with the data that it speaks of. Immutable parts are shared: copies are cheap.
+/// A session together with the data that it speaks of. Immutable parts are shared: copies are cheap. The parts belong
+/// together: who wants another session changes a copy of this one and has it resolved.
 struct Scene {
     Session session;
     std::shared_ptr<const Volume> data;   ///< as read, in the range of its values; null where nothing is open

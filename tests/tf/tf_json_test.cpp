@@ -101,3 +101,45 @@ TEST_CASE("a bad file is refused with the place and the reason", "[tf][json]") {
     missing["points"][2].erase("opacity");
     CHECK_THAT(messageOf(missing), Catch::Contains("'opacity' is missing") && Catch::Contains("/points/2"));
 }
+
+TEST_CASE("colours that eight bits do not hold survive a round trip exactly", "[tf][json]") {
+    TransferFunction tf = tents(2);
+    tf.points[0].color = {0.1 + 0.2, 1.0 / 3, 5e-324};
+    tf.points[1].color = {1.0 / 255, 254.0 / 255, 1}; // these they hold
+    tf.features[0].color = {0.123456789012345678, 0, 1};
+    const json j = jsonFromTf(tf);
+    CHECK(j["points"][0]["color"].is_array());
+    CHECK(j["points"][1]["color"] == "#01feff");
+    CHECK(tfFromJson(json::parse(j.dump()), "file") == tf);
+
+    const test::TempFolder folder;
+    writeTf(tf, folder.path("a.tf.json"));
+    CHECK(readTf(folder.path("a.tf.json")) == tf);
+}
+
+TEST_CASE("a colour may be three numbers", "[tf][json]") {
+    json j = good();
+    j["points"][1]["color"] = {0.25, 0, 1};
+    CHECK(tfFromJson(j, "file").points[1].color == Rgb{0.25, 0, 1});
+    for (const json& bad :
+         {json::array({0.5, 0.5}), json::array({0, 0, 1.5}), json::array({0, 0, "1"}), json(7), json()}) {
+        j["points"][1]["color"] = bad;
+        CHECK_THAT(messageOf(j), Catch::Contains("/points/1/color"));
+    }
+}
+
+TEST_CASE("identities are written where they are wanted, and never taken for foreign keys", "[tf][json]") {
+    TransferFunction tf = tents(2);
+    tf.features[0].id = 5;
+    tf.features[1].extraJson = R"({"id":"D1"})";
+    const auto again = [](const json& j, Identities identities) {
+        return tfFromJson(JsonValue(j, "file"), identities);
+    };
+    const json kept = jsonFromTf(tf, Identities::Keep), dropped = jsonFromTf(tf);
+    CHECK(again(kept, Identities::Keep).features[0].id == 5);
+    CHECK(again(kept, Identities::Keep).features[1].id == 0);
+    CHECK(again(kept, Identities::Keep) == tf);
+    CHECK(again(dropped, Identities::Drop).features[0].id == 0);
+    CHECK(again(dropped, Identities::Drop) == tf);
+    CHECK(dropped["features"][1]["id"] == "D1");
+}

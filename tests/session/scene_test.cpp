@@ -1,0 +1,290 @@
+// From names to what is drawn and measured: which window holds, where the curve lies, and what is shared.
+#include <catch2/catch.hpp>
+
+#include "base/error.h"
+#include "render/camera_motion.h"
+#include "session/scene.h"
+#include "support/temp_folder.h"
+#include "support/volumes.h"
+#include "tf/formats/tf_json.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+
+namespace {
+
+/// 0 … 215 as a u8 volume of 6³ voxels.
+std::string ramp() {
+    std::string bytes;
+    for (int i = 0; i < 216; ++i) bytes += static_cast<char>(i);
+    return bytes;
+}
+
+VolumeSource rawSource(const std::string& path) {
+    VolumeSource source;
+    source.path = path;
+    source.raw = RawLayout{{6, 6, 6}, SampleType::U8, false, {1, 1, 1}, 0};
+    return source;
+}
+
+/// A tent from 60 to 140 data units, in a file whose range is −100 … 300.
+TransferFunction tentInDataUnits() {
+    TransferFunction tf;
+    tf.range = ValueRange{-100, 300};
+    tf.points = {{0.4, 0, {1, 0, 0}, true, {}}, {0.5, 0.5, {1, 0, 0}, false, {}}, {0.6, 0, {1, 0, 0}, true, {}}};
+    tf.features = {{"tent", 0.4, 0.6, {1, 0, 0}, {}}};
+    return tf;
+}
+
+struct Files {
+    TempFolder folder;
+    std::string volume = folder.write("v.raw", ramp());
+    std::string tf = folder.path("a.tf.json");
+    Files() { writeTf(tentInDataUnits(), tf); }
+
+    SceneInputs inputs() const {
+        SceneInputs inputs;
+        inputs.session = sessionOf(rawSource(volume));
+        return inputs;
+    }
+    Session withWindow(const ValueRange& window) const {
+        Session s = sessionOf(rawSource(volume));
+        s.variables.edit([&](std::vector<Variable>& all) { all[0].window = window; });
+        return s;
+    }
+};
+
+double dataValue(double x, const Scene& scene) { return scene.volume->valueOfIntensity(x); }
+
+} // namespace
+
+TEST_CASE("the window: what is asked for, else the TF file's, else the session's, else the data's", "[session]") {
+    const Files files;
+    SceneInputs in = files.inputs();
+    Scene scene = openScene(in);
+    CHECK(scene.volume->range() == ValueRange{0, 215});
+    CHECK(scene.volume == scene.data);
+    CHECK_FALSE(scene.session.variable().window);
+    CHECK(scene.tf.range == ValueRange{0, 215});
+
+    in.session = files.withWindow({10, 110});
+    scene = openScene(in);
+    CHECK(scene.volume->range() == ValueRange{10, 110});
+    CHECK(scene.data->range() == ValueRange{0, 215});
+
+    in.tf = files.tf;
+    scene = openScene(in);
+    CHECK(scene.volume->range() == ValueRange{-100, 300});
+    CHECK(scene.session.variable().window == ValueRange{-100, 300});
+
+    in.range = ValueRange{0, 100};
+    scene = openScene(in);
+    CHECK(scene.volume->range() == ValueRange{0, 100});
+    CHECK(scene.tf.range == ValueRange{0, 100});
+}
+
+TEST_CASE("a transfer function keeps its data values whatever the window is", "[session]") {
+    const Files files;
+    SceneInputs in = files.inputs();
+    in.tf = files.tf;
+    for (const std::optional<ValueRange> range :
+         {std::optional<ValueRange>{}, std::optional<ValueRange>{{0, 215}}, std::optional<ValueRange>{{-1000, 1000}}}) {
+        in.range = range;
+        const Scene scene = openScene(in);
+        REQUIRE(scene.tf.features.size() == 1);
+        CHECK(dataValue(scene.tf.features[0].a, scene) == Approx(60));
+        CHECK(dataValue(scene.tf.features[0].b, scene) == Approx(140));
+        CHECK(scene.tf.opacity((100 - scene.volume->range().lo) /
+                               (scene.volume->range().hi - scene.volume->range().lo)) == Approx(0.5));
+        // The session's own stays as the file has it.
+        CHECK(scene.session.tf()->range == ValueRange{-100, 300});
+        CHECK(scene.session.tf()->points == tentInDataUnits().points);
+    }
+    // Cut where the window ends
+    in.range = ValueRange{100, 215};
+    const Scene cut = openScene(in);
+    CHECK(cut.tf.features[0].a == 0);
+    CHECK(cut.tf.opacity(0) == Approx(0.5));
+}
+
+TEST_CASE("a transfer function that says of no values is of the window", "[session]") {
+    const Files files;
+    SceneInputs in = files.inputs();
+    in.tf = "tents:3";
+    in.range = ValueRange{50, 60};
+    Scene scene = openScene(in);
+    CHECK(scene.tf.points == tents(3).points);
+    CHECK(scene.tf.range == ValueRange{50, 60});
+    CHECK(scene.session.tf()->range == ValueRange{50, 60});
+
+    TransferFunction bare = tentInDataUnits();
+    bare.range.reset();
+    writeTf(bare, files.tf);
+    in.tf = files.tf;
+    in.range.reset();
+    in.session = files.withWindow({10, 110});
+    scene = openScene(in);
+    CHECK(scene.volume->range() == ValueRange{10, 110});
+    CHECK(scene.tf.points == bare.points);
+
+    // From then on it stays at these values.
+    Session session = scene.session;
+    session.variables.edit([](std::vector<Variable>& all) { all[0].window = ValueRange{10, 210}; });
+    const Scene wider = resolve(session, scene);
+    CHECK(dataValue(wider.tf.features[0].a, wider) == Approx(50)); // 10 + 0.4·100
+    CHECK(wider.tf.features[0].a == Approx(0.2));
+}
+
+TEST_CASE("a session's transfer function is found again through another window", "[session]") {
+    const Files files;
+    SceneInputs in = files.inputs();
+    in.tf = files.tf;
+    const Scene saved = openScene(in);
+    SceneInputs again;
+    again.session = saved.session;
+    again.range = ValueRange{0, 215};
+    const Scene scene = openScene(again);
+    CHECK(dataValue(scene.tf.features[0].a, scene) == Approx(60));
+    CHECK(scene.tf.features[0].id == saved.tf.features[0].id);
+    again.tf = "tents:3";
+    again.range.reset();
+    CHECK(openScene(again).volume->range() == ValueRange{-100, 300}); // the session's
+}
+
+TEST_CASE("data of one value alone can be opened", "[session]") {
+    const Files files;
+    SceneInputs in;
+    in.session = sessionOf(rawSource(files.folder.write("constant.raw", std::string(216, '\7'))));
+    Scene scene = openScene(in);
+    CHECK(scene.volume->range() == ValueRange{7, 7});
+    CHECK(scene.tf.points == tents(3).points);
+    CHECK_FALSE(scene.tf.range); // no two values for 0 and 1
+    CHECK(scene.tf.features[0].id != 0);
+    in.tf = files.tf;
+    scene = openScene(in);
+    CHECK(scene.volume->range() == ValueRange{-100, 300});
+    CHECK(scene.tf.points == tentInDataUnits().points);
+    in.range = ValueRange{0, 10};
+    CHECK(openScene(in).volume->range() == ValueRange{0, 10});
+}
+
+TEST_CASE("nothing to open is wrong usage", "[session]") {
+    CHECK_THROWS_AS(openScene({}), UsageError);
+    const Scene empty = resolve({}, {});
+    CHECK(empty.data == nullptr);
+    CHECK_FALSE(needsData({}, empty));
+}
+
+TEST_CASE("the camera: what is asked for, else the session's, else the home view", "[session]") {
+    const Files files;
+    SceneInputs in = files.inputs();
+    const Scene home = openScene(in);
+    const Geometry geometry = home.volume->geometry();
+    CHECK(home.camera == homeCamera(geometry, Projection::Perspective));
+    CHECK_FALSE(home.session.camera);
+    in.projection = Projection::Orthographic;
+    CHECK(openScene(in).camera == homeCamera(geometry, Projection::Orthographic));
+    in.view = ViewAngles{10, 20, 3};
+    CHECK(openScene(in).camera == cameraFromView(geometry, 10, 20, 3, Projection::Orthographic));
+    in.projection.reset();
+
+    const Camera saved = cameraFromView(geometry, -40, 5, 1, Projection::Perspective);
+    in.session.camera = saved;
+    Scene scene = openScene(in);
+    CHECK(scene.camera == cameraFromView(geometry, 10, 20, 3, Projection::Perspective));
+    CHECK(scene.session.camera == scene.camera);
+    in.view.reset();
+    CHECK(openScene(in).camera == saved);
+    in.projection = Projection::Orthographic;
+    CHECK(openScene(in).camera == withProjection(saved, geometry, Projection::Orthographic));
+    in.projection.reset();
+    in.camera = cameraFromView(geometry, 90, 0, 1, Projection::Orthographic);
+    in.cameraName = "side.camera.json";
+    CHECK(openScene(in).camera == *in.camera);
+
+    in.camera->projection = Projection::Perspective;
+    in.camera->eye = geometry.boxCenter() + Vec3(0.1, 0, 0);
+    try {
+        openScene(in);
+        FAIL("a camera inside the box");
+    } catch (const Error& e) {
+        CHECK(e.where() == "side.camera.json");
+    }
+    // One that is not used does no harm.
+    in.session.camera = in.camera;
+    in.camera.reset();
+    CHECK_THROWS_AS(openScene(in), Error);
+    in.view = ViewAngles{0, 0, 1};
+    CHECK_NOTHROW(openScene(in));
+}
+
+TEST_CASE("what has not changed is not made again", "[session]") {
+    const Files files;
+    const Scene first = openScene(files.inputs());
+    Session session = first.session;
+    CHECK_FALSE(needsData(session, first));
+
+    Scene next = resolve(session, first);
+    CHECK(next.data == first.data);
+    CHECK(next.volume == first.volume);
+    CHECK(next.tf == first.tf);
+    CHECK(next.session.variables.isSame(first.session.variables));
+
+    session.camera = cameraFromView(first.volume->geometry(), 1, 2, 3, Projection::Perspective);
+    session.setTf(tents(5));
+    CHECK_FALSE(needsData(session, first));
+    next = resolve(session, first);
+    CHECK(next.data == first.data);
+    CHECK(next.volume == first.volume);
+    CHECK(next.tf.features.size() == 5);
+    CHECK(next.camera == *session.camera);
+
+    session.variables.edit([](std::vector<Variable>& all) { all[0].window = ValueRange{20, 100}; });
+    CHECK(needsData(session, next));
+    const Scene windowed = resolve(session, next);
+    CHECK(windowed.data == first.data);
+    CHECK(windowed.volume != first.volume);
+    CHECK(windowed.volume->range() == ValueRange{20, 100});
+    CHECK(&windowed.volume->samples() == &first.volume->samples()); // not copied
+    CHECK(windowed.tf.range == ValueRange{20, 100});
+
+    session.variables.edit([](std::vector<Variable>& all) { all[0].source.missing = 3; });
+    CHECK(needsData(session, windowed));
+    CHECK(resolve(session, windowed).data != first.data);
+}
+
+TEST_CASE("codes are shared by all who hold a volume in its window", "[session]") {
+    const Files files;
+    const Scene scene = openScene(files.inputs());
+    auto one = sharedIntensityGrid(*scene.volume);
+    const auto two = sharedIntensityGrid(*scene.volume);
+    CHECK(one == two);
+    const Volume copy = *scene.volume;
+    CHECK(sharedIntensityGrid(copy) == one);
+    const Volume windowed = scene.volume->withRange({0, 100});
+    CHECK(sharedIntensityGrid(windowed) != one);
+    CHECK_FALSE(scene.volume->sharedCodes().grid.expired());
+}
+
+TEST_CASE("a picture is made of what the session shows", "[session]") {
+    const Files files;
+    SceneInputs in = files.inputs();
+    in.tf = "tents:3";
+    Scene scene = openScene(in);
+    scene.session.display = DisplaySettings{true, {0.1, 0.2, 0.3}, scene.tf.features[1].id};
+    scene.session.clipping = Clipping{{0, 0.25, 0}, {1, 1, 0.5}};
+    scene.session.measure.edit([](MeasureSettings& m) { m.quality = Quality::High; });
+    PictureInput picture = pictureInput(scene, 40, 30);
+    CHECK(picture.settings == RenderSettings{40, 30, Rgb{0.1, 0.2, 0.3}, 0.25, true, {0, 0.25, 0}, {1, 1, 0.5}, 1});
+    CHECK(picture.volume == scene.volume);
+    CHECK(picture.tf == scene.tf);
+    CHECK(picture.camera == scene.camera);
+    CHECK_FALSE(pictureInput(scene, 40, 30, true).settings.background);
+    // A feature that has left the transfer function is not drawn alone.
+    Session fewer = scene.session;
+    fewer.setTf(tents(1));
+    scene = resolve(fewer, scene);
+    CHECK(pictureInput(scene, 40, 30).settings.onlyFeature == -1);
+    CHECK(measureInput(scene).settings == *scene.session.measure);
+    CHECK(pictureInput(resolve({}, {}), 4, 3).volume == nullptr);
+}

@@ -1,0 +1,154 @@
+// Figures do not depend on what was computed before.
+#include <catch2/catch.hpp>
+
+#include "base/error.h"
+#include "optimize/objective.h"
+#include "session/workspace.h"
+
+using namespace pellucid;
+
+namespace {
+
+Scene sceneOf(const std::string& sample, const std::string& tf) {
+    SceneInputs in;
+    VolumeSource source;
+    source.path = sample;
+    source.sampleSize = 20;
+    in.session = sessionOf(source);
+    in.tf = tf;
+    in.session.measure.edit([](MeasureSettings& m) { m.engine = EngineChoice::Cpu; });
+    return openScene(in);
+}
+
+bool same(const Measures& a, const Measures& b) {
+    const auto sameFigures = [](const FeatureMeasures& f, const FeatureMeasures& g) {
+        return f.visibility == g.visibility && f.vws == g.vws && f.vwsBrightness == g.vwsBrightness &&
+               f.vwsSaturation == g.vwsSaturation;
+    };
+    return a.opacities == b.opacities && a.visibilityHistogram == b.visibilityHistogram &&
+           std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(), sameFigures);
+}
+
+Measures fresh(const MeasureInput& input) {
+    Workspace workspace;
+    return workspace.measure(input);
+}
+
+/// All that one may change, one after the other.
+std::vector<MeasureInput> variations() {
+    const Scene scene = sceneOf("sample:shells", "tents:3:0.1");
+    const MeasureInput plain = measureInput(scene);
+    std::vector<MeasureInput> all{plain};
+    const auto add = [&](const auto& change) {
+        MeasureInput input = plain;
+        change(input);
+        all.push_back(std::move(input));
+    };
+    add([](MeasureInput& i) { i.tf = withFeatureOpacities(i.tf, {0.02, 0.3, 0.9}); });
+    add([](MeasureInput& i) { i.tf.features[1].b += 0.02; });
+    add([](MeasureInput& i) {
+        i.tf.points[4].color = {0.2, 0.9, 0.4};
+        i.tf.features[1].color = {0.2, 0.9, 0.4};
+    });
+    add([](MeasureInput& i) { i.tf = tents(5); });
+    add([](MeasureInput& i) { i.camera = cameraFromView(i.volume->geometry(), 80, -10, 1, Projection::Orthographic); });
+    add([](MeasureInput& i) { i.settings.quality = Quality::High; });
+    add([](MeasureInput& i) { i.settings.engine = EngineChoice::Reference; });
+    add([](MeasureInput& i) { i.settings.saliency.sigma = 3; });
+    add([](MeasureInput& i) { i.settings.saliency.background = {1, 1, 1}; });
+    add([](MeasureInput& i) { i.settings.vws = {0.2, 0.8}; });
+    add([](MeasureInput& i) { i.volume = std::make_shared<const Volume>(i.volume->withRange({20, 180})); });
+    all.push_back(measureInput(sceneOf("sample:disks", "tents:2")));
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("the same input has the same figures whatever was computed before", "[session][workspace]") {
+    const std::vector<MeasureInput> inputs = variations();
+    std::vector<Measures> expected;
+    for (const MeasureInput& input : inputs) expected.push_back(fresh(input));
+    CHECK_FALSE(same(expected[0], expected[1]));
+    Workspace workspace;
+    // Each after each other one, and after itself.
+    for (std::size_t before = 0; before < inputs.size(); before += 2)
+        for (std::size_t now = 0; now < inputs.size(); ++now) {
+            INFO(now << " after " << before);
+            workspace.measure(inputs[before]);
+            CHECK(same(workspace.measure(inputs[now]), expected[now]));
+        }
+}
+
+TEST_CASE("derivatives and searches do not depend on it either", "[session][workspace]") {
+    const std::vector<MeasureInput> inputs = variations();
+    Workspace used, unused;
+    for (const std::size_t before : {4u, 5u, 8u}) used.measure(inputs[before]);
+    CHECK(used.jacobian(inputs[0]) == unused.jacobian(inputs[0]));
+    OptimizeOptions options;
+    options.maxIterations = 2;
+    Workspace another;
+    const OptimizeResult a = used.optimize(inputs[1], {1, 2, 3}, options);
+    const OptimizeResult b = another.optimize(inputs[1], {1, 2, 3}, options);
+    CHECK(a.history == b.history);
+    // And as without a workspace at all
+    const auto engine = makeCpuEngine(inputs[1].volume);
+    const WeightFields weights = saliencyFields(*inputs[1].volume, inputs[1].tf);
+    const OptimizeResult c =
+        optimize(VwsFunction(*engine, inputs[1].camera, inputs[1].tf, weights), {1, 2, 3}, options);
+    CHECK(a.history == c.history);
+}
+
+TEST_CASE("saliency is computed once for colours, however opaque they are", "[session][workspace]") {
+    const std::vector<MeasureInput> inputs = variations();
+    Workspace workspace;
+    workspace.measure(inputs[0]);
+    CHECK(workspace.seconds().saliency > 0);
+    workspace.measure(inputs[1]); // other opacities
+    CHECK(workspace.seconds().saliency == 0);
+    workspace.measure(inputs[5]); // another camera
+    CHECK(workspace.seconds().saliency == 0);
+    workspace.measure(inputs[3]); // another colour
+    CHECK(workspace.seconds().saliency > 0);
+}
+
+TEST_CASE("progress goes from the beginning to the end once", "[session][workspace]") {
+    const MeasureInput input = variations()[0];
+    std::mutex mutex;
+    std::vector<double> reports;
+    JobControl job;
+    job.progress = [&](double fraction) {
+        const std::lock_guard lock(mutex);
+        reports.push_back(fraction);
+    };
+    Workspace workspace;
+    workspace.measure(input, job);
+    REQUIRE_FALSE(reports.empty());
+    CHECK(*std::max_element(reports.begin(), reports.end()) == Approx(1));
+    // Threads report in any order, but the saliency is the first half and the sweep the second.
+    const auto firstAbove = std::find_if(reports.begin(), reports.end(), [](double f) { return f > 0.5 + 1e-9; });
+    CHECK(std::none_of(firstAbove, reports.end(), [](double f) { return f < 0.5 - 1e-9; }));
+}
+
+TEST_CASE("an engine that has failed is not kept", "[session][workspace]") {
+    const MeasureInput good = variations()[0];
+    MeasureInput inside = good;
+    inside.camera.projection = Projection::Perspective;
+    inside.camera.eye = good.volume->geometry().boxCenter() + Vec3(0.5, 0, 0);
+    const auto holders = [&, alone = good.volume.use_count()] { return good.volume.use_count() - alone; };
+    Workspace workspace;
+    workspace.measure(good);
+    CHECK(holders() > 1); // the engine and the saliency
+    CHECK_THROWS_AS(workspace.measure(inside), Error);
+    CHECK(holders() == 1);
+    CHECK(same(workspace.measure(good), fresh(good)));
+    // One that was stopped has not failed.
+    std::stop_source stop;
+    stop.request_stop();
+    JobControl job;
+    job.stop = stop.get_token();
+    CHECK_THROWS_AS(workspace.measure(good, job), Cancelled);
+    CHECK(holders() > 1);
+    workspace.releaseEngine();
+    CHECK(holders() == 1);
+    CHECK(same(workspace.measure(good), fresh(good)));
+}

@@ -1,0 +1,222 @@
+#include "support/random_sessions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace pellucid::test {
+
+namespace {
+
+constexpr const char* kForeign = R"({"x-note":[1,2.5,"ä"],"x-other":{"deep":null}})";
+
+std::string randomExtra(Random& random) { return random.chance(0.3) ? kForeign : ""; }
+
+Vec3 oddVector(Random& random, double lo, double hi) {
+    return {oddNumber(random, lo, hi), oddNumber(random, lo, hi), oddNumber(random, lo, hi)};
+}
+
+ValueRange randomRange(Random& random) {
+    const double lo = oddNumber(random, -2000, 2000);
+    return {lo, lo + random.between(1e-3, 4000)};
+}
+
+template <class T, std::size_t N>
+T oneOf(Random& random, const std::array<T, N>& choices) {
+    return choices[static_cast<std::size_t>(random.below(static_cast<int>(N)))];
+}
+
+VolumeSource randomSource(Random& random) {
+    VolumeSource s;
+    if (random.chance(0.4)) {
+        s.path = std::string("sample:") + oneOf(random, std::array{"shells", "disks", "knee"});
+        if (random.chance(0.5)) s.sampleSize = 8 + random.below(60);
+        s.seed = random.chance(0.5) ? 1u : static_cast<std::uint32_t>(4294967295.0 * random.unit());
+    } else {
+        s.path = "/nowhere/at all/data \"" + std::to_string(random.below(100)) + "\" ü.raw";
+        if (random.chance(0.5)) {
+            RawLayout raw;
+            raw.dims = {1 + random.below(1000), 1 + random.below(1000), 1 + random.below(1000)};
+            raw.type = static_cast<SampleType>(random.below(8));
+            raw.bigEndian = random.chance(0.5);
+            raw.spacing = oddVector(random, 1e-6, 1e6);
+            raw.skipBytes = random.chance(0.5) ? 0 : static_cast<std::uint64_t>(9e18 * random.unit());
+            s.raw = raw;
+        }
+        if (random.chance(0.3)) s.component = random.below(5);
+    }
+    if (random.chance(0.4)) s.missing = oddNumber(random, -1e300, 1e300);
+    return s;
+}
+
+Camera randomCamera(Random& random) {
+    Camera c;
+    c.projection = random.chance(0.5) ? Projection::Perspective : Projection::Orthographic;
+    c.center = oddVector(random, -1000, 1000);
+    c.eye = c.center + Vec3(random.between(1, 2000), random.between(-2000, 2000), random.between(-50, 50));
+    c.up = Vec3(oddNumber(random, -0.1, 0.1), oddNumber(random, -0.1, 0.1), random.between(1, 2));
+    c.fovY = random.between(0.5, 170);
+    c.height = random.between(1e-3, 1e6);
+    return c;
+}
+
+Variable randomVariable(Random& random, int& features) {
+    Variable v;
+    v.name = oneOf(random, std::array{"x", "density", "Dichte ρ", ""});
+    v.source = randomSource(random);
+    if (random.chance(0.5)) v.window = randomRange(random);
+    const int keys = random.chance(0.2) ? 0 : random.chance(0.7) ? 1 : 2 + random.below(3);
+    for (int k = 0; k < keys; ++k) {
+        TransferFunction tf = randomTf(random);
+        features = std::max(features, static_cast<int>(tf.features.size()));
+        v.track.keys[k == 0 ? random.below(3) : 10 * k + random.below(10)] = Part<TransferFunction>(std::move(tf));
+    }
+    v.extraJson = randomExtra(random);
+    return v;
+}
+
+FeatureGoals randomGoals(Random& random, int features) {
+    FeatureGoals goals;
+    for (int i = 1; i <= features + 3; ++i) {
+        if (random.chance(0.2)) continue;
+        FeatureGoal g;
+        g.target = random.chance(0.2) ? 0 : oddNumber(random, 0, random.chance(0.5) ? 1 : kLargestTarget);
+        g.locked = random.chance(0.3);
+        if (random.chance(0.3)) {
+            g.lowest = oddNumber(random, 0, 0.5);
+            g.highest = oddNumber(random, 0.5, 1);
+        }
+        if (i > features || random.chance(0.2))
+            g.departed = FeatureGoal::Departed{"gone " + std::to_string(i), oddNumber(random, 0, 0.4),
+                                               oddNumber(random, 0.5, 1)};
+        goals[static_cast<FeatureId>(i)] = g;
+    }
+    return goals;
+}
+
+Run randomRun(Random& random) {
+    Run r;
+    r.kind = random.chance(0.5) ? "optimize" : "refine";
+    r.ended = oneOf(random, std::array{"converged", "max-iterations", "no-progress", "cancelled", "done"});
+    const auto n = static_cast<std::size_t>(random.below(4));
+    const auto numbers = [&] {
+        std::vector<double> all;
+        for (std::size_t i = 0; i < n; ++i) all.push_back(oddNumber(random, 0, 1));
+        return all;
+    };
+    for (std::size_t i = 0; i < n; ++i) r.features.push_back("f" + std::to_string(i));
+    r.targets = numbers();
+    for (int i = random.below(5); i > 0; --i) r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers()});
+    if (!r.history.empty()) r.best = static_cast<std::size_t>(random.below(static_cast<int>(r.history.size())));
+    r.before = oddNumber(random, 0, 1e10);
+    r.after = oddNumber(random, 0, 1);
+    r.iterations = random.below(1000);
+    return r;
+}
+
+MeasureSettings randomMeasure(Random& random) {
+    MeasureSettings m;
+    m.saliency.sigma = random.between(0.01, 8);
+    m.saliency.kernel = random.chance(0.5) ? SaliencyKernel::Thesis : SaliencyKernel::Narrow;
+    m.saliency.w1 = oddNumber(random, 0, 1e6);
+    m.saliency.w2 = oddNumber(random, 0, 2);
+    m.saliency.background = randomColor(random);
+    m.vws.u1 = oddNumber(random, 0, 1);
+    m.vws.u2 = 1 - m.vws.u1;
+    m.quality = random.chance(0.5) ? Quality::Normal : Quality::High;
+    m.engine =
+        oneOf(random, std::array{EngineChoice::Auto, EngineChoice::Gl, EngineChoice::Cpu, EngineChoice::Reference});
+    return m;
+}
+
+OptimizeOptions randomOptimize(Random& random) {
+    OptimizeOptions o;
+    o.method = oneOf(random, std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel});
+    o.normalize = random.chance(0.5);
+    o.step = random.between(1e-9, 10);
+    o.tolerance = random.between(1e-9, 0.5);
+    o.maxIterations = random.below(100000);
+    return o;
+}
+
+} // namespace
+
+double oddNumber(Random& random, double lo, double hi) {
+    switch (random.below(5)) {
+    case 0: // tiny
+        if (lo <= 0 && hi > 0) return std::numeric_limits<double>::denorm_min() * (1 + random.below(1000));
+        return lo;
+    case 1: // 0.30000000000000004, brought into the range
+        return std::clamp((0.1 + 0.2) * (random.chance(0.5) ? 1.0 : 100.0), lo, hi);
+    case 2:
+        return random.chance(0.5) ? lo : hi;
+    case 3: // all bits
+        return std::clamp(lo + (hi - lo) * (random.unit() + random.unit() / 4294967296.0), lo, hi);
+    default: // what people type
+        return std::clamp(std::round(100 * random.between(lo, hi)) / 100, lo, hi);
+    }
+}
+
+Rgb randomColor(Random& random) {
+    if (random.chance(0.5)) return {random.below(256) / 255.0, random.below(256) / 255.0, random.below(256) / 255.0};
+    return {oddNumber(random, 0, 1), oddNumber(random, 0, 1), random.unit()};
+}
+
+TransferFunction randomTf(Random& random, FeatureId first) {
+    TransferFunction tf;
+    if (random.chance(0.6)) tf.range = randomRange(random);
+    std::vector<double> x;
+    for (int i = random.below(9); i > 0; --i) x.push_back(oddNumber(random, 0, 1));
+    std::sort(x.begin(), x.end());
+    for (const double each : x)
+        tf.points.push_back(
+            {each, oddNumber(random, 0, 1), randomColor(random), random.chance(0.4), randomExtra(random)});
+    std::vector<double> ends;
+    for (int i = 2 * random.below(5); i > 0; --i) ends.push_back(oddNumber(random, 0, 1));
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {
+        if (!(ends[i] < ends[i + 1])) continue;
+        Feature f{"f" + std::to_string(i), ends[i], ends[i + 1], randomColor(random), randomExtra(random)};
+        f.id = first++;
+        tf.features.push_back(std::move(f));
+    }
+    tf.extraJson = randomExtra(random);
+    return tf;
+}
+
+Session randomSession(std::uint32_t number) {
+    Random random(number);
+    Session s;
+    int features = 0;
+    if (number % 10 != 9) s.variables = std::vector<Variable>{randomVariable(random, features)};
+    s.frame = random.chance(0.6) ? 0 : random.below(60);
+    s.goals = randomGoals(random, features);
+    if (random.chance(0.5)) s.camera = randomCamera(random);
+    if (random.chance(0.5)) s.clipping = Clipping{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1)};
+    if (random.chance(0.7)) {
+        const auto only = random.chance(0.3) ? static_cast<FeatureId>(1 + random.below(3)) : FeatureId{0};
+        s.display = DisplaySettings{random.chance(0.5), randomColor(random), only};
+    }
+    if (random.chance(0.7)) s.measure = randomMeasure(random);
+    if (random.chance(0.7)) s.optimize = randomOptimize(random);
+    for (int i = random.below(4); i > 0; --i) s.addRun(randomRun(random));
+    s.extraJson = randomExtra(random);
+    return s;
+}
+
+bool identical(const Session& a, const Session& b) {
+    if (!(a == b)) return false;
+    for (std::size_t v = 0; v < a.variables->size(); ++v) {
+        const auto &keysA = (*a.variables)[v].track.keys, &keysB = (*b.variables)[v].track.keys;
+        const bool same = std::equal(keysA.begin(), keysA.end(), keysB.begin(), [](const auto& p, const auto& q) {
+            const auto &f = p.second->features, &g = q.second->features;
+            return std::equal(f.begin(), f.end(), g.begin(),
+                              [](const Feature& x, const Feature& y) { return x.id == y.id; });
+        });
+        if (!same) return false;
+    }
+    return true;
+}
+
+} // namespace pellucid::test
