@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
+#include "render/box_in_image.h"
 #include "render/camera_motion.h"
 
 using namespace pellucid;
