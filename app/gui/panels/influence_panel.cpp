@@ -1,4 +1,4 @@
-#include "influence_panel.h"
+#include "panels/influence_panel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,9 @@
 #include <QTableWidget>
 #include <QVBoxLayout>
 
+#include "panel.h"
 #include "theme.h"
+#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {
@@ -25,8 +27,21 @@ QColor blend(const QColor& from, const QColor& to, double share) {
 
 } // namespace
 
-InfluencePanel::InfluencePanel(Document& document, QWidget* parent)
-    : QWidget(parent), m_document(document), m_table(new QTableWidget(this)),
+PanelInfo influencePanel() {
+    return {.id = "influence",
+            .title = QObject::tr("Influence"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = false, // costs a sweep more
+            .size = 0,
+            .keys = QKeySequence("Ctrl+I"),
+            .tip = QObject::tr("How each feature's VWS follows each opacity"),
+            .make = [](Workbench& bench,
+                       QWidget* parent) { return new InfluencePanel(bench.store(), bench.results(), parent); },
+            .shown = [](Workbench& bench, bool visible) { bench.results().setInfluenceWanted(visible); }};
+}
+
+InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)
+    : QWidget(parent), m_store(store), m_results(results), m_table(new QTableWidget(this)),
       m_copyAction(new QAction(tr("Copy the table"), m_table)) {
     auto* label = new QLabel(tr("How fast each VWS (rows) follows each opacity (columns)"), this);
     label->setWordWrap(true);
@@ -35,7 +50,10 @@ InfluencePanel::InfluencePanel(Document& document, QWidget* parent)
     m_table->setObjectName("influenceTable");
     m_table->setEditTriggers(QAbstractItemView::NoEditTriggers);
     m_table->setSelectionMode(QAbstractItemView::NoSelection);
-    m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+    // As wide as the numbers: many features scroll, they are not cut off.
+    m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    m_table->setHorizontalScrollMode(QAbstractItemView::ScrollPerPixel);
+    m_table->setTextElideMode(Qt::ElideNone);
     m_table->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     m_copyAction->setObjectName("copyInfluenceAction");
     m_copyAction->setShortcut(QKeySequence::Copy);
@@ -46,10 +64,14 @@ InfluencePanel::InfluencePanel(Document& document, QWidget* parent)
     auto* column = new QVBoxLayout(this);
     column->addWidget(label);
     column->addWidget(m_table, 1);
-    for (const auto signal : {&Document::volumeChanged, &Document::featuresChanged})
-        connect(&document, signal, this, &InfluencePanel::rebuild);
-    for (const auto signal : {&Document::influenceChanged, &Document::tfChanged, &Document::cameraChanged})
-        connect(&document, signal, this, &InfluencePanel::refresh);
+    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.tf.features == after.tf.features) {
+            refresh();
+        } else {
+            rebuild();
+        }
+    });
+    connect(&results, &Results::changed, this, &InfluencePanel::refresh);
 }
 
 void InfluencePanel::showEvent(QShowEvent* event) {
@@ -59,7 +81,7 @@ void InfluencePanel::showEvent(QShowEvent* event) {
 
 void InfluencePanel::rebuild() {
     if (!isVisible()) return;
-    const std::vector<Feature>& features = m_document.tf().features;
+    const std::vector<Feature>& features = m_store.scene().tf.features;
     const int n = static_cast<int>(features.size());
     m_table->setRowCount(n);
     m_table->setColumnCount(n);
@@ -83,9 +105,9 @@ void InfluencePanel::rebuild() {
 }
 
 void InfluencePanel::refresh() {
-    const auto& influence = m_document.influence();
+    const auto* const influence = m_results.influence();
     const int n = m_table->rowCount();
-    const bool known = influence && static_cast<int>(influence->size()) == n, current = m_document.influenceIsCurrent();
+    const bool known = influence && static_cast<int>(influence->size()) == n, current = m_results.influenceIsCurrent();
     m_copyAction->setEnabled(known && current);
     if (!isVisible()) return;
     double largest = 0;
@@ -116,8 +138,10 @@ void InfluencePanel::refresh() {
 }
 
 void InfluencePanel::copy() const {
-    const auto& influence = m_document.influence();
-    if (!m_document.influenceIsCurrent() || static_cast<int>(influence->size()) != m_table->rowCount()) return;
+    const auto* const influence = m_results.influence();
+    if (influence == nullptr || !m_results.influenceIsCurrent() ||
+        static_cast<int>(influence->size()) != m_table->rowCount())
+        return;
     QString text;
     for (int j = 0; j < m_table->columnCount(); ++j) text += '\t' + m_table->horizontalHeaderItem(j)->text();
     text += '\n';

@@ -1,4 +1,4 @@
-#include "features_panel.h"
+#include "panels/features_panel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +12,16 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
+#include <QSignalBlocker>
 #include <QStyledItemDelegate>
 #include <QTableView>
 #include <QVBoxLayout>
 
+#include "controllers/optimize_controller.h"
 #include "opacity_editor.h"
+#include "panel.h"
 #include "theme.h"
+#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {
@@ -64,9 +68,10 @@ QPushButton* button(const QString& text, const char* name, const QString& tip, Q
 
 } // namespace
 
-FeaturesPanel::FeaturesPanel(Document& document, QWidget* parent)
-    : QWidget(parent), m_document(document), m_model(new FeaturesModel(document, this)), m_table(new QTableView(this)),
-      m_bars(new TargetBars(document)), m_method(new QComboBox(this)), m_tolerance(new QDoubleSpinBox(this)),
+FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_model(new FeaturesModel(bench.store(), bench.results(), this)),
+      m_table(new QTableView(this)), m_bars(new TargetBars(bench.store(), bench.results())),
+      m_method(new QComboBox(this)), m_tolerance(new QDoubleSpinBox(this)),
       m_refine(button(tr("&Refine"), "refineButton",
                       tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this)),
       m_optimize(button(tr("&Optimize"), "optimizeButton",
@@ -74,7 +79,7 @@ FeaturesPanel::FeaturesPanel(Document& document, QWidget* parent)
                            "as seen from this camera"),
                         this)),
       m_cancel(button(tr("&Cancel"), "cancelButton", tr("Stop, and go back to where the optimization began"), this)),
-      m_undo(button(tr("Undo"), "undoButton", tr("Undo the last change of the transfer function (Ctrl+Z)"), this)),
+      m_undo(button(tr("Undo"), "undoButton", tr("Undo the last change (Ctrl+Z)"), this)),
       m_redo(button(tr("Redo"), "redoButton", tr("Redo the change that was undone (Ctrl+Shift+Z)"), this)),
       m_progress(new QProgressBar(this)), m_distance(new QLabel(this)), m_message(new QLabel(this)) {
     setObjectName("featuresPanel");
@@ -96,7 +101,7 @@ FeaturesPanel::FeaturesPanel(Document& document, QWidget* parent)
     m_table->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     m_table->setEditTriggers(QAbstractItemView::EditKeyPressed);
     connect(m_table, &QTableView::doubleClicked, this, [this](const QModelIndex& index) {
-        if (index.column() != FeaturesModel::Name || m_optimizing) return;
+        if (index.column() != FeaturesModel::Name || m_bench.isReadOnly()) return;
         // The swatch at the left of the cell, or the name in the rest of it.
         const QPoint mouse = m_table->viewport()->mapFromGlobal(QCursor::pos());
         if (mouse.x() > m_table->columnViewportPosition(FeaturesModel::Name) + kSwatch) return m_table->edit(index);
@@ -175,27 +180,37 @@ FeaturesPanel::FeaturesPanel(Document& document, QWidget* parent)
     column->addLayout(choices);
     column->addLayout(buttons);
 
-    connect(m_refine, &QPushButton::clicked, this, &FeaturesPanel::refineRequested);
-    connect(m_optimize, &QPushButton::clicked, this, &FeaturesPanel::optimizeRequested);
-    connect(m_cancel, &QPushButton::clicked, this, &FeaturesPanel::cancelRequested);
-    connect(m_undo, &QPushButton::clicked, &document.undoStack(), &QUndoStack::undo);
-    connect(m_redo, &QPushButton::clicked, &document.undoStack(), &QUndoStack::redo);
-    connect(&document.undoStack(), &QUndoStack::canUndoChanged, this, &FeaturesPanel::updateState);
-    connect(&document.undoStack(), &QUndoStack::canRedoChanged, this, &FeaturesPanel::updateState);
-    connect(&document, &Document::volumeChanged, this, [this] { setMessage({}); });
-    connect(&document, &Document::featuresChanged, this, &FeaturesPanel::updateState);
-    connect(&document, &Document::measuresChanged, this, &FeaturesPanel::updateState);
-    connect(&document, &Document::targetsChanged, this, &FeaturesPanel::updateState);
-    connect(&document, &Document::tfChanged, this, &FeaturesPanel::updateState);
+    const auto triggers = [this](QPushButton* b, const char* action) {
+        connect(b, &QPushButton::clicked, this, [this, action] { m_bench.actions().find(action)->trigger(); });
+    };
+    triggers(m_refine, "refineAction");
+    triggers(m_optimize, "optimizeAction");
+    triggers(m_undo, "undoAction");
+    triggers(m_redo, "redoAction");
+    OptimizeController& optimizing = m_bench.optimizing();
+    connect(m_cancel, &QPushButton::clicked, &optimizing, &OptimizeController::cancel);
+    connect(m_method, &QComboBox::activated, this, &FeaturesPanel::editOptions);
+    connect(m_tolerance, &QDoubleSpinBox::valueChanged, this, &FeaturesPanel::editOptions);
+    connect(&optimizing, &OptimizeController::runningChanged, this, &FeaturesPanel::followRun);
+    connect(&optimizing, &OptimizeController::moved, this, &FeaturesPanel::followRun);
+    connect(&optimizing, &OptimizeController::messageChanged, this, &FeaturesPanel::showMessage);
+    connect(&m_bench.store(), &SessionStore::changed, this, &FeaturesPanel::follow);
+    connect(&m_bench.store(), &SessionStore::historyChanged, this, &FeaturesPanel::follow);
+    connect(&m_bench.results(), &Results::changed, this, &FeaturesPanel::follow);
     adjustTable();
-    updateState();
+    followRun();
+    showMessage();
 }
 
-OptimizeOptions FeaturesPanel::options() const {
-    OptimizeOptions options;
-    options.method = static_cast<SearchMethod>(m_method->currentData().toInt());
-    options.tolerance = m_tolerance->value();
-    return options;
+void FeaturesPanel::editOptions() {
+    const auto method = static_cast<SearchMethod>(m_method->currentData().toInt());
+    const double tolerance = m_tolerance->value();
+    m_bench.store().edit(tr("Optimization settings"), "optimize-settings", [&](Session& session) {
+        session.optimize.edit([&](OptimizeOptions& options) {
+            options.method = method;
+            options.tolerance = tolerance;
+        });
+    });
 }
 
 void FeaturesPanel::adjustTable() {
@@ -206,59 +221,80 @@ void FeaturesPanel::adjustTable() {
     m_table->setFixedHeight(m_table->horizontalHeader()->sizeHint().height() + shown * kRowHeight + 2);
 }
 
-void FeaturesPanel::setOptimizing(bool on) {
-    m_optimizing = on;
-    m_firstObjective = 0;
-    m_progress->setValue(0);
-    m_progress->setFormat(on ? tr("measuring the start…") : QString());
-    m_bars->setReadOnly(on);
-    m_model->setReadOnly(on);
-    updateState();
-    if (on) m_cancel->setFocus();
-}
-
-void FeaturesPanel::showMove(int move, double objective) {
-    if (move == 0) m_firstObjective = objective;
-    // F falls by about the same factor in each move, so the way is measured in logarithms.
-    const double tolerance = m_tolerance->value();
-    double done = 1;
-    if (objective > tolerance && m_firstObjective > tolerance) {
-        done = std::log(m_firstObjective / objective) / std::log(m_firstObjective / tolerance);
+void FeaturesPanel::followRun() {
+    const OptimizeController& run = m_bench.optimizing();
+    const bool on = run.isRunning();
+    if (on && !m_cancel->isVisible()) m_cancel->setFocus();
+    if (m_cancel->isHidden() == on) {
+        m_bars->setReadOnly(on);
+        m_model->setReadOnly(on);
     }
-    m_progress->setValue(static_cast<int>(1000 * std::clamp(done, 0.0, 1.0)));
-    m_progress->setFormat(tr("move %1, F = %2").arg(move).arg(objective, 0, 'f', 4));
+    if (!on || run.move() < 0) {
+        m_progress->setValue(0);
+        m_progress->setFormat(on ? tr("measuring the start…") : QString());
+    } else {
+        // F falls by about the same factor in each move, so the way is measured in logarithms.
+        const double tolerance = m_bench.store().session().optimize->tolerance;
+        double done = 1;
+        if (run.objective() > tolerance && run.firstObjective() > tolerance)
+            done = std::log(run.firstObjective() / run.objective()) / std::log(run.firstObjective() / tolerance);
+        m_progress->setValue(static_cast<int>(1000 * std::clamp(done, 0.0, 1.0)));
+        m_progress->setFormat(tr("move %1, F = %2").arg(run.move()).arg(run.objective(), 0, 'f', 4));
+    }
+    m_optimize->setVisible(!on);
+    m_cancel->setVisible(on);
+    m_progress->setVisible(on);
+    m_distance->setVisible(!on);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_table, m_method, m_tolerance}) widget->setEnabled(!on);
+    follow();
 }
 
-void FeaturesPanel::setMessage(const QString& text) {
+void FeaturesPanel::showMessage() {
+    const QString& text = m_bench.optimizing().message();
     m_message->setText(text);
     m_message->setVisible(!text.isEmpty());
 }
 
-void FeaturesPanel::updateState() {
-    const bool ready = m_document.hasVolume() && !m_optimizing;
-    const bool features = !m_document.tf().features.empty();
+void FeaturesPanel::follow() {
+    const SessionStore& store = m_bench.store();
+    const OptimizeOptions& options = *store.session().optimize;
+    const QSignalBlocker blockMethod(m_method), blockTolerance(m_tolerance);
+    m_method->setCurrentIndex(m_method->findData(static_cast<int>(options.method)));
+    m_tolerance->setValue(options.tolerance);
+
+    const bool ready = store.hasVolume() && !m_bench.isReadOnly();
+    const bool features = !store.scene().tf.features.empty();
     m_refine->setEnabled(ready);
     m_optimize->setEnabled(ready && features);
-    m_optimize->setVisible(!m_optimizing);
-    m_cancel->setVisible(m_optimizing);
-    m_progress->setVisible(m_optimizing);
-    m_table->setEnabled(!m_optimizing);
-    m_method->setEnabled(!m_optimizing);
-    m_tolerance->setEnabled(!m_optimizing);
-    m_undo->setEnabled(ready && m_document.undoStack().canUndo());
-    m_redo->setEnabled(ready && m_document.undoStack().canRedo());
-    m_distance->setVisible(!m_optimizing);
-    const auto& measures = m_document.measures();
-    if (measures && features && measures->features.size() == m_document.targets().size()) {
-        std::vector<double> vws;
-        for (const FeatureMeasures& m : measures->features) vws.push_back(m.vws);
-        m_distance->setText(
-            tr("Distance from the targets: F = %1").arg(objectiveOf(vws, m_document.targets()), 0, 'f', 4));
-        m_distance->setEnabled(m_document.measuresAreCurrent());
+    m_undo->setEnabled(ready && store.canUndo());
+    m_redo->setEnabled(ready && store.canRedo());
+
+    const Results& results = m_bench.results();
+    m_distance->setEnabled(results.vwsIsCurrent());
+    if (results.state() == Results::State::Failed) {
+        m_distance->setText(tr("Not measured: %1").arg(QString::fromStdString(results.failure()->problem())));
+    } else if (const auto f = results.objective()) {
+        m_distance->setText(tr("Distance from the targets: F = %1").arg(*f, 0, 'f', 4));
     } else {
-        m_distance->setText(features ? tr("Measuring…") : QString());
-        m_distance->setEnabled(false);
+        m_distance->setText(store.hasVolume() && features ? tr("Measuring…") : QString());
     }
+}
+
+PanelInfo featuresPanel() {
+    return {.id = "features",
+            .title = QObject::tr("Features"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = true,
+            .size = 380,
+            .keys = QKeySequence("Ctrl+2"),
+            .tip = QObject::tr("What each feature shows and what it should show"),
+            .make =
+                [](Workbench& bench, QWidget* parent) {
+                    auto* panel = new FeaturesPanel(bench, parent);
+                    panel->setMinimumWidth(340);
+                    return panel;
+                },
+            .shown = {}};
 }
 
 } // namespace pellucid::gui

@@ -3,7 +3,8 @@
 
 #include <QWidget>
 
-#include "models/document.h"
+#include "results.h"
+#include "store/session_store.h"
 
 class QAction;
 class QTableWidget;
@@ -15,7 +16,7 @@ namespace pellucid::gui {
 class InfluencePanel : public QWidget {
     Q_OBJECT
 public:
-    explicit InfluencePanel(Document& document, QWidget* parent = nullptr);
+    InfluencePanel(SessionStore& store, Results& results, QWidget* parent = nullptr);
 
 private:
     void showEvent(QShowEvent* event) override;
@@ -26,7 +27,8 @@ private:
     /// state.
     void copy() const;
 
-    Document& m_document;
+    SessionStore& m_store;
+    Results& m_results;
     QTableWidget* m_table;
     QAction* m_copyAction;
 };
