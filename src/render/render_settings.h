@@ -6,6 +6,7 @@
 
 #include "render/camera.h"
 #include "tf/color.h"
+#include "tf/transfer_function.h"
 
 namespace pellucid {
 
@@ -19,6 +20,8 @@ struct RenderSettings {
     int onlyFeature = -1; ///< index: draw the voxels of this feature alone; −1: all
 
     void validate() const; ///< throws UsageError
+    /// The feature of `tf` that is drawn alone; null: all are drawn. Throws UsageError where it has none of this index.
+    const Feature* featureAlone(const TransferFunction& tf) const;
 };
 
 } // namespace pellucid

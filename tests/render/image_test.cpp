@@ -71,6 +71,21 @@ TEST_CASE("one feature can be drawn alone", "[image]") {
     CHECK(image.pixel(15, 10)[3] > 0.9);
 }
 
+TEST_CASE("a feature that is not there is wrong usage", "[image]") {
+    const auto volume = slab({4, 4, 4}, 0.5);
+    const Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
+    RenderSettings settings = small();
+    for (const int index : {3, 1'000'000, -2}) {
+        settings.onlyFeature = index;
+        CHECK_THROWS_MATCHES(makeCpuRenderer(volume)->render(camera, tents(3), settings), UsageError,
+                             Catch::Message("there is no feature number " + std::to_string(index) +
+                                            ", transfer function, it has 3, counted from 0"));
+    }
+    settings.onlyFeature = 0;
+    CHECK_THROWS_WITH(makeCpuRenderer(volume)->render(camera, TransferFunction{}, settings),
+                      Catch::Contains("it has 0"));
+}
+
 TEST_CASE("shading changes colours, never alpha", "[image]") {
     const auto volume = volumeFrom(geometryOf({16, 16, 16}), [](int i, int j, int k) {
         return std::clamp(1.2 - glm::length(Vec3(i, j, k) - 7.5) / 8, 0.0, 1.0);
