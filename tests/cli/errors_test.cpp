@@ -42,7 +42,8 @@ const Words kShells{"sample:shells", "--size", "16"};
 const Words kMeasure = Words{"measure"} + kShells;
 const Words kRefine = Words{"refine"} + kShells;
 const Words kOptimize = Words{"optimize"} + kShells;
-const Words kRender{"render", "sample:shells", "--sample-size", "16", "--out", "x.png"};
+const Words kDraw{"render", "sample:shells", "--sample-size", "16"};
+const Words kRender = kDraw + Words{"--out", "x.png"};
 
 /// A NRRD header of a raw-encoded u8 volume with these lines in it, followed by `bytes` zeros.
 std::string nrrd(const std::string& lines, std::size_t bytes) {
@@ -279,6 +280,35 @@ TEST_CASE("what cannot be written fails before the work", "[cli][errors]") {
     checkFails(w, {"generate", "shells", "--out", "x.mhd"}, 2, "x.mhd");
     checkFails(w, {"generate", "cube", "--out", "x.nrrd"}, 2, "shells");
     checkFails(w, {"generate", "shells"}, 2, "--out is required");
+}
+
+TEST_CASE("a full disk is told, and leaves what was there", "[cli][errors]") {
+    const Workshop w;
+    const std::size_t room = 400; // bytes per file: enough for the message
+    const std::vector<Words> commands{
+        kDraw + Words{"--out", "a.png"},
+        kDraw + Words{"--out", "a.jpg"},
+        kDraw + Words{"--out", "a.tif"},
+        kDraw + Words{"--out", "a.exr"},
+        {"generate", "shells", "--size", "16", "--out", "a.nrrd"},
+        Words{"fields", "--engine", "cpu", "--out", "."} + kShells,
+        kRefine + Words{"--tf", "tents:9", "--out-tf", "a.tf.json"},
+        kOptimize + Words{"--engine", "cpu", "--target", "1,1,1", "--max-iterations", "1", "--out-tf", "a.tf.json"}};
+    for (const char* old : {"a.png", "a.jpg", "a.tif", "a.exr", "a.nrrd", "visibility.nrrd", "a.tf.json"})
+        w.write(old, "older");
+    const auto before = w.list();
+    for (const Words& command : commands) {
+        const Outcome o = w.runWithFilesUpTo(room, command);
+        INFO(command.front() << ": " << o.err);
+        CHECK(o.status == 1);
+        CHECK(o.out.empty());
+        CHECK(o.err.rfind("pellucid-cli: error: cannot write the file (File too large), ", 0) == 0);
+        CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+    }
+    CHECK(w.list() == before);
+    for (const std::string& old : before) CHECK(w.read(old) == "older");
+    // A device takes its bytes directly.
+    checkFails(w, kRefine + Words{"--out-tf", "/dev/full"}, 1, "No space left on device");
 }
 
 TEST_CASE("a failed command leaves an existing file as it was", "[cli][errors]") {

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
 #include "volume_files.h"
@@ -69,6 +70,13 @@ TEST_CASE("a field of floats is written as NRRD, NaN and infinity included", "[f
     CHECK(std::isinf(read.value(3)));
     CHECK(read.invalidCount() == 2);
     CHECK_THROWS_AS(writeNrrd(geometry, field, folder.path("none/f.nrrd")), FileError);
+    CHECK_THROWS_WITH(writeNrrd(geometry, field, "/dev/full"), Contains("No space left"));
+    const std::size_t bytes = std::filesystem::file_size(folder.path("f.nrrd")), files = folder.fileCount();
+    for (const std::size_t room : {std::size_t{0}, bytes / 2, bytes - 1}) {
+        const FullDisk disk(room);
+        CHECK_THROWS_AS(writeNrrd(geometry, field, folder.path("g.nrrd")), FileError);
+    }
+    CHECK(folder.fileCount() == files);
 }
 
 TEST_CASE("data larger than the packing buffer reads back", "[formats]") {
