@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "commands.h"
-#include "inputs.h"
+#include "output_files.h"
 #include "parse.h"
 #include "volume/procedural.h"
 

@@ -1,7 +1,9 @@
 // Whatever is wrong: the right exit status, one line on stderr in three parts, nothing on stdout, no file left behind.
 #include <algorithm>
+#include <thread>
 
 #include <catch2/catch.hpp>
+#include <sys/stat.h>
 
 #include "cli_runner.h"
 
@@ -309,6 +311,71 @@ TEST_CASE("a full disk is told, and leaves what was there", "[cli][errors]") {
     for (const std::string& old : before) CHECK(w.read(old) == "older");
     // A device takes its bytes directly.
     checkFails(w, kRefine + Words{"--out-tf", "/dev/full"}, 1, "No space left on device");
+}
+
+TEST_CASE("no command overwrites what it reads", "[cli][errors]") {
+    namespace fs = std::filesystem;
+    const Workshop w;
+    REQUIRE(w.run({"generate", "shells", "--size", "16", "--out", "visibility.nrrd"}).status == 0);
+    REQUIRE(w.run(kRefine + Words{"--out-tf", "a.tf.json"}).status == 0);
+    w.write("data.png", std::string(8, '\1'));
+    w.write("a.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
+                     "ElementDataFile = data.png\n");
+    w.write("a.nhdr", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: ./data.png\n\n");
+    w.write("camera.json", R"({"projection":"perspective","eye":[0,-99,0],"center":[0,0,0],"up":[0,0,1],"fov_y":30})");
+    fs::create_directory(w.path("d"));
+    fs::create_symlink("../a.tf.json", w.path("d/link.json"));
+    fs::create_hard_link(w.path("a.tf.json"), w.path("hard.json"));
+    fs::create_directory(w.path("e"));
+    fs::create_symlink("../visibility.nrrd", w.path("e/vws.nrrd"));
+
+    const auto refused = [&](const Words& command, const std::string& where) {
+        checkFails(w, command, 2, "error: the output would overwrite the input, " + where + ", choose another name\n");
+    };
+    const Words refine = kRefine + Words{"--tf", "a.tf.json", "--out-tf"};
+    refused(refine + Words{"a.tf.json"}, "a.tf.json");
+    for (const char* same : {"./a.tf.json", "d/../a.tf.json", "d/link.json", "hard.json"})
+        refused(refine + Words{same}, std::string(same) + ", which is a.tf.json");
+    refused({"refine", "visibility.nrrd", "--out-tf", "visibility.nrrd"}, "visibility.nrrd");
+    const Words optimize = kOptimize + Words{"--target", "1,1,1"};
+    refused(optimize + Words{"--tf", "d/link.json", "--out-tf", "a.tf.json"}, "a.tf.json, which is d/link.json");
+    refused(optimize + Words{"--camera", "camera.json", "--out-tf", "camera.json"}, "camera.json");
+    refused({"render", "data.png", "--raw", "2,2,2,u8", "--out", "data.png"}, "data.png");
+    refused({"render", "a.mhd", "--out", "./data.png"}, "./data.png, which is data.png");
+    refused({"render", "a.nhdr", "--out", "data.png"}, "data.png, which is ./data.png");
+    refused({"fields", "visibility.nrrd", "--out", "."}, "./visibility.nrrd, which is visibility.nrrd");
+    refused({"fields", "visibility.nrrd", "--out", "e"}, "e/vws.nrrd, which is visibility.nrrd");
+    refused({"fields", "sample:shells", "--tf", "e/vws.nrrd", "--out", "."}, "./visibility.nrrd, which is e/vws.nrrd");
+
+    // Another file of the same content, or a device, is no input.
+    w.write("other.json", w.read("a.tf.json"));
+    CHECK(w.run(refine + Words{"other.json"}).status == 0);
+    checkFails(w, kRefine + Words{"--tf", "/dev/null", "--out-tf", "/dev/null"}, 1, "/dev/null");
+}
+
+TEST_CASE("endless and enormous JSON ends in an error", "[cli][errors]") {
+    const Workshop w;
+    for (const std::string option : {"--tf", "--camera"}) {
+        checkFails(w, kMeasure + Words{option, "/dev/zero"}, 1, "it has more than 16.8 MB, /dev/zero, ");
+        checkFails(w, kMeasure + Words{option, "/dev/null"}, 1, "not valid JSON");
+        checkFails(w, kMeasure + Words{option, "."}, 1, "this is a folder");
+        w.write("digits.json", "{\"format\":" + std::string(10'000'000, '9') + "}");
+        checkFails(w, kMeasure + Words{option, "digits.json"}, 1, "a number that is too large");
+        w.write("fraction.json", "{\"format\":0." + std::string(10'000'000, '0') + "1}");
+        checkFails(w, kMeasure + Words{option, "fraction.json"}, 1, "fraction.json");
+        w.write("deep.json", std::string(10'000'000, '['));
+        checkFails(w, kMeasure + Words{option, "deep.json"}, 1, "nested more than 64 deep");
+        w.write("wide.json", "[0" + std::string(4'000'000, ' ') + std::string(1, ']'));
+        checkFails(w, kMeasure + Words{option, "wide.json"}, 1, "a JSON object is expected");
+    }
+    // A pipe is read to its end.
+    REQUIRE(w.run(kRefine + Words{"--out-tf", "a.tf.json"}).status == 0);
+    REQUIRE(mkfifo(w.path("pipe").c_str(), 0600) == 0);
+    std::thread writer([&] { w.write("pipe", w.read("a.tf.json")); });
+    const Outcome o = w.run(kMeasure + Words{"--tf", "pipe", "--engine", "cpu"});
+    writer.join();
+    INFO(o.err);
+    CHECK(o.status == 0);
 }
 
 TEST_CASE("a failed command leaves an existing file as it was", "[cli][errors]") {
