@@ -28,12 +28,26 @@ struct Options {
 const std::array<std::string, 4> kFiles{"visibility.nrrd", "saliency_brightness.nrrd", "saliency_saturation.nrrd",
                                         "vws.nrrd"};
 
-void createFolder(const std::string& path) {
-    std::error_code ec;
-    fs::create_directory(path, ec);
-    if (ec && !fs::is_directory(path))
-        throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
-}
+/// A folder that goes again where nothing could be written into it.
+class OutputFolder {
+public:
+    explicit OutputFolder(const std::string& path) : m_path(path) {
+        std::error_code ec;
+        m_isNew = fs::create_directory(path, ec);
+        if (ec && !fs::is_directory(path))
+            throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
+    }
+    ~OutputFolder() {
+        std::error_code ec;
+        if (m_isNew) fs::remove(m_path, ec); // an empty one only
+    }
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+private:
+    fs::path m_path;
+    bool m_isNew = false;
+};
 
 double sumOfProducts(const Grid<float>& visibility, const WeightFields& weights, int attribute) {
     double sum = 0;
@@ -71,7 +85,7 @@ Answer run(const Options& o, Progress& progress) {
     const std::string engineName = engine->name();
     engine.reset(); // and one file after the other: the program keeps no more fields than it needs
 
-    createFolder(o.out);
+    const OutputFolder folder(o.out);
     const std::array<std::function<Grid<float>()>, 3> makeOthers{
         [&] { return gridOf(weights, 0); }, [&] { return gridOf(weights, 1); },
         [&] { return vwsField(visibility.values, weights, vws); }};

@@ -118,6 +118,9 @@ void requireWritable(const std::string& path) {
     if (isWrittenDirectly(type)) return;
     const fs::path target = behindLinks(path), folder = folderOf(target);
     std::error_code ec;
+    if (const fs::file_type place = typeOf(folder.string());
+        place != fs::file_type::directory && place != fs::file_type::not_found)
+        throw FileError("this is a file, not a folder", folder.string(), "choose another folder");
     if (!fs::is_directory(folder, ec)) throw FileError("the folder does not exist", folder.string(), "create it first");
     if (access(folder.c_str(), W_OK | X_OK) != 0)
         throw FileError("the folder is not writable", folder.string(),

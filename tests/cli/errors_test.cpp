@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli_runner.h"
 
@@ -272,12 +273,23 @@ TEST_CASE("what cannot be written fails before the work", "[cli][errors]") {
     // "missing.nrrd" would fail too: the complaint about the output comes first.
     checkFails(w, {"render", "missing.nrrd", "--out", "no/x.png"}, 1, "no");
     checkFails(w, {"render", "missing.nrrd", "--out", "folder.png"}, 1, "folder.png");
-    checkFails(w, {"render", "missing.nrrd", "--out", "file/x.png"}, 1, "file");
+    checkFails(w, {"render", "missing.nrrd", "--out", "file/x.png"}, 1, "this is a file, not a folder, file");
     checkFails(w, {"refine", "missing.nrrd", "--out-tf", "no/x.tf.json"}, 1, "no");
     checkFails(w, {"optimize", "missing.nrrd", "--target", "1,1,1", "--out-tf", "no/x.tf.json"}, 1, "no");
     checkFails(w, {"fields", "missing.nrrd", "--out", "no/deep"}, 1, "no");
     checkFails(w, {"fields", "missing.nrrd", "--out", "file"}, 1, "file");
     checkFails(w, {"fields", "missing.nrrd", "--out", ""}, 2, "--out");
+    const std::string longName(252, 'n');
+    checkFails(w, {"render", "missing.nrrd", "--out", longName + ".png"}, 1, "name too long");
+    checkFails(w, {"fields", "missing.nrrd", "--out", longName + longName}, 1, "name too long");
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "new/"}, 1, "this names a folder, new/");
+    std::filesystem::create_directories(w.path("d/vws.nrrd"));
+    checkFails(w, {"fields", "missing.nrrd", "--out", "d"}, 1, "a folder has this name, d/vws.nrrd");
+    std::filesystem::create_symlink("loop", w.path("loop"));
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "loop"}, 1, "symbolic links), loop");
+    std::filesystem::create_symlink("no/where", w.path("dangling"));
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "dangling"}, 1, "the folder does not exist, no");
+    checkFails(w, {"fields", "missing.nrrd", "--out", "dangling"}, 1, "dangling");
     checkFails(w, {"generate", "shells", "--out", "no/x.nrrd"}, 1, "no");
     checkFails(w, {"generate", "shells", "--out", "x.mhd"}, 2, "x.mhd");
     checkFails(w, {"generate", "cube", "--out", "x.nrrd"}, 2, "shells");
@@ -294,6 +306,7 @@ TEST_CASE("a full disk is told, and leaves what was there", "[cli][errors]") {
         kDraw + Words{"--out", "a.exr"},
         {"generate", "shells", "--size", "16", "--out", "a.nrrd"},
         Words{"fields", "--engine", "cpu", "--out", "."} + kShells,
+        Words{"fields", "--engine", "cpu", "--out", "new"} + kShells,
         kRefine + Words{"--tf", "tents:9", "--out-tf", "a.tf.json"},
         kOptimize + Words{"--engine", "cpu", "--target", "1,1,1", "--max-iterations", "1", "--out-tf", "a.tf.json"}};
     for (const char* old : {"a.png", "a.jpg", "a.tif", "a.exr", "a.nrrd", "visibility.nrrd", "a.tf.json"})
@@ -311,6 +324,39 @@ TEST_CASE("a full disk is told, and leaves what was there", "[cli][errors]") {
     for (const std::string& old : before) CHECK(w.read(old) == "older");
     // A device takes its bytes directly.
     checkFails(w, kRefine + Words{"--out-tf", "/dev/full"}, 1, "No space left on device");
+}
+
+TEST_CASE("a name may be any bytes, and lead to a device", "[cli]") {
+    const Workshop w;
+    for (const std::string name : {"\xff\xfe.png", "-x.png", "a\nb.png", "%s.png", "a:b.png"}) {
+        CHECK(w.run(kDraw + Words{"--engine", "cpu", "--out", name}).status == 0);
+        CHECK(w.has(name));
+    }
+    CHECK(w.run(kRefine + Words{"--out-tf", std::string(255, 'n')}).status == 0);
+    std::filesystem::create_symlink("/dev/null", w.path("null.png"));
+    std::filesystem::create_symlink("/dev/null", w.path("null.nrrd"));
+    CHECK(w.run(kDraw + Words{"--engine", "cpu", "--out", "null.png"}).status == 0);
+    CHECK(w.json({"generate", "shells", "--size", "16", "--out", "null.nrrd"})["file_bytes"].is_null());
+    CHECK(std::filesystem::is_symlink(w.path("null.nrrd")));
+    CHECK(w.run(kRefine + Words{"--out-tf", "/dev/stdout"}).out.find("pellucid-tf") != std::string::npos);
+}
+
+TEST_CASE("what is write-protected stays", "[cli][errors]") {
+    const Workshop w;
+    w.write("a.tf.json", "older");
+    std::filesystem::create_directory(w.path("d"));
+    using std::filesystem::perms;
+    std::filesystem::permissions(w.path("a.tf.json"), perms::owner_read);
+    std::filesystem::permissions(w.path("d"), perms::owner_read | perms::owner_exec);
+    if (access(w.path("d").c_str(), W_OK) == 0) {
+        WARN("SKIPPED: this user may write everywhere");
+        return;
+    }
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "a.tf.json"}, 1, "the file is write-protected, a.tf.json");
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "d/x"}, 1, "the folder is not writable, d");
+    checkFails(w, {"fields", "missing.nrrd", "--out", "d"}, 1, "the folder is not writable, d");
+    checkFails(w, {"fields", "missing.nrrd", "--out", "d/new"}, 1, "the folder is not writable, d");
+    CHECK(w.read("a.tf.json") == "older");
 }
 
 TEST_CASE("no command overwrites what it reads", "[cli][errors]") {
