@@ -92,8 +92,4 @@ struct SaliencyInput {
     VwsOptions vws() const; ///< throws UsageError unless the weights sum to 1; one alone determines the other
 };
 
-void requireFileName(const std::string& path, const std::string& option); ///< throws UsageError where it is empty
-/// Where a file is to be written: throws, before any work is done, where that cannot work.
-void checkOutputFile(const std::string& path, const std::string& option);
-
 } // namespace pellucid::cli

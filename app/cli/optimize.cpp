@@ -3,6 +3,7 @@
 #include "inputs.h"
 #include "optimize/history_io.h"
 #include "optimize/optimizer.h"
+#include "output_files.h"
 #include "parse.h"
 #include "tf/formats/tf_json.h"
 
@@ -72,7 +73,7 @@ std::optional<Error> failureOf(const Options& o, const OptimizeResult& r) {
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf");
+    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.volume, o.tf, o.camera));
     const VwsOptions vws = o.saliency.vws();
     o.optimize.validate();
     o.camera.check();

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "inputs.h"
 #include "optimize/history_io.h"
+#include "output_files.h"
 #include "parse.h"
 #include "tf/formats/tf_json.h"
 #include "volume/histogram.h"
@@ -51,7 +52,7 @@ std::string textOf(const RefineResult& r, double seconds) {
 }
 
 Answer run(const Options& o, Progress& progress) {
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf");
+    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.volume, o.tf));
     o.refine.validate();
     auto [volume, tf] = loadVolumeAndTf(o.volume, o.tf, progress);
     for (const double x : o.fixed) fixPoint(tf, x);

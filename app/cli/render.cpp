@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "inputs.h"
+#include "output_files.h"
 #include "parse.h"
 #include "render/image_renderer.h"
 
@@ -39,7 +40,7 @@ void check(const Options& o) {
     if (!o.background && isJpeg(o.out))
         throw UsageError("a JPEG file holds no transparency", "--background transparent",
                          "write a PNG, TIFF or EXR file");
-    checkOutputFile(o.out, "--out");
+    checkOutputFile(o.out, "--out", inputFiles(o.volume, o.tf, o.camera));
     o.camera.check();
 }
 

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
 #include "volume_files.h"
@@ -69,6 +70,13 @@ TEST_CASE("a field of floats is written as NRRD, NaN and infinity included", "[f
     CHECK(std::isinf(read.value(3)));
     CHECK(read.invalidCount() == 2);
     CHECK_THROWS_AS(writeNrrd(geometry, field, folder.path("none/f.nrrd")), FileError);
+    CHECK_THROWS_WITH(writeNrrd(geometry, field, "/dev/full"), Contains("No space left"));
+    const std::size_t bytes = std::filesystem::file_size(folder.path("f.nrrd")), files = folder.fileCount();
+    for (const std::size_t room : {std::size_t{0}, bytes / 2, bytes - 1}) {
+        const FullDisk disk(room);
+        CHECK_THROWS_AS(writeNrrd(geometry, field, folder.path("g.nrrd")), FileError);
+    }
+    CHECK(folder.fileCount() == files);
 }
 
 TEST_CASE("data larger than the packing buffer reads back", "[formats]") {
@@ -319,4 +327,26 @@ TEST_CASE("loading stops when it is asked to", "[formats]") {
 
 TEST_CASE("file dialogs get every suffix", "[formats]") {
     CHECK(volumeFilePatterns() == std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz"});
+}
+
+TEST_CASE("the files of a volume are the one named and the one with its data", "[volume]") {
+    const TempFolder folder;
+    using Paths = std::vector<std::string>;
+    const auto files = [](const std::string& path, std::optional<RawLayout> raw = {}) {
+        VolumeSource source;
+        source.path = path;
+        source.raw = raw;
+        return filesOf(source);
+    };
+    const std::string nhdr = folder.write("a.nhdr", "NRRD0004\ntype: uchar\ndata file: ./a.raw\n\n");
+    const std::string mhd = folder.write("a.mhd", "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
+                                                  "ElementDataFile = /elsewhere/a.raw\n");
+    const std::string nrrd = folder.write("a.nrrd", "NRRD0004\ntype: uchar\n\n");
+    CHECK(files(nhdr) == Paths{nhdr, folder.path("./a.raw")});
+    CHECK(files(nhdr, RawLayout{}) == Paths{nhdr});
+    CHECK(files(mhd) == Paths{mhd, "/elsewhere/a.raw"});
+    CHECK(files(nrrd) == Paths{nrrd, nrrd});
+    CHECK(files("missing.nrrd") == Paths{"missing.nrrd"});
+    CHECK(files("a.unknown") == Paths{"a.unknown"});
+    CHECK(files("sample:knee").empty());
 }

@@ -114,6 +114,17 @@ void checkSpacing(const MetaHeader& header, std::size_t axes, const std::string&
     }
 }
 
+/// The file with the data: `path` itself, or the one that its header names.
+std::string dataPathIn(const MetaHeader& header, const std::string& path) {
+    const std::string dataFile = header.get("ElementDataFile");
+    if (lowerCase(dataFile) == "local") return path;
+    if (dataFile.rfind("LIST", 0) == 0 || dataFile.find('%') != std::string::npos)
+        throw FileError("a data file in several parts is not supported", path, "write it as one file");
+    if (dataFile.size() > 1000) throw FileError("the name of the data file is too long", path, "correct the header");
+    const fs::path data(dataFile);
+    return (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
+}
+
 HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     const MetaHeader header = parseHeader(path);
     std::vector<std::int64_t> sizes = sizesIn(header, path);
@@ -123,17 +134,8 @@ HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     claim.bytesPerValue = bytesOfType(header.get("ElementType"), path);
     claim.values = valueCount(path, sizes, claim.bytesPerValue);
 
-    const std::string dataFile = header.get("ElementDataFile");
-    const bool local = lowerCase(dataFile) == "local";
-    claim.dataPath = path;
-    if (!local) {
-        if (dataFile.rfind("LIST", 0) == 0 || dataFile.find('%') != std::string::npos)
-            throw FileError("a data file in several parts is not supported", path, "write it as one file");
-        if (dataFile.size() > 1000)
-            throw FileError("the name of the data file is too long", path, "correct the header");
-        const fs::path data(dataFile);
-        claim.dataPath = (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
-    }
+    claim.dataPath = dataPathIn(header, path);
+    const bool local = lowerCase(header.get("ElementDataFile")) == "local";
     const std::int64_t skip = wholeNumber(header, "HeaderSize", 0, path); // −1: the data end where the file ends
     if (skip < -1) throw FileError("the header's HeaderSize is negative", path, "correct the header");
     const std::uint64_t start = local ? header.dataStart : static_cast<std::uint64_t>(std::max(skip, std::int64_t{0}));
@@ -165,6 +167,7 @@ public:
         static const std::vector<std::string> kSuffixes{".mhd", ".mha"};
         return kSuffixes;
     }
+    std::string dataFile(const std::string& path) const override { return dataPathIn(parseHeader(path), path); }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
         const HeaderClaim claim = checkedClaim(source.path, job);
         return readWithItk(ItkFormat::MetaImage, source, claim, job);

@@ -194,6 +194,17 @@ Encoding encodingIn(const NrrdHeader& header, const std::string& path) {
                     path, "write it with encoding raw or gzip");
 }
 
+/// The file with the data: `path` itself, or the one that its header names.
+std::string dataPathIn(const NrrdHeader& header, const std::string& path) {
+    const std::string dataFile = header.get("datafile");
+    if (dataFile.empty()) return path;
+    if (dataFile.rfind("LIST", 0) == 0 || dataFile.rfind("SKIPLIST", 0) == 0 || dataFile.find('%') != std::string::npos)
+        throw FileError("a data file in several parts is not supported", path, "write it as one file");
+    if (dataFile.size() > 1000) throw FileError("the name of the data file is too long", path, "correct the header");
+    const fs::path data(dataFile);
+    return (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
+}
+
 HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     const NrrdHeader header = parseHeader(path);
     const std::vector<std::int64_t> sizes = sizesIn(header, path);
@@ -203,18 +214,8 @@ HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
     checkSpacing(header, sizes.size(), path);
 
     const Encoding encoding = encodingIn(header, path);
-    const std::string dataFile = header.get("datafile");
-    const bool detached = !dataFile.empty();
-    claim.dataPath = path;
-    if (detached) {
-        if (dataFile.rfind("LIST", 0) == 0 || dataFile.rfind("SKIPLIST", 0) == 0 ||
-            dataFile.find('%') != std::string::npos)
-            throw FileError("a data file in several parts is not supported", path, "write it as one file");
-        if (dataFile.size() > 1000)
-            throw FileError("the name of the data file is too long", path, "correct the header");
-        const fs::path data(dataFile);
-        claim.dataPath = (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
-    }
+    claim.dataPath = dataPathIn(header, path);
+    const bool detached = !header.get("datafile").empty();
     std::uint64_t stored = readableFileBytes(claim.dataPath);
     std::uint64_t start = detached ? 0 : std::min(header.dataStart, stored);
     const std::int64_t lineSkip = wholeNumber(header, "lineskip", 0, path);
@@ -244,6 +245,7 @@ public:
         static const std::vector<std::string> kSuffixes{".nrrd", ".nhdr"};
         return kSuffixes;
     }
+    std::string dataFile(const std::string& path) const override { return dataPathIn(parseHeader(path), path); }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
         const HeaderClaim claim = checkedClaim(source.path, job);
         return readWithItk(ItkFormat::Nrrd, source, claim, job);
