@@ -36,7 +36,7 @@ struct VolumeSource {
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.
-/// Files: NRRD/NHDR, MetaImage, NIfTI through ITK; headerless raw.
+/// Files: NRRD/NHDR, MetaImage, NIfTI; headerless raw.
 Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
 
 /// Writes float32 or the volume's own type as NRRD (gzip), through a temporary file beside `path` that is renamed.
