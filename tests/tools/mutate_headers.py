@@ -29,14 +29,14 @@ TIMEOUT_SECONDS = 5
 VALUES = bytes(range(24))  # 2 x 3 x 4 voxels of one byte
 
 NUMBERS = [b"0", b"-0", b"-1", b"1", b"2", b"7", b"1e30", b"-1e30", b"1e308", b"1e-308", b"1e400", b"nan", b"-nan",
-           b"inf", b"-inf", b"NaN", b"0x10", b"1.5", b"255", b"256", b"32767", b"32768", b"65536", b"2147483647", b"2147483648",
-           b"-2147483648", b"4294967295", b"4294967296", b"9223372036854775807", b"-9223372036854775808",
+           b"inf", b"-inf", b"NaN", b"0x10", b"1.5", b"255", b"256", b"32767", b"32768", b"65536", b"2147483647",
+           b"2147483648", b"-2147483648", b"4294967295", b"4294967296", b"9223372036854775807", b"-9223372036854775808",
            b"9223372036854775808", b"18446744073709551615", b"18446744073709551616", b"9" * 50, b"9" * 5000,
            b"0." + b"0" * 3000 + b"1", b"1,5", b"1;", b"+1", b"--1", b""]
 WORDS = [b"LOCAL", b"LIST", b"LIST 2", b"SKIPLIST", b"slice%03d.raw 1 4 1", b"%s%s%s%n", b"/dev/zero", b"/dev/null",
          b"/dev/stdin", b"/", b".", b"..", b"pipe", b"folder", b"none", b"none.raw", b"data.raw", b"data.txt",
-         b"data.gz", b"data.z", b"True", b"False", b"raw", b"gzip", b"bzip2", b"zrl", b"text", b"ascii", b"hex", b"little", b"big",
-         b"uint8", b"short", b"int64", b"float", b"double", b"block", b"MET_SHORT", b"MET_FLOAT", b"MET_DOUBLE",
+         b"data.gz", b"data.z", b"True", b"False", b"raw", b"gzip", b"bzip2", b"zrl", b"text", b"ascii", b"hex",
+         b"little", b"big", b"uint8", b"short", b"int64", b"float", b"double", b"block", b"MET_SHORT", b"MET_FLOAT", b"MET_DOUBLE",
          b"MET_ULONG_LONG", b"MET_STRING", b"MET_OTHER", b"domain", b"vector", b"RGB-color",
          b"3D-masked-symmetric-matrix",
          b"(1,0,0)", b"(0,0,0)", b"(nan,0,0)", b"(1,0", b"(1)", b"(" * 300, b"\xff\xfe", b"\0", b"x" * 300,

@@ -452,6 +452,9 @@ TEST_CASE("written numbers that their type cannot hold are refused", "[bad-input
                                                      text)),
                    Contains("does not fit") && Contains(bad));
     }
+    CHECK_THAT(errorOf(folder.write("b.nrrd", "NRRD0004\ntype: float\ndimension: 1\nsizes: 2\nencoding: text\n\n"
+                                              "7 1e39")),
+               Contains("'1e39' does not fit"));
 }
 
 TEST_CASE("a data file that is no file is refused without being opened", "[bad-input]") {

@@ -248,8 +248,9 @@ FileLayout checkedLayout(const std::string& path, const JobControl& job) {
     layout.bigEndian = header.isBigEndian();
     layout.axes = axesIn(header, type, path);
     constexpr int kSymmetricMatrix = 1005;
-    if (header.intent() == kSymmetricMatrix && header.dim(5) == 6) // the file has xx xy yy xz yz zz
-        layout.componentOrder = {0, 1, 3, 2, 4, 5};                // as NRRD: xx xy xz yy yz zz
+    if (header.intent() == kSymmetricMatrix && layout.axes.size() >= 5 && layout.axes[4].components &&
+        header.dim(5) == 6)                         // the file has xx xy yy xz yz zz
+        layout.componentOrder = {0, 1, 3, 2, 4, 5}; // as NRRD: xx xy xz yy yz zz
     layout.scaling = scalingIn(header, type, path);
     const std::uint64_t values = valuesIn(layout, path);
     const std::uint64_t bytes = values * bytesPerValue(layout.type);

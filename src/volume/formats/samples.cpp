@@ -172,6 +172,9 @@ private:
             if (!parseNumber(m_word, value))
                 throw FileError("there is " + inQuotes(m_word) + " where a number belongs", m_path,
                                 "copy or write the file again");
+            if (std::isfinite(value) && std::abs(value) > static_cast<double>(std::numeric_limits<T>::max()))
+                throw FileError("the value " + inQuotes(m_word) + " does not fit the type of the samples", m_path,
+                                "correct the type in the header");
             return static_cast<T>(value);
         }
     }
