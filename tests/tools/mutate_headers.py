@@ -25,7 +25,6 @@ import sys
 import tempfile
 import zlib
 
-TIMEOUT_SECONDS = 5
 VALUES = bytes(range(24))  # 2 x 3 x 4 voxels of one byte
 
 NUMBERS = [b"0", b"-0", b"-1", b"1", b"2", b"7", b"1e30", b"-1e30", b"1e308", b"1e-308", b"1e400", b"nan", b"-nan",
@@ -36,7 +35,8 @@ NUMBERS = [b"0", b"-0", b"-1", b"1", b"2", b"7", b"1e30", b"-1e30", b"1e308", b"
 WORDS = [b"LOCAL", b"LIST", b"LIST 2", b"SKIPLIST", b"slice%03d.raw 1 4 1", b"%s%s%s%n", b"/dev/zero", b"/dev/null",
          b"/dev/stdin", b"/", b".", b"..", b"pipe", b"folder", b"none", b"none.raw", b"data.raw", b"data.txt",
          b"data.gz", b"data.z", b"True", b"False", b"raw", b"gzip", b"bzip2", b"zrl", b"text", b"ascii", b"hex",
-         b"little", b"big", b"uint8", b"short", b"int64", b"float", b"double", b"block", b"MET_SHORT", b"MET_FLOAT", b"MET_DOUBLE",
+         b"little", b"big", b"uint8", b"short", b"int64", b"float", b"double", b"block", b"MET_SHORT", b"MET_FLOAT",
+         b"MET_DOUBLE",
          b"MET_ULONG_LONG", b"MET_STRING", b"MET_OTHER", b"domain", b"vector", b"RGB-color",
          b"3D-masked-symmetric-matrix",
          b"(1,0,0)", b"(0,0,0)", b"(nan,0,0)", b"(1,0", b"(1)", b"(" * 300, b"\xff\xfe", b"\0", b"x" * 300,
@@ -336,13 +336,13 @@ def fault_of_answer(out):
     return ""
 
 
-def fault_of_run(program, path):
+def fault_of_run(options, path):
     """(was read, what is wrong with the run)."""
     try:
-        run = subprocess.run([program, "info", "--json", "--memory", "1", path], stdin=subprocess.DEVNULL,
-                             capture_output=True, timeout=TIMEOUT_SECONDS)
+        run = subprocess.run([options.program, "info", "--json", "--memory", "1", path], stdin=subprocess.DEVNULL,
+                             capture_output=True, timeout=options.timeout)
     except subprocess.TimeoutExpired:
-        return False, "still runs after %d s" % TIMEOUT_SECONDS
+        return False, "still runs after %d s" % options.timeout
     said = run.stderr.decode("utf-8", "replace")
     if run.returncode < 0:
         return False, "signal %d" % -run.returncode
@@ -376,7 +376,7 @@ def try_one(case):
     path = os.path.join(g_options.folder, "case-%s-%d%s" % (format_name, number, FORMATS[format_name][0]))
     with open(path, "wb") as file:
         file.write(mutated(rng, format_name))
-    was_read, wrong = fault_of_run(g_options.program, path)
+    was_read, wrong = fault_of_run(g_options, path)
     if wrong and g_options.keep:
         shutil.copy(path, g_options.keep)
     os.remove(path)
@@ -393,16 +393,16 @@ def write_companions(folder):
     os.mkfifo(os.path.join(folder, "pipe"))
 
 
-def check_seeds(folder, program):
+def check_seeds(options):
     """The undamaged files have to be read."""
     failed = []
     for format_name, (suffix, seeds, _) in FORMATS.items():
         for number, seed in enumerate(seeds()):
-            path = os.path.join(folder, "seed-%d%s" % (number, suffix))
+            path = os.path.join(options.folder, "seed-%d%s" % (number, suffix))
             whole = seed.header + seed.data
             with open(path, "wb") as file:
                 file.write(gzip.compress(whole, mtime=0) if seed.pack else whole)
-            was_read, wrong = fault_of_run(program, path)
+            was_read, wrong = fault_of_run(options, path)
             if wrong or not was_read:
                 failed.append("%s, seed %d: %s" % (format_name, number, wrong or "is refused"))
             os.remove(path)
@@ -416,6 +416,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time (default 1)")
     parser.add_argument("--seed", default="1", help="another one makes other files (default 1)")
     parser.add_argument("--formats", default=",".join(FORMATS), help="some of " + ",".join(FORMATS))
+    parser.add_argument("--timeout", type=int, default=5, help="seconds after which a run hangs (default 5)")
     parser.add_argument("--keep", help="an existing folder for the files that were found to go wrong")
     parser.add_argument("--address-space", type=float, default=4,
                         help="limit of the program's address space in GiB; 0: none, as sanitizers need (default 4)")
@@ -430,7 +431,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         options.folder = folder
         write_companions(folder)
-        failed = check_seeds(folder, options.program)
+        failed = check_seeds(options)
         counts = {name: [0, 0, 0] for name in names}  # read, refused, wrong
         cases = [(name, number) for name in names for number in range(options.count)]
         with multiprocessing.Pool(options.jobs, prepare, (options,)) as pool:
