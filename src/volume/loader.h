@@ -44,7 +44,7 @@ struct VolumeSource {
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.
-/// Files: NRRD/NHDR, MetaImage, NIfTI through ITK; headerless raw.
+/// Files: NRRD/NHDR, MetaImage, NIfTI; headerless raw.
 Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
 
 /// The files that loadVolume() would read: the one named and, where its header names one, that of the data; none for a
