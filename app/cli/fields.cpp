@@ -1,8 +1,10 @@
 // `fields`: what every voxel contributes, as volumes to look at.
+#include <array>
 #include <filesystem>
 #include <functional>
 
 #include "commands.h"
+#include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
 #include "render/memory_needs.h"
@@ -19,23 +21,30 @@ struct Options {
     std::string out;
 };
 
-void checkFolder(const std::string& path) {
-    if (path.empty()) throw UsageError("the folder name is empty", "--out", "name the folder to write to");
-    std::error_code ec;
-    if (fs::is_directory(path, ec)) return;
-    if (fs::exists(path, ec)) throw FileError("a file has the folder's name", path, "choose another name");
-    const fs::path parent =
-        fs::path(path).has_filename() ? fs::path(path).parent_path() : fs::path(path).parent_path().parent_path();
-    if (!parent.empty() && !fs::is_directory(parent, ec))
-        throw FileError("the folder does not exist", parent.string(), "create it first");
-}
+/// In the order in which they are written.
+const std::array<std::string, 4> kFiles{"visibility.nrrd", "saliency_brightness.nrrd", "saliency_saturation.nrrd",
+                                        "vws.nrrd"};
 
-void createFolder(const std::string& path) {
-    std::error_code ec;
-    fs::create_directory(path, ec);
-    if (ec && !fs::is_directory(path))
-        throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
-}
+/// A folder that goes again where nothing could be written into it.
+class OutputFolder {
+public:
+    explicit OutputFolder(const std::string& path) : m_path(path) {
+        std::error_code ec;
+        m_isNew = fs::create_directory(path, ec);
+        if (ec && !fs::is_directory(path))
+            throw FileError("cannot create the folder (" + ec.message() + ")", path, "check permissions and space");
+    }
+    ~OutputFolder() {
+        std::error_code ec;
+        if (m_isNew) fs::remove(m_path, ec); // an empty one only
+    }
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+private:
+    fs::path m_path;
+    bool m_isNew = false;
+};
 
 double sumOfProducts(const Grid<float>& visibility, const WeightFields& weights, int attribute) {
     double sum = 0;
@@ -60,7 +69,7 @@ Grid<float> vwsField(const Grid<float>& visibility, const WeightFields& weights,
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    checkFolder(o.out);
+    checkOutputFolder(o.out, "--out", kFiles, inputFiles(o.scene));
     const Opened opened = resolve(o.scene, progress, {"measuring", kFieldsBytesPerVoxel, true});
     const MeasureInput input = measureInput(opened.scene);
     Workspace workspace;
@@ -70,25 +79,23 @@ Answer run(const Options& o, Progress& progress) {
         workspace.engine(input).field(input.camera, input.tf, progress.phase("visibility"));
     workspace.releaseEngine(); // and one file after the other: the program keeps no more fields than it needs
 
-    createFolder(o.out);
-    using Make = std::function<Grid<float>()>;
-    const std::vector<std::pair<const char*, Make>> files{
-        {"saliency_brightness.nrrd", [&] { return gridOf(weights, 0); }},
-        {"saliency_saturation.nrrd", [&] { return gridOf(weights, 1); }},
-        {"vws.nrrd", [&] { return vwsField(visibility.values, weights, input.settings.vws); }}};
+    const OutputFolder folder(o.out);
+    const std::array<std::function<Grid<float>()>, 3> makeOthers{
+        [&] { return gridOf(weights, 0); }, [&] { return gridOf(weights, 1); },
+        [&] { return vwsField(visibility.values, weights, input.settings.vws); }};
     const JobControl writing = progress.phase("writing");
     std::string text;
     Json names = Json::array();
-    const auto write = [&](const char* file, const Grid<float>& values) {
+    const auto write = [&](const Grid<float>& values) {
         writing.throwIfStopped();
-        writing.report(static_cast<double>(names.size()) / static_cast<double>(files.size() + 1));
-        const std::string path = (fs::path(o.out) / file).string();
+        writing.report(static_cast<double>(names.size()) / static_cast<double>(kFiles.size()));
+        const std::string path = (fs::path(o.out) / kFiles[names.size()]).string();
         writeNrrd(input.volume->geometry(), values, path);
         text += "wrote " + path + "\n";
         names.push_back(path);
     };
-    write("visibility.nrrd", visibility.values);
-    for (const auto& [file, make] : files) write(file, make());
+    write(visibility.values);
+    for (const auto& make : makeOthers) write(make());
     Json json{{"command", "fields"},
               {"engine", engineName},
               {"volume", jsonFromVolume(*input.volume)},

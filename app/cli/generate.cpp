@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "commands.h"
-#include "output_file.h"
+#include "output_files.h"
 #include "parse.h"
 #include "volume/loader.h"
 #include "volume/procedural.h"
@@ -31,16 +31,17 @@ Answer run(const Options& o, Progress& progress) {
     const Volume volume = makeSample(o.name, o.size, o.seed, progress.phase("generating"));
     progress.phase("writing");
     writeNrrd(volume, o.out);
-    const std::size_t bytes = std::filesystem::file_size(o.out);
+    std::error_code notAFile; // but a pipe or device
+    const std::size_t bytes = std::filesystem::file_size(o.out, notAFile);
     Json json{{"command", "generate"},
               {"name", o.name},
               {"file", o.out},
-              {"file_bytes", bytes},
+              {"file_bytes", notAFile ? Json() : Json(bytes)},
               {"dims", jsonFromDims(volume.dims())},
               {"type", name(volume.sampleType())},
               {"spacing", jsonFromVector(volume.geometry().spacing)}};
-    return {"wrote " + o.out + ": " + dimsText(volume.dims()) + " voxels, " + name(volume.sampleType()) + ", " +
-                bytesText(bytes) + "\n",
+    return {"wrote " + o.out + ": " + dimsText(volume.dims()) + " voxels, " + name(volume.sampleType()) +
+                (notAFile ? "" : ", " + bytesText(bytes)) + "\n",
             std::move(json),
             {},
             {}};

@@ -2,6 +2,7 @@
 // 0 done, 1 the work failed, 2 wrong usage, 130 stopped by Ctrl-C.
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <new>
@@ -237,6 +238,8 @@ int run(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
     namespace cli = pellucid::cli;
     cli::installInterrupt();
+    // A file that must not grow further (`ulimit -f`) is told like a full disk, instead of ending the process.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return cli::run({argv + 1, argv + argc});
     } catch (...) {

@@ -1,6 +1,6 @@
 // `optimize`: the opacities that give each feature its share of attention.
 #include "commands.h"
-#include "output_file.h"
+#include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
 #include "render/memory_needs.h"
@@ -88,7 +88,7 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf");
+    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {"optimizing", kMeasureBytesPerVoxel, true});

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "commands.h"
-#include "output_file.h"
+#include "output_files.h"
 #include "parse.h"
 #include "resolve.h"
 #include "results_json.h"
@@ -50,7 +50,7 @@ std::string textOf(const RefineResult& r, double seconds) {
 }
 
 Answer run(const Options& o, Progress& progress) {
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf");
+    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
     o.refine.validate();
     const Opened opened = resolve(o.scene, progress);
     TransferFunction tf = opened.scene.tf;

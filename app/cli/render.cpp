@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "engines/engines.h"
-#include "output_file.h"
+#include "output_files.h"
 #include "parse.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
@@ -33,7 +33,7 @@ void check(const Options& o) {
     if (o.scene.picture.transparent && isJpeg(o.out))
         throw UsageError("a JPEG file holds no transparency", "--background transparent",
                          "write a PNG, TIFF or EXR file");
-    checkOutputFile(o.out, "--out");
+    checkOutputFile(o.out, "--out", inputFiles(o.scene));
 }
 
 Answer run(const Options& o, Progress& progress) {

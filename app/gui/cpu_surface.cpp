@@ -24,22 +24,42 @@ struct CpuSurface::Renderer {
     std::unique_ptr<ImageRenderer> renderer;
 };
 
-CpuSurface::CpuSurface(QWidget* parent) : QWidget(parent), m_renderer(std::make_shared<Renderer>()) {
+CpuSurface::CpuSurface(QWidget* parent)
+    : QWidget(parent), m_renderer(std::make_shared<Renderer>()),
+      m_job(
+          [shared = m_renderer](const Task& task, const JobControl& job) {
+              const std::lock_guard lock(shared->mutex);
+              job.throwIfStopped();
+              if (shared->volume != task.input.volume) {
+                  shared->renderer = makeCpuRenderer(task.input.volume);
+                  shared->volume = task.input.volume;
+              }
+              const auto begin = std::chrono::steady_clock::now();
+              const Image image = shared->renderer->render(task.input.camera, task.input.tf, task.input.settings, job);
+              return Picture{qImageFromImage(image),
+                             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+          },
+          [this](const Task& task, Picture& picture) { show(task, picture); }) {
     setObjectName("cpuSurface");
     m_idle.setSingleShot(true);
     m_idle.setInterval(kIdleBeforeRefining);
     connect(&m_idle, &QTimer::timeout, this, [this] { draw(true); });
-    connect(&m_task, &BackgroundTask::failed, this,
-            [this](const QString& what, const QString& where, const QString& whatToDo) {
-                if (onFailure) onFailure(Error(what.toStdString(), where.toStdString(), whatToDo.toStdString()));
-            });
+    connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
+        if (onFailure) onFailure(error);
+    });
 }
 
 CpuSurface::~CpuSurface() = default;
 
-void CpuSurface::setScene(const ViewScene& scene) {
+void CpuSurface::setScene(const PictureInput& scene) {
     if (scene == m_scene) return;
+    const bool otherVolume = scene.volume != m_scene.volume;
     m_scene = scene;
+    if (otherVolume) { // nothing of the old one may be seen any more
+        m_job.cancel();
+        m_picture = {};
+        update();
+    }
     restart();
 }
 
@@ -49,7 +69,7 @@ void CpuSurface::restart() {
     m_frame.complete = false;
     m_idle.stop();
     // A coarse picture under way is let finish, else a steady drag would never show any.
-    if (m_task.isRunning() && m_drawingQuick) {
+    if (m_job.isRunning() && m_drawingQuick) {
         m_again = true;
         return;
     }
@@ -60,7 +80,7 @@ void CpuSurface::draw(bool full) {
     m_again = false;
     m_drawingQuick = !full;
     if (!m_scene.volume || width() <= 0 || height() <= 0) {
-        m_task.cancel();
+        m_job.cancel();
         m_picture = {};
         update();
         return;
@@ -68,44 +88,33 @@ void CpuSurface::draw(bool full) {
     const qreal ratio = devicePixelRatioF();
     const QSize pixels(static_cast<int>(std::lround(width() * ratio)), static_cast<int>(std::lround(height() * ratio)));
     const double scale = full ? 1.0 : m_quickScale;
-    RenderSettings settings;
+    Task task{m_scene, pixels, scale, full};
+    RenderSettings& settings = task.input.settings;
     settings.width = std::max(1, static_cast<int>(std::lround(pixels.width() * scale)));
     settings.height = std::max(1, static_cast<int>(std::lround(pixels.height() * scale)));
-    settings.background = kViewBackground;
     settings.stepInD0 = full ? 0.5 : 1.5;
-    m_task.start(
-        tr("the picture"),
-        [this, scene = m_scene, settings, full, scale, pixels,
-         shared = m_renderer](const JobControl& job) -> BackgroundTask::Delivery {
-            const std::lock_guard lock(shared->mutex);
-            job.throwIfStopped();
-            if (shared->volume != scene.volume) {
-                shared->renderer = makeCpuRenderer(scene.volume);
-                shared->volume = scene.volume;
-            }
-            const auto begin = std::chrono::steady_clock::now();
-            const QImage picture = qImageFromImage(shared->renderer->render(scene.camera, scene.tf, settings, job));
-            const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-            return [this, picture, full, scale, pixels, seconds, step = settings.stepInD0] {
-                m_picture = picture;
-                m_frame = {pixels.width(), pixels.height(), scale, step, full && !m_again};
-                if (!full) {
-                    m_quickScale = std::clamp(scale * std::sqrt(kQuickSeconds / std::max(1e-4, seconds)), 0.08, 1.0);
-                    if (m_again) {
-                        draw(false);
-                    } else {
-                        m_idle.start();
-                    }
-                }
-                update();
-                if (onFrame) onFrame();
-            };
-        });
+    m_job.start(std::move(task), tr("the picture"));
+}
+
+void CpuSurface::show(const Task& task, const Picture& picture) {
+    m_picture = picture.image;
+    m_frame = {task.pixels.width(), task.pixels.height(), task.scale, task.input.settings.stepInD0,
+               task.full && !m_again};
+    if (!task.full) {
+        m_quickScale = std::clamp(task.scale * std::sqrt(kQuickSeconds / std::max(1e-4, picture.seconds)), 0.08, 1.0);
+        if (m_again) {
+            draw(false);
+        } else {
+            m_idle.start();
+        }
+    }
+    update();
+    if (onFrame) onFrame();
 }
 
 void CpuSurface::paintEvent(QPaintEvent*) {
     QPainter painter(this);
-    painter.fillRect(rect(), colorFromRgb(kViewBackground));
+    painter.fillRect(rect(), colorFromRgb(m_scene.settings.background.value_or(Rgb{})));
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
     if (!m_picture.isNull()) painter.drawImage(rect(), m_picture);
 }

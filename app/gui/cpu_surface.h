@@ -7,7 +7,7 @@
 #include <QTimer>
 #include <QWidget>
 
-#include "background_task.h"
+#include "jobs/job.h"
 #include "view_surface.h"
 
 namespace pellucid::gui {
@@ -19,7 +19,7 @@ public:
     ~CpuSurface() override;
 
     QWidget* widget() override { return this; }
-    void setScene(const ViewScene& scene) override;
+    void setScene(const PictureInput& scene) override;
     const FrameInfo& frame() const override { return m_frame; }
     QString rendererName() const override { return tr("CPU"); }
 
@@ -29,10 +29,21 @@ protected:
 
 private:
     struct Renderer; // shared with threads that have been cancelled but have not noticed yet
+    struct Task {
+        PictureInput input;
+        QSize pixels; ///< of the widget
+        double scale = 1;
+        bool full = false;
+    };
+    struct Picture {
+        QImage image;
+        double seconds = 0;
+    };
     void restart();
     void draw(bool full);
+    void show(const Task& task, const Picture& picture);
 
-    ViewScene m_scene;
+    PictureInput m_scene;
     std::shared_ptr<Renderer> m_renderer;
     QImage m_picture;
     FrameInfo m_frame;
@@ -40,7 +51,7 @@ private:
     bool m_again = false;      ///< the scene changed while a coarse picture was being drawn
     bool m_drawingQuick = false;
     QTimer m_idle;
-    BackgroundTask m_task; // last: its threads end before the rest goes
+    Job<Task, Picture> m_job; // last: its threads end before the rest goes
 };
 
 } // namespace pellucid::gui

@@ -50,8 +50,9 @@ QString adviceFor(const Error& error) {
     return said;
 }
 
-void showError(QWidget* parent, const QString& title, const QString& what, const QString& where,
-               const QString& whatToDo) {
+void showError(QWidget* parent, const QString& title, const Error& error) {
+    const QString what = QString::fromStdString(error.problem()), where = QString::fromStdString(error.where()),
+                  whatToDo = adviceFor(error);
     auto* dialog = new QDialog(parent);
     dialog->setObjectName("errorDialog");
     dialog->setAttribute(Qt::WA_DeleteOnClose);

@@ -13,7 +13,6 @@ namespace pellucid::gui {
 QString adviceFor(const Error& error);
 
 /// Does not wait for an answer. The parts are labels named errorWhat, errorWhere and errorWhatToDo.
-void showError(QWidget* parent, const QString& title, const QString& what, const QString& where,
-               const QString& whatToDo);
+void showError(QWidget* parent, const QString& title, const Error& error);
 
 } // namespace pellucid::gui

@@ -36,18 +36,19 @@ QString glText(QOpenGLFunctions* gl, GLenum name) {
 
 } // namespace
 
-bool GlSurface::isAvailable() {
+GlSurface::Available GlSurface::available() {
     QOpenGLContext context;
     context.setFormat(wantedFormat());
-    if (!context.create()) return false;
+    if (!context.create()) return Available::No;
     const auto version = context.format().version();
-    if (version < qMakePair(4, 3)) return false;
+    if (version < qMakePair(4, 3)) return Available::No;
     QOffscreenSurface surface;
     surface.setFormat(context.format());
     surface.create();
-    if (!context.makeCurrent(&surface)) return false;
+    if (!context.makeCurrent(&surface)) return Available::No;
+    const bool software = isSoftwareRenderer(glText(context.functions(), GL_RENDERER).toStdString());
     context.doneCurrent();
-    return true;
+    return software ? Available::InSoftware : Available::OnGpu;
 }
 
 GlSurface::GlSurface(QWidget* parent) : QOpenGLWidget(parent) {
@@ -76,7 +77,7 @@ void GlSurface::releaseGl() {
     doneCurrent();
 }
 
-void GlSurface::setScene(const ViewScene& scene) {
+void GlSurface::setScene(const PictureInput& scene) {
     if (scene == m_scene) return;
     m_scene = scene;
     m_dirty = true;
@@ -147,10 +148,9 @@ GlSurface::Plan GlSurface::quickPlan() const {
 }
 
 RenderSettings GlSurface::settings(const Plan& plan) const {
-    RenderSettings s;
+    RenderSettings s = m_scene.settings;
     s.width = pixelSize().width();
     s.height = pixelSize().height();
-    s.background = kViewBackground;
     s.stepInD0 = plan.stepInD0;
     return s;
 }
@@ -183,8 +183,9 @@ void GlSurface::drawQuick() {
     QOpenGLFunctions* gl = context()->functions();
     m_picture->bind();
     gl->glViewport(0, 0, m_picture->width(), m_picture->height());
-    gl->glClearColor(static_cast<float>(kViewBackground.r), static_cast<float>(kViewBackground.g),
-                     static_cast<float>(kViewBackground.b), 1);
+    const Rgb background = m_scene.settings.background.value_or(Rgb{});
+    gl->glClearColor(static_cast<float>(background.r), static_cast<float>(background.g),
+                     static_cast<float>(background.b), 1);
     gl->glClear(GL_COLOR_BUFFER_BIT);
     if (!m_scene.volume || !m_raycaster || m_failed) return;
     try {

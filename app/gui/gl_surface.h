@@ -26,11 +26,12 @@ public:
     explicit GlSurface(QWidget* parent = nullptr);
     ~GlSurface() override;
 
-    /// Whether this machine gives a context that can draw (OpenGL 4.3 core or later); tries one.
-    static bool isAvailable();
+    /// Whether this machine gives a context that can draw (OpenGL 4.3 core or later), and by what; tries one.
+    enum class Available { No, InSoftware, OnGpu };
+    static Available available();
 
     QWidget* widget() override { return this; }
-    void setScene(const ViewScene& scene) override;
+    void setScene(const PictureInput& scene) override;
     const FrameInfo& frame() const override { return m_frame; }
     QString rendererName() const override { return m_rendererName; }
 
@@ -56,7 +57,7 @@ private:
     void finishFrame(const Plan& plan, bool complete);
     void fail(const Error& error);
 
-    ViewScene m_scene;
+    PictureInput m_scene;
     std::unique_ptr<gl::SliceRaycaster> m_raycaster;
     std::shared_ptr<const Volume> m_uploaded;
     std::unique_ptr<QOpenGLFramebufferObject> m_picture;

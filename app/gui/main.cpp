@@ -9,6 +9,9 @@
 #include <QFileInfo>
 #include <QIcon>
 
+#include "controllers/open_controller.h"
+#include "controllers/recovery_controller.h"
+#include "input_habits.h"
 #include "main_window.h"
 #include "theme.h"
 #include "version.h"
@@ -48,9 +51,11 @@ void describe(QCommandLineParser& parser) {
     parser.setApplicationDescription(
         "Shows volumes, measures what catches the eye in them, and finds transfer functions.\n"
         "Without a FILE it opens on the built-in volume sample:shells.");
-    parser.addPositionalArgument("FILE", "volumes, a window each: NRRD, MetaImage, NIfTI, raw data, or sample:NAME",
-                                 "[FILE…]");
+    parser.addPositionalArgument(
+        "FILE", "volumes or sessions, a window each: NRRD, MetaImage, NIfTI, raw data, *.pellucid.json, or sample:NAME",
+        "[FILE…]");
     parser.addOption({"tf", "Transfer function: a *.tf.json file, tents:N[:PEAK] or ramp:N.", "SPEC"});
+    parser.addOption({"session", "Go on with a saved session, a *.pellucid.json file.", "FILE"});
     parser.addOption({"renderer", "What draws the picture: auto, gl or cpu.", "NAME", "auto"});
     parser.addOption({"size", "Size of the window in pixels.", "WxH"});
     parser.addOption(
@@ -78,6 +83,8 @@ int main(int argc, char** argv) {
 
     QApplication application(argc, argv);
     applyTheme(application);
+    InputHabits habits;
+    application.installEventFilter(&habits);
     if (!parser.parse(QApplication::arguments()))
         return complain("wrong option, " + parser.errorText().chopped(1) + ", see pellucid --help", kUsage);
 
@@ -108,6 +115,7 @@ int main(int argc, char** argv) {
             volumes << file;
         }
     }
+    if (parser.isSet("session")) volumes.prepend(parser.value("session"));
     if (volumes.isEmpty()) volumes << "sample:shells";
     const QString screenshot = parser.value("screenshot");
     if (!screenshot.isEmpty() && volumes.size() > 1)
@@ -121,7 +129,11 @@ int main(int argc, char** argv) {
             if (screenshot.isEmpty()) window.restoreLayout(); // a picture is the same on every machine
             if (!size.isEmpty()) window.resize(size);
             window.show();
-            if (!screenshot.isEmpty()) {
+            OpenController& opening = window.workbench().opening();
+            if (screenshot.isEmpty()) {
+                window.workbench().recovery().start();
+                if (windows.size() == 1) window.workbench().recovery().offerWhenOpen();
+            } else {
                 QObject::connect(
                     &window, &MainWindow::settledChanged, &window,
                     [&window, screenshot] {
@@ -133,12 +145,13 @@ int main(int argc, char** argv) {
                         QCoreApplication::exit(0);
                     },
                     Qt::QueuedConnection);
-                QObject::connect(&window, &MainWindow::openFailed, &window, [volume] {
-                    QCoreApplication::exit(complain(
-                        "cannot open the volume, " + volume + ", start without --screenshot to see why", kFailed));
-                });
+                const auto fail = [](const Error& error) {
+                    QCoreApplication::exit(complain(QString::fromUtf8(error.what()), kFailed));
+                };
+                QObject::connect(&opening, &OpenController::failed, &window, fail, Qt::QueuedConnection);
+                QObject::connect(&opening, &OpenController::tfFailed, &window, fail, Qt::QueuedConnection);
             }
-            window.openAtStart(volume, tf);
+            opening.openAtStart(volume, tf);
         }
         return QApplication::exec();
     } catch (const Error& error) {

@@ -1,25 +1,26 @@
-// Remarks about the open volume, above the picture, until dismissed.
+// Remarks about what is open, above the picture, until dismissed.
 #pragma once
 
 #include <QFrame>
-#include <QStringList>
+
+#include "notices.h"
 
 class QLabel;
+class QVBoxLayout;
 
 namespace pellucid::gui {
 
 class NoticeBar : public QFrame {
     Q_OBJECT
 public:
-    explicit NoticeBar(QWidget* parent = nullptr);
-    /// Replaces what is shown; hidden where there is nothing to say.
-    void setNotices(const QStringList& notices);
-    void addNotice(const QString& notice); ///< one that is shown already is not repeated
-    const QStringList& notices() const { return m_notices; }
+    explicit NoticeBar(Notices& notices, QWidget* parent = nullptr);
 
 private:
-    QLabel* m_label;
-    QStringList m_notices;
+    void refresh();
+
+    Notices& m_notices;
+    QLabel* m_label;     // the notices that nothing can be done about, and the texts of all
+    QVBoxLayout* m_rows; // the others, each with its buttons
 };
 
 } // namespace pellucid::gui

@@ -9,6 +9,7 @@
 #include <QPainter>
 #include <QToolTip>
 
+#include "store/edits.h"
 #include "theme.h"
 
 namespace pellucid::gui {
@@ -23,23 +24,24 @@ QString share(double value) { return QString::number(value, 'f', 3); }
 
 } // namespace
 
-TargetBars::TargetBars(Document& document, QWidget* parent) : QWidget(parent), m_document(document) {
+TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
+    : QWidget(parent), m_store(store), m_results(results) {
     setObjectName("targetBars");
     setAccessibleName(tr("Saliency of the features and their targets"));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Minimum);
-    const auto changed = [this] {
+    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         m_current = std::clamp(m_current, 0, std::max(0, count() - 1));
-        if (m_dragged >= count()) m_dragged = -1;
-        updateGeometry();
+        // A change that this drag did not make ends it.
+        if (m_dragged >= count() || !m_store.isPreviewing()) m_dragged = m_pressed ? m_dragged : -1;
+        if (before.tf.features.size() != after.tf.features.size()) {
+            m_hovered = m_dragged = -1;
+            updateGeometry();
+        }
         update();
-    };
-    connect(&document, &Document::featuresChanged, this, changed);
-    connect(&document, &Document::targetsChanged, this, changed);
-    connect(&document, &Document::measuresChanged, this, changed);
-    connect(&document, &Document::tfChanged, this, changed);
-    connect(&document, &Document::cameraChanged, this, changed);
+    });
+    connect(&results, &Results::changed, this, qOverload<>(&TargetBars::update));
 }
 
 void TargetBars::setReadOnly(bool on) {
@@ -48,9 +50,7 @@ void TargetBars::setReadOnly(bool on) {
     update();
 }
 
-int TargetBars::count() const {
-    return static_cast<int>(std::min(m_document.tf().features.size(), m_document.targets().size()));
-}
+int TargetBars::count() const { return static_cast<int>(m_store.scene().tf.features.size()); }
 
 QSize TargetBars::sizeHint() const { return {320, kHead + kRow * std::max(1, count()) + 4}; }
 QSize TargetBars::minimumSizeHint() const { return {280, kHead + kRow * std::max(1, count()) + 4}; }
@@ -73,7 +73,7 @@ double TargetBars::shareAt(double pixelX) const {
 
 QPointF TargetBars::handlePosition(int feature) const {
     const QRectF track = trackRect(feature);
-    return {pixelOfShare(m_document.targets()[static_cast<std::size_t>(feature)]), track.center().y()};
+    return {pixelOfShare(m_store.scene().targets().at(static_cast<std::size_t>(feature))), track.center().y()};
 }
 
 int TargetBars::featureAtPosition(const QPointF& position) const {
@@ -89,15 +89,18 @@ void TargetBars::mousePressEvent(QMouseEvent* event) {
     const QRectF reach = trackRect(feature).adjusted(-10, -8, 10, 8);
     if (m_readOnly || !reach.contains(event->position())) return;
     m_dragged = feature;
+    m_pressed = true;
     // A press beside the handle brings it there, as a press on a slider's groove does in most people's hands.
-    if (std::abs(event->position().x() - handlePosition(feature).x()) > 8) {
-        m_document.setTarget(feature, shareAt(event->position().x()));
-    }
+    if (std::abs(event->position().x() - handlePosition(feature).x()) > 8)
+        previewTarget(m_store, feature, shareAt(event->position().x()), tr("Target of feature"));
+    m_pressed = false;
 }
 
 void TargetBars::mouseMoveEvent(QMouseEvent* event) {
     if (m_dragged >= 0) {
-        m_document.setTarget(m_dragged, shareAt(event->position().x()));
+        m_pressed = true;
+        previewTarget(m_store, m_dragged, shareAt(event->position().x()), tr("Target of feature"));
+        m_pressed = false;
         return;
     }
     const int row = featureAtPosition(event->position());
@@ -111,14 +114,25 @@ void TargetBars::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void TargetBars::mouseReleaseEvent(QMouseEvent*) {
+    if (m_dragged >= 0) m_store.commit();
     m_dragged = -1;
+    update();
+}
+
+void TargetBars::leaveEvent(QEvent*) {
+    m_hovered = -1;
     update();
 }
 
 void TargetBars::keyPressEvent(QKeyEvent* event) {
     if (count() == 0) return QWidget::keyPressEvent(event);
     const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 0.1 : 0.01;
-    const double target = m_document.targets()[static_cast<std::size_t>(m_current)];
+    const double target = m_store.scene().targets().at(static_cast<std::size_t>(m_current));
+    const auto move = [&](double by) {
+        if (!m_readOnly)
+            editTarget(m_store, m_current, target + by, tr("Target of feature"),
+                       QStringLiteral("target-%1").arg(m_current));
+    };
     switch (event->key()) {
     case Qt::Key_Up:
         m_current = std::max(0, m_current - 1);
@@ -127,11 +141,9 @@ void TargetBars::keyPressEvent(QKeyEvent* event) {
         m_current = std::min(count() - 1, m_current + 1);
         return update();
     case Qt::Key_Left:
-        if (!m_readOnly) m_document.setTarget(m_current, target - step);
-        return;
+        return move(-step);
     case Qt::Key_Right:
-        if (!m_readOnly) m_document.setTarget(m_current, target + step);
-        return;
+        return move(step);
     default:
         QWidget::keyPressEvent(event);
     }
@@ -173,11 +185,14 @@ void TargetBars::paintEvent(QPaintEvent*) {
         return;
     }
 
-    const auto& measures = m_document.measures();
-    const double strength = m_document.measuresAreCurrent() || m_readOnly ? 1.0 : 0.55; // faint: being measured anew
+    const Measures* const measures = m_results.measures();
+    const std::vector<double> targets = m_store.scene().targets();
+    // Faint: of an older state, being measured anew.
+    const double strength = m_results.vwsIsCurrent() ? 1.0 : 0.45;
+    const double thinStrength = m_results.measuresAreCurrent() ? 0.55 : 0.25;
     for (int i = 0; i < count(); ++i) {
         const auto f = static_cast<std::size_t>(i);
-        const Feature& feature = m_document.tf().features[f];
+        const Feature& feature = m_store.scene().tf.features[f];
         const QRectF row = rowRect(i), track = trackRect(i);
         if (i == m_current && hasFocus()) {
             painter.setPen(Qt::NoPen);
@@ -206,7 +221,7 @@ void TargetBars::paintEvent(QPaintEvent*) {
             fill.setAlphaF(static_cast<float>(strength));
             painter.setBrush(fill);
             painter.drawRoundedRect(QRectF(vwsTrack.topLeft(), QSizeF(vwsTrack.width() * m.vws, kVwsBar)), 2, 2);
-            fill.setAlphaF(static_cast<float>(0.55 * strength));
+            fill.setAlphaF(static_cast<float>(thinStrength));
             painter.setBrush(fill);
             painter.drawRoundedRect(QRectF(visTrack.topLeft(), QSizeF(visTrack.width() * m.visibility, kVisibilityBar)),
                                     2, 2);
@@ -225,7 +240,7 @@ void TargetBars::paintEvent(QPaintEvent*) {
         painter.drawRoundedRect(QRectF(handle.x() - 2.5, handle.y() - reach, 5, 2 * reach), 2.5, 2.5);
         painter.setPen(theme::kText);
         painter.drawText(QRectF(numbers.left() + numbers.width(), row.top(), numbers.width(), row.height()),
-                         Qt::AlignRight | Qt::AlignVCenter, share(m_document.targets()[f]));
+                         Qt::AlignRight | Qt::AlignVCenter, share(targets[f]));
     }
 }
 

@@ -3,7 +3,8 @@
 
 #include <QWidget>
 
-#include "models/document.h"
+#include "results.h"
+#include "store/session_store.h"
 
 namespace pellucid::gui {
 
@@ -12,7 +13,7 @@ namespace pellucid::gui {
 class TargetBars : public QWidget {
     Q_OBJECT
 public:
-    explicit TargetBars(Document& document, QWidget* parent = nullptr);
+    TargetBars(SessionStore& store, Results& results, QWidget* parent = nullptr);
 
     /// Centre of a feature's handle, and where on its bar a share in [0,1] lies; widget pixels.
     QPointF handlePosition(int feature) const;
@@ -28,6 +29,7 @@ protected:
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
+    void leaveEvent(QEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
     bool event(QEvent* event) override;
 
@@ -38,9 +40,11 @@ private:
     int featureAtPosition(const QPointF& position) const;
     double shareAt(double pixelX) const;
 
-    Document& m_document;
+    SessionStore& m_store;
+    Results& m_results;
     int m_current = 0, m_dragged = -1, m_hovered = -1;
     bool m_readOnly = false;
+    bool m_pressed = false; // this widget is making a change itself
 };
 
 } // namespace pellucid::gui

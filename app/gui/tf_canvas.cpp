@@ -13,6 +13,7 @@
 #include <QToolTip>
 
 #include "axis_ticks.h"
+#include "store/edits.h"
 #include "tf_edit.h"
 #include "theme.h"
 
@@ -32,20 +33,15 @@ QColor translucent(QColor color, double alpha) {
 
 } // namespace
 
-TfCanvas::TfCanvas(Document& document, QWidget* parent) : QWidget(parent), m_document(document) {
+TfCanvas::TfCanvas(SessionStore& store, Results& results, QWidget* parent)
+    : QWidget(parent), m_store(store), m_results(results) {
     setObjectName("tfCanvas");
     setAccessibleName(tr("Transfer function"));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
-    connect(&document, &Document::volumeChanged, this, [this] {
-        m_drag.reset();
-        selectPoint(-1);
-        update();
-    });
-    connect(&document, &Document::tfChanged, this, &TfCanvas::tfChanged);
-    connect(&document, &Document::featuresChanged, this, qOverload<>(&TfCanvas::update));
-    connect(&document, &Document::measuresChanged, this, qOverload<>(&TfCanvas::update));
+    connect(&store, &SessionStore::changed, this, &TfCanvas::follow);
+    connect(&results, &Results::changed, this, qOverload<>(&TfCanvas::update));
 }
 
 void TfCanvas::setLogHistogram(bool on) {
@@ -64,16 +60,29 @@ void TfCanvas::setReadOnly(bool on) {
     update();
 }
 
-void TfCanvas::tfChanged() {
-    if (m_selected >= static_cast<int>(m_document.tf().points.size())) selectPoint(-1);
-    m_hovered = -1;
+void TfCanvas::follow(const Scene& before, const Scene& after) {
+    if (before.data != after.data) {
+        m_drag.reset();
+        selectPoint(-1);
+        update();
+        return;
+    }
     // A change that this drag did not make (undo, another file) ends it.
-    if (m_drag && !m_document.isPreviewing()) m_drag.reset();
+    if (m_drag && m_drag->moved && !m_store.isPreviewing()) m_drag.reset();
+    const auto &old = before.tf.points, &now = after.tf.points;
+    if (old == now) return update();
+    m_hovered = -1;
+    // What was selected stays so: the point in its place where none came or went, else the one that is as it was.
+    if (m_selected >= 0 && old.size() != now.size() && static_cast<std::size_t>(m_selected) < old.size()) {
+        const auto same = std::find(now.begin(), now.end(), old[static_cast<std::size_t>(m_selected)]);
+        selectPoint(same == now.end() ? -1 : static_cast<int>(same - now.begin()));
+    }
+    if (m_selected >= static_cast<int>(now.size())) selectPoint(-1);
     update();
 }
 
 void TfCanvas::selectPoint(int index) {
-    if (index >= static_cast<int>(m_document.tf().points.size())) index = -1;
+    if (index >= static_cast<int>(tf().points.size())) index = -1;
     if (index == m_selected) return;
     m_selected = index;
     update();
@@ -81,31 +90,35 @@ void TfCanvas::selectPoint(int index) {
 }
 
 void TfCanvas::addPoint(double x, double opacity) {
-    if (m_readOnly || !m_document.hasVolume()) return;
-    const AddedPoint added = withPointAdded(m_document.tf(), x, opacity);
-    m_document.setTf(added.tf, tr("Add point"));
+    if (m_readOnly || !m_store.hasVolume()) return;
+    m_store.commit();
+    const AddedPoint added = withPointAdded(tf(), x, opacity);
+    editTf(m_store, added.tf, tr("Add point"));
     selectPoint(added.index);
 }
 
 void TfCanvas::removeSelected() {
     if (m_readOnly || m_selected < 0) return;
-    const TransferFunction tf = withPointRemoved(m_document.tf(), m_selected);
+    m_drag.reset(); // the point goes, also out of a hand that holds it
+    m_store.commit();
+    const TransferFunction without = withPointRemoved(tf(), m_selected);
     selectPoint(-1);
-    m_document.setTf(tf, tr("Remove point"));
+    editTf(m_store, without, tr("Remove point"));
 }
 
 void TfCanvas::toggleFixed() {
     if (m_readOnly || m_selected < 0) return;
-    const bool fixed = !m_document.tf().points[static_cast<std::size_t>(m_selected)].fixed;
-    m_document.setTf(withPointFixed(m_document.tf(), m_selected, fixed), fixed ? tr("Fix point") : tr("Free point"));
+    m_store.commit();
+    const bool fixed = !tf().points[static_cast<std::size_t>(m_selected)].fixed;
+    editTf(m_store, withPointFixed(tf(), m_selected, fixed), fixed ? tr("Fix point") : tr("Free point"));
 }
 
 void TfCanvas::chooseColor() {
     if (m_readOnly || m_selected < 0) return;
     const int index = m_selected;
-    const QColor before = colorFromRgb(m_document.tf().points[static_cast<std::size_t>(index)].color);
+    const QColor before = colorFromRgb(tf().points[static_cast<std::size_t>(index)].color);
     const QColor color = QColorDialog::getColor(before, this, tr("Colour of the point"));
-    if (color.isValid()) m_document.setTf(withPointColor(m_document.tf(), index, rgbFromColor(color)), tr("Colour"));
+    if (color.isValid()) editTf(m_store, withPointColor(tf(), index, rgbFromColor(color)), tr("Colour"));
 }
 
 QRectF TfCanvas::plot() const {
@@ -133,7 +146,7 @@ double TfCanvas::opacityAt(double pixelY) const {
 int TfCanvas::pointAt(const QPointF& position) const {
     int best = -1;
     double nearest = kGrab;
-    const auto& points = m_document.tf().points;
+    const auto& points = tf().points;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double d = QLineF(positionOf(points[i].x, points[i].opacity), position).length();
         // The selected one wins where several lie on each other.
@@ -150,12 +163,12 @@ int TfCanvas::featureBarAt(const QPointF& position) const {
     if (position.y() > r.top() || position.y() < r.top() - kBar - 4 || position.x() < r.left() ||
         position.x() > r.right())
         return -1;
-    return featureAt(m_document.tf().features, intensityAt(position.x()));
+    return featureAt(tf().features, intensityAt(position.x()));
 }
 
 QString TfCanvas::valueText(double x) const {
-    if (!m_document.hasVolume()) return {};
-    const Volume& volume = *m_document.volume();
+    if (!m_store.hasVolume()) return {};
+    const Volume& volume = *m_store.scene().volume;
     return numberText(volume.valueOfIntensity(x), volume.range().hi - volume.range().lo);
 }
 
@@ -164,9 +177,8 @@ void TfCanvas::mousePressEvent(QMouseEvent* event) {
     const int index = pointAt(event->position());
     selectPoint(index);
     if (index < 0 || m_readOnly) return;
-    const ControlPoint& point = m_document.tf().points[static_cast<std::size_t>(index)];
-    m_drag =
-        Drag{m_document.tf(), index, event->position(), positionOf(point.x, point.opacity) - event->position(), false};
+    const ControlPoint& point = tf().points[static_cast<std::size_t>(index)];
+    m_drag = Drag{tf(), index, event->position(), positionOf(point.x, point.opacity) - event->position(), false};
 }
 
 void TfCanvas::mouseMoveEvent(QMouseEvent* event) {
@@ -194,14 +206,14 @@ void TfCanvas::mouseMoveEvent(QMouseEvent* event) {
             x = start.x;
         }
     }
-    m_document.previewTf(withPointMoved(m_drag->start, m_drag->index, x, opacity));
+    previewTf(m_store, withPointMoved(m_drag->start, m_drag->index, x, opacity), tr("Move point"));
 }
 
 void TfCanvas::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton || !m_drag) return;
     const bool moved = m_drag->moved;
     m_drag.reset();
-    if (moved) m_document.commitPreview(tr("Move point"));
+    if (moved) m_store.commit();
 }
 
 void TfCanvas::mouseDoubleClickEvent(QMouseEvent* event) {
@@ -215,10 +227,10 @@ void TfCanvas::mouseDoubleClickEvent(QMouseEvent* event) {
 }
 
 void TfCanvas::contextMenuEvent(QContextMenuEvent* event) {
-    if (m_readOnly || !m_document.hasVolume() || m_drag) return;
+    if (m_readOnly || !m_store.hasVolume() || m_drag) return;
     const QPointF position = event->reason() == QContextMenuEvent::Keyboard && m_selected >= 0
-                                 ? positionOf(m_document.tf().points[static_cast<std::size_t>(m_selected)].x,
-                                              m_document.tf().points[static_cast<std::size_t>(m_selected)].opacity)
+                                 ? positionOf(tf().points[static_cast<std::size_t>(m_selected)].x,
+                                              tf().points[static_cast<std::size_t>(m_selected)].opacity)
                                  : QPointF(event->pos());
     const int index = pointAt(position);
     QMenu menu(this);
@@ -228,7 +240,7 @@ void TfCanvas::contextMenuEvent(QContextMenuEvent* event) {
         menu.addAction(tr("Colour…"), this, &TfCanvas::chooseColor);
         QAction* fixed = menu.addAction(tr("Fixed (refinement leaves it alone)"), this, &TfCanvas::toggleFixed);
         fixed->setCheckable(true);
-        fixed->setChecked(m_document.tf().points[static_cast<std::size_t>(index)].fixed);
+        fixed->setChecked(tf().points[static_cast<std::size_t>(index)].fixed);
         menu.addSeparator();
         menu.addAction(tr("Remove point"), this, &TfCanvas::removeSelected);
     } else {
@@ -240,15 +252,15 @@ void TfCanvas::contextMenuEvent(QContextMenuEvent* event) {
 
 void TfCanvas::nudge(double dx, double dHeight) {
     if (m_readOnly || m_selected < 0) return;
-    const ControlPoint& point = m_document.tf().points[static_cast<std::size_t>(m_selected)];
+    const ControlPoint& point = tf().points[static_cast<std::size_t>(m_selected)];
     const double opacity = dHeight == 0 ? point.opacity : opacityOfHeight(heightOfOpacity(point.opacity) + dHeight);
-    m_document.setTf(withPointMoved(m_document.tf(), m_selected, point.x + dx, opacity), tr("Move point"),
-                     QStringLiteral("nudge-%1").arg(m_selected));
+    editTf(m_store, withPointMoved(tf(), m_selected, point.x + dx, opacity), tr("Move point"),
+           QStringLiteral("nudge-%1").arg(m_selected));
 }
 
 void TfCanvas::keyPressEvent(QKeyEvent* event) {
     const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 1.0 / 1024 : 1.0 / 128;
-    const int count = static_cast<int>(m_document.tf().points.size());
+    const int count = static_cast<int>(tf().points.size());
     switch (event->key()) {
     case Qt::Key_Delete:
     case Qt::Key_Backspace:
@@ -273,7 +285,7 @@ void TfCanvas::keyPressEvent(QKeyEvent* event) {
     case Qt::Key_Escape:
         if (m_drag) {
             m_drag.reset();
-            m_document.cancelPreview();
+            m_store.cancel();
         } else {
             selectPoint(-1);
         }
@@ -283,17 +295,22 @@ void TfCanvas::keyPressEvent(QKeyEvent* event) {
     }
 }
 
+void TfCanvas::leaveEvent(QEvent*) {
+    m_hovered = -1;
+    update();
+}
+
 bool TfCanvas::event(QEvent* event) {
-    if (event->type() != QEvent::ToolTip || !m_document.hasVolume()) return QWidget::event(event);
+    if (event->type() != QEvent::ToolTip || !m_store.hasVolume()) return QWidget::event(event);
     const auto* help = static_cast<QHelpEvent*>(event);
     const QPointF position = help->pos();
     QString text;
     if (const int index = pointAt(position); index >= 0) {
-        const ControlPoint& p = m_document.tf().points[static_cast<std::size_t>(index)];
+        const ControlPoint& p = tf().points[static_cast<std::size_t>(index)];
         text = tr("value %1, opacity %2%3\nopacity of a path one voxel long (d0)")
                    .arg(valueText(p.x), QString::number(p.opacity, 'g', 4), p.fixed ? tr(", fixed") : QString());
     } else if (const int feature = featureBarAt(position); feature >= 0) {
-        const Feature& f = m_document.tf().features[static_cast<std::size_t>(feature)];
+        const Feature& f = tf().features[static_cast<std::size_t>(feature)];
         text = tr("feature %1: values %2 to %3").arg(QString::fromStdString(f.name), valueText(f.a), valueText(f.b));
     } else if (plot().contains(position)) {
         text = tr("Grey: how many voxels have this value; line: how much of the picture they make (visibility)\n"
@@ -309,7 +326,7 @@ void TfCanvas::paintEvent(QPaintEvent*) {
     painter.setRenderHint(QPainter::Antialiasing);
     painter.fillRect(rect(), theme::kWindow);
     painter.fillRect(plot(), theme::kPanel);
-    if (!m_document.hasVolume()) return;
+    if (!m_store.hasVolume()) return;
     paintHistogram(painter);
     paintVisibility(painter);
     paintAxes(painter);
@@ -319,7 +336,8 @@ void TfCanvas::paintEvent(QPaintEvent*) {
 }
 
 void TfCanvas::paintHistogram(QPainter& painter) const {
-    const auto& counts = m_document.histogram().counts;
+    if (!m_store.scene().histogram) return;
+    const auto& counts = m_store.scene().histogram->counts;
     if (counts.empty()) return;
     const double most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
     if (most <= 0) return;
@@ -339,8 +357,9 @@ void TfCanvas::paintHistogram(QPainter& painter) const {
 }
 
 void TfCanvas::paintVisibility(QPainter& painter) const {
-    if (!m_document.measures()) return;
-    const auto& shares = m_document.measures()->visibilityHistogram;
+    const Measures* const measures = m_results.measures();
+    if (measures == nullptr) return;
+    const auto& shares = measures->visibilityHistogram;
     if (shares.empty()) return;
     const double most = *std::max_element(shares.begin(), shares.end());
     if (most <= 0) return;
@@ -350,7 +369,7 @@ void TfCanvas::paintVisibility(QPainter& painter) const {
         const double x = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
         line << QPointF(r.left() + x * r.width(), r.bottom() - 0.94 * shares[i] / most * r.height());
     }
-    painter.setPen(QPen(translucent(QColor(0xdf, 0xe6, 0xf0), m_document.measuresAreCurrent() ? 0.55 : 0.25), 1));
+    painter.setPen(QPen(translucent(QColor(0xdf, 0xe6, 0xf0), m_results.measuresAreCurrent() ? 0.55 : 0.2), 1));
     painter.drawPolyline(line);
 }
 
@@ -361,7 +380,7 @@ void TfCanvas::paintAxes(QPainter& painter) const {
     painter.setFont(small);
     const QFontMetricsF metrics(small);
 
-    const ValueRange range = m_document.volume()->range();
+    const ValueRange range = m_store.scene().volume->range();
     const double span = range.hi - range.lo;
     painter.setPen(theme::kFaint);
     const double labelTop = r.bottom() + kStrip + 6;
@@ -397,7 +416,7 @@ void TfCanvas::paintFeatures(QPainter& painter) const {
     QFont small = font();
     small.setPointSizeF(small.pointSizeF() * 0.82);
     painter.setFont(small);
-    for (const Feature& f : m_document.tf().features) {
+    for (const Feature& f : tf().features) {
         const double left = positionOf(f.a, 0).x(), right = positionOf(f.b, 0).x();
         const QColor color = colorFromRgb(f.color);
         painter.fillRect(QRectF(left, r.top(), right - left, r.height()), translucent(color, 0.07));
@@ -414,7 +433,7 @@ void TfCanvas::paintFeatures(QPainter& painter) const {
 
 void TfCanvas::paintCurve(QPainter& painter) const {
     const QRectF r = plot();
-    const std::vector<ControlPoint> points = m_document.tf().pointsWithEnds();
+    const std::vector<ControlPoint> points = tf().pointsWithEnds();
     QPainterPath line;
     QLinearGradient gradient(r.left(), 0, r.right(), 0);
     QLinearGradient fill = gradient;
@@ -445,7 +464,7 @@ void TfCanvas::paintCurve(QPainter& painter) const {
 }
 
 void TfCanvas::paintPoints(QPainter& painter) const {
-    const auto& points = m_document.tf().points;
+    const auto& points = tf().points;
     const auto paintOne = [&](std::size_t i) {
         const ControlPoint& p = points[i];
         const QPointF c = positionOf(p.x, p.opacity);

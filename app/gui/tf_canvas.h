@@ -5,15 +5,16 @@
 
 #include <QWidget>
 
-#include "models/document.h"
+#include "results.h"
+#include "store/session_store.h"
 
 namespace pellucid::gui {
 
-/// Every finished drag is one step of the document's undo stack; while the mouse is down the document previews.
+/// Every finished drag is one undo step; while the mouse is down the store previews.
 class TfCanvas : public QWidget {
     Q_OBJECT
 public:
-    explicit TfCanvas(Document& document, QWidget* parent = nullptr);
+    TfCanvas(SessionStore& store, Results& results, QWidget* parent = nullptr);
 
     void setLogHistogram(bool on);
     /// The opacity axis shows √α: room for the small opacities that matter most in a volume.
@@ -44,6 +45,7 @@ protected:
     void mouseDoubleClickEvent(QMouseEvent* event) override;
     void contextMenuEvent(QContextMenuEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
+    void leaveEvent(QEvent* event) override;
     bool event(QEvent* event) override;
 
 private:
@@ -62,7 +64,8 @@ private:
     int pointAt(const QPointF& position) const; ///< −1: none
     int featureBarAt(const QPointF& position) const;
     QString valueText(double x) const;
-    void tfChanged();
+    void follow(const Scene& before, const Scene& after);
+    const TransferFunction& tf() const { return m_store.scene().tf; }
     void nudge(double dx, double dHeight);
 
     void paintHistogram(QPainter& painter) const;
@@ -72,7 +75,8 @@ private:
     void paintAxes(QPainter& painter) const;
     void paintPoints(QPainter& painter) const;
 
-    Document& m_document;
+    SessionStore& m_store;
+    Results& m_results;
     bool m_logHistogram = true, m_rootOpacity = false, m_readOnly = false;
     int m_selected = -1, m_hovered = -1;
     std::optional<Drag> m_drag;

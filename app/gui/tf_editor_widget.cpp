@@ -10,8 +10,11 @@
 #include <QVBoxLayout>
 
 #include "axis_ticks.h"
+#include "panel.h"
+#include "store/edits.h"
 #include "tf_edit.h"
 #include "theme.h"
+#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {
@@ -25,10 +28,42 @@ QIcon swatch(const QColor& color, const QSize& size = {22, 14}) {
     return pixmap;
 }
 
+// Also where the box has been cleared and would keep that for the number it had.
+void showNumber(QDoubleSpinBox& box, double value) {
+    if (box.text().isEmpty()) box.setValue(value == box.minimum() ? box.maximum() : box.minimum());
+    box.setValue(value);
+}
+
 } // namespace
 
-TfEditorWidget::TfEditorWidget(Document& document, QWidget* parent)
-    : QWidget(parent), m_document(document), m_canvas(new TfCanvas(document, this)), m_which(new QLabel(this)),
+PanelInfo transferFunctionPanel() {
+    return {.id = "tf",
+            .title = QObject::tr("Transfer function"),
+            .area = Qt::BottomDockWidgetArea,
+            .visible = true,
+            .size = 250,
+            .keys = QKeySequence("Ctrl+1"),
+            .tip = QObject::tr("The curve of opacity and colour over the histogram"),
+            .make =
+                [](Workbench& bench, QWidget* parent) {
+                    auto* editor = new TfEditorWidget(bench.store(), bench.results(), parent);
+                    QObject::connect(&bench, &Workbench::readOnlyChanged, editor,
+                                     [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
+                    const QString place = QObject::tr("Transfer function");
+                    bench.actions().addGestures(
+                        {{place, QObject::tr("Drag a point (Shift: along one axis)"),
+                          QObject::tr("change its value and opacity")},
+                         {place, QObject::tr("Double-click"), QObject::tr("add a point; on a point: its colour")},
+                         {place, QObject::tr("Enter, Space, Delete"), QObject::tr("colour, fix, remove the point")},
+                         {place, QObject::tr("Arrow keys (Shift: finer)"), QObject::tr("move the point")},
+                         {place, QObject::tr("Page Up, Page Down"), QObject::tr("choose another point")}});
+                    return editor;
+                },
+            .shown = {}};
+}
+
+TfEditorWidget::TfEditorWidget(SessionStore& store, Results& results, QWidget* parent)
+    : QWidget(parent), m_store(store), m_canvas(new TfCanvas(store, results, this)), m_which(new QLabel(this)),
       m_value(new QDoubleSpinBox(this)), m_opacity(new QDoubleSpinBox(this)), m_color(new QToolButton(this)),
       m_fixed(new QCheckBox(tr("Fixed"), this)), m_remove(new QToolButton(this)) {
     setObjectName("tfEditor");
@@ -90,8 +125,7 @@ TfEditorWidget::TfEditorWidget(Document& document, QWidget* parent)
         ++m_editSession;
         showPoint();
     });
-    connect(&document, &Document::tfChanged, this, &TfEditorWidget::showPoint);
-    connect(&document, &Document::volumeChanged, this, &TfEditorWidget::showPoint);
+    connect(&store, &SessionStore::changed, this, &TfEditorWidget::showPoint);
     connect(m_value, &QDoubleSpinBox::valueChanged, this, &TfEditorWidget::editPoint);
     connect(m_opacity, &QDoubleSpinBox::valueChanged, this, &TfEditorWidget::editPoint);
     connect(m_color, &QToolButton::clicked, m_canvas, &TfCanvas::chooseColor);
@@ -108,25 +142,29 @@ void TfEditorWidget::setReadOnly(bool on) {
 
 void TfEditorWidget::showPoint() {
     const int index = m_canvas->selectedPoint();
-    const auto& points = m_document.tf().points;
-    const bool any = m_document.hasVolume() && index >= 0 && index < static_cast<int>(points.size());
+    const auto& points = m_store.scene().tf.points;
+    const bool any = m_store.hasVolume() && index >= 0 && index < static_cast<int>(points.size());
     m_which->setText(any ? tr("Point %1 of %2").arg(index + 1).arg(points.size()) : tr("No point selected"));
     for (QWidget* widget : std::initializer_list<QWidget*>{m_value, m_opacity, m_color, m_fixed, m_remove}) {
         widget->setEnabled(any && !m_readOnly);
     }
-    if (!any) {
+    if (!any) { // nor do numbers of one that was
         m_color->setIcon(swatch(theme::kRaised));
+        m_value->clear();
+        m_opacity->clear();
+        const QSignalBlocker blocker(m_fixed);
+        m_fixed->setChecked(false);
         return;
     }
     const ControlPoint& point = points[static_cast<std::size_t>(index)];
-    const ValueRange range = m_document.volume()->range();
+    const ValueRange range = m_store.scene().volume->range();
     m_showing = true; // the boxes show, they do not edit
     const double span = range.hi - range.lo;
     m_value->setDecimals(decimalsFor(span));
     m_value->setRange(range.lo, range.hi);
     m_value->setSingleStep(span > 0 ? span / 200 : 1.0);
-    m_value->setValue(m_document.volume()->valueOfIntensity(point.x));
-    m_opacity->setValue(point.opacity);
+    showNumber(*m_value, m_store.scene().volume->valueOfIntensity(point.x));
+    showNumber(*m_opacity, point.opacity);
     m_fixed->setChecked(point.fixed);
     m_showing = false;
     m_color->setIcon(swatch(colorFromRgb(point.color)));
@@ -135,15 +173,15 @@ void TfEditorWidget::showPoint() {
 void TfEditorWidget::editPoint() {
     const int index = m_canvas->selectedPoint();
     if (m_showing || index < 0) return;
-    const ControlPoint& point = m_document.tf().points[static_cast<std::size_t>(index)];
-    const ValueRange range = m_document.volume()->range();
+    const ControlPoint& point = m_store.scene().tf.points[static_cast<std::size_t>(index)];
+    const ValueRange range = m_store.scene().volume->range();
     const double span = range.hi - range.lo;
     // Only the box that was edited counts: the other one shows a rounded number.
     const bool movesX = sender() == m_value;
     const double x = movesX && span > 0 ? (m_value->value() - range.lo) / span : point.x;
     const double opacity = movesX ? point.opacity : m_opacity->value();
-    m_document.setTf(withPointMoved(m_document.tf(), index, x, opacity), tr("Move point"),
-                     QStringLiteral("spin-%1-%2").arg(movesX).arg(m_editSession));
+    editTf(m_store, withPointMoved(m_store.scene().tf, index, x, opacity), tr("Move point"),
+           QStringLiteral("spin-%1-%2").arg(movesX).arg(m_editSession));
 }
 
 } // namespace pellucid::gui

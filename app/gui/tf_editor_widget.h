@@ -3,7 +3,6 @@
 
 #include <QWidget>
 
-#include "models/document.h"
 #include "tf_canvas.h"
 
 class QCheckBox;
@@ -16,7 +15,7 @@ namespace pellucid::gui {
 class TfEditorWidget : public QWidget {
     Q_OBJECT
 public:
-    explicit TfEditorWidget(Document& document, QWidget* parent = nullptr);
+    TfEditorWidget(SessionStore& store, Results& results, QWidget* parent = nullptr);
 
     TfCanvas& canvas() { return *m_canvas; }
     void setReadOnly(bool on);
@@ -25,7 +24,7 @@ private:
     void showPoint();
     void editPoint();
 
-    Document& m_document;
+    SessionStore& m_store;
     TfCanvas* m_canvas;
     QLabel* m_which;
     QDoubleSpinBox* m_value;

@@ -19,9 +19,6 @@ inline const QColor kFaint{0x9a, 0x9d, 0xa3};
 inline const QColor kAccent{0x4c, 0x9a, 0xff};
 } // namespace theme
 
-/// What lies behind the volume, in the view and in saved pictures.
-inline constexpr Rgb kViewBackground{0.06, 0.06, 0.065};
-
 void applyTheme(QApplication& application);
 QColor colorFromRgb(const Rgb& rgb);
 Rgb rgbFromColor(const QColor& color);

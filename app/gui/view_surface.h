@@ -7,21 +7,11 @@
 #include <QString>
 
 #include "base/error.h"
-#include "render/camera.h"
-#include "render/render_settings.h"
-#include "tf/transfer_function.h"
+#include "session/scene.h"
 
 class QWidget;
 
 namespace pellucid::gui {
-
-/// All that a picture depends on, besides its size.
-struct ViewScene {
-    std::shared_ptr<const Volume> volume; ///< empty: nothing but the background
-    TransferFunction tf;
-    Camera camera;
-    bool operator==(const ViewScene&) const = default;
-};
 
 /// How good the picture on the screen is.
 struct FrameInfo {
@@ -37,7 +27,8 @@ class ViewSurface {
 public:
     virtual ~ViewSurface() = default;
     virtual QWidget* widget() = 0;
-    virtual void setScene(const ViewScene& scene) = 0;
+    /// What is to be shown. Its size and step are ignored: the widget's pixels, and what time allows.
+    virtual void setScene(const PictureInput& scene) = 0;
     virtual const FrameInfo& frame() const = 0;
     virtual QString rendererName() const = 0; ///< for the status line
 

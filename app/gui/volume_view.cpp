@@ -7,9 +7,10 @@
 #include <QVBoxLayout>
 #include <QWheelEvent>
 
-#include "render/camera_motion.h"
+#include "controllers/view_actions.h"
 #include "cpu_surface.h"
 #include "gl_surface.h"
+#include "render/camera_motion.h"
 
 namespace pellucid::gui {
 namespace {
@@ -18,28 +19,26 @@ constexpr double kDegreesPerView = 220; // of a drag across the height of the vi
 constexpr double kZoomPerView = 12;     // factor of a right-drag across the height of the view
 constexpr double kZoomPerNotch = 1.15;  // factor of one notch of the wheel
 constexpr double kDegreesPerKey = 5;
+constexpr qint64 kWheelPause = 600; // milliseconds that part two zooms
 
 } // namespace
 
-VolumeView::VolumeView(Document& document, ViewRenderer renderer, QWidget* parent)
-    : QWidget(parent), m_document(document) {
+VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent) : QWidget(parent), m_store(store) {
     setObjectName("volumeView");
     setAccessibleName(tr("Volume"));
     setFocusPolicy(Qt::StrongFocus);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
-    const bool gl = renderer != ViewRenderer::Cpu && GlSurface::isAvailable();
-    if (renderer == ViewRenderer::Gl && !gl) {
-        throw Error("no OpenGL 4.3 or later", "this display", "leave out --renderer gl: the CPU draws as well");
-    }
-    if (gl) {
+    const auto available = renderer == ViewRenderer::Cpu ? GlSurface::Available::No : GlSurface::available();
+    if (renderer == ViewRenderer::Gl && available == GlSurface::Available::No)
+        throw Error("no OpenGL 4.3 or later", "this display", "draw on the CPU");
+    // A software OpenGL takes twice as long as our own renderer.
+    if (renderer == ViewRenderer::Gl || available == GlSurface::Available::OnGpu) {
         setSurface(std::make_unique<GlSurface>());
     } else {
         setSurface(std::make_unique<CpuSurface>());
     }
-    connect(&document, &Document::volumeChanged, this, &VolumeView::updateScene);
-    connect(&document, &Document::tfChanged, this, &VolumeView::updateScene);
-    connect(&document, &Document::cameraChanged, this, &VolumeView::updateScene);
+    connect(&store, &SessionStore::changed, this, &VolumeView::updateScene);
 }
 
 VolumeView::~VolumeView() {
@@ -58,62 +57,18 @@ void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
 
 void VolumeView::surfaceFailed(const Error& error) {
     const bool gl = dynamic_cast<GlSurface*>(m_surface.get()) != nullptr;
-    Q_EMIT rendererFailed(QString::fromStdString(error.problem()), QString::fromStdString(error.where()),
-                          gl ? tr("the CPU draws the picture from now on") : QString::fromStdString(error.whatToDo()));
+    if (!gl) {
+        Q_EMIT rendererFailed(error);
+        return;
+    }
+    Q_EMIT rendererFailed({error.problem(), error.where(), tr("the CPU draws the picture from now on").toStdString()});
     // In a later turn: the one that failed is still on the stack.
-    if (gl)
-        QMetaObject::invokeMethod(
-            this, [this] { setSurface(std::make_unique<CpuSurface>()); }, Qt::QueuedConnection);
+    QMetaObject::invokeMethod(
+        this, [this] { setSurface(std::make_unique<CpuSurface>()); }, Qt::QueuedConnection);
 }
 
 void VolumeView::updateScene() {
-    if (!m_document.hasVolume()) return;
-    m_surface->setScene({m_document.volume(), m_document.tf(), m_document.camera()});
-}
-
-void VolumeView::fit() {
-    if (m_document.hasVolume()) m_document.setCamera(fitted(m_document.camera(), m_document.volume()->geometry()));
-}
-
-void VolumeView::resetView() {
-    if (m_document.hasVolume())
-        m_document.setCamera(homeCamera(m_document.volume()->geometry(), m_document.camera().projection));
-}
-
-void VolumeView::setStandardView(StandardView view) {
-    if (!m_document.hasVolume()) return;
-    double azimuth = 0, elevation = 0;
-    switch (view) {
-    case StandardView::Front:
-        break;
-    case StandardView::Back:
-        azimuth = 180;
-        break;
-    case StandardView::Left:
-        azimuth = -90;
-        break;
-    case StandardView::Right:
-        azimuth = 90;
-        break;
-    case StandardView::Top:
-        elevation = 90;
-        break;
-    case StandardView::Bottom:
-        elevation = -90;
-        break;
-    }
-    m_document.setCamera(
-        standardCamera(m_document.volume()->geometry(), azimuth, elevation, m_document.camera().projection));
-}
-
-void VolumeView::setProjection(Projection projection) {
-    if (!m_document.hasVolume()) return;
-    m_document.setCamera(withProjection(m_document.camera(), m_document.volume()->geometry(), projection));
-}
-
-void VolumeView::zoomBy(double factor) {
-    if (m_document.hasVolume())
-        m_document.setCamera(zoomed(m_document.camera(), m_document.volume()->geometry(), factor));
+    if (m_store.hasVolume()) m_surface->setScene(pictureInput(m_store.scene(), 1, 1));
 }
 
 void VolumeView::mousePressEvent(QMouseEvent* event) {
@@ -134,25 +89,27 @@ void VolumeView::mousePressEvent(QMouseEvent* event) {
     }
     m_button = event->button();
     m_last = event->position();
+    m_gesture = SessionStore::newGesture();
 }
 
 void VolumeView::mouseMoveEvent(QMouseEvent* event) {
-    if (m_motion == Motion::None || !m_document.hasVolume()) return;
+    if (m_motion == Motion::None || !m_store.hasVolume()) return;
     const QPointF way = event->position() - m_last;
     m_last = event->position();
-    const Geometry& geometry = m_document.volume()->geometry();
-    const Camera& camera = m_document.camera();
+    const Geometry& geometry = m_store.scene().volume->geometry();
+    const Camera camera = m_store.scene().camera;
     const double perPixel = 1.0 / std::max(1, height());
     switch (m_motion) {
     case Motion::Rotate: // the volume follows the hand, so the eye goes the other way
-        m_document.setCamera(
-            rotated(camera, geometry, -way.x() * perPixel * kDegreesPerView, way.y() * perPixel * kDegreesPerView));
+        m_store.setCamera(
+            rotated(camera, geometry, -way.x() * perPixel * kDegreesPerView, way.y() * perPixel * kDegreesPerView),
+            m_gesture);
         break;
     case Motion::Pan:
-        m_document.setCamera(panned(camera, geometry, way.x(), way.y(), height()));
+        m_store.setCamera(panned(camera, geometry, way.x(), way.y(), height()), m_gesture);
         break;
     case Motion::Zoom:
-        zoomBy(std::pow(kZoomPerView, -way.y() * perPixel));
+        zoomView(m_store, std::pow(kZoomPerView, -way.y() * perPixel), m_gesture);
         break;
     case Motion::None:
         break;
@@ -164,12 +121,14 @@ void VolumeView::mouseReleaseEvent(QMouseEvent* event) {
 }
 
 void VolumeView::mouseDoubleClickEvent(QMouseEvent* event) {
-    if (event->button() == Qt::LeftButton) fit();
+    if (event->button() == Qt::LeftButton) fitView(m_store);
 }
 
 void VolumeView::wheelEvent(QWheelEvent* event) {
     if (event->angleDelta().y() == 0) return event->ignore();
-    zoomBy(std::pow(kZoomPerNotch, event->angleDelta().y() / 120.0));
+    if (!m_sinceWheel.isValid() || m_sinceWheel.restart() > kWheelPause) m_wheelGesture = SessionStore::newGesture();
+    m_sinceWheel.start();
+    zoomView(m_store, std::pow(kZoomPerNotch, event->angleDelta().y() / 120.0), m_wheelGesture);
     event->accept();
 }
 
@@ -190,14 +149,14 @@ void VolumeView::keyPressEvent(QKeyEvent* event) {
         break;
     case Qt::Key_Plus:
     case Qt::Key_Equal:
-        return zoomBy(kZoomPerNotch);
+        return zoomView(m_store, kZoomPerNotch);
     case Qt::Key_Minus:
-        return zoomBy(1.0 / kZoomPerNotch);
+        return zoomView(m_store, 1.0 / kZoomPerNotch);
     default:
         return QWidget::keyPressEvent(event);
     }
-    if (m_document.hasVolume())
-        m_document.setCamera(rotated(m_document.camera(), m_document.volume()->geometry(), yaw, pitch));
+    if (m_store.hasVolume())
+        m_store.setCamera(rotated(m_store.scene().camera, m_store.scene().volume->geometry(), yaw, pitch));
 }
 
 } // namespace pellucid::gui

@@ -3,35 +3,29 @@
 
 #include <memory>
 
+#include <QElapsedTimer>
 #include <QPointF>
 #include <QWidget>
 
-#include "models/document.h"
+#include "store/session_store.h"
 #include "view_surface.h"
 
 namespace pellucid::gui {
 
 enum class ViewRenderer { Auto, Gl, Cpu };
-enum class StandardView { Front, Back, Left, Right, Top, Bottom };
 
-/// Shows the document's scene, moves its camera: left-drag rotates, middle or Shift+left pans, wheel and right-drag
+/// Shows the store's scene, moves its camera: left-drag rotates, middle or Shift+left pans, wheel and right-drag
 /// zoom, double-click fits, arrow keys rotate.
 class VolumeView : public QWidget {
     Q_OBJECT
 public:
-    /// Gl throws Error where there is none; Auto then draws on the CPU.
-    explicit VolumeView(Document& document, ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr);
+    /// Auto draws with OpenGL on a GPU and on the CPU else: what is faster. Gl throws Error where there is none.
+    explicit VolumeView(SessionStore& store, ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr);
     ~VolumeView() override;
 
     const FrameInfo& frame() const { return m_surface->frame(); }
     bool isComplete() const { return m_surface->frame().complete; }
     QString rendererName() const { return m_surface->rendererName(); }
-
-    void fit();       ///< the same direction, the whole box
-    void resetView(); ///< as the volume opened
-    void setStandardView(StandardView view);
-    void setProjection(Projection projection);
-    void zoomBy(double factor);
 
     QSize sizeHint() const override { return {860, 520}; }
     QSize minimumSizeHint() const override { return {240, 180}; }
@@ -39,7 +33,7 @@ public:
 Q_SIGNALS:
     void frameShown();
     /// OpenGL gave up (a volume too large for the device, say) and the CPU draws from now on; or nobody can draw.
-    void rendererFailed(const QString& what, const QString& where, const QString& whatToDo);
+    void rendererFailed(const pellucid::Error& error);
 
 protected:
     void mousePressEvent(QMouseEvent* event) override;
@@ -55,11 +49,14 @@ private:
     void surfaceFailed(const Error& error);
     void updateScene();
 
-    Document& m_document;
+    SessionStore& m_store;
     std::unique_ptr<ViewSurface> m_surface;
     Motion m_motion = Motion::None;
     Qt::MouseButton m_button = Qt::NoButton;
     QPointF m_last;
+    int m_gesture = 0;          // one drag is one step of the camera's history
+    QElapsedTimer m_sinceWheel; // and so are turns of the wheel that follow each other
+    int m_wheelGesture = 0;
 };
 
 } // namespace pellucid::gui

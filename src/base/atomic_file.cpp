@@ -1,15 +1,20 @@
 #include "base/atomic_file.h"
 
 #include <atomic>
+#include <cerrno>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <set>
-#include <sstream>
+#include <system_error>
+#include <utility>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace pellucid {
 
@@ -43,55 +48,153 @@ private:
     std::string m_path;
 };
 
+/// Calls a function of the system again where a signal came between.
+template <class Call>
+auto uninterrupted(const Call& call) {
+    for (;;)
+        if (const auto result = call(); result >= 0 || errno != EINTR) return result;
+}
+
+FileError cannotWrite(const std::string& path, int error) {
+    const std::string what = "cannot write the file (" + std::generic_category().message(error) + ")";
+    if (error == ENOSPC || error == EDQUOT) return {what, path, "make room, or choose another place"};
+    if (error == EFBIG) return {what, path, "raise the limit on file sizes, or choose another place"};
+    if (error == ENAMETOOLONG) return {what, path, "choose a shorter name"};
+    return {what, path, "check permissions and space"};
+}
+
+fs::path folderOf(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
+
+/// What status() says of `path`; throws where the system cannot tell, as for a name that is too long.
+fs::file_type typeOf(const std::string& path) {
+    std::error_code ec;
+    const fs::file_type type = fs::status(path, ec).type();
+    if (type == fs::file_type::none) throw cannotWrite(path, ec.value());
+    return type;
+}
+
+/// Devices and pipes (/dev/null, /dev/stdout) cannot be replaced by a file; they take the bytes as they come.
+bool isWrittenDirectly(fs::file_type type) {
+    return type != fs::file_type::not_found && type != fs::file_type::regular;
+}
+
+/// Where a link leads, so that it stays a link; what it leads to need not exist.
+fs::path behindLinks(fs::path path) {
+    std::error_code ec;
+    for (int links = 0; links < 40 && fs::is_symlink(path, ec); ++links)
+        path = path.parent_path() / fs::read_symlink(path, ec); // an absolute one replaces all before it
+    return path;
+}
+
 } // namespace
 
-void writeAtomically(const std::string& path, const std::function<void(const std::string&)>& write) {
-    fs::path target(path);
-    std::error_code ec;
-    if (fs::is_directory(target, ec)) throw FileError("a folder has this name", path, "choose another name");
-    // A link stays a link: what it points to is replaced.
-    if (fs::is_symlink(target, ec)) {
-        const fs::path real = fs::weakly_canonical(target, ec);
-        if (!ec) target = real;
-    }
-    // A device or a pipe (/dev/null, /dev/stdout) cannot be replaced by a file; it takes the bytes as they come.
-    if (fs::exists(target, ec) && !fs::is_regular_file(target, ec)) return write(target.string());
+OutputFile::~OutputFile() {
+    if (m_descriptor >= 0) ::close(m_descriptor);
+}
 
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+void OutputFile::write(const void* data, std::size_t bytes) {
+    const char* from = static_cast<const char*>(data);
+    while (bytes > 0) {
+        const ssize_t written = uninterrupted([&] { return ::write(m_descriptor, from, bytes); });
+        if (written < 0) throw cannotWrite(m_path, errno);
+        from += written;
+        bytes -= static_cast<std::size_t>(written);
+    }
+}
+
+void OutputFile::close(bool flushToDisk) {
+    // Some file systems take every byte and tell only here that there was no room.
+    if (flushToDisk && uninterrupted([&] { return fsync(m_descriptor); }) != 0 && errno != EINVAL && errno != ENOSYS)
+        throw cannotWrite(m_path, errno);
+    if (::close(std::exchange(m_descriptor, -1)) != 0 && errno != EINTR) throw cannotWrite(m_path, errno);
+}
+
+void requireWritable(const std::string& path) {
+    const fs::file_type type = typeOf(path);
+    if (type == fs::file_type::directory) throw FileError("a folder has this name", path, "choose another name");
+    if (fs::path(path).filename().empty()) throw FileError("this names a folder", path, "name a file in it");
+    if (type != fs::file_type::not_found && access(path.c_str(), W_OK) != 0)
+        throw FileError("the file is write-protected", path, "choose another name or change its permissions");
+    if (isWrittenDirectly(type)) return;
+    const fs::path target = behindLinks(path), folder = folderOf(target);
+    std::error_code ec;
+    if (const fs::file_type place = typeOf(folder.string());
+        place != fs::file_type::directory && place != fs::file_type::not_found)
+        throw FileError("this is a file, not a folder", folder.string(), "choose another folder");
     if (!fs::is_directory(folder, ec)) throw FileError("the folder does not exist", folder.string(), "create it first");
+    if (access(folder.c_str(), W_OK | X_OK) != 0)
+        throw FileError("the folder is not writable", folder.string(),
+                        "choose another folder or change its permissions");
+}
+
+void writeAtomically(const std::string& path, const std::function<void(OutputFile&)>& write) {
+    requireWritable(path);
+    if (isWrittenDirectly(typeOf(path))) {
+        OutputFile file(uninterrupted([&] { return open(path.c_str(), O_WRONLY | O_CLOEXEC); }), path);
+        if (file.m_descriptor < 0) throw cannotWrite(path, errno);
+        write(file);
+        return file.close(false);
+    }
+    const fs::path target = behindLinks(path);
     static std::atomic<unsigned> s_count = 0; // two threads may write the same file; the last one wins, whole
-    std::string name(".");
-    name += target.stem().string() + ".part" + std::to_string(getpid()) + "-" + std::to_string(s_count++);
-    const fs::path temporary = folder / (name + target.extension().string());
-    const Unfinished entry(temporary.string());
-    try {
-        write(temporary.string());
-        fs::rename(temporary, target, ec);
-        if (ec) throw FileError("cannot write the file (" + ec.message() + ")", path, "check permissions and space");
-    } catch (...) {
-        fs::remove(temporary, ec);
-        throw;
+    for (;;) {
+        const std::string temporary =
+            (folderOf(target) / (".pellucid-" + std::to_string(getpid()) + "-" + std::to_string(s_count++) + ".part"))
+                .string();
+        const Unfinished entry(temporary);
+        const int descriptor =
+            uninterrupted([&] { return open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+        if (descriptor < 0 && errno == EEXIST) continue; // left by a process of this number that was killed
+        OutputFile file(descriptor, path);
+        if (descriptor < 0) throw cannotWrite(path, errno);
+        try {
+            struct stat old {};
+            if (stat(target.c_str(), &old) == 0) static_cast<void>(fchmod(descriptor, old.st_mode & 0777));
+            write(file);
+            file.close(true);
+            if (std::rename(temporary.c_str(), target.c_str()) != 0) throw cannotWrite(path, errno);
+        } catch (...) {
+            ::unlink(temporary.c_str());
+            throw;
+        }
+        return;
     }
 }
 
-void writeTextAtomically(const std::string& path, const std::string& text) {
-    writeAtomically(path, [&](const std::string& temporary) {
-        std::ofstream out(temporary, std::ios::binary);
-        out << text;
-        out.close();
-        if (!out) throw FileError("cannot write the file", path, "check permissions and space");
-    });
+void writeBytesAtomically(const std::string& path, std::span<const unsigned char> bytes) {
+    writeAtomically(path, [&](OutputFile& file) { file.write(bytes.data(), bytes.size()); });
 }
 
-std::string readText(const std::string& path) {
-    std::error_code ec;
-    if (!fs::exists(path, ec)) throw FileError("no such file", path, "check the name");
-    if (fs::is_directory(path, ec)) throw FileError("this is a folder, not a file", path, "name a file in it");
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) throw FileError("cannot read the file", path, "check permissions");
-    return text.str();
+void writeTextAtomically(const std::string& path, std::string_view text) {
+    writeAtomically(path, [&](OutputFile& file) { file.write(text); });
+}
+
+std::string readText(const std::string& path, std::size_t mostBytes) {
+    const auto cannotRead = [&](int error) {
+        if (error == ENOENT || error == ENOTDIR) return FileError("no such file", path, "check the name");
+        if (error == EISDIR) return FileError("this is a folder, not a file", path, "name a file in it");
+        return FileError("cannot read the file (" + std::generic_category().message(error) + ")", path,
+                         "check its name and permissions");
+    };
+    const struct Descriptor {
+        int number;
+        ~Descriptor() {
+            if (number >= 0) ::close(number);
+        }
+    } file{uninterrupted([&] { return open(path.c_str(), O_RDONLY | O_CLOEXEC); })};
+    if (file.number < 0) throw cannotRead(errno);
+    std::string text;
+    constexpr std::size_t kPiece = std::size_t{1} << 16;
+    for (std::size_t size = 0;;) {
+        text.resize(size + kPiece);
+        const ssize_t got = uninterrupted([&] { return read(file.number, text.data() + size, kPiece); });
+        if (got < 0) throw cannotRead(errno);
+        size += static_cast<std::size_t>(got);
+        if (size > mostBytes)
+            throw FileError("it has more than " + describeBytes(mostBytes), path, "give a smaller file");
+        text.resize(size);
+        if (got == 0) return text;
+    }
 }
 
 void removeUnfinishedFiles() noexcept {

@@ -1,17 +1,47 @@
-// Output files that are whole or absent: write beside the target, then rename.
+// Output files that are whole or absent: write beside the target, then rename. Input files that are texts.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace pellucid {
 
-/// Calls write(temporaryPath), a path in the same folder with the same suffix, then renames it to `path`. On any
-/// exception the temporary file is removed and the exception goes on. Throws FileError where the folder is missing or
-/// not writable. A symbolic link is followed; a device or pipe is written directly.
-void writeAtomically(const std::string& path, const std::function<void(const std::string& temporaryPath)>& write);
-void writeTextAtomically(const std::string& path, const std::string& text);
-std::string readText(const std::string& path); ///< throws FileError
+/// A file while it is being written. What write() has taken has reached the system, or FileError was thrown: a full
+/// disk is told at once.
+class OutputFile {
+public:
+    void write(const void* data, std::size_t bytes);
+    void write(std::string_view text) { write(text.data(), text.size()); }
+
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+private:
+    friend void writeAtomically(const std::string& path, const std::function<void(OutputFile&)>& write);
+    OutputFile(int descriptor, std::string path) : m_descriptor(descriptor), m_path(std::move(path)) {}
+    ~OutputFile();
+    void close(bool flushToDisk);
+
+    int m_descriptor; ///< −1: closed
+    std::string m_path;
+};
+
+/// Calls write() with a new file in the folder of `path`, brings its bytes to the disk, and renames it to `path`. On
+/// any exception the new file is removed, what was at `path` stays as it was, and the exception goes on. Throws
+/// FileError where the folder is missing, where anything cannot be written, and for a file that is write-protected. A
+/// file that is replaced hands on its permissions. A symbolic link is followed; a device or pipe is written directly.
+void writeAtomically(const std::string& path, const std::function<void(OutputFile&)>& write);
+void writeBytesAtomically(const std::string& path, std::span<const unsigned char> bytes);
+void writeTextAtomically(const std::string& path, std::string_view text);
+
+/// Throws FileError, as far as that can be told beforehand, where writeAtomically() would.
+void requireWritable(const std::string& path);
+
+/// The text in a file or pipe. Throws FileError, also where it has more than `mostBytes`: some devices never end.
+std::string readText(const std::string& path, std::size_t mostBytes = std::size_t{1} << 24);
 
 /// Removes the temporary files of the writeAtomically() calls in progress, for a process that is about to end without
 /// unwinding (Ctrl-C inside a library). Callable from any thread.

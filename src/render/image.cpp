@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "base/atomic_file.h"
@@ -25,6 +26,29 @@ OIIO::TypeDesc sampleFormat(const std::string& suffix) {
     return OIIO::TypeDesc::UINT8;
 }
 
+/// The bytes of the file. In memory, since the libraries behind OpenImageIO overlook a full disk or end the process.
+std::vector<unsigned char> encoded(const Image& image, const std::string& suffix, const std::string& path) {
+    const auto out = OIIO::ImageOutput::create("image" + suffix);
+    if (!out || !out->supports("ioproxy"))
+        throw FileError("no writer for this kind of image", path, "choose another suffix");
+    const int channels = suffix == ".jpg" || suffix == ".jpeg" ? 3 : 4;
+    OIIO::ImageSpec spec(image.width, image.height, channels, sampleFormat(suffix));
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("oiio:UnassociatedAlpha", 1); // Image holds straight colours
+    // OpenImageIO 2.4 spoils a TIFF in memory by a directory for Exif tags, which would only say sRGB.
+    spec.attribute("tiff:write_exif", 0);
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    void* proxy = &memory;
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const bool good = out->open("image" + suffix, spec) &&
+                      out->write_image(OIIO::TypeDesc::FLOAT, image.rgba.data(), 4 * sizeof(float)) && out->close();
+    const std::string error = out->geterror(); // some come without a failure
+    if (!good || !error.empty())
+        throw FileError("cannot encode the image (" + error + ")", path, "choose another suffix");
+    return bytes;
+}
+
 } // namespace
 
 void checkImageSuffix(const std::string& path) {
@@ -36,19 +60,7 @@ void checkImageSuffix(const std::string& path) {
 
 void writeImage(const Image& image, const std::string& path) {
     checkImageSuffix(path);
-    const std::string suffix = suffixOf(path);
-    const int channels = suffix == ".jpg" || suffix == ".jpeg" ? 3 : 4;
-    writeAtomically(path, [&](const std::string& temporary) {
-        const auto out = OIIO::ImageOutput::create(temporary);
-        if (!out) throw FileError("no writer for this kind of image", path, "choose another suffix");
-        OIIO::ImageSpec spec(image.width, image.height, channels, sampleFormat(suffix));
-        spec.attribute("oiio:ColorSpace", "sRGB");
-        spec.attribute("oiio:UnassociatedAlpha", 1); // Image holds straight colours
-        const bool good = out->open(temporary, spec) &&
-                          out->write_image(OIIO::TypeDesc::FLOAT, image.rgba.data(), 4 * sizeof(float)) && out->close();
-        if (!good)
-            throw FileError("cannot write the image (" + out->geterror() + ")", path, "check permissions and space");
-    });
+    writeBytesAtomically(path, encoded(image, suffixOf(path), path));
 }
 
 Image readImage(const std::string& path) {

@@ -15,4 +15,12 @@ void RenderSettings::validate() const {
             throw UsageError("a clip interval needs 0 <= a < b <= 1", "clip", "give fractions of the box");
 }
 
+const Feature* RenderSettings::featureAlone(const TransferFunction& tf) const {
+    if (onlyFeature == -1) return nullptr;
+    if (onlyFeature >= 0 && static_cast<std::size_t>(onlyFeature) < tf.features.size())
+        return &tf.features[static_cast<std::size_t>(onlyFeature)];
+    throw UsageError("there is no feature number " + std::to_string(onlyFeature), "transfer function",
+                     "it has " + std::to_string(tf.features.size()) + ", counted from 0");
+}
+
 } // namespace pellucid

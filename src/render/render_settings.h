@@ -6,6 +6,7 @@
 
 #include "render/camera.h"
 #include "tf/color.h"
+#include "tf/transfer_function.h"
 
 namespace pellucid {
 
@@ -20,6 +21,8 @@ struct RenderSettings {
 
     void validate() const; ///< throws UsageError
     bool operator==(const RenderSettings&) const = default;
+    /// The feature of `tf` that is drawn alone; null: all are drawn. Throws UsageError where it has none of this index.
+    const Feature* featureAlone(const TransferFunction& tf) const;
 };
 
 } // namespace pellucid

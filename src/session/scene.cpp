@@ -19,6 +19,10 @@ std::shared_ptr<const Volume> throughWindow(const std::shared_ptr<const Volume>&
     return std::make_shared<const Volume>(data->withRange(*window));
 }
 
+const ValueRange& windowOf(const Variable& variable, const Volume& data) {
+    return variable.window ? *variable.window : data.range();
+}
+
 std::shared_ptr<const Volume> read(VolumeSource source, const MemoryUse& then, const JobControl& job) {
     source.range.reset();
     source.then = then;
@@ -69,8 +73,8 @@ Session sessionOf(const VolumeSource& source) {
 
 bool needsData(const Session& session, const Scene& basis) {
     if (session.isEmpty() || basis.data == nullptr) return !session.isEmpty();
-    const Variable &now = session.variable(), &then = basis.session.variable();
-    return !(now.source == then.source) || now.window != then.window;
+    const Variable& now = session.variable();
+    return !(now.source == basis.session.variable().source) || windowOf(now, *basis.data) != basis.volume->range();
 }
 
 Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const JobControl& job) {
@@ -80,8 +84,12 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     const Variable& variable = scene.session.variable();
     const bool sameData = basis.data && basis.session.variable().source == variable.source;
     scene.data = sameData ? basis.data : read(variable.source, then, job);
-    const bool sameWindow = sameData && basis.session.variable().window == variable.window;
+    const bool sameWindow = sameData && windowOf(variable, *basis.data) == basis.volume->range();
     scene.volume = sameWindow ? basis.volume : throughWindow(scene.data, variable.window);
+    if (sameWindow) {
+        scene.histogram = basis.histogram;
+        scene.codes = basis.codes;
+    }
     if (sameWindow && scene.session.tf() != nullptr && scene.session.tf() == basis.session.tf()) {
         scene.tf = basis.tf; // the very same
     } else {
@@ -129,6 +137,14 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     scene.camera = cameraOf(inputs, scene.volume->geometry());
     if (inputs.camera || inputs.view || inputs.projection) scene.session.camera = scene.camera;
     return scene;
+}
+
+void prepareToShow(Scene& scene, const JobControl& job) {
+    if (!scene.volume) return;
+    job.throwIfStopped();
+    if (!scene.histogram) scene.histogram = std::make_shared<const Histogram>(makeHistogram(*scene.volume));
+    job.throwIfStopped();
+    if (!scene.codes) scene.codes = sharedIntensityGrid(*scene.volume);
 }
 
 MeasureInput measureInput(const Scene& scene) { return {scene.volume, scene.tf, scene.camera, *scene.session.measure}; }

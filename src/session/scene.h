@@ -16,10 +16,12 @@ namespace pellucid {
 /// together: who wants another session changes a copy of this one and has it resolved.
 struct Scene {
     Session session;
-    std::shared_ptr<const Volume> data;   ///< as read, in the range of its values; null where nothing is open
-    std::shared_ptr<const Volume> volume; ///< the same through the variable's window
-    TransferFunction tf;                  ///< of the present frame, written for the window
-    Camera camera;                        ///< the session's, else the home view
+    std::shared_ptr<const Volume> data;         ///< as read, in the range of its values; null where nothing is open
+    std::shared_ptr<const Volume> volume;       ///< the same through the variable's window
+    TransferFunction tf;                        ///< of the present frame, written for the window
+    Camera camera;                              ///< the session's, else the home view
+    std::shared_ptr<const Histogram> histogram; ///< 256 bins of `volume`; null before prepareToShow()
+    std::shared_ptr<const IntensityGrid> codes; ///< of `volume`, kept for those who draw and measure; likewise
 
     std::vector<double> targets() const { return targetsOf(tf, *session.goals); }
     /// Index in tf.features of the feature that is drawn alone; −1: all are.
@@ -52,6 +54,9 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job = {});
 Scene resolve(Session session, const Scene& basis, const MemoryUse& then = {}, const JobControl& job = {});
 /// Whether resolve() would read a file or go over all voxels.
 bool needsData(const Session& session, const Scene& basis);
+
+/// Makes what a window needs of the volume besides: all that takes time, off its thread.
+void prepareToShow(Scene& scene, const JobControl& job = {});
 
 /// Source of the variable and nothing else: a session in which nothing has been decided yet.
 Session sessionOf(const VolumeSource& source);

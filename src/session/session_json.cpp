@@ -30,8 +30,13 @@ constexpr double kHuge = std::numeric_limits<double>::max();
 /// Which bytes a data file has: enough to tell that it is not the one that was saved.
 struct Fingerprint {
     std::uint64_t bytes = 0;
-    std::string crc32; ///< eight hexadecimal digits
-    bool operator==(const Fingerprint&) const = default;
+    uLong crc = 0;
+
+    std::string crcText() const { ///< eight hexadecimal digits
+        std::array<char, 17> text{};
+        std::snprintf(text.data(), text.size(), "%08lx", static_cast<unsigned long>(crc));
+        return text.data();
+    }
 };
 
 /// Empty where there is no such file. A file that has not been touched since is not read again.
@@ -63,12 +68,26 @@ std::optional<Fingerprint> fingerprintOf(const std::string& path) {
         crc = ::crc32(crc, reinterpret_cast<const Bytef*>(piece.data()), static_cast<uInt>(in.gcount()));
         count += static_cast<std::uint64_t>(in.gcount());
     }
-    std::array<char, 9> text{};
-    std::snprintf(text.data(), text.size(), "%08lx", static_cast<unsigned long>(crc));
-    const Fingerprint fingerprint{count, text.data()};
+    const Fingerprint fingerprint{count, crc};
     const std::lock_guard lock(s_mutex);
     s_known[path] = {bytes, time, fingerprint};
     return fingerprint;
+}
+
+/// Of all files that the data is in, one after the other: a header and what it names.
+std::optional<Fingerprint> fingerprintOf(const VolumeSource& source) {
+    std::optional<Fingerprint> all;
+    for (const std::string& path : filesOf(source)) {
+        const auto one = fingerprintOf(path);
+        if (!one) return {};
+        if (!all) {
+            all = one;
+            continue;
+        }
+        all->crc = ::crc32_combine(all->crc, one->crc, static_cast<z_off_t>(one->bytes));
+        all->bytes += one->bytes;
+    }
+    return all;
 }
 
 std::string storedPath(const std::string& path, const std::string& folder, DataPaths paths) {
@@ -119,9 +138,9 @@ json fromSource(const VolumeSource& s, const std::string& folder, DataPaths path
         j["seed"] = s.seed;
     } else {
         j["path"] = storedPath(s.path, folder, paths);
-        if (const auto fingerprint = fingerprintOf(s.path)) {
+        if (const auto fingerprint = fingerprintOf(s)) {
             j["bytes"] = fingerprint->bytes;
-            j["crc32"] = fingerprint->crc32;
+            j["crc32"] = fingerprint->crcText();
         }
     }
     if (s.raw) {
@@ -164,17 +183,18 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
         const fs::path path = j["path"].text();
         if (path.empty()) j["path"].fail("the name of the data file is empty");
         s.path = foundPath(path, folder);
-        if (j.has("bytes") && j.has("crc32")) {
-            const Fingerprint saved{static_cast<std::uint64_t>(j["bytes"].integer(0, INT64_MAX)), j["crc32"].text()};
-            const auto now = fingerprintOf(s.path);
-            if (now && !(*now == saved))
-                notices.push_back(path.filename().string() +
-                                  " is not the file that the session was saved with: its content has changed");
-        }
     }
     if (j.has("raw")) s.raw = toRawLayout(j["raw"]);
     if (j.has("component")) s.component = static_cast<int>(j["component"].integer(0, 1'000'000));
     if (j.has("missing")) s.missing = j["missing"].number();
+    if (!s.isSample() && j.has("bytes") && j.has("crc32")) {
+        const auto bytes = static_cast<std::uint64_t>(j["bytes"].integer(0, INT64_MAX));
+        const std::string crc = j["crc32"].text();
+        const auto now = fingerprintOf(s);
+        if (now && (now->bytes != bytes || now->crcText() != crc))
+            notices.push_back(fs::path(s.path).filename().string() +
+                              " is not the file that the session was saved with: its content has changed");
+    }
     return s;
 }
 

@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::string_view kSamplePrefix = "sample:";
 
+bool isSample(const std::string& path) { return path.starts_with(kSamplePrefix); }
+
 const std::array<const VolumeReader*, 3>& readers() {
     static const std::array<const VolumeReader*, 3> kReaders{&nrrdReader(), &metaImageReader(), &niftiReader()};
     return kReaders;
@@ -114,7 +116,7 @@ RawLayout parseRawLayout(const std::string& text) {
 
 Volume loadVolume(const VolumeSource& source, const JobControl& job) {
     if (source.path.empty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
-    const bool builtIn = source.path.rfind(kSamplePrefix, 0) == 0;
+    const bool builtIn = isSample(source.path);
     Volume volume = builtIn ? sample(source, job) : readFile(source, job);
     if (!volume.hasValidVoxels())
         volume.notices.emplace_back("no voxel has a valid value");
@@ -125,6 +127,17 @@ Volume loadVolume(const VolumeSource& source, const JobControl& job) {
     if (source.range) volume = volume.withRange(*source.range);
     job.report(1.0);
     return volume;
+}
+
+std::vector<std::string> filesOf(const VolumeSource& source) {
+    if (isSample(source.path)) return {};
+    const VolumeReader* reader = source.raw ? nullptr : readerFor(source.path);
+    if (reader == nullptr) return {source.path};
+    try {
+        return {source.path, reader->dataFile(source.path)};
+    } catch (const Error&) {
+        return {source.path};
+    }
 }
 
 const std::vector<std::string>& volumeFilePatterns() {

@@ -44,8 +44,12 @@ struct VolumeSource {
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.
-/// Files: NRRD/NHDR, MetaImage, NIfTI through ITK; headerless raw.
+/// Files: NRRD/NHDR, MetaImage, NIfTI; headerless raw.
 Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
+
+/// The files that loadVolume() would read: the one named and, where its header names one, that of the data; none for a
+/// sample. A header that cannot be read names none here; loadVolume() tells what is wrong with it.
+std::vector<std::string> filesOf(const VolumeSource& source);
 
 /// Writes float32 or the volume's own type as NRRD (gzip), through a temporary file beside `path` that is renamed.
 void writeNrrd(const Volume& volume, const std::string& path);

@@ -11,6 +11,7 @@
 
 #include <catch2/catch.hpp>
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -43,6 +44,10 @@ Workshop::~Workshop() {
 
 Outcome Workshop::run(const std::vector<std::string>& arguments) const { return Running(*this, arguments).finish(); }
 
+Outcome Workshop::runWithFilesUpTo(std::size_t mostBytes, const std::vector<std::string>& arguments) const {
+    return Running(*this, arguments, mostBytes).finish();
+}
+
 nlohmann::json Workshop::json(std::vector<std::string> arguments) const {
     arguments.emplace_back("--json");
     const Outcome outcome = run(arguments);
@@ -64,7 +69,9 @@ std::vector<std::string> Workshop::list() const {
     return names;
 }
 
-Running::Running(const Workshop& workshop, const std::vector<std::string>& arguments) : m_capture(newFolder()) {
+Running::Running(const Workshop& workshop, const std::vector<std::string>& arguments,
+                 std::optional<std::size_t> mostFileBytes)
+    : m_capture(newFolder()) {
     std::vector<std::string> words{PELLUCID_CLI};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
@@ -80,6 +87,10 @@ Running::Running(const Workshop& workshop, const std::vector<std::string>& argum
         const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
         return file >= 0 && dup2(file, target) >= 0;
     };
+    if (mostFileBytes) {
+        const rlimit limit{*mostFileBytes, *mostFileBytes};
+        if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(126);
+    }
     if (chdir(folder.c_str()) != 0 || !redirect(out, STDOUT_FILENO) || !redirect(err, STDERR_FILENO)) _exit(126);
     execv(argv[0], argv.data());
     _exit(127);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ public:
     Workshop& operator=(const Workshop&) = delete;
 
     Outcome run(const std::vector<std::string>& arguments) const;
+    /// Runs it with a limit on the size of files: what it writes beyond fails as on a full disk.
+    Outcome runWithFilesUpTo(std::size_t mostBytes, const std::vector<std::string>& arguments) const;
     /// Runs with --json, requires status 0 and nothing on stderr, and reads the object.
     nlohmann::json json(std::vector<std::string> arguments) const;
 
@@ -41,7 +44,8 @@ private:
 /// A pellucid-cli that is still running, for signals.
 class Running {
 public:
-    Running(const Workshop& workshop, const std::vector<std::string>& arguments);
+    Running(const Workshop& workshop, const std::vector<std::string>& arguments,
+            std::optional<std::size_t> mostFileBytes = {});
     ~Running();
     Running(const Running&) = delete;
     Running& operator=(const Running&) = delete;

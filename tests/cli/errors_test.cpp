@@ -1,7 +1,10 @@
 // Whatever is wrong: the right exit status, one line on stderr in three parts, nothing on stdout, no file left behind.
 #include <algorithm>
+#include <thread>
 
 #include <catch2/catch.hpp>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli_runner.h"
 
@@ -42,7 +45,8 @@ const Words kShells{"sample:shells", "--size", "16"};
 const Words kMeasure = Words{"measure"} + kShells;
 const Words kRefine = Words{"refine"} + kShells;
 const Words kOptimize = Words{"optimize"} + kShells;
-const Words kRender{"render", "sample:shells", "--sample-size", "16", "--out", "x.png"};
+const Words kDraw{"render", "sample:shells", "--sample-size", "16"};
+const Words kRender = kDraw + Words{"--out", "x.png"};
 
 /// A NRRD header of a raw-encoded u8 volume with these lines in it, followed by `bytes` zeros.
 std::string nrrd(const std::string& lines, std::size_t bytes) {
@@ -269,16 +273,155 @@ TEST_CASE("what cannot be written fails before the work", "[cli][errors]") {
     // "missing.nrrd" would fail too: the complaint about the output comes first.
     checkFails(w, {"render", "missing.nrrd", "--out", "no/x.png"}, 1, "no");
     checkFails(w, {"render", "missing.nrrd", "--out", "folder.png"}, 1, "folder.png");
-    checkFails(w, {"render", "missing.nrrd", "--out", "file/x.png"}, 1, "file");
+    checkFails(w, {"render", "missing.nrrd", "--out", "file/x.png"}, 1, "this is a file, not a folder, file");
     checkFails(w, {"refine", "missing.nrrd", "--out-tf", "no/x.tf.json"}, 1, "no");
     checkFails(w, {"optimize", "missing.nrrd", "--target", "1,1,1", "--out-tf", "no/x.tf.json"}, 1, "no");
     checkFails(w, {"fields", "missing.nrrd", "--out", "no/deep"}, 1, "no");
     checkFails(w, {"fields", "missing.nrrd", "--out", "file"}, 1, "file");
     checkFails(w, {"fields", "missing.nrrd", "--out", ""}, 2, "--out");
+    const std::string longName(252, 'n');
+    checkFails(w, {"render", "missing.nrrd", "--out", longName + ".png"}, 1, "name too long");
+    checkFails(w, {"fields", "missing.nrrd", "--out", longName + longName}, 1, "name too long");
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "new/"}, 1, "this names a folder, new/");
+    std::filesystem::create_directories(w.path("d/vws.nrrd"));
+    checkFails(w, {"fields", "missing.nrrd", "--out", "d"}, 1, "a folder has this name, d/vws.nrrd");
+    std::filesystem::create_symlink("loop", w.path("loop"));
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "loop"}, 1, "symbolic links), loop");
+    std::filesystem::create_symlink("no/where", w.path("dangling"));
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "dangling"}, 1, "the folder does not exist, no");
+    checkFails(w, {"fields", "missing.nrrd", "--out", "dangling"}, 1, "dangling");
     checkFails(w, {"generate", "shells", "--out", "no/x.nrrd"}, 1, "no");
     checkFails(w, {"generate", "shells", "--out", "x.mhd"}, 2, "x.mhd");
     checkFails(w, {"generate", "cube", "--out", "x.nrrd"}, 2, "shells");
     checkFails(w, {"generate", "shells"}, 2, "--out is required");
+}
+
+TEST_CASE("a full disk is told, and leaves what was there", "[cli][errors]") {
+    const Workshop w;
+    const std::size_t room = 400; // bytes per file: enough for the message
+    const std::vector<Words> commands{
+        kDraw + Words{"--out", "a.png"},
+        kDraw + Words{"--out", "a.jpg"},
+        kDraw + Words{"--out", "a.tif"},
+        kDraw + Words{"--out", "a.exr"},
+        {"generate", "shells", "--size", "16", "--out", "a.nrrd"},
+        Words{"fields", "--engine", "cpu", "--out", "."} + kShells,
+        Words{"fields", "--engine", "cpu", "--out", "new"} + kShells,
+        kRefine + Words{"--tf", "tents:9", "--out-tf", "a.tf.json"},
+        kOptimize + Words{"--engine", "cpu", "--target", "1,1,1", "--max-iterations", "1", "--out-tf", "a.tf.json"}};
+    for (const char* old : {"a.png", "a.jpg", "a.tif", "a.exr", "a.nrrd", "visibility.nrrd", "a.tf.json"})
+        w.write(old, "older");
+    const auto before = w.list();
+    for (const Words& command : commands) {
+        const Outcome o = w.runWithFilesUpTo(room, command);
+        INFO(command.front() << ": " << o.err);
+        CHECK(o.status == 1);
+        CHECK(o.out.empty());
+        CHECK(o.err.rfind("pellucid-cli: error: cannot write the file (File too large), ", 0) == 0);
+        CHECK(std::count(o.err.begin(), o.err.end(), '\n') == 1);
+    }
+    CHECK(w.list() == before);
+    for (const std::string& old : before) CHECK(w.read(old) == "older");
+    // A device takes its bytes directly.
+    checkFails(w, kRefine + Words{"--out-tf", "/dev/full"}, 1, "No space left on device");
+}
+
+TEST_CASE("a name may be any bytes, and lead to a device", "[cli]") {
+    const Workshop w;
+    for (const std::string name : {"\xff\xfe.png", "-x.png", "a\nb.png", "%s.png", "a:b.png"}) {
+        CHECK(w.run(kDraw + Words{"--engine", "cpu", "--out", name}).status == 0);
+        CHECK(w.has(name));
+    }
+    CHECK(w.run(kRefine + Words{"--out-tf", std::string(255, 'n')}).status == 0);
+    std::filesystem::create_symlink("/dev/null", w.path("null.png"));
+    std::filesystem::create_symlink("/dev/null", w.path("null.nrrd"));
+    CHECK(w.run(kDraw + Words{"--engine", "cpu", "--out", "null.png"}).status == 0);
+    CHECK(w.json({"generate", "shells", "--size", "16", "--out", "null.nrrd"})["file_bytes"].is_null());
+    CHECK(std::filesystem::is_symlink(w.path("null.nrrd")));
+    CHECK(w.run(kRefine + Words{"--out-tf", "/dev/stdout"}).out.find("pellucid-tf") != std::string::npos);
+}
+
+TEST_CASE("what is write-protected stays", "[cli][errors]") {
+    const Workshop w;
+    w.write("a.tf.json", "older");
+    std::filesystem::create_directory(w.path("d"));
+    using std::filesystem::perms;
+    std::filesystem::permissions(w.path("a.tf.json"), perms::owner_read);
+    std::filesystem::permissions(w.path("d"), perms::owner_read | perms::owner_exec);
+    if (access(w.path("d").c_str(), W_OK) == 0) {
+        WARN("SKIPPED: this user may write everywhere");
+        return;
+    }
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "a.tf.json"}, 1, "the file is write-protected, a.tf.json");
+    checkFails(w, {"refine", "missing.nrrd", "--out-tf", "d/x"}, 1, "the folder is not writable, d");
+    checkFails(w, {"fields", "missing.nrrd", "--out", "d"}, 1, "the folder is not writable, d");
+    checkFails(w, {"fields", "missing.nrrd", "--out", "d/new"}, 1, "the folder is not writable, d");
+    CHECK(w.read("a.tf.json") == "older");
+}
+
+TEST_CASE("no command overwrites what it reads", "[cli][errors]") {
+    namespace fs = std::filesystem;
+    const Workshop w;
+    REQUIRE(w.run({"generate", "shells", "--size", "16", "--out", "visibility.nrrd"}).status == 0);
+    REQUIRE(w.run(kRefine + Words{"--out-tf", "a.tf.json"}).status == 0);
+    w.write("data.png", std::string(8, '\1'));
+    w.write("a.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
+                     "ElementDataFile = data.png\n");
+    w.write("a.nhdr", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: ./data.png\n\n");
+    w.write("camera.json", R"({"projection":"perspective","eye":[0,-99,0],"center":[0,0,0],"up":[0,0,1],"fov_y":30})");
+    fs::create_directory(w.path("d"));
+    fs::create_symlink("../a.tf.json", w.path("d/link.json"));
+    fs::create_hard_link(w.path("a.tf.json"), w.path("hard.json"));
+    fs::create_directory(w.path("e"));
+    fs::create_symlink("../visibility.nrrd", w.path("e/vws.nrrd"));
+
+    const auto refused = [&](const Words& command, const std::string& where) {
+        checkFails(w, command, 2, "error: the output would overwrite the input, " + where + ", choose another name\n");
+    };
+    const Words refine = kRefine + Words{"--tf", "a.tf.json", "--out-tf"};
+    refused(refine + Words{"a.tf.json"}, "a.tf.json");
+    for (const char* same : {"./a.tf.json", "d/../a.tf.json", "d/link.json", "hard.json"})
+        refused(refine + Words{same}, std::string(same) + ", which is a.tf.json");
+    refused({"refine", "visibility.nrrd", "--out-tf", "visibility.nrrd"}, "visibility.nrrd");
+    const Words optimize = kOptimize + Words{"--target", "1,1,1"};
+    refused(optimize + Words{"--tf", "d/link.json", "--out-tf", "a.tf.json"}, "a.tf.json, which is d/link.json");
+    refused(optimize + Words{"--camera", "camera.json", "--out-tf", "camera.json"}, "camera.json");
+    refused({"render", "data.png", "--raw", "2,2,2,u8", "--out", "data.png"}, "data.png");
+    refused({"render", "a.mhd", "--out", "./data.png"}, "./data.png, which is data.png");
+    refused({"render", "a.nhdr", "--out", "data.png"}, "data.png, which is ./data.png");
+    refused({"fields", "visibility.nrrd", "--out", "."}, "./visibility.nrrd, which is visibility.nrrd");
+    refused({"fields", "visibility.nrrd", "--out", "e"}, "e/vws.nrrd, which is visibility.nrrd");
+    refused({"fields", "sample:shells", "--tf", "e/vws.nrrd", "--out", "."}, "./visibility.nrrd, which is e/vws.nrrd");
+
+    // Another file of the same content, or a device, is no input.
+    w.write("other.json", w.read("a.tf.json"));
+    CHECK(w.run(refine + Words{"other.json"}).status == 0);
+    checkFails(w, kRefine + Words{"--tf", "/dev/null", "--out-tf", "/dev/null"}, 1, "/dev/null");
+}
+
+TEST_CASE("endless and enormous JSON ends in an error", "[cli][errors]") {
+    const Workshop w;
+    for (const std::string option : {"--tf", "--camera"}) {
+        checkFails(w, kMeasure + Words{option, "/dev/zero"}, 1, "it has more than 16.8 MB, /dev/zero, ");
+        checkFails(w, kMeasure + Words{option, "/dev/null"}, 1, "not valid JSON");
+        checkFails(w, kMeasure + Words{option, "."}, 1, "this is a folder");
+        w.write("digits.json", "{\"format\":" + std::string(10'000'000, '9') + "}");
+        checkFails(w, kMeasure + Words{option, "digits.json"}, 1, "a number that is too large");
+        w.write("fraction.json", "{\"format\":0." + std::string(10'000'000, '0') + "1}");
+        checkFails(w, kMeasure + Words{option, "fraction.json"}, 1, "fraction.json");
+        w.write("deep.json", std::string(10'000'000, '['));
+        checkFails(w, kMeasure + Words{option, "deep.json"}, 1, "nested more than 64 deep");
+        w.write("wide.json", "[0" + std::string(4'000'000, ' ') + std::string(1, ']'));
+        checkFails(w, kMeasure + Words{option, "wide.json"}, 1, "a JSON object is expected");
+    }
+    // A pipe is read to its end.
+    REQUIRE(w.run(kRefine + Words{"--out-tf", "a.tf.json"}).status == 0);
+    REQUIRE(mkfifo(w.path("pipe").c_str(), 0600) == 0);
+    std::thread writer([&] { w.write("pipe", w.read("a.tf.json")); });
+    const Outcome o = w.run(kMeasure + Words{"--tf", "pipe", "--engine", "cpu"});
+    writer.join();
+    INFO(o.err);
+    CHECK(o.status == 0);
 }
 
 TEST_CASE("a failed command leaves an existing file as it was", "[cli][errors]") {

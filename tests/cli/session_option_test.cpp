@@ -220,6 +220,9 @@ TEST_CASE("a session that cannot be used fails as files do", "[cli][session]") {
     fails({"optimize", "--session", "a.pellucid.json", "--target", "1,2"}, 2, "--target");
     fails({"render", "--session", "a.pellucid.json", "--feature", "f2", "--out", "x.png"}, 2, "'middle'");
     fails({"info", "--session", "a.pellucid.json", "--sample-size", "20"}, 2, "--sample-size");
+    // Nothing that is read is overwritten.
+    fails({"refine", "--session", "a.pellucid.json", "--out-tf", "a.pellucid.json"}, 2, "overwrite");
+    fails({"refine", "--session", "a.pellucid.json", "--out-tf", "knee.nrrd"}, 2, "overwrite");
     std::filesystem::remove(w.path("knee.nrrd"));
     fails({"measure", "--session", "a.pellucid.json"}, 1, "knee.nrrd");
 }

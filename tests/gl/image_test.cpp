@@ -298,8 +298,12 @@ TEST_CASE("wrong requests for a picture are errors, and stopping stops", "[gl]")
     const auto renderer = makeGlRenderer(volume);
     const Camera camera = perspective(volume->geometry(), {0, -20, 0});
     RenderSettings settings = smallSettings();
-    settings.onlyFeature = 3;
-    CHECK_THROWS_AS(renderer->render(camera, tents(3), settings), Error);
+    for (const int index : {3, -2}) {
+        settings.onlyFeature = index;
+        CHECK_THROWS_MATCHES(renderer->render(camera, tents(3), settings), UsageError,
+                             Catch::Message("there is no feature number " + std::to_string(index) +
+                                            ", transfer function, it has 3, counted from 0"));
+    }
     settings.onlyFeature = -1;
     settings.width = 0;
     CHECK_THROWS_AS(renderer->render(camera, tents(3), settings), UsageError);

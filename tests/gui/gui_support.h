@@ -6,7 +6,15 @@
 #include <QImage>
 #include <QTest>
 
+#include "controllers/open_controller.h"
+#include "controllers/optimize_controller.h"
+#include "controllers/recovery_controller.h"
+#include "controllers/save_controller.h"
 #include "main_window.h"
+#include "panels/features_panel.h"
+#include "store/edits.h"
+#include "target_bars.h"
+#include "tf_canvas.h"
 #include "volume/procedural.h"
 
 namespace pellucid::gui {
@@ -19,15 +27,74 @@ bool waitFor(Condition condition) {
     return QTest::qWaitFor(condition, kPatience);
 }
 
-inline LoadedVolume loadedSample(const std::string& name, int size, const TransferFunction& tf) {
-    LoadedVolume loaded;
-    loaded.source.path = "sample:" + name;
-    loaded.source.sampleSize = size;
-    loaded.volume = std::make_shared<const Volume>(makeSample(name, size));
-    loaded.histogram = makeHistogram(*loaded.volume);
-    loaded.defaultTf = tf;
-    return loaded;
+inline Scene sampleScene(const std::string& name, int size, const TransferFunction& tf) {
+    VolumeSource source;
+    source.path = "sample:" + name;
+    source.sampleSize = size;
+    SceneInputs inputs;
+    inputs.session = sessionOf(source);
+    inputs.session.setTf(tf);
+    Scene scene = openScene(inputs);
+    prepareToShow(scene);
+    return scene;
 }
+
+/// What a window shows, in few words: its scene, its history and its figures.
+class Document {
+public:
+    Document(SessionStore& store, Results& results) : m_store(store), m_results(results) {}
+
+    const TransferFunction& tf() const { return m_store.scene().tf; }
+    const TransferFunction& committedTf() const { return m_store.committed().tf; }
+    const Camera& camera() const { return m_store.scene().camera; }
+    const std::shared_ptr<const Volume>& volume() const { return m_store.scene().volume; }
+    const Histogram& histogram() const { return *m_store.scene().histogram; }
+    std::vector<double> targets() const { return m_store.scene().targets(); }
+    const Measures* measures() const { return m_results.measures(); }
+    bool measuresAreCurrent() const { return m_results.measuresAreCurrent(); }
+    const std::vector<std::vector<double>>* influence() const { return m_results.influence(); }
+    bool influenceIsCurrent() const { return m_results.influenceIsCurrent(); }
+    bool isPreviewing() const { return m_store.isPreviewing(); }
+    bool isClean() const { return m_store.isClean(); }
+
+    /// As a file without a range is opened: written for the window.
+    void setTf(TransferFunction tf, const QString& text, const QString& mergeKey = {}) {
+        tf.range = volume()->range();
+        editTf(m_store, tf, text, mergeKey);
+    }
+    void setTargets(const std::vector<double>& targets) { editTargets(m_store, targets, "Targets"); }
+    void setTarget(int feature, double value) { editTarget(m_store, feature, value, "Target"); }
+    void setCamera(const Camera& camera) { m_store.setCamera(camera); }
+    void previewTf(TransferFunction tf) {
+        tf.range = volume()->range();
+        gui::previewTf(m_store, tf, "Preview");
+    }
+    void undo() { m_store.undo(); }
+    void redo() { m_store.redo(); }
+    bool canUndo() const { return m_store.canUndo(); }
+    int stepCount() const { return m_store.stepCount(); }
+    SessionStore& store() { return m_store; }
+
+private:
+    SessionStore& m_store;
+    Results& m_results;
+};
+
+/// The points and features alone, without the range that a window puts to them.
+inline TransferFunction rangeless(TransferFunction tf) {
+    tf.range.reset();
+    return tf;
+}
+
+/// A store and its figures, without a window.
+struct StoreAlone {
+    SessionStore store;
+    Workspace workspace;
+    Lane lane;
+    Results results{store, lane, workspace};
+    Document document{store, results};
+    Document* operator->() { return &document; }
+};
 
 /// A window on a small sample, complete with picture and figures.
 struct OpenWindow {
@@ -40,15 +107,19 @@ struct OpenWindow {
         VolumeSource source;
         source.path = "sample:shells";
         source.sampleSize = size;
-        window.openVolume(source, "tents:3");
+        opening().openVolume(source, "tents:3");
         settle();
     }
     void settle() {
         REQUIRE(waitFor([this] { return window.isSettled(); }));
     }
-    Document& document() { return window.document(); }
+    Workbench& bench() { return window.workbench(); }
+    OpenController& opening() { return bench().opening(); }
+    SaveController& saving() { return bench().saving(); }
+    OptimizeController& optimizing() { return bench().optimizing(); }
+    Document document() { return {bench().store(), bench().results()}; }
     VolumeView& view() { return window.view(); }
-    TfCanvas& canvas() { return window.tfEditor().canvas(); }
+    TfCanvas& canvas() { return child<TfCanvas>("tfCanvas"); }
     QImage picture() {
         settle();
         return view().grab().toImage().convertToFormat(QImage::Format_RGB32);

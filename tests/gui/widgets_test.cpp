@@ -1,5 +1,7 @@
 #include "gui_support.h"
 
+#include "notice_bar.h"
+
 #include <cmath>
 #include <fstream>
 
@@ -23,10 +25,11 @@ using namespace pellucid::gui;
 namespace {
 
 struct Canvas {
-    Document document;
-    TfCanvas canvas{document};
+    StoreAlone alone;
+    Document& document = alone.document;
+    TfCanvas canvas{alone.store, alone.results};
     Canvas() {
-        document.setVolume(loadedSample("shells", 12, tents(3)));
+        alone.store.open(sampleScene("shells", 12, tents(3)));
         canvas.resize(600, 200);
         canvas.show();
         REQUIRE(QTest::qWaitForWindowExposed(&canvas, kPatience));
@@ -45,9 +48,9 @@ TEST_CASE("one drag of a point is one undo step", "[canvas]") {
     const QPointF to = c.canvas.positionOf(0.5, 0.9);
     drag(c.canvas, c.at(4), to);
     CHECK(c.document.tf().points[4].opacity == Approx(0.9).margin(0.01)); // a pixel is 1/140
-    CHECK(c.document.undoStack().count() == 1);
+    CHECK(c.document.stepCount() == 1);
     CHECK(c.canvas.selectedPoint() == 4);
-    c.document.undoStack().undo();
+    c.document.undo();
     CHECK(c.document.tf() == start);
 }
 
@@ -82,7 +85,7 @@ TEST_CASE("points are added by a double-click and removed by Delete", "[canvas]"
     CHECK(c.document.tf().points[static_cast<std::size_t>(index)].x == Approx(0.3).margin(0.005));
     QTest::keyClick(&c.canvas, Qt::Key_Delete);
     CHECK(c.document.tf() == start);
-    CHECK(c.document.undoStack().count() == 2);
+    CHECK(c.document.stepCount() == 2);
 }
 
 TEST_CASE("keys move, fix and choose points", "[canvas]") {
@@ -92,7 +95,7 @@ TEST_CASE("keys move, fix and choose points", "[canvas]") {
     QTest::keyClick(&c.canvas, Qt::Key_Up);
     QTest::keyClick(&c.canvas, Qt::Key_Up);
     CHECK(c.document.tf().points[4].opacity == Approx(before + 2.0 / 128));
-    CHECK(c.document.undoStack().count() == 1);
+    CHECK(c.document.stepCount() == 1);
     QTest::keyClick(&c.canvas, Qt::Key_Space);
     CHECK(c.document.tf().points[4].fixed);
     QTest::keyClick(&c.canvas, Qt::Key_PageDown);
@@ -114,13 +117,14 @@ TEST_CASE("Escape takes a drag back", "[canvas]") {
     CHECK(c.document.tf() == start);
     QTest::mouseRelease(&c.canvas, Qt::LeftButton, {}, from.toPoint());
     CHECK(c.document.tf() == start);
-    CHECK_FALSE(c.document.undoStack().canUndo());
+    CHECK_FALSE(c.document.canUndo());
 }
 
 TEST_CASE("target handles follow the mouse and the keys", "[bars]") {
-    Document document;
-    document.setVolume(loadedSample("shells", 12, tents(3)));
-    TargetBars bars(document);
+    StoreAlone w;
+    Document& document = w.document;
+    w.store.open(sampleScene("shells", 12, tents(3)));
+    TargetBars bars(w.store, w.results);
     bars.resize(400, 200);
     bars.show();
     REQUIRE(QTest::qWaitForWindowExposed(&bars, kPatience));
@@ -183,14 +187,24 @@ TEST_CASE("the raw dialog opens only what fits the file", "[raw]") {
 }
 
 TEST_CASE("notices stay until they are dismissed", "[notices]") {
-    NoticeBar bar;
+    Notices notices;
+    NoticeBar bar(notices);
     CHECK(bar.isHidden());
-    bar.setNotices({"the volume was made smaller"});
-    bar.addNotice("the axes are turned");
-    bar.addNotice("the axes are turned");
-    CHECK(bar.notices().size() == 2);
+    notices.add({"a", {}});
+    notices.add({"b", {}});
+    notices.add({"a", {}});
     CHECK_FALSE(bar.isHidden());
-    CHECK(bar.findChild<QLabel*>("noticeText")->text().contains("axes"));
+    CHECK(bar.findChild<QLabel*>("noticeText")->text() == "a\nb");
     bar.findChild<QToolButton*>("noticeClose")->click();
+    CHECK(bar.isHidden());
+    CHECK(notices.all().empty());
+
+    // What can be done about one is a click away, and then it is gone.
+    int done = 0;
+    notices.add({"c", {{"Do it", [&] { ++done; }}}});
+    auto* button = bar.findChild<QPushButton*>("noticeChoice0");
+    REQUIRE(button != nullptr);
+    button->click();
+    CHECK(done == 1);
     CHECK(bar.isHidden());
 }

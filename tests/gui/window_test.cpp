@@ -27,21 +27,29 @@
 #include <QUrl>
 #include <QWheelEvent>
 
-#include "render/camera_motion.h"
 #include "optimize/refine.h"
+#include "render/camera_motion.h"
 #include "render/image.h"
 #include "tf/formats/tf_json.h"
+#include "tf/sample_tf.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
 
 namespace {
 
-std::vector<double> shownVws(Document& document) {
+std::vector<double> shownVws(const Document& document) {
     REQUIRE(document.measures());
     std::vector<double> vws;
     for (const FeatureMeasures& m : document.measures()->features) vws.push_back(m.vws);
     return vws;
+}
+
+/// What a volume opens with, written for its window.
+TransferFunction defaultOf(const Document& document) {
+    TransferFunction tf = defaultTf(*document.volume());
+    tf.range = document.volume()->range();
+    return tf;
 }
 
 QDialog* errorDialog(MainWindow& window) { return window.findChild<QDialog*>("errorDialog"); }
@@ -64,7 +72,7 @@ void startEndlessOptimization(OpenWindow& w) {
     method.setCurrentIndex(method.findData(static_cast<int>(SearchMethod::Fixed)));
     w.document().setTargets({0.05, 0.05, 0.9});
     QTest::mouseClick(&w.child<QPushButton>("optimizeButton"), Qt::LeftButton);
-    REQUIRE(w.window.isOptimizing());
+    REQUIRE(w.optimizing().isRunning());
 }
 
 } // namespace
@@ -118,23 +126,24 @@ TEST_CASE("optimizing brings the VWS bars to the targets, and undo everything ba
     const std::vector<double> targets = w.document().targets();
     CHECK(targets[2] == Approx(0.6).margin(0.01));
     REQUIRE(objectiveOf(shownVws(w.document()), targets) > 0.03); // else there would be nothing to do
+    const int steps = w.document().stepCount();                   // the target is one
 
     int ticks = 0;
     QTimer heart;
     QObject::connect(&heart, &QTimer::timeout, [&] { ++ticks; });
     heart.start(1);
     QTest::mouseClick(&w.child<QPushButton>("optimizeButton"), Qt::LeftButton);
-    CHECK(w.window.isOptimizing());
+    CHECK(w.optimizing().isRunning());
     CHECK_FALSE(w.child<QPushButton>("optimizeButton").isVisible());
     CHECK(w.child<QPushButton>("cancelButton").isVisible());
     CHECK_FALSE(w.child<QAction>("undoAction").isEnabled());
-    REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     CHECK(ticks > 0); // the window went on living meanwhile
     w.settle();
     REQUIRE(w.document().measuresAreCurrent());
     // Measured anew, from the present transfer function.
     CHECK(objectiveOf(shownVws(w.document()), targets) < 0.03);
-    CHECK(w.document().undoStack().count() == 1);
+    CHECK(w.document().stepCount() == steps + 1);
     CHECK(w.picture() != before);
 
     w.child<QAction>("undoAction").trigger();
@@ -146,10 +155,13 @@ TEST_CASE("a cancelled optimization changes nothing", "[window]") {
     OpenWindow w(40);
     const TransferFunction tf = w.document().tf();
     startEndlessOptimization(w);
+    const Session session = w.bench().store().committed().session;
+    const int steps = w.document().stepCount(); // targets and settings are steps
     QTest::mouseClick(&w.child<QPushButton>("cancelButton"), Qt::LeftButton);
-    REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     CHECK(w.document().tf() == tf);
-    CHECK(w.document().undoStack().count() == 0);
+    CHECK(w.bench().store().session() == session);
+    CHECK(w.document().stepCount() == steps);
     CHECK(w.child<QPushButton>("optimizeButton").isVisible());
     w.settle();
     CHECK(w.document().measuresAreCurrent());
@@ -161,14 +173,15 @@ TEST_CASE("bars and picture follow each move of an optimization", "[window]") {
     startEndlessOptimization(w);
     // Stopped from inside the first change, so that it cannot have come to its end before.
     int changes = 0;
-    const auto watch = QObject::connect(&w.document(), &Document::tfChanged, [&] {
-        if (changes++ > 0) return;
-        CHECK(w.document().isPreviewing());
-        CHECK(w.document().committedTf() == tf);
-        CHECK_FALSE(w.document().tf() == tf);
-        w.window.cancelOptimization();
-    });
-    REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    const auto watch =
+        QObject::connect(&w.bench().store(), &SessionStore::changed, [&](const Scene& before, const Scene& after) {
+            if (before.tf == after.tf || changes++ > 0) return;
+            CHECK(w.document().isPreviewing());
+            CHECK(w.document().committedTf() == tf);
+            CHECK_FALSE(w.document().tf() == tf);
+            w.optimizing().cancel();
+        });
+    REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     QObject::disconnect(watch);
     CHECK(changes > 1); // there, and back again
     CHECK(w.document().tf() == tf);
@@ -181,7 +194,7 @@ TEST_CASE("refining is one undo step", "[window]") {
     QTest::mouseClick(&w.child<QPushButton>("refineButton"), Qt::LeftButton);
     CHECK_FALSE(w.document().tf() == tf);
     CHECK(edgeEnergy(edgeWeights(histogram, w.document().tf())) < edgeEnergy(edgeWeights(histogram, tf)));
-    CHECK(w.document().undoStack().count() == 1);
+    CHECK(w.document().stepCount() == 1);
     QTest::mouseClick(&w.child<QPushButton>("undoButton"), Qt::LeftButton);
     CHECK(w.document().tf() == tf);
     QTest::mouseClick(&w.child<QPushButton>("redoButton"), Qt::LeftButton);
@@ -193,7 +206,7 @@ TEST_CASE("a file that cannot be opened gives a dialog in three parts, and the o
     const auto volume = w.document().volume();
     const TransferFunction tf = w.document().tf();
     const QString missing = "/nonexistent/brain.nrrd";
-    w.window.openPath(missing);
+    w.opening().openPath(missing);
     REQUIRE(waitFor([&] { return errorDialog(w.window) != nullptr; }));
     QDialog* dialog = errorDialog(w.window);
     for (const char* part : {"errorWhat", "errorWhere", "errorWhatToDo"}) {
@@ -215,25 +228,25 @@ TEST_CASE("a transfer function that cannot be read leaves the present one", "[wi
     const QString path = folder.filePath("bad.tf.json");
     std::ofstream(path.toStdString()) << "{\"format\":\"pellucid-tf\",\"version\":99}";
     const TransferFunction tf = w.document().tf();
-    w.window.openPath(path);
+    w.opening().openPath(path);
     REQUIRE(errorDialog(w.window) != nullptr);
     errorDialog(w.window)->accept();
     CHECK(w.document().tf() == tf);
-    CHECK(w.document().undoStack().count() == 0);
+    CHECK(w.document().stepCount() == 0);
 }
 
 TEST_CASE("a wrong transfer function at the start does not keep the volume from opening", "[window]") {
     OpenWindow w;
-    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
     VolumeSource source;
     source.path = "sample:disks";
     source.sampleSize = 16;
-    w.window.openVolume(source, "/nonexistent/a.tf.json");
+    w.opening().openVolume(source, "/nonexistent/a.tf.json");
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     REQUIRE(errorDialog(w.window) != nullptr);
     errorDialog(w.window)->accept();
     CHECK(w.document().volume()->title.find("disks") != std::string::npos);
-    CHECK(w.document().tf() == w.document().loaded().defaultTf);
+    CHECK(w.document().tf() == defaultOf(w.document()));
 }
 
 TEST_CASE("files that are dropped on the window are opened", "[window]") {
@@ -244,7 +257,7 @@ TEST_CASE("files that are dropped on the window are opened", "[window]") {
     TransferFunction two = tents(2, 0.25);
     two.range = ValueRange{-1000, 3000}; // made for other data than this
     writeTf(two, tfPath.toStdString());
-    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
     drop(w.window, volumePath);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     CHECK(w.document().volume()->title == "small.nrrd");
@@ -252,7 +265,7 @@ TEST_CASE("files that are dropped on the window are opened", "[window]") {
     drop(w.window, tfPath);
     REQUIRE(waitFor([&] { return w.document().tf().features.size() == 2; }));
     CHECK(featureOpacities(w.document().tf()) == std::vector<double>{0.25, 0.25});
-    CHECK(w.document().undoStack().canUndo());                     // opening a transfer function can be undone
+    CHECK(w.document().canUndo());                                 // opening a transfer function can be undone
     CHECK_FALSE(w.window.isWindowModified());                      // and it is saved already
     CHECK(w.child<QLabel>("noticeText").text().contains("-1000")); // whoever looks is told that it was stretched
     w.settle();
@@ -374,8 +387,7 @@ TEST_CASE("the influence dock foretells what raising an opacity does", "[window]
     CHECK(lines[1].split('\t')[1].toDouble() == Approx((*w.document().influence())[0][0]));
 
     dock.close(); // what nobody sees is not measured
-    w.window.document().setCamera(
-        cameraFromView(w.document().volume()->geometry(), 70, 10, 1, Projection::Perspective));
+    w.document().setCamera(cameraFromView(w.document().volume()->geometry(), 70, 10, 1, Projection::Perspective));
     w.settle();
     CHECK(w.document().measuresAreCurrent());
     CHECK_FALSE(w.document().influenceIsCurrent());
@@ -386,10 +398,10 @@ TEST_CASE("the influence dock foretells what raising an opacity does", "[window]
 TEST_CASE("a saved image can be read, in its size and with its background", "[window]") {
     OpenWindow w;
     const QTemporaryDir folder;
-    QSignalSpy saved(&w.window, &MainWindow::imageSaved);
+    QSignalSpy saved(&w.saving(), &SaveController::imageSaved);
     for (const bool transparent : {false, true}) {
         const QString path = folder.filePath(transparent ? "clear.png" : "seen.png");
-        w.window.saveImage({path, {160, 100}, transparent});
+        w.saving().saveImage({path, {160, 100}, transparent});
         REQUIRE(waitFor([&] { return saved.count() == (transparent ? 2 : 1); }));
         const Image image = readImage(path.toStdString());
         CHECK(image.width == 160);
@@ -397,10 +409,10 @@ TEST_CASE("a saved image can be read, in its size and with its background", "[wi
         CHECK(image.pixel(0, 0)[3] == (transparent ? 0.0f : 1.0f)); // the corner sees past the volume
         CHECK(image.pixel(80, 50)[3] > 0.1f);
     }
-    w.window.saveImage({folder.filePath("picture.xyz"), {160, 100}, false});
+    w.saving().saveImage({folder.filePath("picture.xyz"), {160, 100}, false});
     REQUIRE(errorDialog(w.window) != nullptr);
     errorDialog(w.window)->accept();
-    w.window.saveImage({"/nonexistent/folder/a.png", {32, 32}, false});
+    w.saving().saveImage({"/nonexistent/folder/a.png", {32, 32}, false});
     REQUIRE(waitFor([&] {
         const auto dialogs = w.window.findChildren<QDialog*>("errorDialog");
         return std::any_of(dialogs.begin(), dialogs.end(), [](QDialog* d) { return d->isVisible(); });
@@ -414,14 +426,14 @@ TEST_CASE("a saved transfer function is the one that is shown", "[window]") {
     const QString path = folder.filePath("mine.tf.json");
     w.document().setTf(tents(3, 0.2), "Tents"); // of colours that 8 bits hold exactly
     CHECK(w.window.isWindowModified());
-    REQUIRE(w.window.saveTf(path));
+    REQUIRE(w.saving().saveTf(path));
     CHECK_FALSE(w.window.isWindowModified());
     TransferFunction read = readTf(path.toStdString());
     REQUIRE(read.range);
     CHECK(*read.range == w.document().volume()->range());
     CHECK(read.points == w.document().tf().points);
     CHECK(read.features == w.document().tf().features);
-    CHECK_FALSE(w.window.saveTf("/nonexistent/folder/mine.tf.json"));
+    CHECK_FALSE(w.saving().saveTf("/nonexistent/folder/mine.tf.json"));
     REQUIRE(errorDialog(w.window) != nullptr);
     errorDialog(w.window)->accept();
 }
@@ -458,13 +470,14 @@ TEST_CASE("a window may be closed and go while its jobs run", "[window]") {
         auto w = std::make_unique<OpenWindow>(48);
         if (optimizing) {
             startEndlessOptimization(*w);
+            w->bench().store().setClean(); // else it asks
         } else {
-            w->window.refineTf(); // a measurement follows; the picture is being drawn
-            w->document().undoStack().undo();
+            w->optimizing().refine(); // a measurement follows; the picture is being drawn
+            w->document().undo();
             VolumeSource source;
             source.path = "sample:knee";
-            w->window.openVolume(source);
-            w->window.saveImage({QDir::tempPath() + "/never.tiff", {4000, 3000}, false});
+            w->opening().openVolume(source);
+            w->saving().saveImage({QDir::tempPath() + "/never.tiff", {4000, 3000}, false});
         }
         CHECK(w->window.close());
         w.reset();
@@ -476,19 +489,19 @@ TEST_CASE("a window may be closed and go while its jobs run", "[window]") {
 TEST_CASE("opening another volume ends an optimization and starts afresh", "[window]") {
     OpenWindow w;
     startEndlessOptimization(w);
-    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
     VolumeSource source;
     source.path = "sample:disks";
     source.sampleSize = 20;
-    w.window.openVolume(source);
+    w.opening().openVolume(source);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     const TransferFunction tf = w.document().tf();
-    CHECK(tf == w.document().loaded().defaultTf);
-    REQUIRE(waitFor([&] { return !w.window.isOptimizing(); }));
+    CHECK(tf == defaultOf(w.document()));
+    REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     w.settle();
     CHECK(w.document().tf() == tf); // nothing of the old run came after it
     CHECK(w.document().measuresAreCurrent());
-    CHECK_FALSE(w.document().undoStack().canUndo());
+    CHECK_FALSE(w.document().canUndo());
 }
 
 TEST_CASE("opening can be cancelled, and the old volume stays", "[window]") {
@@ -496,7 +509,7 @@ TEST_CASE("opening can be cancelled, and the old volume stays", "[window]") {
     const auto volume = w.document().volume();
     VolumeSource source;
     source.path = "sample:knee"; // takes seconds
-    w.window.openVolume(source);
+    w.opening().openVolume(source);
     auto& cancel = w.child<QToolButton>("backgroundCancel");
     CHECK(cancel.isVisible());
     CHECK_FALSE(w.window.isSettled());
@@ -511,26 +524,26 @@ TEST_CASE("volumes with nothing to see open and say so", "[window]") {
     OpenWindow w;
     const QTemporaryDir folder;
     const Geometry geometry{{6, 5, 4}, {1, 1, 1}, {0, 0, 0}};
-    QSignalSpy opened(&w.window, &MainWindow::volumeOpened);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
     auto& notice = w.child<QLabel>("noticeText");
 
     const QString constant = folder.filePath("constant.nrrd"), empty = folder.filePath("empty.nrrd");
     writeNrrd(Volume(geometry, std::vector<float>(120, 7.0f)), constant.toStdString());
     writeNrrd(Volume(geometry, std::vector<float>(120, std::nanf(""))), empty.toStdString());
-    w.window.openPath(constant);
+    w.opening().openPath(constant);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     CHECK(notice.text() == "all voxels have the value 7"); // what the loader says, once
     w.settle();
-    w.window.openPath(empty);
+    w.opening().openPath(empty);
     REQUIRE(waitFor([&] { return opened.count() == 2; }));
     CHECK(notice.text() == "no voxel has a valid value");
     w.settle();
-    w.window.refineTf(); // nothing to do, and no harm
+    w.optimizing().refine(); // nothing to do, and no harm
     w.settle();
 }
 
 TEST_CASE("without OpenGL the CPU draws the same scene", "[window]") {
-    OpenWindow gl;
+    OpenWindow gl(24, ViewRenderer::Gl);
     OpenWindow cpu(24, ViewRenderer::Cpu);
     CHECK(cpu.view().rendererName() == "CPU");
     const QImage a = gl.picture(), b = cpu.picture();

@@ -1,9 +1,12 @@
 #include <catch2/catch.hpp>
 
 #include <filesystem>
+#include <random>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "render/image_renderer.h"
+#include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "support/volumes.h"
 
@@ -71,6 +74,21 @@ TEST_CASE("one feature can be drawn alone", "[image]") {
     CHECK(image.pixel(15, 10)[3] > 0.9);
 }
 
+TEST_CASE("a feature that is not there is wrong usage", "[image]") {
+    const auto volume = slab({4, 4, 4}, 0.5);
+    const Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
+    RenderSettings settings = small();
+    for (const int index : {3, 1'000'000, -2}) {
+        settings.onlyFeature = index;
+        CHECK_THROWS_MATCHES(makeCpuRenderer(volume)->render(camera, tents(3), settings), UsageError,
+                             Catch::Message("there is no feature number " + std::to_string(index) +
+                                            ", transfer function, it has 3, counted from 0"));
+    }
+    settings.onlyFeature = 0;
+    CHECK_THROWS_WITH(makeCpuRenderer(volume)->render(camera, TransferFunction{}, settings),
+                      Catch::Contains("it has 0"));
+}
+
 TEST_CASE("shading changes colours, never alpha", "[image]") {
     const auto volume = volumeFrom(geometryOf({16, 16, 16}), [](int i, int j, int k) {
         return std::clamp(1.2 - glm::length(Vec3(i, j, k) - 7.5) / 8, 0.0, 1.0);
@@ -119,6 +137,34 @@ TEST_CASE("an image that cannot be written leaves nothing behind", "[image]") {
     CHECK_THROWS_AS(writeImage(Image(2, 2), folder.path("x.png")), FileError);
     CHECK(folder.fileCount() == 1);
     CHECK_THROWS_AS(readImage(folder.path("none.png")), FileError);
+}
+
+TEST_CASE("a full disk is told, whatever the library behind a format does about it", "[image]") {
+    const TempFolder folder;
+    Image noise(64, 64);
+    std::minstd_rand random(1);
+    for (float& v : noise.rgba) v = std::uniform_real_distribution<float>()(random);
+    for (const std::string suffix : {"png", "tif", "exr", "jpg"}) {
+        INFO(suffix);
+        const std::string path = folder.path("image." + suffix), link = folder.path("full." + suffix);
+        writeImage(noise, path);
+        const std::string before = readText(path);
+        const Image back = readImage(path); // larger than what the formats gather into one strip
+        REQUIRE(back.rgba.size() == noise.rgba.size());
+        if (suffix != "jpg") CHECK(back.pixel(63, 63)[2] == Approx(noise.pixel(63, 63)[2]).margin(5e-3));
+        for (const std::size_t room : {std::size_t{0}, before.size() / 2, before.size() - 1}) {
+            const FullDisk disk(room);
+            CHECK_THROWS_AS(writeImage(noise, path), FileError);
+        }
+        CHECK((readText(path) == before)); // in brackets: it is not printed
+        {
+            const FullDisk disk(20); // the whole file is smaller than what stdio gathers before it writes
+            CHECK_THROWS_AS(writeImage(Image(2, 2), folder.path("small." + suffix)), FileError);
+        }
+        std::filesystem::create_symlink("/dev/full", link);
+        CHECK_THROWS_WITH(writeImage(Image(2, 2), link), Catch::Contains("No space left"));
+    }
+    CHECK(folder.fileCount() == 8);
 }
 
 TEST_CASE("impossible settings are refused", "[image]") {

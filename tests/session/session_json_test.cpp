@@ -261,6 +261,22 @@ TEST_CASE("a data file that is not the one that was saved is noticed", "[session
     CHECK(readSession(folder.path("a.pellucid.json")).notices.empty());
 }
 
+TEST_CASE("data beside its header is watched too", "[session][json]") {
+    const TempFolder folder;
+    Session s;
+    Variable v;
+    v.source.path = folder.write("v.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
+                                          "ElementDataFile = v.data\n");
+    folder.write("v.data", "12345678");
+    s.variables = std::vector<Variable>{v};
+    writeSession(s, folder.path("a.pellucid.json"));
+    CHECK(readSession(folder.path("a.pellucid.json")).notices.empty());
+    folder.write("v.data", "12345679");
+    std::filesystem::last_write_time(folder.path("v.data"),
+                                     std::filesystem::file_time_type::clock::now() + std::chrono::hours(1));
+    CHECK(readSession(folder.path("a.pellucid.json")).notices.size() == 1);
+}
+
 TEST_CASE("a data file whose name is no text is refused in words", "[session][json]") {
     const TempFolder folder;
     Session s;

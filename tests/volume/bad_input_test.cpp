@@ -4,6 +4,8 @@
 #include <limits>
 #include <sstream>
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 
 #include "support/temp_folder.h"
@@ -37,7 +39,7 @@ std::string errorOf(const VolumeSource& source) {
     CHECK(out.str().empty());
     CHECK(err.str().empty());
     CHECK(line.find('\n') == std::string::npos);
-    CHECK(line.size() < 400);
+    CHECK(line.size() < 400 + where.size());
     CHECK(!where.empty());
     return line;
 }
@@ -79,8 +81,7 @@ TEST_CASE("an empty file is refused in every format", "[bad-input]") {
 TEST_CASE("an unknown suffix lists what can be read", "[bad-input]") {
     const TempFolder folder;
     const std::string line = errorOf(folder.write("a.xyz", "abc"));
-    for (const char* part : {".nrrd", ".nhdr", ".mhd", ".mha", ".nii", ".nii.gz"})
-        CHECK_THAT(line, Contains(part));
+    for (const char* part : {".nrrd", ".nhdr", ".mhd", ".mha", ".nii", ".nii.gz"}) CHECK_THAT(line, Contains(part));
     CHECK_THAT(errorOf(folder.write("nrrd", "abc")), Contains("suffix"));
     for (const char* name : {"a.xyz", "a.raw"}) { // each door names its own way to tell a layout
         VolumeSource source;
@@ -335,4 +336,142 @@ TEST_CASE("headers that leave something out or contradict themselves are refused
     nifti = Nifti{};
     nifti.magic = "ni1";
     CHECK_THAT(errorOf(folder.write("d.nii", nifti.header() + std::string(24, 'x'))), Contains(".hdr/.img"));
+}
+
+TEST_CASE("NIfTI numbers that are not finite are refused wherever they would be used", "[bad-input]") {
+    const TempFolder folder;
+    const std::string data(24, 'x');
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                            -std::numeric_limits<float>::infinity()}) {
+        CAPTURE(bad);
+        const auto errorWith = [&](const Nifti& nifti) {
+            return errorOf(folder.write("a.nii", nifti.header() + data));
+        };
+        const auto opens = [&](const Nifti& nifti) {
+            VolumeSource source;
+            source.path = folder.write("a.nii", nifti.header() + data);
+            return loadVolume(source).value(23) == 'x';
+        };
+        for (std::size_t i = 0; i < 6; ++i) {
+            Nifti nifti;
+            nifti.qformCode = 1;
+            nifti.qform[i] = bad;
+            CHECK_THAT(errorWith(nifti), Contains("not finite"));
+        }
+        for (std::size_t i = 0; i < 12; ++i) {
+            Nifti nifti;
+            nifti.sformCode = 1;
+            nifti.sform = {1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0};
+            nifti.sform[i] = bad;
+            CHECK_THAT(errorWith(nifti), Contains("not finite"));
+            nifti.sformCode = 0; // not used: not looked at
+            CHECK(opens(nifti));
+        }
+        Nifti nifti;
+        nifti.pixdim[3] = bad;
+        CHECK_THAT(errorWith(nifti), Contains("spacing of axis 2"));
+        nifti = Nifti{};
+        nifti.pixdim[0] = nifti.pixdim[4] = nifti.pixdim[7] = bad; // of no axis in space
+        CHECK(opens(nifti));
+        nifti.slope = 2;
+        nifti.intercept = bad;
+        CHECK_THAT(errorWith(nifti), Contains("scl_inter"));
+        nifti = Nifti{};
+        nifti.voxOffset = bad;
+        CHECK_THAT(errorWith(nifti), Contains("place of the data"));
+    }
+    Nifti skewed;
+    skewed.sformCode = 1;
+    skewed.sform = {1, 1, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0};
+    CHECK_THAT(errorOf(folder.write("b.nii", skewed.header() + data)), Contains("right angles"));
+}
+
+TEST_CASE("a header that does not end is refused", "[bad-input]") {
+    const TempFolder folder;
+    const std::string lengthy(3'000'000, 'x');
+    CHECK_THAT(errorOf(folder.write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 1\nsizes: 2\nencoding: raw\n# " +
+                                                  lengthy + "\n\nab")),
+               Contains("does not end"));
+    CHECK_THAT(errorOf(folder.write("a.mha", "NDims = 1\nDimSize = 2\nElementType = MET_UCHAR\nComment = " + lengthy +
+                                                 "\nElementDataFile = LOCAL\nab")),
+               Contains("does not end"));
+}
+
+TEST_CASE("headers whose fields exclude each other are refused", "[bad-input]") {
+    const TempFolder folder;
+    const std::string data = "12345678";
+    const auto ofMeta = [&](const std::string& fields) {
+        return errorOf(folder.write("a.mha", mha("DimSize = 2 2 2\n" + fields, data)));
+    };
+    CHECK_THAT(ofMeta("CompressedData = True\nBinaryData = False"), Contains("both text and compressed"));
+    CHECK_THAT(ofMeta("BinaryDataByteOrderMSB = True\nElementByteOrderMSB = False"), Contains("two byte orders"));
+    CHECK_THAT(ofMeta("HeaderSize = 20"), Contains("within the header"));
+    CHECK_THAT(ofMeta("HeaderSize = -1\nBinaryData = False"), Contains("where the data begin"));
+    CHECK_THAT(ofMeta("HeaderSize = -1\nCompressedData = True"), Contains("where the data begin"));
+    CHECK_THAT(ofMeta("HeaderSize = 9223372036854775807"), Contains("0 of 8 bytes"));
+    CHECK_THAT(ofMeta("DimSize = 2 2 1"), Contains("twice"));
+    CHECK_THAT(ofMeta("Offset = 1 2"), Contains("2 of 3 numbers as Offset"));
+    CHECK_THAT(ofMeta("Offset = 1 2 nan"), Contains("'nan'"));
+    CHECK_THAT(ofMeta("TransformMatrix = 1 0 0 0 1 0 0 0"), Contains("8 of 9"));
+    const auto ofNrrd = [&](const std::string& fields) {
+        return errorOf(folder.write("a.nrrd", nrrd("sizes: 2 2 2\n" + fields, data)));
+    };
+    CHECK_THAT(ofNrrd("type: short"), Contains("'type' twice"));
+    CHECK_THAT(ofNrrd("spacings: 1 2 3\nspace directions: (1,0,0) (0,1,0) (0,0,3)"),
+               Contains("two spacings of axis 1"));
+    CHECK_THAT(ofNrrd("kinds: domain domain"), Contains("2 words for 3 axes"));
+    CHECK_THAT(ofNrrd("kinds: vector vector domain"), Contains("more than one axis"));
+    CHECK_THAT(ofNrrd("kinds: 3-color domain domain"), Contains("2 entries, not 3"));
+    CHECK_THAT(ofNrrd("kinds: sort domain domain"), Contains("'sort'"));
+    CHECK_THAT(ofNrrd("space: outer"), Contains("'outer'"));
+    CHECK_THAT(ofNrrd("space origin: (1,nan,2)"), Contains("not a vector"));
+    CHECK_THAT(ofNrrd("space origin: (1,2"), Contains("not a vector"));
+    CHECK_THAT(ofNrrd("spacings: 1 1 1\naxis mins: 1 nan 2"), Contains("axis 1 begins"));
+    // Both together pass 2⁶⁴ and, unchecked, would come out as a small number.
+    CHECK_THAT(ofNrrd("line skip: 9223372036854775807\nbyte skip: 9223372036854775807"), Contains("0 of 8 bytes"));
+    CHECK_THAT(errorOf(folder.write("b.nrrd", "NRRD0004\ntype: short\ndimension: 1\nsizes: 2\nencoding: raw\n\nabcd")),
+               Contains("no byte order"));
+    CHECK_THAT(errorOf(folder.write("c.nrrd", "NRRD0004\ntype: short\ndimension: 1\nsizes: 2\nendian: odd\n"
+                                              "encoding: raw\n\nabcd")),
+               Contains("'odd'"));
+    CHECK_THAT(errorOf(folder.write("d.nrrd", "NRRD0004\ntype: uint8\ndimension: 1\nsizes: 2\nkinds: vector\n"
+                                              "encoding: raw\n\nab")),
+               Contains("no axis lies in space"));
+}
+
+TEST_CASE("written numbers that their type cannot hold are refused", "[bad-input]") {
+    const TempFolder folder;
+    for (const char* bad : {"256", "-1", "1e30", "nan"}) {
+        CAPTURE(bad);
+        const std::string text = std::string("7 ") + bad;
+        CHECK_THAT(
+            errorOf(folder.write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 1\nsizes: 2\nencoding: text\n\n" + text)),
+            Contains("does not fit") && Contains(bad));
+        CHECK_THAT(errorOf(folder.write("a.mha", "NDims = 1\nDimSize = 2\nElementType = MET_UCHAR\nBinaryData = False\n"
+                                                 "ElementDataFile = LOCAL\n" +
+                                                     text)),
+                   Contains("does not fit") && Contains(bad));
+    }
+    CHECK_THAT(errorOf(folder.write("b.nrrd", "NRRD0004\ntype: float\ndimension: 1\nsizes: 2\nencoding: text\n\n"
+                                              "7 1e39")),
+               Contains("'1e39' does not fit"));
+}
+
+TEST_CASE("a data file that is no file is refused without being opened", "[bad-input]") {
+    const TempFolder folder;
+    std::filesystem::create_directory(folder.path("folder"));
+    REQUIRE(mkfifo(folder.path("pipe").c_str(), 0600) == 0); // opening it would wait for a writer
+    for (const std::string& data : {std::string("pipe"), std::string("/dev/zero"), std::string("folder"),
+                                    std::string("."), std::string(500, 'n')}) {
+        CAPTURE(data);
+        const std::string fields = "type: uint8\ndimension: 1\nsizes: 2\nencoding: raw\n";
+        const std::string expected = data.size() == 500              ? "cannot read"
+                                     : data[0] == 'f' || data == "." ? "folder"
+                                                                     : "not a regular";
+        CHECK_THAT(errorOf(folder.write("a.nhdr", "NRRD0004\n" + fields + "data file: " + data + "\n")),
+                   Contains(expected));
+        CHECK_THAT(errorOf(folder.write(
+                       "a.mhd", "NDims = 1\nDimSize = 2\nElementType = MET_UCHAR\nElementDataFile = " + data + "\n")),
+                   Contains(expected));
+    }
 }

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "volume/loader.h"
 #include "volume_files.h"
@@ -69,6 +70,13 @@ TEST_CASE("a field of floats is written as NRRD, NaN and infinity included", "[f
     CHECK(std::isinf(read.value(3)));
     CHECK(read.invalidCount() == 2);
     CHECK_THROWS_AS(writeNrrd(geometry, field, folder.path("none/f.nrrd")), FileError);
+    CHECK_THROWS_WITH(writeNrrd(geometry, field, "/dev/full"), Contains("No space left"));
+    const std::size_t bytes = std::filesystem::file_size(folder.path("f.nrrd")), files = folder.fileCount();
+    for (const std::size_t room : {std::size_t{0}, bytes / 2, bytes - 1}) {
+        const FullDisk disk(room);
+        CHECK_THROWS_AS(writeNrrd(geometry, field, folder.path("g.nrrd")), FileError);
+    }
+    CHECK(folder.fileCount() == files);
 }
 
 TEST_CASE("data larger than the packing buffer reads back", "[formats]") {
@@ -179,6 +187,212 @@ TEST_CASE("NIfTI plain and compressed, its slope applied", "[formats]") {
     const Volume scaled = load(folder.write("b.nii", nifti.header() + bytesOf(values)));
     CHECK(scaled.value(0) == -1.0);
     CHECK(scaled.value(23) == 10.5); // 0.5 · 23 − 1
+}
+
+TEST_CASE("the scaling of NIfTI reaches every component, but not colours", "[formats]") {
+    // Two voxels (1 x 2 x 1) of c components with the stored values 0, 1, 2, …, scaled to 2 · stored + 10.
+    const TempFolder folder;
+    Nifti nifti;
+    nifti.slope = 2;
+    nifti.intercept = 10;
+    const auto values = [&](const Nifti& header, const std::string& data, int component) {
+        VolumeSource source;
+        source.path = folder.write("a.nii", header.header() + data);
+        source.component = component;
+        const Volume volume = loadVolume(source);
+        REQUIRE(volume.size() == 2);
+        return std::vector<double>{volume.value(0), volume.value(1)};
+    };
+    nifti.dim = {3, 1, 2, 1, 1, 1, 1, 1};
+    nifti.datatype = 32; // complex: re im re im, both scaled
+    const std::string complex = bytesOf(std::vector<float>{0, 1, 2, 3});
+    CHECK(values(nifti, complex, 0) == std::vector<double>{10, 14});
+    CHECK(values(nifti, complex, 1) == std::vector<double>{12, 16});
+    nifti.datatype = 1792;
+    CHECK(values(nifti, bytesOf(std::vector<double>{0, 1, 2, 3}), 1) == std::vector<double>{12, 16});
+    nifti.datatype = 128; // RGB: NIfTI scales no colours
+    CHECK(values(nifti, std::string("\0\1\2\3\4\5", 6), 2) == std::vector<double>{2, 5});
+    nifti.datatype = 2304; // RGBA
+    CHECK(values(nifti, std::string("\0\1\2\3\4\5\6\7", 8), 3) == std::vector<double>{3, 7});
+    // A vector of five dimensions: its components are the slowest axis, so that component c has the values 2c, 2c + 1.
+    nifti.dim = {5, 1, 2, 1, 1, 3, 1, 1};
+    nifti.intent = 1007;
+    nifti.datatype = 4;
+    const std::string vector = bytesOf(std::vector<std::int16_t>{0, 1, 2, 3, 4, 5});
+    CHECK(values(nifti, vector, 0) == std::vector<double>{10, 12});
+    CHECK(values(nifti, vector, 2) == std::vector<double>{18, 20});
+    nifti.slope = 0; // no scaling, whatever scl_inter says
+    CHECK(values(nifti, vector, 1) == std::vector<double>{2, 3});
+    // A symmetric matrix in NIfTI's order xx xy yy xz yz zz; component 2 is xz, entry 3.
+    nifti.dim[5] = 6;
+    nifti.intent = 1005;
+    CHECK(values(nifti, bytesOf(std::vector<std::int16_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), 2) ==
+          std::vector<double>{6, 7});
+}
+
+TEST_CASE("NIfTI floats that are no numbers are invalid voxels", "[formats]") {
+    const TempFolder folder;
+    Nifti nifti;
+    nifti.dim = {3, 2, 2, 1, 1, 1, 1, 1};
+    nifti.datatype = 16;
+    const std::string data = bytesOf(std::vector<float>{1, NAN, INFINITY, -4});
+    for (const float slope : {0.0f, 1.0f, NAN, INFINITY, 0.5f}) {
+        CAPTURE(slope);
+        nifti.slope = slope;
+        nifti.intercept = slope == 0.5f ? 1.0f : 0.0f; // 0.5 · 1 + 1 = 1.5; 0.5 · (−4) + 1 = −1
+        const Volume volume = load(folder.write("a.nii", nifti.header() + data));
+        CHECK(volume.invalidCount() == 2);
+        CHECK(!volume.isValid(1));
+        CHECK(!volume.isValid(2));
+        CHECK(volume.dataRange() == (slope == 0.5f ? ValueRange{-1, 1.5} : ValueRange{-4, 1}));
+    }
+    nifti.intercept = 7; // no slope: nothing is added either
+    for (const float slope : {0.0f, NAN}) {
+        nifti.slope = slope;
+        CHECK(load(folder.write("b.nii", nifti.header() + data)).value(0) == 1);
+    }
+}
+
+TEST_CASE("NIfTI says where the volume lies", "[formats]") {
+    // NIfTI's x goes to the right and y to the front, ours to the left and back: both signs change.
+    const TempFolder folder;
+    Nifti nifti;
+    nifti.qform = {0, 0, 1, 10, 20, 30}; // half a turn about z: together with the signs, the grid's own axes
+    nifti.sform = {-1, 0, 0, 5, 0, -2, 0, 6, 0, 0, 3, 7};
+    const std::string data(24, 'x');
+    const auto read = [&] { return load(folder.write("a.nii", nifti.header() + data)); };
+    CHECK(read().geometry().origin == Vec3(0, 0, 0));
+    nifti.qformCode = 1;
+    CHECK(read().geometry().origin == Vec3(-10, -20, 30));
+    CHECK(read().notices.size() == 1); // 24 equal voxels, but no turned axes
+    nifti.sformCode = 2;               // aligned to something else: qform stays
+    CHECK(read().geometry().origin == Vec3(-10, -20, 30));
+    nifti.sformCode = 1;
+    CHECK(read().geometry().origin == Vec3(-5, -6, 7));
+    CHECK(read().notices.size() == 1);
+    nifti.units = 1; // metres
+    CHECK(read().geometry().origin == Vec3(-5000, -6000, 7000));
+    CHECK(read().geometry().spacing == Vec3(1000, 2000, 3000));
+    nifti.units = 2;
+    nifti.sform[0] = 1; // x goes to the right
+    CHECK(read().notices.size() == 2);
+    const Volume packed = load(folder.write("b.nii", gzipped(nifti.header() + data))); // .gz left out of the name
+    CHECK(packed.dims() == Int3(2, 3, 4));
+    CHECK(packed.value(23) == 'x');
+}
+
+TEST_CASE("compressed MetaImage data tell themselves where they end", "[formats]") {
+    const TempFolder folder;
+    const std::vector<std::uint16_t> values{1, 258, 3, 65535};
+    const std::string packed = zlibbed(bytesOf(values));
+    const std::string size = std::to_string(packed.size());
+    const std::string head = "ObjectType = Image\nNDims = 3\nDimSize = 2 1 2\nElementType = MET_USHORT\n"
+                             "CompressedData = True\n";
+    const std::string local = head + "ElementDataFile = LOCAL\n" + packed;
+    folder.write("data.zraw", packed);
+    folder.write("late.zraw", "1234567" + packed);
+    const std::string beside = "ElementDataFile = data.zraw\n", late = "ElementDataFile = late.zraw\n";
+    // HeaderSize counts from the beginning of the file, here with filling after a shorter header.
+    const std::string skipping = head + "HeaderSize = 300\nElementDataFile = LOCAL\n";
+    const std::string paths[] = {
+        folder.write("a.mha", local),
+        folder.write("b.mha", head + "CompressedDataSize = 3\nElementDataFile = LOCAL\n" + packed),
+        folder.write("c.mha", head + "CompressedDataSize = " + size + "\nElementDataFile = LOCAL\n" + packed),
+        folder.write("d.mha", skipping + std::string(300 - skipping.size(), '.') + packed),
+        folder.write("e.mhd", head + beside),
+        folder.write("f.mhd", head + "CompressedDataSize = 1\n" + beside),
+        folder.write("g.mhd", head + "HeaderSize = 7\n" + late),
+        folder.write("h.mhd", head + "HeaderSize = 7\nCompressedDataSize = " + size + "\n" + late),
+        folder.write("i.mhd", head + "HeaderSize = -1\nCompressedDataSize = " + size + "\n" + late)};
+    for (const std::string& path : paths) {
+        CAPTURE(path);
+        CHECK(samplesOf<std::uint16_t>(load(path)) == values);
+    }
+}
+
+TEST_CASE("numbers written out have no byte order, and may have several components", "[formats]") {
+    const TempFolder folder;
+    const std::string nrrd = "NRRD0004\ntype: short\nendian: big\ndimension: 4\nsizes: 2 2 1 1\n"
+                             "kinds: vector domain domain domain\nencoding: text\n\n1 -2\n300 4\n";
+    const std::string meta = "ObjectType = Image\nNDims = 3\nDimSize = 2 1 1\nElementNumberOfChannels = 2\n"
+                             "ElementType = MET_SHORT\nElementByteOrderMSB = True\nBinaryData = False\n"
+                             "ElementDataFile = LOCAL\n1 -2\n300 4\n";
+    for (const std::string& path : {folder.write("a.nrrd", nrrd), folder.write("a.mha", meta)}) {
+        CAPTURE(path);
+        VolumeSource source;
+        source.path = path;
+        CHECK(samplesOf<std::int16_t>(loadVolume(source)) == std::vector<std::int16_t>{1, 300});
+        source.component = 1;
+        CHECK(samplesOf<std::int16_t>(loadVolume(source)) == std::vector<std::int16_t>{-2, 4});
+    }
+    const std::string flat = "NRRD0004\nendian: big\ndimension: 1\nsizes: 3\n";
+    CHECK(samplesOf<float>(load(folder.write("b.nrrd", flat + "type: float\nencoding: ascii\n\n0.5 nan 3e2"))).back() ==
+          300);
+    CHECK(load(folder.write("c.nrrd", flat + "type: int64\nencoding: ascii\n\n-1 9007199254740992 3.0")).value(1) ==
+          9007199254740992.0);
+    // Hexadecimal digits stand for bytes, which have an order: 0x0102 = 258.
+    CHECK(samplesOf<std::uint16_t>(
+              load(folder.write("d.nrrd", flat + "type: ushort\nencoding: hex\n\n0102\n00fF 0000"))) ==
+          std::vector<std::uint16_t>{258, 255, 0});
+}
+
+TEST_CASE("a component of an NRRD may lie along any axis", "[formats]") {
+    // 2 x 2 x 1 voxels of 3 components; the value is 100 · component + 10 · y + x.
+    const TempFolder folder;
+    const auto value = [](int c, int y, int x) { return static_cast<std::uint8_t>(100 * c + 10 * y + x); };
+    std::vector<std::uint8_t> first, middle, last;
+    for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 2; ++x)
+            for (int c = 0; c < 3; ++c) first.push_back(value(c, y, x));
+    for (int y = 0; y < 2; ++y)
+        for (int c = 0; c < 3; ++c)
+            for (int x = 0; x < 2; ++x) middle.push_back(value(c, y, x));
+    for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < 2; ++y)
+            for (int x = 0; x < 2; ++x) last.push_back(value(c, y, x));
+    const auto file = [&](const char* name, const std::string& fields, const std::vector<std::uint8_t>& data) {
+        return folder.write(name, "NRRD0004\ntype: uint8\ndimension: 3\n" + fields + "\nencoding: gzip\n\n" +
+                                      gzipped(bytesOf(data)));
+    };
+    for (const std::string& path :
+         {file("a.nrrd", "sizes: 3 2 2\nkinds: vector domain domain", first),
+          file("b.nrrd", "sizes: 2 3 2\nkinds: domain list domain", middle),
+          file("c.nrrd", "sizes: 2 2 3\nkinds: domain domain RGB-color", last),
+          file("d.nrrd", "sizes: 2 2 3\nspace dimension: 2\nspace directions: (1,0) (0,1) none", last)}) {
+        VolumeSource source;
+        source.path = path;
+        for (const int c : {0, 1, 2}) {
+            CAPTURE(path, c);
+            source.component = c;
+            const Volume volume = loadVolume(source);
+            CHECK(volume.dims() == Int3(2, 2, 1));
+            CHECK(samplesOf<std::uint8_t>(volume) ==
+                  std::vector<std::uint8_t>{value(c, 0, 0), value(c, 0, 1), value(c, 1, 0), value(c, 1, 1)});
+        }
+    }
+}
+
+TEST_CASE("header lines of any length are read", "[formats]") {
+    const TempFolder folder;
+    const std::string lengthy(100'000, 'x');
+    const std::string head = "NRRD0004\ntype: uint8\ndimension: 1\n";
+    for (const std::string& line : {"# " + lengthy, lengthy + ":=" + lengthy, "content: " + lengthy, lengthy + ": 1"})
+        CHECK(load(folder.write("a.nrrd", head + line + "\nsizes: 2\nencoding: raw\n\nab")).value(1) == 'b');
+    const std::string meta = "ObjectType = Image\nNDims = 1\nDimSize = 2\nElementType = MET_UCHAR\n";
+    for (const std::string& line : {"Comment = " + lengthy, lengthy + " = 1", "Modality = " + lengthy})
+        CHECK(load(folder.write("a.mha", meta + line + "\nElementDataFile = LOCAL\nab")).value(1) == 'b');
+}
+
+TEST_CASE("bytes and lines before NRRD data are left out", "[formats]") {
+    const TempFolder folder;
+    const std::string head = "NRRD0004\ntype: uint8\ndimension: 1\nsizes: 2\n";
+    CHECK(load(folder.write("a.nrrd", head + "encoding: gzip\nbyte skip: 3\n\n" + gzipped("123ab"))).value(0) == 'a');
+    CHECK(load(folder.write("b.nrrd", head + "encoding: gzip\nbyte skip: -1\n\n" + gzipped("12345ab"))).value(0) ==
+          'a');
+    CHECK(load(folder.write("c.nrrd", head + "encoding: gzip\nline skip: 1\n\nxyz\n" + gzipped("ab"))).value(0) == 'a');
+    CHECK(load(folder.write("d.nrrd", head + "encoding: text\nline skip: 1\nbyte skip: 2\n\nxyz\nqq7 8")).value(0) ==
+          7);
+    CHECK(load(folder.write("e.nrrd", head + "encoding: hex\nbyte skip: 1\n\nx6162")).value(0) == 'a');
 }
 
 TEST_CASE("numbers have a point in every locale", "[formats]") {
@@ -319,4 +533,26 @@ TEST_CASE("loading stops when it is asked to", "[formats]") {
 
 TEST_CASE("file dialogs get every suffix", "[formats]") {
     CHECK(volumeFilePatterns() == std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz"});
+}
+
+TEST_CASE("the files of a volume are the one named and the one with its data", "[volume]") {
+    const TempFolder folder;
+    using Paths = std::vector<std::string>;
+    const auto files = [](const std::string& path, std::optional<RawLayout> raw = {}) {
+        VolumeSource source;
+        source.path = path;
+        source.raw = raw;
+        return filesOf(source);
+    };
+    const std::string nhdr = folder.write("a.nhdr", "NRRD0004\ntype: uchar\ndata file: ./a.raw\n\n");
+    const std::string mhd = folder.write("a.mhd", "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n"
+                                                  "ElementDataFile = /elsewhere/a.raw\n");
+    const std::string nrrd = folder.write("a.nrrd", "NRRD0004\ntype: uchar\n\n");
+    CHECK(files(nhdr) == Paths{nhdr, folder.path("./a.raw")});
+    CHECK(files(nhdr, RawLayout{}) == Paths{nhdr});
+    CHECK(files(mhd) == Paths{mhd, "/elsewhere/a.raw"});
+    CHECK(files(nrrd) == Paths{nrrd, nrrd});
+    CHECK(files("missing.nrrd") == Paths{"missing.nrrd"});
+    CHECK(files("a.unknown") == Paths{"a.unknown"});
+    CHECK(files("sample:knee").empty());
 }

@@ -52,6 +52,10 @@ struct Nifti {
     float voxOffset = 352, slope = 0, intercept = 0;
     std::int32_t size = 348;
     std::string magic = "n+1";
+    std::int16_t intent = 0, qformCode = 0, sformCode = 0;
+    char units = 0;
+    std::array<float, 6> qform{};  ///< quaternion b, c, d, then offsets
+    std::array<float, 12> sform{}; ///< row by row
 
     std::string header() const {
         std::string bytes(352, '\0');
@@ -66,6 +70,12 @@ struct Nifti {
         put(108, &voxOffset, 4);
         put(112, &slope, 4);
         put(116, &intercept, 4);
+        put(68, &intent, 2);
+        put(123, &units, 1);
+        put(252, &qformCode, 2);
+        put(254, &sformCode, 2);
+        put(256, qform.data(), 24);
+        put(280, sform.data(), 48);
         put(344, magic.data(), magic.size());
         return bytes;
     }

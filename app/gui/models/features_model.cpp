@@ -1,34 +1,32 @@
 #include "models/features_model.h"
 
 #include "axis_ticks.h"
+#include "store/edits.h"
 #include "tf_edit.h"
 #include "theme.h"
 
 namespace pellucid::gui {
 
-FeaturesModel::FeaturesModel(Document& document, QObject* parent) : QAbstractTableModel(parent), m_document(document) {
-    connect(&document, &Document::featuresChanged, this, &FeaturesModel::reset);
-    connect(&document, &Document::volumeChanged, this, [this] { refresh(Range, Range); });
-    connect(&document, &Document::tfChanged, this, [this] {
-        m_opacities = featureOpacities(m_document.tf());
-        refresh(Name, Opacity);
-    });
-    connect(&document, &Document::measuresChanged, this, [this] { refresh(Visibility, Vws); });
-    connect(&document, &Document::targetsChanged, this, [this] { refresh(Target, Target); });
-    reset();
+FeaturesModel::FeaturesModel(SessionStore& store, Results& results, QObject* parent)
+    : QAbstractTableModel(parent), m_store(store), m_results(results) {
+    connect(&store, &SessionStore::changed, this, &FeaturesModel::follow);
+    connect(&results, &Results::changed, this, [this] { refresh(Visibility, Vws); });
+    follow({}, store.scene());
 }
 
-void FeaturesModel::reset() {
-    const int rows = static_cast<int>(m_document.tf().features.size());
-    if (rows == m_rows) {
-        m_opacities = featureOpacities(m_document.tf());
-        refresh(Name, Target);
+void FeaturesModel::follow(const Scene& before, const Scene& after) {
+    const int rows = static_cast<int>(after.tf.features.size());
+    if (rows != m_rows) {
+        beginResetModel();
+        m_rows = rows;
+        m_opacities = featureOpacities(after.tf);
+        endResetModel();
         return;
     }
-    beginResetModel();
-    m_rows = rows;
-    m_opacities = featureOpacities(m_document.tf());
-    endResetModel();
+    if (before.volume == after.volume && before.tf == after.tf && before.session.goals.isSame(after.session.goals))
+        return;
+    m_opacities = featureOpacities(after.tf);
+    refresh(Name, Target);
 }
 
 void FeaturesModel::refresh(Column first, Column last) {
@@ -41,10 +39,11 @@ int FeaturesModel::columnCount(const QModelIndex& parent) const { return parent.
 QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
     if (!checkIndex(index, CheckIndexOption::IndexIsValid)) return {};
     const auto f = static_cast<std::size_t>(index.row());
-    // Between a change of the document and its signal the rows are those of before.
-    if (f >= m_document.tf().features.size() || f >= m_opacities.size()) return {};
-    const Feature& feature = m_document.tf().features[f];
-    const auto& measures = m_document.measures();
+    const Scene& scene = m_store.scene();
+    // Between a change of the scene and its signal the rows are those of before.
+    if (f >= scene.tf.features.size() || f >= m_opacities.size()) return {};
+    const Feature& feature = scene.tf.features[f];
+    const Measures* const measures = m_results.measures();
     const bool measured = measures && f < measures->features.size();
 
     if (role == Qt::TextAlignmentRole && index.column() > Range) return QVariant(Qt::AlignRight | Qt::AlignVCenter);
@@ -57,8 +56,8 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
     case Name:
         return QString::fromStdString(feature.name);
     case Range: {
-        if (!m_document.hasVolume()) return {};
-        const Volume& volume = *m_document.volume();
+        if (!m_store.hasVolume()) return {};
+        const Volume& volume = *scene.volume;
         const double span = volume.range().hi - volume.range().lo;
         return QStringLiteral("%1 – %2").arg(numberText(volume.valueOfIntensity(feature.a), span),
                                              numberText(volume.valueOfIntensity(feature.b), span));
@@ -75,8 +74,7 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
         number = measures->features[f].vws;
         break;
     case Target:
-        if (f >= m_document.targets().size()) return {};
-        number = m_document.targets()[f];
+        number = scene.targets().at(f);
         break;
     default:
         return {};
@@ -127,39 +125,42 @@ bool FeaturesModel::setData(const QModelIndex& index, const QVariant& value, int
     if (index.column() == Name && role == Qt::DecorationRole) {
         const auto color = value.value<QColor>();
         if (!color.isValid()) return false;
-        m_document.setTf(withFeatureColor(m_document.tf(), index.row(), rgbFromColor(color)), tr("Colour of feature"));
+        m_store.commit();
+        editTf(m_store, withFeatureColor(m_store.scene().tf, index.row(), rgbFromColor(color)),
+               tr("Colour of feature"));
         return true;
     }
     if (role != Qt::EditRole) return false;
     if (index.column() == Name) {
         const QString name = value.toString().trimmed();
         if (name.isEmpty()) return false;
-        m_document.setTf(withFeatureName(m_document.tf(), index.row(), name.toStdString()), tr("Rename feature"));
+        m_store.commit();
+        editTf(m_store, withFeatureName(m_store.scene().tf, index.row(), name.toStdString()), tr("Rename feature"));
         return true;
     }
     bool isNumber = false;
     const double number = value.toDouble(&isNumber);
     if (!isNumber || !(number >= 0 && number <= 1)) return false;
     if (index.column() == Target) {
-        m_document.setTarget(index.row(), number);
+        editTarget(m_store, index.row(), number, tr("Target of feature"), QStringLiteral("target-%1").arg(index.row()));
         return true;
     }
     if (index.column() != Opacity) return false;
     previewOpacity(index.row(), number);
-    m_document.commitPreview(tr("Opacity of feature"), QStringLiteral("opacity-%1").arg(index.row()));
+    m_store.commit(QStringLiteral("opacity-%1").arg(index.row()));
     return true;
 }
 
 void FeaturesModel::previewOpacity(int row, double opacity) {
     // From the shape before the preview every time: a shape that has been scaled to 0 is lost.
     try {
-        m_document.previewTf(withFeatureOpacity(m_document.committedTf(), row, opacity));
+        previewTf(m_store, withFeatureOpacity(m_store.committed().tf, row, opacity), tr("Opacity of feature"));
     } catch (const Error&) {
-        m_document.cancelPreview(); // the feature has no point that could be raised
+        m_store.cancel(); // the feature has no point that could be raised
     }
 }
 
-void FeaturesModel::endPreview() { m_document.commitPreview(tr("Opacity of feature")); }
+void FeaturesModel::endPreview() { m_store.commit(); }
 
 void FeaturesModel::setReadOnly(bool on) {
     m_readOnly = on;

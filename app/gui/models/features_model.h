@@ -3,18 +3,20 @@
 
 #include <QAbstractTableModel>
 
-#include "models/document.h"
+#include <vector>
+
+#include "results.h"
+#include "store/session_store.h"
 
 namespace pellucid::gui {
 
-/// One row per feature of the document's transfer function. Name, opacity and target can be edited; opacity and name
-/// become undo steps.
+/// One row per feature of the scene's transfer function. Name, opacity and target can be edited; each is an undo step.
 class FeaturesModel : public QAbstractTableModel {
     Q_OBJECT
 public:
     enum Column { Name, Range, Opacity, Visibility, Vws, Target, ColumnCount };
 
-    explicit FeaturesModel(Document& document, QObject* parent = nullptr);
+    FeaturesModel(SessionStore& store, Results& results, QObject* parent = nullptr);
 
     int rowCount(const QModelIndex& parent = {}) const override;
     int columnCount(const QModelIndex& parent = {}) const override;
@@ -30,10 +32,11 @@ public:
     void setReadOnly(bool on);
 
 private:
-    void reset();
+    void follow(const Scene& before, const Scene& after);
     void refresh(Column first, Column last);
 
-    Document& m_document;
+    SessionStore& m_store;
+    Results& m_results;
     int m_rows = 0;
     std::vector<double> m_opacities;
     bool m_readOnly = false;

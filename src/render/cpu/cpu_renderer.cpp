@@ -66,9 +66,7 @@ public:
                  const JobControl& job) override {
         settings.validate();
         camera.validate(m_volume->geometry(), "camera");
-        const Feature* only =
-            settings.onlyFeature < 0 ? nullptr : &tf.features.at(static_cast<std::size_t>(settings.onlyFeature));
-        const SegmentTable table(tf, only);
+        const SegmentTable table(tf, settings.featureAlone(tf));
 
         Image image(settings.width, settings.height);
         std::atomic<int> done = 0;

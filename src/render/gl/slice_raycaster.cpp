@@ -137,19 +137,17 @@ struct SliceRaycaster::Impl {
         return *slot;
     }
 
-    /// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); `onlyFeature` leaves the
-    /// other intensities transparent.
-    void fillTable(int onlyFeature) {
-        if (tableFeature == onlyFeature) return;
-        if (onlyFeature >= static_cast<int>(tf->features.size()))
-            throw Error("there is no feature number " + std::to_string(onlyFeature), "transfer function",
-                        "it has " + std::to_string(tf->features.size()));
+    /// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); a feature alone
+    /// leaves the other intensities transparent.
+    void fillTable(const RenderSettings& settings) {
+        if (tableFeature == settings.onlyFeature) return;
+        const Feature* const only = settings.featureAlone(*tf);
         const TfTable made = makeTfTable(*tf, kTableSize);
         std::vector<float> values(static_cast<std::size_t>(8 * kTableSize));
         glm::dvec4 integral(0), before(0);
         for (std::size_t i = 0; i < made.rgba.size(); ++i) {
             const double s = static_cast<double>(i) / (kTableSize - 1);
-            const bool drawn = onlyFeature < 0 || tf->features[static_cast<std::size_t>(onlyFeature)].contains(s);
+            const bool drawn = only == nullptr || only->contains(s);
             const double tau = drawn ? static_cast<double>(made.opticalDepth[i]) : 0.0;
             const auto& c = made.rgba[i];
             const glm::dvec4 entry(tau * Vec3(c[0], c[1], c[2]), tau);
@@ -162,7 +160,7 @@ struct SliceRaycaster::Impl {
         }
         tableFeature.reset();
         table.fill(values, 4);
-        tableFeature = onlyFeature;
+        tableFeature = settings.onlyFeature;
     }
 
     void resize(glm::ivec2 size);
@@ -326,7 +324,7 @@ void SliceRaycaster::draw(const Camera& camera, const RenderSettings& settings, 
     camera.validate(m_impl->volume->geometry(), "camera");
     const Tile tile = tileOf(settings, target);
     throwOnGlError("preparing to draw");
-    m_impl->fillTable(settings.onlyFeature);
+    m_impl->fillTable(settings);
 
     const auto scaled = [&](int pixels) {
         return std::max(1, static_cast<int>(std::ceil(pixels * target.resolutionScale)));

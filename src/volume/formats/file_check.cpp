@@ -1,18 +1,14 @@
 #include "volume/formats/file_check.h"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <utility>
 
-#include <zlib.h>
-
-#include "base/check.h"
 #include "base/error.h"
+#include "volume/formats/byte_source.h"
 
 namespace pellucid {
 
@@ -24,6 +20,8 @@ std::uint64_t readableFileBytes(const std::string& path) {
     if (status.type() == fs::file_type::not_found) throw FileError("no such file", path, "check the name");
     if (status.type() == fs::file_type::directory)
         throw FileError("this is a folder, not a file", path, "name a file in it");
+    if (status.type() == fs::file_type::none)
+        throw FileError("cannot read the file", path, "check its name and its permissions");
     if (status.type() != fs::file_type::regular)
         throw FileError("this is not a regular file", path, "copy the data into a file first");
     const std::uintmax_t bytes = fs::file_size(path, ec);
@@ -120,72 +118,35 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
     }
 }
 
-void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
-                     const JobControl& job) {
-    std::ifstream in(path, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(start));
-    z_stream stream{};
-    PELLUCID_CHECK(inflateInit2(&stream, zlib ? MAX_WBITS + 32 : MAX_WBITS + 16) == Z_OK);
-    const struct End {
-        z_stream& stream;
-        ~End() { inflateEnd(&stream); }
-    } end{stream};
-    std::vector<unsigned char> packed(1u << 18), unpacked(1u << 20);
+std::uint64_t requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                              const JobControl& job, bool toTheEnd) {
+    using End = InflatedBytes::End;
+    InflatedBytes bytes(path, start, zlib, job);
+    std::vector<char> unpacked(1u << 20);
     std::uint64_t yield = 0;
-    int status = Z_OK;
     // Beyond what is wanted nothing matters, so that a stream which never ends cannot hold us up.
-    while (yield <= wanted) {
-        if (stream.avail_in == 0) {
-            job.throwIfStopped();
-            in.read(reinterpret_cast<char*>(packed.data()), static_cast<std::streamsize>(packed.size()));
-            stream.next_in = packed.data();
-            stream.avail_in = static_cast<uInt>(in.gcount());
-            if (stream.avail_in == 0) break;
-        }
-        // Only another gzip member may follow a finished one; other bytes are left alone.
-        if (status == Z_STREAM_END && (zlib || *stream.next_in != 0x1f || inflateReset(&stream) != Z_OK)) break;
-        stream.next_out = unpacked.data();
-        stream.avail_out = static_cast<uInt>(unpacked.size());
-        status = inflate(&stream, Z_NO_FLUSH);
-        yield += unpacked.size() - stream.avail_out;
-        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) break;
-    }
-    const bool whole = status == Z_STREAM_END || yield > wanted;
-    if (yield >= wanted && whole) return;
-    if (yield >= wanted && status != Z_OK && status != Z_BUF_ERROR)
+    while ((yield <= wanted || toTheEnd) && bytes.end() == End::None)
+        yield += bytes.read(unpacked.data(), unpacked.size());
+    if ((yield > wanted && !toTheEnd) || (yield >= wanted && bytes.end() == End::Whole)) return yield;
+    const bool damaged = bytes.end() == End::Damaged;
+    if (yield >= wanted && damaged)
         throw FileError("the checksum of the compressed data is wrong", path, "copy or write the file again");
     if (yield >= wanted) throw FileError("the compressed data is cut off at its end", path, "copy the file again");
-    const bool ended = status == Z_OK || status == Z_BUF_ERROR || status == Z_STREAM_END;
-    throw FileError("the compressed data " + std::string(ended ? "ends" : "is damaged") + " after " +
+    throw FileError("the compressed data " + std::string(damaged ? "is damaged" : "ends") + " after " +
                         std::to_string(yield) + " of " + std::to_string(wanted) + " bytes",
                     path, "copy or write the file again");
 }
 
 void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job) {
-    std::ifstream in(path, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(start));
+    TextWords words(path, start, job);
     std::string word;
     std::uint64_t count = 0;
-    const auto take = [&] {
+    for (; count < wanted && words.next(word); ++count) {
         double value = 0;
-        if (!word.empty() && !parseNumber(word, value))
+        if (!parseNumber(word, value))
             throw FileError("there is " + inQuotes(word) + " where a number belongs", path,
                             "copy or write the file again");
-        if (!word.empty()) ++count;
-        word.clear();
-    };
-    std::vector<char> piece(1u << 18);
-    while (count < wanted && in) {
-        job.throwIfStopped();
-        in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-        for (std::streamsize i = 0; i < in.gcount() && count < wanted; ++i) {
-            const char c = piece[static_cast<std::size_t>(i)];
-            const bool separates = c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0;
-            if (separates || word.size() > 400) take();
-            if (!separates) word += c;
-        }
     }
-    if (count < wanted) take();
     if (count < wanted)
         throw FileError("the data has " + std::to_string(count) + " of " + std::to_string(wanted) + " values", path,
                         "check the sizes in the header, or copy the file again");

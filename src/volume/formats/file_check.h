@@ -33,13 +33,13 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
                    std::uint64_t stored, const std::string& toDo);
 
 /// Unpacks the deflate stream that begins at byte `start` of a file (gzip, several members too; one of zlib or gzip
-/// where `zlib`) without keeping it. Throws FileError unless it yields at least `wanted` bytes undamaged: the format
-/// libraries fill what is missing with zeros and say nothing.
-void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
-                     const JobControl& job);
+/// where `zlib`) without keeping it. Throws FileError unless it yields at least `wanted` bytes undamaged.
+/// Returns how many there are: all where `toTheEnd`, otherwise those it had to look at.
+std::uint64_t requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                              const JobControl& job, bool toTheEnd = false);
 
 /// Throws FileError unless the text that begins at byte `start` of a file holds `wanted` numbers, between blanks or
-/// commas: some libraries go on with the last one where the text ends.
+/// commas.
 void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job);
 
 } // namespace pellucid

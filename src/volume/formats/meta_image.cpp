@@ -1,12 +1,13 @@
 // MetaImage: .mha (header and data in one file) and .mhd (header beside a data file).
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
+#include <initializer_list>
 #include <map>
 
 #include "volume/formats/file_check.h"
-#include "volume/formats/itk_image.h"
 #include "volume/formats/reader.h"
+#include "volume/formats/samples.h"
 
 namespace pellucid {
 
@@ -24,6 +25,7 @@ struct MetaHeader {
         const auto it = fields.find(name);
         return it == fields.end() ? std::string() : it->second;
     }
+    bool has(const std::string& name) const { return fields.count(name) > 0; }
     bool isTrue(const std::string& name) const {
         const std::string value = get(name);
         return !value.empty() && (value.front() == 'T' || value.front() == 't' || value.front() == '1');
@@ -39,11 +41,18 @@ MetaHeader parseHeader(const std::string& path) {
         const std::string_view line = std::string_view(head).substr(begin, end - begin);
         const std::size_t sign = line.find_first_of("=:");
         if (sign == std::string_view::npos && !trimmed(line).empty()) break;
-        if (sign != std::string_view::npos)
-            header.fields[trimmed(line.substr(0, sign))] = trimmed(line.substr(sign + 1));
+        if (sign != std::string_view::npos) {
+            const auto [field, isNew] =
+                header.fields.insert({trimmed(line.substr(0, sign)), trimmed(line.substr(sign + 1))});
+            if (!isNew && field->second != trimmed(line.substr(sign + 1)))
+                throw FileError("the header gives " + inQuotes(field->first) + " twice", path, "correct the header");
+        }
         begin = std::min(end + 1, head.size());
     }
     header.dataStart = begin;
+    if (begin == kMostHeaderBytes)
+        throw FileError("the header does not end within " + describeBytes(kMostHeaderBytes), path,
+                        "correct the header, or copy the file again");
     if (header.fields.count("NDims") == 0 && header.fields.count("ObjectType") == 0)
         throw FileError("this is not a MetaImage file but " + describeContent(head.substr(0, 1024)), path,
                         "give it the suffix of its own format", Remedy::GiveRawLayout);
@@ -65,15 +74,17 @@ std::int64_t wholeNumber(const MetaHeader& header, const std::string& name, std:
     return value;
 }
 
-std::uint64_t bytesOfType(std::string type, const std::string& path) {
-    static const std::map<std::string, std::uint64_t> kBytes{
-        {"MET_CHAR", 1},      {"MET_UCHAR", 1},      {"MET_SHORT", 2}, {"MET_USHORT", 2},
-        {"MET_INT", 4},       {"MET_UINT", 4},       {"MET_LONG", 4},  {"MET_ULONG", 4},
-        {"MET_LONG_LONG", 8}, {"MET_ULONG_LONG", 8}, {"MET_FLOAT", 4}, {"MET_DOUBLE", 8}};
-    const std::string given = type;
+ValueType typeIn(const MetaHeader& header, const std::string& path) {
+    static const std::map<std::string, ValueType> kTypes{
+        {"MET_CHAR", ValueType::I8},        {"MET_UCHAR", ValueType::U8},  {"MET_SHORT", ValueType::I16},
+        {"MET_USHORT", ValueType::U16},     {"MET_INT", ValueType::I32},   {"MET_UINT", ValueType::U32},
+        {"MET_LONG", ValueType::I32},       {"MET_ULONG", ValueType::U32}, {"MET_LONG_LONG", ValueType::I64},
+        {"MET_ULONG_LONG", ValueType::U64}, {"MET_FLOAT", ValueType::F32}, {"MET_DOUBLE", ValueType::F64}};
+    const std::string given = header.get("ElementType");
+    std::string type = given;
     if (type.size() > 6 && type.ends_with("_ARRAY")) type.resize(type.size() - 6);
-    const auto it = kBytes.find(type);
-    if (it != kBytes.end()) return it->second;
+    const auto it = kTypes.find(type);
+    if (it != kTypes.end()) return it->second;
     throw FileError("the ElementType " + inQuotes(given) + " is not supported", path,
                     "it is one of MET_CHAR, MET_UCHAR, … MET_FLOAT, MET_DOUBLE");
 }
@@ -95,9 +106,32 @@ std::vector<std::int64_t> sizesIn(const MetaHeader& header, const std::string& p
     return sizes;
 }
 
-/// ITK would take the absolute value of a negative spacing and 1 for zero.
-void checkSpacing(const MetaHeader& header, std::size_t axes, const std::string& path) {
-    for (const char* field : {"ElementSpacing", "ElementSize"}) {
+/// The numbers of the first of `names` that the header has; empty where it has none. Throws FileError unless they are
+/// finite and at least `count`.
+std::vector<double> numbersIn(const MetaHeader& header, std::initializer_list<const char*> names, std::size_t count,
+                              const std::string& path) {
+    for (const char* name : names) {
+        const std::vector<std::string> words = splitWords(header.get(name));
+        if (words.empty()) continue;
+        std::vector<double> numbers(words.size());
+        for (std::size_t i = 0; i < words.size(); ++i)
+            if (!parseNumber(words[i], numbers[i]) || !std::isfinite(numbers[i]))
+                throw FileError("there is " + inQuotes(words[i]) + " among the numbers of " + name, path,
+                                "correct the header");
+        if (numbers.size() < count)
+            throw FileError("the header gives " + std::to_string(words.size()) + " of " + std::to_string(count) +
+                                " numbers as " + name,
+                            path, "correct the header");
+        return numbers;
+    }
+    return {};
+}
+
+/// ElementSpacing, or ElementSize where there is none. Each must be positive, since its absolute value would give a
+/// volume that looks right and is not.
+Vec3 spacingIn(const MetaHeader& header, std::size_t axes, const std::string& path) {
+    Vec3 spacing(1);
+    for (const char* field : {"ElementSize", "ElementSpacing"}) {
         const std::vector<std::string> words = splitWords(header.get(field));
         if (words.empty()) continue;
         if (words.size() != axes)
@@ -105,57 +139,103 @@ void checkSpacing(const MetaHeader& header, std::size_t axes, const std::string&
                                 std::to_string(axes) + " axes",
                             path, "correct the header");
         for (std::size_t a = 0; a < std::min<std::size_t>(axes, 3); ++a) {
-            double spacing = 0;
-            if (!parseNumber(words[a], spacing) || !(spacing > 0) || !std::isfinite(spacing))
+            double& value = spacing[static_cast<int>(a)];
+            if (!parseNumber(words[a], value) || !(value > 0) || !std::isfinite(value))
                 throw FileError("the spacing of axis " + std::to_string(a) + " is " + inQuotes(words[a]) +
                                     ", it must be positive and finite",
                                 path, "correct the header");
         }
     }
+    return spacing;
 }
 
-HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
-    const MetaHeader header = parseHeader(path);
-    std::vector<std::int64_t> sizes = sizesIn(header, path);
-    checkSpacing(header, sizes.size(), path);
-    sizes.push_back(wholeNumber(header, "ElementNumberOfChannels", 1, path));
-    HeaderClaim claim;
-    claim.bytesPerValue = bytesOfType(header.get("ElementType"), path);
-    claim.values = valueCount(path, sizes, claim.bytesPerValue);
+bool axesAreIdentity(const MetaHeader& header, std::size_t axes, const std::string& path) {
+    const std::vector<double> matrix =
+        numbersIn(header, {"TransformMatrix", "Rotation", "Orientation"}, axes * axes, path);
+    if (matrix.empty()) return true;
+    for (std::size_t row = 0; row < std::min<std::size_t>(axes, 3); ++row)
+        for (std::size_t c = 0; c < std::min<std::size_t>(axes, 3); ++c)
+            if (std::abs(matrix[row * axes + c] - (c == row ? 1.0 : 0.0)) > 1e-6) return false;
+    return true;
+}
 
-    const std::string dataFile = header.get("ElementDataFile");
-    const bool local = lowerCase(dataFile) == "local";
-    claim.dataPath = path;
-    if (!local) {
-        if (dataFile.rfind("LIST", 0) == 0 || dataFile.find('%') != std::string::npos)
-            throw FileError("a data file in several parts is not supported", path, "write it as one file");
-        if (dataFile.size() > 1000)
-            throw FileError("the name of the data file is too long", path, "correct the header");
-        const fs::path data(dataFile);
-        claim.dataPath = (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
-    }
-    const std::int64_t skip = wholeNumber(header, "HeaderSize", 0, path); // −1: the data end where the file ends
-    if (skip < -1) throw FileError("the header's HeaderSize is negative", path, "correct the header");
-    const std::uint64_t start = local ? header.dataStart : static_cast<std::uint64_t>(std::max(skip, std::int64_t{0}));
-    const std::uint64_t fileBytes = readableFileBytes(claim.dataPath);
-    const std::uint64_t stored = fileBytes - std::min(start, fileBytes);
+bool isBigEndian(const MetaHeader& header, const std::string& path) {
+    const char* const names[] = {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"};
+    if (header.has(names[0]) && header.has(names[1]) && header.isTrue(names[0]) != header.isTrue(names[1]))
+        throw FileError("the header gives two byte orders", path, "correct the header");
+    return header.isTrue(names[0]) || header.isTrue(names[1]);
+}
 
+Encoding encodingIn(const MetaHeader& header, const std::string& path) {
     const bool compressed = header.isTrue("CompressedData");
-    const bool text = !header.get("BinaryData").empty() && !header.isTrue("BinaryData");
-    const Encoding encoding = compressed ? Encoding::Deflate : text ? Encoding::Text : Encoding::Raw;
+    const bool text = header.has("BinaryData") && !header.isTrue("BinaryData");
+    if (compressed && text)
+        throw FileError("the header calls the data both text and compressed", path, "correct the header");
+    return compressed ? Encoding::Deflate : text ? Encoding::Text : Encoding::Raw;
+}
+
+/// The file that holds the samples.
+std::string dataPathIn(const MetaHeader& header, const std::string& path) {
+    const std::string dataFile = header.get("ElementDataFile");
+    if (lowerCase(dataFile) == "local") return path;
+    if (dataFile.rfind("LIST", 0) == 0 || dataFile.find('%') != std::string::npos)
+        throw FileError("a data file in several parts is not supported", path, "write it as one file");
+    if (dataFile.size() > 1000) throw FileError("the name of the data file is too long", path, "correct the header");
+    const fs::path data(dataFile);
+    return (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
+}
+
+FileLayout checkedLayout(const std::string& path, const JobControl& job) {
+    const MetaHeader header = parseHeader(path);
+    const std::vector<std::int64_t> sizes = sizesIn(header, path);
+    FileLayout layout;
+    layout.spacing = spacingIn(header, sizes.size(), path);
+    const std::int64_t channels = wholeNumber(header, "ElementNumberOfChannels", 1, path);
+    if (channels != 1) layout.axes.push_back({channels, true});
+    for (const std::int64_t size : sizes) layout.axes.push_back({size, false});
+    layout.type = typeIn(header, path);
+    const std::uint64_t values = valuesIn(layout, path);
+    const std::uint64_t bytes = values * bytesPerValue(layout.type);
+    const std::vector<double> origin = numbersIn(header, {"Origin", "Offset", "Position"}, sizes.size(), path);
+    for (std::size_t a = 0; a < std::min<std::size_t>({3, sizes.size(), origin.size()}); ++a)
+        layout.origin[static_cast<int>(a)] = origin[a];
+    layout.axesAreIdentity = axesAreIdentity(header, sizes.size(), path);
+    layout.bigEndian = isBigEndian(header, path);
+    layout.encoding = encodingIn(header, path);
+    layout.zlib = true;
+
+    const bool local = lowerCase(header.get("ElementDataFile")) == "local";
+    layout.dataPath = dataPathIn(header, path);
+    const std::uint64_t fileBytes = readableFileBytes(layout.dataPath);
     const char* toDo = "check DimSize and ElementType in the header, or copy the file again";
-    if (compressed) {
-        const std::int64_t size = wholeNumber(header, "CompressedDataSize", 0, path);
-        if (size < 0) throw FileError("the header's CompressedDataSize is negative", path, "correct the header");
-        if (size > 0) requireStored(claim.dataPath, Encoding::Raw, static_cast<std::uint64_t>(size), 1, stored, toDo);
+    // HeaderSize counts from the beginning of the file that holds the data, even where that is this one.
+    const std::int64_t skip = wholeNumber(header, "HeaderSize", 0, path);
+    if (skip < -1) throw FileError("the header's HeaderSize is negative", path, "correct the header");
+    if (local && skip > 0 && static_cast<std::uint64_t>(skip) < header.dataStart)
+        throw FileError("the header's HeaderSize lies within the header", path, "correct the header");
+    layout.start = skip > 0 ? static_cast<std::uint64_t>(skip) : local ? header.dataStart : 0;
+    std::int64_t packed = 0;
+    if (layout.encoding == Encoding::Deflate) {
+        packed = wholeNumber(header, "CompressedDataSize", 0, path);
+        if (packed < 0) throw FileError("the header's CompressedDataSize is negative", path, "correct the header");
     }
-    requireStored(claim.dataPath, encoding, claim.values, claim.bytesPerValue, stored, toDo);
-    const std::uint64_t bytes = claim.values * claim.bytesPerValue;
-    if (compressed) requireInflates(claim.dataPath, start, true, bytes, job);
-    if (encoding == Encoding::Text) requireNumbers(claim.dataPath, start, claim.values, job);
-    if (encoding == Encoding::Raw && skip >= 0 && stored > bytes)
-        claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
-    return claim;
+    std::uint64_t stored = fileBytes - std::min(layout.start, fileBytes);
+    if (skip == -1) { // the data end where the file ends
+        const std::uint64_t last = layout.encoding == Encoding::Raw ? bytes : static_cast<std::uint64_t>(packed);
+        if (layout.encoding == Encoding::Text || last == 0)
+            throw FileError("the header does not tell where the data begin", path, "correct HeaderSize");
+        requireStored(layout.dataPath, Encoding::Raw, last, 1, stored, toDo);
+        layout.start = fileBytes - last;
+        stored = last;
+    }
+    requireStored(layout.dataPath, Encoding::Raw, static_cast<std::uint64_t>(packed), 1, stored, toDo);
+    requireStored(layout.dataPath, layout.encoding, values, bytesPerValue(layout.type), stored, toDo);
+    // The stream itself tells where it ends, so that CompressedDataSize may be absent or wrong.
+    if (layout.encoding == Encoding::Deflate) requireInflates(layout.dataPath, layout.start, true, bytes, job);
+    if (layout.encoding == Encoding::Text) requireNumbers(layout.dataPath, layout.start, values, job);
+    if (layout.encoding == Encoding::Raw && stored > bytes)
+        layout.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
+    return layout;
 }
 
 class MetaImageReader final : public VolumeReader {
@@ -165,9 +245,9 @@ public:
         static const std::vector<std::string> kSuffixes{".mhd", ".mha"};
         return kSuffixes;
     }
+    std::string dataFile(const std::string& path) const override { return dataPathIn(parseHeader(path), path); }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const HeaderClaim claim = checkedClaim(source.path, job);
-        return readWithItk(ItkFormat::MetaImage, source, claim, job);
+        return readSamples(source, checkedLayout(source.path, job), job);
     }
 };
 

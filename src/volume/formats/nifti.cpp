@@ -1,15 +1,18 @@
 // NIfTI-1 in one file, plain or gzip-compressed.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 
+#include <glm/geometric.hpp>
 #include <zlib.h>
 
 #include "volume/formats/file_check.h"
-#include "volume/formats/itk_image.h"
 #include "volume/formats/reader.h"
+#include "volume/formats/samples.h"
 
 namespace pellucid {
 
@@ -61,6 +64,17 @@ public:
     int datatype() const { return at<std::int16_t>(70); }
     float pixdim(int i) const { return at<float>(76 + 4 * static_cast<std::size_t>(i)); }
     float voxOffset() const { return at<float>(108); }
+    float slope() const { return at<float>(112); }
+    float intercept() const { return at<float>(116); }
+    int intent() const { return at<std::int16_t>(68); }
+    int spaceUnit() const { return m_bytes[123] & 7; }
+    int qformCode() const { return at<std::int16_t>(252); }
+    int sformCode() const { return at<std::int16_t>(254); }
+    /// b, c, d of the quaternion, then the offsets.
+    float qform(int i) const { return at<float>(256 + 4 * static_cast<std::size_t>(i)); }
+    /// Row by row, 3 x 4.
+    float sform(int row, int column) const { return at<float>(280 + 4 * static_cast<std::size_t>(4 * row + column)); }
+    bool isBigEndian() const { return m_swapped != (std::endian::native == std::endian::big); }
 
 private:
     template <class T>
@@ -78,53 +92,184 @@ private:
 };
 
 struct NiftiType {
-    std::uint64_t components, bytes;
+    std::int64_t components; ///< of one voxel, beside each other
+    ValueType type;
+    bool isColour = false;
 };
 
 NiftiType typeOf(int code, const std::string& path) {
     static const std::map<int, NiftiType> kTypes{
-        {2, {1, 1}},   {4, {1, 2}},   {8, {1, 4}},   {16, {1, 4}},   {32, {2, 4}},   {64, {1, 8}},   {128, {3, 1}},
-        {256, {1, 1}}, {512, {1, 2}}, {768, {1, 4}}, {1024, {1, 8}}, {1280, {1, 8}}, {1792, {2, 8}}, {2304, {4, 1}}};
+        {2, {1, ValueType::U8}},         {4, {1, ValueType::I16}},        {8, {1, ValueType::I32}},
+        {16, {1, ValueType::F32}},       {32, {2, ValueType::F32}},       {64, {1, ValueType::F64}},
+        {128, {3, ValueType::U8, true}}, {256, {1, ValueType::I8}},       {512, {1, ValueType::U16}},
+        {768, {1, ValueType::U32}},      {1024, {1, ValueType::I64}},     {1280, {1, ValueType::U64}},
+        {1792, {2, ValueType::F64}},     {2304, {4, ValueType::U8, true}}};
     const auto it = kTypes.find(code);
     if (it != kTypes.end()) return it->second;
     throw FileError("the NIfTI data type " + std::to_string(code) + " is not supported", path,
                     "convert it to integers of 8 to 64 bits, float or double");
 }
 
-HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
-    const std::uint64_t fileBytes = readableFileBytes(path);
-    const NiftiHeader header(path);
-    const int axes = header.dim(0);
-    if (axes < 1 || axes > 7)
-        throw FileError("the header gives " + std::to_string(axes) + " axes, not 1 to 7", path, "correct the header");
-    const NiftiType type = typeOf(header.datatype(), path);
-    std::vector<std::int64_t> sizes;
-    for (int a = 1; a <= axes; ++a) sizes.push_back(header.dim(a));
-    sizes.push_back(static_cast<std::int64_t>(type.components));
-    HeaderClaim claim;
-    claim.dataPath = path;
-    claim.bytesPerValue = type.bytes;
-    claim.values = valueCount(path, sizes, type.bytes);
-    for (int a = 1; a <= std::min(axes, 3); ++a)
+/// What lies along the fifth axis is no series but the components of each voxel: a matrix, a vector, a colour.
+bool fifthAxisHasComponents(int intent) {
+    constexpr int kMatrix = 1004, kVector = 1007, kRgb = 2003, kRgba = 2004;
+    return (intent >= kMatrix && intent <= kVector) || intent == kRgb || intent == kRgba;
+}
+
+std::vector<FileAxis> axesIn(const NiftiHeader& header, const NiftiType& type, const std::string& path) {
+    const int count = header.dim(0);
+    if (count < 1 || count > 7)
+        throw FileError("the header gives " + std::to_string(count) + " axes, not 1 to 7", path, "correct the header");
+    const bool vector = count >= 5 && header.dim(5) > 1 && fifthAxisHasComponents(header.intent());
+    if (vector && type.components > 1)
+        throw FileError("a vector of colours or complex numbers is not supported", path, "write one file for each");
+    std::vector<FileAxis> axes;
+    if (type.components > 1) axes.push_back({type.components, true});
+    for (int a = 1; a <= count; ++a) axes.push_back({header.dim(a), vector && a == 5});
+    return axes;
+}
+
+/// The scaling that the header asks for; none where the slope is 0 or no number, as NIfTI has it, and none for colours.
+std::optional<ValueScaling> scalingIn(const NiftiHeader& header, const NiftiType& type, const std::string& path) {
+    const double slope = header.slope(), intercept = header.intercept();
+    if (type.isColour || slope == 0 || !std::isfinite(slope)) return {};
+    if (!std::isfinite(intercept))
+        throw FileError("the header scales by " + std::to_string(slope) + " and adds " + std::to_string(intercept),
+                        path, "correct scl_slope and scl_inter in the header");
+    if (slope == 1 && intercept == 0) return {};
+    return ValueScaling{slope, intercept};
+}
+
+/// Where the grid lies according to one of the header's two forms: columns of `axes` of length 1, in NIfTI's world.
+struct Placement {
+    std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    Vec3 origin{0, 0, 0};
+};
+
+Placement fromQform(const NiftiHeader& header) {
+    double b = header.qform(0), c = header.qform(1), d = header.qform(2);
+    double a = 0;
+    const double square = b * b + c * c + d * d;
+    if (square > 1) { // rounded off: the quaternion is of length 1
+        const double length = std::sqrt(square);
+        b /= length;
+        c /= length;
+        d /= length;
+    } else {
+        a = std::sqrt(1 - square);
+    }
+    const double third = header.pixdim(0) < 0 ? -1 : 1;
+    return {{Vec3{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)},
+             Vec3{2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)},
+             third * Vec3{2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b}},
+            {header.qform(3), header.qform(4), header.qform(5)}};
+}
+
+/// None where its axes are not at right angles, or not as long as the header's spacing.
+std::optional<Placement> fromSform(const NiftiHeader& header) {
+    Placement placement;
+    for (int column = 0; column < 3; ++column) {
+        const Vec3 axis{header.sform(0, column), header.sform(1, column), header.sform(2, column)};
+        const double length = glm::length(axis);
+        const double spacing = header.pixdim(column + 1);
+        if (!(length > 0) || !std::isfinite(length)) return {};
+        if (column < header.dim(0) && std::abs(length - spacing) > 1e-3 * spacing) return {};
+        placement.axes[static_cast<std::size_t>(column)] = axis / length;
+    }
+    constexpr double kRounding = 1e-4;
+    const auto& [x, y, z] = placement.axes;
+    if (std::abs(glm::dot(x, y)) > kRounding || std::abs(glm::dot(y, z)) > kRounding ||
+        std::abs(glm::dot(z, x)) > kRounding)
+        return {};
+    placement.origin = {header.sform(0, 3), header.sform(1, 3), header.sform(2, 3)};
+    return placement;
+}
+
+bool agree(const Placement& one, const Placement& other) {
+    constexpr double kRounding = 1e-4;
+    bool same = glm::length(one.origin - other.origin) <= kRounding;
+    for (std::size_t a = 0; a < 3; ++a) same = same && glm::length(one.axes[a] - other.axes[a]) <= kRounding;
+    return same;
+}
+
+/// The form that ITK takes, too: sform where it speaks of the scanner, stands alone or says the same as qform.
+Placement placementIn(const NiftiHeader& header, const std::string& path) {
+    const bool hasQform = header.qformCode() > 0, hasSform = header.sformCode() > 0;
+    constexpr int kScanner = 1;
+    bool finite = true;
+    for (int i = 0; i < 6; ++i) finite = finite && (!hasQform || std::isfinite(header.qform(i)));
+    for (int i = 0; i < 12; ++i) finite = finite && (!hasSform || std::isfinite(header.sform(i / 4, i % 4)));
+    if (!finite)
+        throw FileError("the place of the volume has numbers that are not finite", path,
+                        "correct qform and sform in the header");
+    const std::optional<Placement> sform = hasSform ? fromSform(header) : std::nullopt;
+    if (sform && (!hasQform || header.sformCode() == kScanner || agree(*sform, fromQform(header)))) return *sform;
+    if (hasQform) return fromQform(header);
+    if (hasSform)
+        throw FileError("the axes that sform gives are not at right angles or not as long as pixdim says", path,
+                        "correct sform, or give qform in the header");
+    // No form: the grid's own axes. NIfTI's world has x to the right and y to the front, ours the opposite.
+    return {{Vec3{-1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}}, {0, 0, 0}};
+}
+
+/// Millimetres of the header's unit of length.
+double millimetresIn(const NiftiHeader& header) {
+    constexpr int kMetre = 1, kMicrometre = 3;
+    return header.spaceUnit() == kMetre ? 1e3 : header.spaceUnit() == kMicrometre ? 1e-3 : 1.0;
+}
+
+void placeGrid(FileLayout& layout, const NiftiHeader& header, const std::string& path) {
+    const int axes = std::min(header.dim(0), 3);
+    const double millimetres = millimetresIn(header);
+    for (int a = 1; a <= axes; ++a) {
         if (!(header.pixdim(a) > 0) || !std::isfinite(header.pixdim(a)))
             throw FileError("the spacing of axis " + std::to_string(a - 1) + " is " + std::to_string(header.pixdim(a)) +
                                 ", it must be positive and finite",
                             path, "correct pixdim in the header");
+        layout.spacing[a - 1] = header.pixdim(a) * millimetres;
+    }
+    const Placement placement = placementIn(header, path);
+    const Vec3 flip{-1, -1, 1}; // our x goes to the left, our y to the back
+    for (int a = 0; a < axes; ++a) {
+        layout.origin[a] = placement.origin[a] == 0 ? 0 : flip[a] * placement.origin[a] * millimetres;
+        const Vec3 axis = flip * placement.axes[static_cast<std::size_t>(a)];
+        for (int c = 0; c < axes; ++c)
+            if (std::abs(axis[c] - (c == a ? 1.0 : 0.0)) > 1e-6) layout.axesAreIdentity = false;
+    }
+}
+
+FileLayout checkedLayout(const std::string& path, const JobControl& job) {
+    const std::uint64_t fileBytes = readableFileBytes(path);
+    const NiftiHeader header(path);
+    const NiftiType type = typeOf(header.datatype(), path);
+    FileLayout layout;
+    layout.dataPath = path;
+    layout.type = type.type;
+    layout.bigEndian = header.isBigEndian();
+    layout.axes = axesIn(header, type, path);
+    constexpr int kSymmetricMatrix = 1005;
+    if (header.intent() == kSymmetricMatrix && layout.axes.size() >= 5 && layout.axes[4].components &&
+        header.dim(5) == 6)                         // the file has xx xy yy xz yz zz
+        layout.componentOrder = {0, 1, 3, 2, 4, 5}; // as NRRD: xx xy xz yy yz zz
+    layout.scaling = scalingIn(header, type, path);
+    const std::uint64_t values = valuesIn(layout, path);
+    const std::uint64_t bytes = values * bytesPerValue(layout.type);
+    placeGrid(layout, header, path);
 
     const float offset = header.voxOffset();
     if (!(offset >= 0) || offset > 1e9f)
         throw FileError("the header gives a wrong place of the data", path, "correct vox_offset in the header");
-    const std::string magic = fileHead(path, 2);
-    const bool compressed = magic == "\x1f\x8b";
     const std::uint64_t start = std::max<std::uint64_t>(static_cast<std::uint64_t>(offset), kHeaderBytes);
+    const bool compressed = fileHead(path, 2) == "\x1f\x8b";
+    layout.encoding = compressed ? Encoding::Deflate : Encoding::Raw;
+    (compressed ? layout.skip : layout.start) = start;
     const std::uint64_t stored = compressed ? fileBytes : fileBytes - std::min(start, fileBytes);
-    requireStored(path, compressed ? Encoding::Deflate : Encoding::Raw, claim.values, claim.bytesPerValue, stored,
+    requireStored(path, layout.encoding, values, bytesPerValue(layout.type), stored,
                   "check dim and datatype in the header, or copy the file again");
-    const std::uint64_t bytes = claim.values * claim.bytesPerValue;
     if (compressed) requireInflates(path, 0, false, start + bytes, job);
     if (!compressed && stored > bytes)
-        claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
-    return claim;
+        layout.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
+    return layout;
 }
 
 class NiftiReader final : public VolumeReader {
@@ -135,8 +280,7 @@ public:
         return kSuffixes;
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const HeaderClaim claim = checkedClaim(source.path, job);
-        return readWithItk(ItkFormat::Nifti, source, claim, job);
+        return readSamples(source, checkedLayout(source.path, job), job);
     }
 };
 

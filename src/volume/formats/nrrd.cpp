@@ -1,15 +1,17 @@
 // NRRD and its detached form NHDR (teem's "nearly raw raster data"), versions 1 to 5.
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "volume/formats/file_check.h"
-#include "volume/formats/itk_image.h"
 #include "volume/formats/reader.h"
+#include "volume/formats/samples.h"
 
 namespace pellucid {
 
@@ -46,11 +48,13 @@ NrrdHeader parseHeader(const std::string& path) {
         if (first || line.front() == '#' || colon == std::string::npos || line.compare(colon, 2, ":=") == 0) continue;
         std::string name = lowerCase(line.substr(0, colon));
         std::erase(name, ' ');
-        if (name == "sizes" && header.fields.count(name) > 0)
-            throw FileError("the header gives the sizes twice", path, "correct the header");
-        header.fields[name] = trimmed(line.substr(colon + 1));
+        if (!header.fields.insert({name, trimmed(line.substr(colon + 1))}).second)
+            throw FileError("the header gives " + inQuotes(name) + " twice", path, "correct the header");
     }
     header.dataStart = begin;
+    if (begin == kMostHeaderBytes)
+        throw FileError("the header does not end within " + describeBytes(kMostHeaderBytes), path,
+                        "correct the header, or copy the file again");
     return header;
 }
 
@@ -63,27 +67,40 @@ std::int64_t wholeNumber(const NrrdHeader& header, const std::string& field, std
     return value;
 }
 
-std::uint64_t bytesOfType(const std::string& type, const std::string& path) {
-    static const std::map<std::string, std::uint64_t> kBytes = [] {
-        std::map<std::string, std::uint64_t> bytes;
-        for (const char* name : {"signed char", "int8", "int8_t", "uchar", "unsigned char", "uint8", "uint8_t"})
-            bytes[name] = 1;
-        for (const char* name : {"short", "short int", "signed short", "signed short int", "int16", "int16_t", "ushort",
-                                 "unsigned short", "unsigned short int", "uint16", "uint16_t"})
-            bytes[name] = 2;
-        for (const char* name :
-             {"int", "signed int", "int32", "int32_t", "uint", "unsigned int", "uint32", "uint32_t", "float"})
-            bytes[name] = 4;
-        for (const char* name :
-             {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64_t",
-              "ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t", "double"})
-            bytes[name] = 8;
-        return bytes;
+ValueType typeIn(const NrrdHeader& header, const std::string& path) {
+    static const std::map<std::string, ValueType> kTypes = [] {
+        std::map<std::string, ValueType> types;
+        const auto add = [&](ValueType type, std::initializer_list<const char*> names) {
+            for (const char* name : names) types[name] = type;
+        };
+        add(ValueType::I8, {"signed char", "int8", "int8_t"});
+        add(ValueType::U8, {"uchar", "unsigned char", "uint8", "uint8_t"});
+        add(ValueType::I16, {"short", "short int", "signed short", "signed short int", "int16", "int16_t"});
+        add(ValueType::U16, {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"});
+        add(ValueType::I32, {"int", "signed int", "int32", "int32_t"});
+        add(ValueType::U32, {"uint", "unsigned int", "uint32", "uint32_t"});
+        add(ValueType::I64,
+            {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64_t"});
+        add(ValueType::U64, {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"});
+        add(ValueType::F32, {"float"});
+        add(ValueType::F64, {"double"});
+        return types;
     }();
-    const auto it = kBytes.find(lowerCase(type));
-    if (it != kBytes.end()) return it->second;
+    const std::string type = header.get("type");
+    const auto it = kTypes.find(lowerCase(type));
+    if (it != kTypes.end()) return it->second;
     throw FileError(type.empty() ? "the header names no type" : "the type " + inQuotes(type) + " is not supported",
                     path, "the types are signed and unsigned integers of 8 to 64 bits, float and double");
+}
+
+bool isBigEndian(const NrrdHeader& header, std::uint64_t bytesPerValue, Encoding encoding, const std::string& path) {
+    const std::string endian = lowerCase(header.get("endian"));
+    if (endian == "big" || endian == "little") return endian == "big";
+    if (!endian.empty() || (bytesPerValue > 1 && encoding != Encoding::Text))
+        throw FileError(endian.empty() ? "the header gives no byte order"
+                                       : "the byte order " + inQuotes(endian) + " is not known",
+                        path, "correct its field endian: little or big");
+    return false;
 }
 
 /// "none (1,0,0) (0,1,0)": one word per axis; blanks inside the brackets are allowed.
@@ -101,67 +118,204 @@ std::vector<std::string> splitVectors(const std::string& text) {
             word.clear();
         }
     }
+    if (!word.empty()) words.push_back(word); // a bracket that is not closed
     return words;
 }
 
-/// Length of "(x,y,z)"; NaN where it cannot be read.
-double lengthOfVector(const std::string& text) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    if (text.size() < 3 || text.front() != '(' || text.back() != ')') return kNan;
-    double sum = 0;
-    std::size_t begin = 1;
-    while (begin < text.size()) {
+/// The numbers of "(x,y,z)". Throws FileError where they cannot be read or are not finite.
+std::vector<double> vectorIn(const std::string& text, const std::string& path) {
+    std::vector<double> numbers;
+    bool good = text.size() > 2 && text.front() == '(' && text.back() == ')';
+    for (std::size_t begin = 1; good && begin < text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size() - 1);
         double value = 0;
-        if (!parseNumber(std::string_view(text).substr(begin, end - begin), value)) return kNan;
-        sum += value * value;
+        good = parseNumber(text.substr(begin, end - begin), value) && std::isfinite(value);
+        numbers.push_back(value);
         begin = end + 1;
     }
-    return std::sqrt(sum);
+    if (!good) throw FileError(inQuotes(text) + " is not a vector of numbers", path, "correct the header");
+    return numbers;
 }
 
-/// Which axes lie in space or time, as opposed to the components of a voxel; as the NRRD definition has it.
-std::vector<bool> domainAxes(const NrrdHeader& header, std::size_t axes) {
-    std::vector<bool> domain(axes, true);
-    const std::vector<std::string> kinds = splitWords(header.get("kinds"));
-    for (std::size_t a = 0; a < std::min(axes, kinds.size()); ++a) {
-        const std::string kind = lowerCase(kinds[a]);
-        domain[a] = kind == "domain" || kind == "space" || kind == "time" || kind == "???" || kind == "none";
-    }
-    return domain;
+/// The words of a field with one for each axis; empty where there is no such field.
+std::vector<std::string> wordsPerAxis(const NrrdHeader& header, const std::string& field, std::size_t axes,
+                                      const std::string& path) {
+    const bool vectors = field == "spacedirections";
+    const std::vector<std::string> words = vectors ? splitVectors(header.get(field)) : splitWords(header.get(field));
+    if (!words.empty() && words.size() != axes)
+        throw FileError("the header's field " + inQuotes(field) + " has " + std::to_string(words.size()) +
+                            " words for " + std::to_string(axes) + " axes",
+                        path, "correct the header");
+    return words;
 }
 
-/// ITK takes the absolute value of a negative spacing and 1 for an unknown one: a volume that looks right and is not.
-void checkSpacing(const NrrdHeader& header, std::size_t axes, const std::string& path) {
-    const std::vector<bool> domain = domainAxes(header, axes);
-    const std::vector<std::string> spacings = splitWords(header.get("spacings"));
-    const std::vector<std::string> directions = splitVectors(header.get("spacedirections"));
-    int spatial = 0;
-    for (std::size_t a = 0; a < axes && spatial < 3; ++a) {
-        if (!domain[a]) continue;
-        ++spatial;
-        double spacing = 1;
-        std::string text;
-        if (a < directions.size() && directions[a] != "none") {
-            text = directions[a];
-            spacing = lengthOfVector(text);
-        } else if (a < spacings.size()) {
-            text = spacings[a];
-            if (!parseNumber(text, spacing)) spacing = std::numeric_limits<double>::quiet_NaN();
+bool isNone(const std::string& word) { return word == "none" || word == "???"; }
+
+/// Which axis has the components of a voxel, by its kind or, without one, because it has no direction in space; the
+/// number of axes where there is none.
+std::size_t componentAxis(const NrrdHeader& header, const std::vector<std::int64_t>& sizes, const std::string& path) {
+    // Sizes that a kind prescribes; 0: any.
+    static const std::map<std::string, int> kKinds{{"stub", 1},
+                                                   {"scalar", 1},
+                                                   {"complex", 2},
+                                                   {"2-vector", 2},
+                                                   {"3-color", 3},
+                                                   {"rgb-color", 3},
+                                                   {"hsv-color", 3},
+                                                   {"xyz-color", 3},
+                                                   {"4-color", 4},
+                                                   {"rgba-color", 4},
+                                                   {"3-vector", 3},
+                                                   {"3-gradient", 3},
+                                                   {"3-normal", 3},
+                                                   {"4-vector", 4},
+                                                   {"quaternion", 4},
+                                                   {"2d-symmetric-matrix", 3},
+                                                   {"2d-masked-symmetric-matrix", 4},
+                                                   {"2d-matrix", 4},
+                                                   {"2d-masked-matrix", 5},
+                                                   {"3d-symmetric-matrix", 6},
+                                                   {"3d-masked-symmetric-matrix", 7},
+                                                   {"3d-matrix", 9},
+                                                   {"3d-masked-matrix", 10},
+                                                   {"list", 0},
+                                                   {"point", 0},
+                                                   {"vector", 0},
+                                                   {"covariant-vector", 0},
+                                                   {"normal", 0}};
+    const std::vector<std::string> kinds = wordsPerAxis(header, "kinds", sizes.size(), path);
+    const std::vector<std::string> directions = wordsPerAxis(header, "spacedirections", sizes.size(), path);
+    std::size_t found = sizes.size();
+    for (std::size_t a = 0; a < sizes.size(); ++a) {
+        const std::string kind = kinds.empty() ? "none" : lowerCase(kinds[a]);
+        if (kind == "domain" || kind == "space" || kind == "time") continue;
+        if (isNone(kind)) {
+            if (directions.empty() || !isNone(directions[a])) continue;
+        } else {
+            const auto it = kKinds.find(kind);
+            if (it == kKinds.end())
+                throw FileError("the kind " + inQuotes(kinds[a]) + " of axis " + std::to_string(a) + " is not known",
+                                path, "correct the header");
+            if (it->second != 0 && it->second != sizes[a])
+                throw FileError("axis " + std::to_string(a) + " of kind " + kind + " has " + std::to_string(sizes[a]) +
+                                    " entries, not " + std::to_string(it->second),
+                                path, "correct the header");
         }
+        if (found < sizes.size())
+            throw FileError("more than one axis has components of a voxel", path, "write one file for each component");
+        found = a;
+    }
+    if (sizes.size() == 1 && found == 0) throw FileError("no axis lies in space", path, "correct the header");
+    return found;
+}
+
+/// What turns the header's space into ours, whose axes go to the left, the back and the top; 1 where the header's
+/// space has no such names.
+Vec3 flipOfSpace(const NrrdHeader& header, const std::string& path) {
+    const std::string space = lowerCase(header.get("space"));
+    static const std::set<std::string> kOthers{"",
+                                               "left-posterior-superior",
+                                               "lps",
+                                               "right-anterior-superior-time",
+                                               "rast",
+                                               "left-anterior-superior-time",
+                                               "last",
+                                               "left-posterior-superior-time",
+                                               "lpst",
+                                               "scanner-xyz",
+                                               "scanner-xyz-time",
+                                               "3d-right-handed",
+                                               "3d-left-handed",
+                                               "3d-right-handed-time",
+                                               "3d-left-handed-time"};
+    if (space == "right-anterior-superior" || space == "ras") return {-1, -1, 1};
+    if (space == "left-anterior-superior" || space == "las") return {-1, 1, 1};
+    if (kOthers.count(space) == 0)
+        throw FileError("the space " + inQuotes(header.get("space")) + " is not known", path, "correct the header");
+    return {1, 1, 1};
+}
+
+/// The number of axis `a` in a field of numbers; NaN where there is none.
+double numberOfAxis(const std::vector<std::string>& words, std::size_t a) {
+    double value = 0;
+    if (words.empty() || !parseNumber(words[a], value)) return std::numeric_limits<double>::quiet_NaN();
+    return value;
+}
+
+/// Without a named space: the first voxel's centre after "axis mins", where each axis in space has one and a width.
+void placeByMins(FileLayout& layout, const NrrdHeader& header, const std::vector<std::size_t>& inSpace,
+                 const std::string& path) {
+    const std::size_t axes = layout.axes.size();
+    const auto mins = wordsPerAxis(header, "axismins", axes, path);
+    const auto maxs = wordsPerAxis(header, "axismaxs", axes, path);
+    const auto spacings = wordsPerAxis(header, "spacings", axes, path);
+    auto centers = wordsPerAxis(header, "centers", axes, path);
+    if (centers.empty()) centers = wordsPerAxis(header, "centerings", axes, path);
+    if (mins.empty() || (maxs.empty() && spacings.empty())) return;
+    for (std::size_t i = 0; i < inSpace.size(); ++i) {
+        const std::size_t a = inSpace[i];
+        const bool nodes = !centers.empty() && lowerCase(centers[a]) == "node";
+        const double min = numberOfAxis(mins, a);
+        double width = numberOfAxis(spacings, a);
+        if (std::isnan(width)) width = (numberOfAxis(maxs, a) - min) / static_cast<double>(layout.axes[a].size);
+        const double origin = nodes ? min : min + 0.5 * width;
+        if (!std::isfinite(origin))
+            throw FileError("the header does not tell where axis " + std::to_string(a) + " begins", path,
+                            "correct axis mins and axis maxs");
+        layout.origin[static_cast<int>(i)] = origin;
+    }
+}
+
+/// Spacing, origin and directions. A negative spacing is refused: its absolute value would give a volume that looks
+/// right and is not.
+void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& path) {
+    const std::size_t axes = layout.axes.size();
+    const auto spacings = wordsPerAxis(header, "spacings", axes, path);
+    const auto directions = wordsPerAxis(header, "spacedirections", axes, path);
+    const Vec3 flip = flipOfSpace(header, path);
+    std::vector<std::size_t> inSpace;
+    for (std::size_t a = 0; a < axes && inSpace.size() < 3; ++a)
+        if (!layout.axes[a].components) inSpace.push_back(a);
+    for (std::size_t i = 0; i < inSpace.size(); ++i) {
+        const std::size_t a = inSpace[i];
+        std::string text = "1";
+        if (!directions.empty() && !isNone(directions[a])) {
+            text = directions[a];
+            const std::vector<double> vector = vectorIn(text, path);
+            double square = 0;
+            for (const double v : vector) square += v * v;
+            const double length = std::sqrt(square);
+            layout.spacing[static_cast<int>(i)] = length;
+            if (std::abs(numberOfAxis(spacings, a) - length) > 1e-6 * length)
+                throw FileError("the header gives two spacings of axis " + std::to_string(a), path,
+                                "correct spacings or space directions");
+            for (std::size_t c = 0; c < std::min(vector.size(), inSpace.size()); ++c)
+                if (std::abs(flip[static_cast<int>(c)] * vector[c] / length - (c == i ? 1.0 : 0.0)) > 1e-6)
+                    layout.axesAreIdentity = false;
+        } else if (!spacings.empty()) {
+            text = spacings[a];
+            layout.spacing[static_cast<int>(i)] = numberOfAxis(spacings, a);
+        }
+        const double spacing = layout.spacing[static_cast<int>(i)];
         if (!(spacing > 0) || !std::isfinite(spacing))
             throw FileError("the spacing of axis " + std::to_string(a) + " is " + inQuotes(text) +
                                 ", it must be positive and finite",
                             path, "correct the header");
     }
+    const std::vector<std::string> origin = splitVectors(header.get("spaceorigin"));
+    if (origin.empty() && directions.empty()) placeByMins(layout, header, inSpace, path);
+    if (origin.empty() || isNone(origin.front())) return;
+    const std::vector<double> place = vectorIn(origin.front(), path);
+    for (std::size_t c = 0; c < std::min(place.size(), inSpace.size()); ++c)
+        layout.origin[static_cast<int>(c)] = flip[static_cast<int>(c)] * place[c];
 }
 
-/// Bytes in the data file before the samples.
+/// Bytes of `lines` lines from byte `start` of a file; more than any file has where there are fewer lines.
 std::uint64_t bytesOfLines(const std::string& path, std::uint64_t start, std::int64_t lines) {
     std::ifstream in(path, std::ios::binary);
     in.seekg(static_cast<std::streamoff>(start));
     for (std::int64_t i = 0; i < lines && in; ++i) in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-    return in ? static_cast<std::uint64_t>(in.tellg()) - start : std::numeric_limits<std::int64_t>::max();
+    return in ? static_cast<std::uint64_t>(in.tellg()) - start : std::numeric_limits<std::int64_t>::max() / 2;
 }
 
 std::vector<std::int64_t> sizesIn(const NrrdHeader& header, const std::string& path) {
@@ -194,47 +348,59 @@ Encoding encodingIn(const NrrdHeader& header, const std::string& path) {
                     path, "write it with encoding raw or gzip");
 }
 
-HeaderClaim checkedClaim(const std::string& path, const JobControl& job) {
+/// The file that holds the samples.
+std::string dataPathIn(const NrrdHeader& header, const std::string& path) {
+    const std::string dataFile = header.get("datafile");
+    if (dataFile.empty()) return path;
+    if (dataFile.rfind("LIST", 0) == 0 || dataFile.rfind("SKIPLIST", 0) == 0 || dataFile.find('%') != std::string::npos)
+        throw FileError("a data file in several parts is not supported", path, "write it as one file");
+    if (dataFile.size() > 1000) throw FileError("the name of the data file is too long", path, "correct the header");
+    const fs::path data(dataFile);
+    return (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
+}
+
+FileLayout checkedLayout(const std::string& path, const JobControl& job) {
     const NrrdHeader header = parseHeader(path);
     const std::vector<std::int64_t> sizes = sizesIn(header, path);
-    HeaderClaim claim;
-    claim.bytesPerValue = bytesOfType(header.get("type"), path);
-    claim.values = valueCount(path, sizes, claim.bytesPerValue);
-    checkSpacing(header, sizes.size(), path);
+    FileLayout layout;
+    for (const std::int64_t size : sizes) layout.axes.push_back({size, false});
+    layout.type = typeIn(header, path);
+    const std::uint64_t values = valuesIn(layout, path);
+    const std::uint64_t bytesPer = bytesPerValue(layout.type);
+    const std::uint64_t bytes = values * bytesPer;
+    const std::size_t components = componentAxis(header, sizes, path);
+    if (components < sizes.size()) layout.axes[components].components = true;
+    placeGrid(layout, header, path);
+    layout.encoding = encodingIn(header, path);
+    layout.bigEndian = isBigEndian(header, bytesPer, layout.encoding, path);
 
-    const Encoding encoding = encodingIn(header, path);
-    const std::string dataFile = header.get("datafile");
-    const bool detached = !dataFile.empty();
-    claim.dataPath = path;
-    if (detached) {
-        if (dataFile.rfind("LIST", 0) == 0 || dataFile.rfind("SKIPLIST", 0) == 0 ||
-            dataFile.find('%') != std::string::npos)
-            throw FileError("a data file in several parts is not supported", path, "write it as one file");
-        if (dataFile.size() > 1000)
-            throw FileError("the name of the data file is too long", path, "correct the header");
-        const fs::path data(dataFile);
-        claim.dataPath = (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
-    }
-    std::uint64_t stored = readableFileBytes(claim.dataPath);
-    std::uint64_t start = detached ? 0 : std::min(header.dataStart, stored);
+    layout.dataPath = dataPathIn(header, path);
+    const bool detached = !header.get("datafile").empty();
+    const std::uint64_t fileBytes = readableFileBytes(layout.dataPath);
     const std::int64_t lineSkip = wholeNumber(header, "lineskip", 0, path);
     const std::int64_t byteSkip = wholeNumber(header, "byteskip", 0, path);
     if (lineSkip < 0 || byteSkip < -1)
         throw FileError("the header skips a negative number of lines or bytes", path, "correct the header");
-    if (lineSkip > 0) start += bytesOfLines(claim.dataPath, start, lineSkip);
-    if (encoding != Encoding::Deflate && byteSkip > 0) start += static_cast<std::uint64_t>(byteSkip);
-    stored -= std::min(start, stored);
+    const bool fromEnd = byteSkip == -1; // the data end where the file, unpacked, ends
+    if (fromEnd && layout.encoding != Encoding::Raw && layout.encoding != Encoding::Deflate)
+        throw FileError("the header gives a byte skip of -1, which text cannot have", path, "correct the header");
+    layout.start = detached ? 0 : std::min(header.dataStart, fileBytes);
+    if (lineSkip > 0) layout.start += bytesOfLines(layout.dataPath, layout.start, lineSkip);
+    if (byteSkip > 0) // in compressed data, of what comes out
+        (layout.encoding == Encoding::Deflate ? layout.skip : layout.start) += static_cast<std::uint64_t>(byteSkip);
+    const std::uint64_t stored = fileBytes - std::min(layout.start, fileBytes);
 
-    requireStored(claim.dataPath, encoding, claim.values, claim.bytesPerValue, stored,
+    requireStored(layout.dataPath, layout.encoding, values, bytesPer, stored,
                   "check sizes and type in the header, or copy the file again");
-    const std::uint64_t bytes = claim.values * claim.bytesPerValue;
-    if (encoding == Encoding::Text) requireNumbers(claim.dataPath, start, claim.values, job);
-    if (encoding == Encoding::Deflate) // bytes are skipped in what comes out
-        requireInflates(claim.dataPath, start, false,
-                        bytes + static_cast<std::uint64_t>(std::max(byteSkip, std::int64_t{0})), job);
-    if (encoding == Encoding::Raw && byteSkip >= 0 && stored > bytes)
-        claim.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
-    return claim;
+    if (layout.encoding == Encoding::Text) requireNumbers(layout.dataPath, layout.start, values, job);
+    if (layout.encoding == Encoding::Deflate && !fromEnd)
+        requireInflates(layout.dataPath, layout.start, false, layout.skip + bytes, job);
+    if (layout.encoding == Encoding::Deflate && fromEnd)
+        layout.skip = requireInflates(layout.dataPath, layout.start, false, bytes, job, true) - bytes;
+    if (layout.encoding == Encoding::Raw && fromEnd) layout.start = fileBytes - bytes;
+    if (layout.encoding == Encoding::Raw && !fromEnd && stored > bytes)
+        layout.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
+    return layout;
 }
 
 class NrrdReader final : public VolumeReader {
@@ -244,9 +410,9 @@ public:
         static const std::vector<std::string> kSuffixes{".nrrd", ".nhdr"};
         return kSuffixes;
     }
+    std::string dataFile(const std::string& path) const override { return dataPathIn(parseHeader(path), path); }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const HeaderClaim claim = checkedClaim(source.path, job);
-        return readWithItk(ItkFormat::Nrrd, source, claim, job);
+        return readSamples(source, checkedLayout(source.path, job), job);
     }
 };
 

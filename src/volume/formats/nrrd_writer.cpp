@@ -1,7 +1,6 @@
 // Writes NRRD0004, gzip-compressed, in the volume's own type.
 #include <bit>
 #include <charconv>
-#include <fstream>
 #include <type_traits>
 
 #include <zlib.h>
@@ -59,11 +58,15 @@ std::string headerText(const Geometry& g, SampleType type) {
     return text;
 }
 
-void deflateInto(std::ofstream& out, const char* data, std::size_t bytes) {
+void deflateInto(OutputFile& out, const char* data, std::size_t bytes) {
     constexpr int kGzipFrame = 16;
     constexpr int kLevel = 3; // noise does not get smaller at higher levels, only slower
     z_stream stream{};
     PELLUCID_CHECK(deflateInit2(&stream, kLevel, Z_DEFLATED, MAX_WBITS + kGzipFrame, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+    const struct End {
+        z_stream& stream;
+        ~End() { deflateEnd(&stream); }
+    } end{stream};
     std::vector<char> packed(1u << 18);
     constexpr std::size_t kPiece = 1u << 24;
     std::size_t done = 0;
@@ -77,21 +80,16 @@ void deflateInto(std::ofstream& out, const char* data, std::size_t bytes) {
             stream.next_out = reinterpret_cast<Bytef*>(packed.data());
             stream.avail_out = static_cast<uInt>(packed.size());
             deflate(&stream, last ? Z_FINISH : Z_NO_FLUSH);
-            out.write(packed.data(), static_cast<std::streamsize>(packed.size() - stream.avail_out));
-        } while (stream.avail_out == 0 && out);
-        if (!out) break;
+            out.write(packed.data(), packed.size() - stream.avail_out);
+        } while (stream.avail_out == 0);
         done += piece;
     }
-    deflateEnd(&stream);
 }
 
 void writeFile(const std::string& path, const Geometry& geometry, SampleType type, const void* data) {
-    writeAtomically(path, [&](const std::string& temporary) {
-        std::ofstream out(temporary, std::ios::binary);
-        out << headerText(geometry, type);
+    writeAtomically(path, [&](OutputFile& out) {
+        out.write(headerText(geometry, type));
         deflateInto(out, static_cast<const char*>(data), voxelCount(geometry.dims) * bytesPerSample(type));
-        out.close();
-        if (!out) throw FileError("cannot write the file", path, "check permissions and space");
     });
 }
 

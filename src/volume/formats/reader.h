@@ -17,6 +17,8 @@ public:
     virtual const char* name() const = 0;
     /// Lower case, with the dot: ".nrrd".
     virtual const std::vector<std::string>& suffixes() const = 0;
+    /// The file that holds the samples: `path`, or the one that its header names. Throws FileError.
+    virtual std::string dataFile(const std::string& path) const { return path; }
     /// Reads source.path (an existing file that is not empty): samples, geometry, source.missing and
     /// source.component. The window, title and format are left to the caller.
     virtual Volume read(const VolumeSource& source, const JobControl& job) const = 0;

@@ -1,0 +1,418 @@
+#include "controllers/open_controller.h"
+
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMenu>
+#include <QSettings>
+
+#include <nlohmann/json.hpp>
+
+#include "axis_ticks.h"
+#include "controllers/save_controller.h"
+#include "raw_dialog.h"
+#include "render/memory_needs.h"
+#include "tf/formats/tf_json.h"
+#include "volume/procedural.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kRecentFiles = 8;
+constexpr auto kRecentKey = "recentFiles";
+
+QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
+
+bool isTf(const QString& path) { return path.endsWith(".tf.json", Qt::CaseInsensitive); }
+bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
+
+bool hasKnownSuffix(const QString& path) {
+    const QStringList patterns = [] {
+        QStringList all;
+        for (const std::string& pattern : volumeFilePatterns()) all << QString::fromStdString(pattern);
+        return all;
+    }();
+    return QDir::match(patterns, QFileInfo(path).fileName());
+}
+
+QString rangeText(const ValueRange& range) {
+    const double span = range.hi - range.lo;
+    return QStringLiteral("%1 – %2").arg(numberText(range.lo, span), numberText(range.hi, span));
+}
+
+// Recent files that need more than a name to be opened again are kept as a session of nothing but their source.
+QString recentEntry(const VolumeSource& source) {
+    const QString path = QFileInfo(QString::fromStdString(source.path)).absoluteFilePath();
+    if (!source.raw && source.component == 0 && !source.missing) return path;
+    VolumeSource absolute = source;
+    absolute.path = path.toStdString();
+    return QString::fromStdString(jsonFromSession(sessionOf(absolute), "", DataPaths::Absolute).dump());
+}
+
+VolumeSource recentSource(const QString& entry) {
+    if (!entry.startsWith('{')) {
+        VolumeSource source;
+        source.path = entry.toStdString();
+        return source;
+    }
+    const nlohmann::json document = nlohmann::json::parse(entry.toStdString(), nullptr, false);
+    return sessionFromJson({document, "recent files"}, "").session.variable().source;
+}
+
+} // namespace
+
+OpenController::OpenController(Workbench& bench)
+    : m_bench(bench), m_open(&OpenController::load, [this](const Request& r, Opened& o) { show(r, o); }),
+      m_data(
+          [](const DataChange& change, const JobControl& job) {
+              Session session = change.basis.session;
+              change.change(session);
+              Scene scene = resolve(std::move(session), change.basis, {"showing", kViewBytesPerVoxel}, job);
+              prepareToShow(scene, job);
+              return scene;
+          },
+          [this](const DataChange& change, Scene& scene) {
+              // Other edits may have come meanwhile: the change is made of what is there now.
+              m_bench.store().edit(change.text, {}, change.change, scene);
+              if (const auto then = std::exchange(m_afterData, {})) then();
+          }) {
+    for (JobBase* job : {static_cast<JobBase*>(&m_open), static_cast<JobBase*>(&m_data)}) {
+        connect(job, &JobBase::busyChanged, this, &OpenController::busyChanged);
+        connect(job, &JobBase::progress, this, &OpenController::progress);
+        connect(job, &JobBase::cancelled, this, &OpenController::cancelled);
+    }
+    connect(&m_open, &JobBase::failed, this, [this](const Error& error) {
+        m_bench.showError(tr("Cannot open the file"), error);
+        Q_EMIT failed(error);
+    });
+    connect(&m_data, &JobBase::failed, this,
+            [this](const Error& error) { m_bench.showError(tr("Cannot change the data"), error); });
+}
+
+OpenController::~OpenController() = default;
+
+void OpenController::addActions() {
+    Actions& actions = m_bench.actions();
+    const QString menu = tr("&File");
+    const auto add = [&](const QString& id, const QString& where, const QString& text, const QList<QKeySequence>& keys,
+                         const QString& tip, std::function<void()> trigger, std::function<bool()> enabled = {}) {
+        return ActionSpec{.id = id,
+                          .menu = where,
+                          .text = text,
+                          .keys = keys,
+                          .tip = tip,
+                          .trigger = std::move(trigger),
+                          .enabled = std::move(enabled),
+                          .checked = {},
+                          .say = {}};
+    };
+    ActionSpec open = add("openAction", menu, tr("&Open…"), {QKeySequence("Ctrl+O")},
+                          tr("Open a volume, a session or a transfer function"), [this] { chooseVolume(); });
+    open.inToolBar = true;
+    actions.add(open);
+    actions.add(add("openRawAction", menu, tr("Open ra&w data…"), {},
+                    tr("A file without a header: you say how its bytes lie"), [this] { chooseRaw(); }));
+    ActionSpec clearRecent = add("clearRecentAction", recentMenuName(), tr("&Clear this list"), {}, {}, [this] {
+        QSettings().remove(kRecentKey);
+        updateRecentFiles();
+    });
+    actions.add(clearRecent);
+    for (const SampleInfo& sample : samples()) {
+        const QString name = QString::fromStdString(sample.name);
+        actions.add(add("sample_" + name, menu + "/" + tr("&Samples"),
+                        QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)), {}, {},
+                        [this, name] {
+                            VolumeSource source;
+                            source.path = "sample:" + name.toStdString();
+                            if (m_bench.saving().maybeSave()) openVolume(source);
+                        }));
+    }
+    ActionSpec openTf = add(
+        "openTfAction", menu, tr("Open &transfer function…"), {QKeySequence("Ctrl+Shift+O")}, {},
+        [this] { chooseTf(); }, [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); });
+    openTf.separatorBefore = true;
+    actions.add(openTf);
+}
+
+// ---- opening
+
+void OpenController::openVolume(const VolumeSource& source, const QString& tfSpec) {
+    Request request;
+    request.inputs.session = sessionOf(source);
+    request.inputs.range = source.range;
+    if (!tfSpec.isEmpty()) {
+        request.inputs.tf = tfSpec.toStdString();
+        request.tfIsOptional = true;
+        request.tfPath = tfSpec;
+    }
+    m_busyText = tr("Opening %1…").arg(QFileInfo(QString::fromStdString(source.path)).fileName());
+    m_open.start(std::move(request), QString::fromStdString(source.path));
+}
+
+void OpenController::openSession(const QString& path) {
+    try {
+        SessionFile file = readSession(path.toStdString());
+        Request request;
+        request.inputs.session = std::move(file.session);
+        request.notices = std::move(file.notices);
+        request.sessionPath = path;
+        m_busyText = tr("Opening %1…").arg(QFileInfo(path).fileName());
+        m_open.start(std::move(request), path);
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot open the session"), error);
+        Q_EMIT failed(error);
+    }
+}
+
+void OpenController::openRecovered(const SessionFile& file) {
+    Request request;
+    request.inputs.session = file.session;
+    request.notices = file.notices;
+    request.unsaved = true;
+    m_busyText = tr("Restoring…");
+    m_open.start(std::move(request), tr("the unsaved work"));
+}
+
+OpenController::Opened OpenController::load(const Request& request, const JobControl& job) {
+    Opened opened;
+    SceneInputs inputs = request.inputs;
+    inputs.then = {"showing", kViewBytesPerVoxel};
+    if (request.tfIsOptional) {
+        try {
+            static_cast<void>(loadTf(*inputs.tf));
+        } catch (const Error& error) {
+            opened.tfError = error;
+            inputs.tf.reset();
+        }
+    }
+    opened.scene = openScene(inputs, job);
+    prepareToShow(opened.scene, job);
+    return opened;
+}
+
+void OpenController::show(const Request& request, Opened& opened) {
+    const bool ownTf = opened.tfError || request.tfPath.isEmpty() || tfFromSpec(request.tfPath.toStdString());
+    m_tfPath = ownTf ? QString() : request.tfPath;
+    m_bench.notices().clear();
+    for (const auto* notices : {&opened.scene.volume->notices, &request.notices})
+        for (const std::string& notice : *notices) m_bench.notices().add({QString::fromStdString(notice), {}});
+    const VolumeSource source = opened.scene.session.variable().source;
+    m_bench.store().open(std::move(opened.scene));
+    if (request.unsaved) m_bench.store().setUnsaved();
+    setSessionPath(request.sessionPath);
+    if (!request.sessionPath.isEmpty()) {
+        addRecent(QFileInfo(request.sessionPath).absoluteFilePath());
+    } else if (!source.isSample() && !request.unsaved) {
+        addRecent(source);
+    }
+    if (!request.tfPath.isEmpty() && !opened.tfError) noteWindow(*m_bench.store().session().tf());
+    Q_EMIT this->opened();
+    if (opened.tfError) {
+        m_bench.showError(tr("Cannot open the transfer function"), *opened.tfError);
+        Q_EMIT tfFailed(*opened.tfError);
+    }
+}
+
+void OpenController::openTf(const QString& specOrPath) {
+    SessionStore& store = m_bench.store();
+    if (m_bench.isReadOnly() || !store.hasVolume()) return;
+    try {
+        const TransferFunction tf = loadTf(specOrPath.toStdString());
+        const bool isFile = !tfFromSpec(specOrPath.toStdString());
+        const auto change = [tf](Session& session) {
+            TransferFunction placed = tf;
+            session.variables.edit([&](std::vector<Variable>& all) {
+                if (placed.range) all.front().window = placed.range; // what it was made for
+            });
+            session.setTf(std::move(placed));
+        };
+        const auto opened = [this, tf, isFile, specOrPath] {
+            if (isFile) {
+                m_tfPath = specOrPath;
+                m_bench.store().setTfSaved();
+            }
+            noteWindow(tf);
+        };
+        Session next = store.session();
+        change(next);
+        if (!needsData(next, store.scene())) {
+            const ValueRange window = m_bench.scene().volume->range();
+            store.edit(tr("Open transfer function"), {}, [&](Session& session) {
+                change(session);
+                if (tf.range || !(window.lo < window.hi)) return;
+                TransferFunction placed = *session.tf();
+                placed.range = window;
+                session.setTf(std::move(placed));
+            });
+            return opened();
+        }
+        // The picture waits for the data of the new window, and shows both at once.
+        m_busyText = tr("Opening %1…").arg(QFileInfo(specOrPath).fileName());
+        m_afterData = opened;
+        m_data.start({tr("Open transfer function"), change, store.scene()}, specOrPath);
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot open the transfer function"), error);
+    }
+}
+
+void OpenController::editData(const QString& text, const SessionStore::Change& change) {
+    SessionStore& store = m_bench.store();
+    if (!store.hasVolume() || m_bench.isReadOnly()) return;
+    Session next = store.session();
+    change(next);
+    if (!needsData(next, store.scene())) return store.edit(text, {}, change);
+    m_busyText = text + QChar(0x2026);
+    m_afterData = {};
+    m_data.start({text, change, store.scene()}, QString::fromStdString(store.scene().volume->title));
+}
+
+void OpenController::openPath(const QString& path) {
+    if (isTf(path)) return openTf(path);
+    if (isSession(path)) {
+        if (m_bench.saving().maybeSave()) openSession(path);
+        return;
+    }
+    VolumeSource source;
+    source.path = path.toStdString();
+    if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source);
+}
+
+void OpenController::openAtStart(const QString& path, const QString& tfSpec) {
+    if (isSession(path)) return openSession(path);
+    VolumeSource source;
+    source.path = path.toStdString();
+    if (askRawLayout(source)) openVolume(source, tfSpec);
+}
+
+bool OpenController::askRawLayout(VolumeSource& source) {
+    const QString path = QString::fromStdString(source.path);
+    if (source.isSample() || hasKnownSuffix(path) || !QFileInfo(path).isFile()) return true;
+    RawDialog dialog(path, m_bench.window());
+    if (dialog.exec() != QDialog::Accepted) return false;
+    source.raw = dialog.layoutOfFile();
+    return true;
+}
+
+// A window other than that of the data is worth a word, and one click to the other.
+void OpenController::noteWindow(const TransferFunction& tf) {
+    const Scene& scene = m_bench.scene();
+    if (!tf.range || !scene.data || scene.volume->range() == scene.data->range()) return;
+    const QString text =
+        tr("This transfer function was made for values %1; the volume has %2. Its points stay at their "
+           "values.")
+            .arg(rangeText(scene.volume->range()), rangeText(scene.data->range()));
+    m_bench.notices().add(
+        {text, {{tr("Stretch to this volume instead"), [this] {
+                     editData(tr("Stretch transfer function"), [data = m_bench.scene().data](Session& s) {
+                         TransferFunction stretched = *s.tf();
+                         stretched.range = data->range();
+                         s.variables.edit([](std::vector<Variable>& all) { all.front().window.reset(); });
+                         s.setTf(std::move(stretched));
+                     });
+                 }}}});
+}
+
+// ---- dialogs
+
+void OpenController::chooseVolume() {
+    QStringList patterns;
+    for (const std::string& pattern : volumeFilePatterns()) patterns << QString::fromStdString(pattern);
+    for (const char* raw : {"*.raw", "*.dat", "*.bin", "*.vol"}) {
+        if (!patterns.contains(raw)) patterns << raw;
+    }
+    const QString path = QFileDialog::getOpenFileName(
+        m_bench.window(), tr("Open"), QSettings().value("volumeFolder").toString(),
+        tr("Volumes, sessions, transfer functions (%1 *.pellucid.json *.tf.json);;All files (*)")
+            .arg(patterns.join(' ')));
+    if (path.isEmpty()) return;
+    QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
+    openPath(path);
+}
+
+void OpenController::chooseRaw() {
+    const QString path = QFileDialog::getOpenFileName(
+        m_bench.window(), tr("Open raw data"), QSettings().value("volumeFolder").toString(), tr("All files (*)"));
+    if (path.isEmpty()) return;
+    QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
+    RawDialog dialog(path, m_bench.window());
+    if (dialog.exec() != QDialog::Accepted || !m_bench.saving().maybeSave()) return;
+    VolumeSource source;
+    source.path = path.toStdString();
+    source.raw = dialog.layoutOfFile();
+    openVolume(source);
+}
+
+void OpenController::chooseTf() {
+    const QString path = QFileDialog::getOpenFileName(m_bench.window(), tr("Open transfer function"),
+                                                      QSettings().value("tfFolder").toString(),
+                                                      tr("Transfer functions (*.tf.json *.json);;All files (*)"));
+    if (path.isEmpty()) return;
+    QSettings().setValue("tfFolder", QFileInfo(path).absolutePath());
+    openTf(path);
+}
+
+// ---- recent files
+
+void OpenController::addRecent(const VolumeSource& source) { addRecent(recentEntry(source)); }
+
+void OpenController::addRecent(const QString& entry) {
+    QSettings settings;
+    QStringList files = settings.value(kRecentKey).toStringList();
+    files.removeAll(entry);
+    files.prepend(entry);
+    while (files.size() > kRecentFiles) files.removeLast();
+    settings.setValue(kRecentKey, files);
+    updateRecentFiles();
+}
+
+void OpenController::updateRecentFiles() {
+    QMenu* menu = m_bench.actions().menu(recentMenuName());
+    if (menu == nullptr) return;
+    QAction* clear = m_bench.actions().find("clearRecentAction");
+    for (QAction* action : menu->actions()) {
+        if (action != clear) delete action;
+    }
+    menu->removeAction(clear);
+    const QStringList files = QSettings().value(kRecentKey).toStringList();
+    for (const QString& entry : files) {
+        QString path = entry;
+        try {
+            path = QString::fromStdString(recentSource(entry).path);
+        } catch (const Error&) {
+            continue; // of another version
+        }
+        QAction* action = menu->addAction(QFileInfo(path).fileName(), this, [this, entry] { openRecent(entry); });
+        action->setToolTip(path);
+        action->setStatusTip(path);
+    }
+    if (!files.isEmpty()) menu->addSeparator();
+    menu->addAction(clear);
+    menu->setEnabled(!files.isEmpty());
+}
+
+void OpenController::openRecent(const QString& entry) {
+    if (!entry.startsWith('{')) return openPath(entry);
+    try {
+        const VolumeSource source = recentSource(entry);
+        if (m_bench.saving().maybeSave()) openVolume(source);
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot open the file"), error);
+    }
+}
+
+// ---- state
+
+QString OpenController::busyText() const { return m_busyText; }
+
+void OpenController::cancel() {
+    m_open.cancel();
+    m_data.cancel();
+}
+
+void OpenController::setSessionPath(const QString& path) {
+    m_sessionPath = path;
+    Q_EMIT busyChanged(); // the title shows it
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,96 @@
+// Opening: volumes, transfer functions and sessions, from every place that names one.
+#pragma once
+
+#include <QObject>
+#include <QStringList>
+
+#include "jobs/job.h"
+#include "session/session_json.h"
+#include "store/session_store.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+class OpenController : public QObject {
+    Q_OBJECT
+public:
+    explicit OpenController(Workbench& bench);
+    ~OpenController() override;
+
+    void addActions();
+    /// Fills the menu of recent files; after the menus have been built.
+    void updateRecentFiles();
+
+    /// All of these open in the background; an error shows a dialog and leaves everything as it is.
+    /// `tfSpec` (a file, tents:N[:PEAK], ramp:N) replaces the volume's default transfer function; empty: keep that.
+    void openVolume(const VolumeSource& source, const QString& tfSpec = {});
+    void openSession(const QString& path);
+    /// A session that need not have a file: one that was recovered. It is unsaved.
+    void openRecovered(const SessionFile& file);
+    /// Into the present session, at once.
+    void openTf(const QString& specOrPath);
+    /// A path from the user: a session or a transfer function by its name, else a volume; what no format knows asks for
+    /// its layout. Asks about unsaved work.
+    void openPath(const QString& path);
+    /// The same as the first thing of a window, with a transfer function.
+    void openAtStart(const QString& path, const QString& tfSpec);
+
+    /// A change of the session that needs other data, or the same through another window: one undo step named `text`
+    /// once the data is there. A later one takes the place of one under way.
+    void editData(const QString& text, const SessionStore::Change& change);
+
+    bool isBusy() const { return m_open.isRunning() || m_data.isRunning(); }
+    QString busyText() const; ///< "Opening scan.nrrd…"
+    void cancel();
+
+    const QString& tfPath() const { return m_tfPath; } ///< of the transfer function that is open; empty: of no file
+    void setTfPath(const QString& path) { m_tfPath = path; }
+    const QString& sessionPath() const { return m_sessionPath; }
+    void setSessionPath(const QString& path);
+
+Q_SIGNALS:
+    void busyChanged();
+    void progress(double fraction);
+    void opened(); ///< a volume or a session
+    void failed(const pellucid::Error& error);
+    void tfFailed(const pellucid::Error& error); ///< the volume is open, its transfer function is the default
+    void cancelled();
+
+private:
+    struct Request {
+        SceneInputs inputs;
+        QString tfPath, sessionPath;
+        std::vector<std::string> notices;
+        bool tfIsOptional = false; ///< a wrong one is no reason not to show the volume
+        bool unsaved = false;
+    };
+    struct Opened {
+        Scene scene;
+        std::optional<Error> tfError;
+    };
+    struct DataChange {
+        QString text;
+        SessionStore::Change change;
+        Scene basis;
+    };
+
+    static Opened load(const Request& request, const JobControl& job);
+    void show(const Request& request, Opened& opened);
+    bool askRawLayout(VolumeSource& source); ///< false: the user gave up
+    void chooseVolume();
+    void chooseRaw();
+    void chooseTf();
+    void noteWindow(const TransferFunction& tf);
+    void addRecent(const VolumeSource& source);
+    void addRecent(const QString& entry);
+    void openRecent(const QString& entry);
+
+    Workbench& m_bench;
+    QString m_tfPath, m_sessionPath, m_busyText;
+    std::function<void()> m_afterData; ///< once the change under way has been made
+    Job<Request, Opened> m_open;
+    Job<DataChange, Scene> m_data;
+};
+
+} // namespace pellucid::gui

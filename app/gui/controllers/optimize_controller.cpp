@@ -1,0 +1,187 @@
+#include "controllers/optimize_controller.h"
+
+#include "optimize/refine.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+QString counted(int n, const QString& one, const QString& many) {
+    return QStringLiteral("%1 %2").arg(n).arg(n == 1 ? one : many);
+}
+
+QString fixed4(double value) { return QString::number(value, 'f', 4); }
+
+Run runOf(const OptimizeResult& result, const TransferFunction& tf) {
+    Run run;
+    run.kind = "optimize";
+    run.ended = name(result.reason);
+    for (const Feature& f : tf.features) run.features.push_back(f.name);
+    run.targets = result.targets;
+    run.history = result.history;
+    run.best = result.best;
+    run.before = result.history.front().objective;
+    run.after = result.history[result.best].objective;
+    run.iterations = result.iterations();
+    return run;
+}
+
+} // namespace
+
+OptimizeController::OptimizeController(Workbench& bench)
+    : m_bench(bench),
+      m_job(
+          [this, &workspace = bench.workspace()](const Task& task, const JobControl& job) {
+              int move = 0;
+              const auto watch = [&](const OptimizeState& state) {
+                  if (job.stop.stop_requested()) return;
+                  QMetaObject::invokeMethod(this,
+                                            [this, task, state, number = move++] { showMove(task, number, state); });
+              };
+              OptimizeResult result = workspace.optimize(task.input, task.targets, task.options, {job.stop, {}}, watch);
+              if (result.reason == StopReason::Cancelled) throw Cancelled{};
+              return result;
+          },
+          [this](const Task& task, OptimizeResult& result) { finish(task, result); }, WhenBusy::StopOld,
+          &bench.compute()) {
+    connect(&m_job, &JobBase::busyChanged, this, [this] {
+        m_bench.results().setPaused(isRunning());
+        Q_EMIT runningChanged();
+    });
+    connect(&m_job, &JobBase::cancelled, this, [this] {
+        m_bench.store().cancel();
+        say(tr("Cancelled; nothing was changed."));
+    });
+    connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
+        m_bench.store().cancel();
+        m_bench.showError(tr("Optimization failed"), error);
+    });
+    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.data != after.data) cancel();
+        if (!m_message.isEmpty() && !isRunning() && !(present() == m_about)) say({});
+    });
+}
+
+OptimizeController::~OptimizeController() { ++m_number; }
+
+void OptimizeController::addActions() {
+    const QString menu = tr("&Transfer function");
+    m_bench.actions().add({.id = "refineAction",
+                           .menu = menu,
+                           .text = tr("&Refine by entropy"),
+                           .keys = {QKeySequence("Ctrl+R")},
+                           .tip = tr("Opacities by entropy: values that are common get less, rare ones more"),
+                           .trigger = [this] { refine(); },
+                           .enabled = [this] { return m_bench.store().hasVolume() && !isRunning(); },
+                           .checked = {},
+                           .say = {},
+                           .separatorBefore = true});
+    m_bench.actions().add(
+        {.id = "optimizeAction",
+         .menu = menu,
+         .text = tr("&Optimize to the targets"),
+         .keys = {QKeySequence("Ctrl+Return")},
+         .tip = tr("Opacities until the features' saliency (VWS) meets the targets, from this camera"),
+         .trigger = [this] { start(); },
+         .enabled =
+             [this] { return m_bench.store().hasVolume() && !isRunning() && !m_bench.scene().tf.features.empty(); },
+         .checked = {},
+         .say = {}});
+}
+
+OptimizeController::About OptimizeController::present() const {
+    return {measureInput(m_bench.scene()), m_bench.scene().targets()};
+}
+
+void OptimizeController::say(const QString& text) {
+    m_about = present();
+    if (text == m_message) return;
+    m_message = text;
+    Q_EMIT messageChanged();
+}
+
+void OptimizeController::start() {
+    SessionStore& store = m_bench.store();
+    if (!store.hasVolume() || isRunning() || m_bench.scene().tf.features.empty()) return;
+    store.commit();
+    say({});
+    m_move = -1;
+    m_firstObjective = m_objective = 0;
+    const About about = present();
+    m_job.start({about.input, about.targets, *store.session().optimize, ++m_number}, tr("the optimization"));
+    Q_EMIT moved();
+}
+
+void OptimizeController::cancel() { m_job.cancel(); }
+
+void OptimizeController::showMove(const Task& task, int move, const OptimizeState& state) {
+    if (task.number != m_number || !isRunning()) return;
+    m_move = move;
+    m_objective = state.objective;
+    if (move == 0) m_firstObjective = state.objective;
+    const TransferFunction tf = withFeatureOpacities(task.input.tf, state.opacity);
+    m_bench.store().preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
+    if (!isRunning()) return;        // whoever saw it has stopped it
+    MeasureInput input = task.input; // of the camera that it began with, wherever the eye is now
+    input.tf = tf;
+    m_bench.results().addVws(input, state.vws);
+    Q_EMIT moved();
+}
+
+void OptimizeController::finish(const Task& task, const OptimizeResult& result) {
+    SessionStore& store = m_bench.store();
+    const OptimizeState& best = result.history[result.best];
+    store.preview(tr("Optimize"), [&](Session& session) {
+        session.setTf(result.tf);
+        session.addRun(runOf(result, result.tf));
+    });
+    store.commit();
+    MeasureInput input = task.input;
+    input.tf = result.tf;
+    m_bench.results().addVws(input, best.vws);
+    const QString figures = tr("F = %1, from %2, in %3")
+                                .arg(fixed4(best.objective), fixed4(result.history.front().objective),
+                                     counted(result.iterations(), tr("move"), tr("moves")));
+    // It is true of what it was computed from; where the eye has moved meanwhile, nothing is known of now.
+    if (!(present() == About{input, task.targets})) {
+        say(tr("The view or the targets have changed since it began; where it began: %1.").arg(figures));
+        return;
+    }
+    switch (result.reason) {
+    case StopReason::Converged:
+        return say(tr("On target: %1.").arg(figures));
+    case StopReason::NoProgress:
+        return say(tr("As near as it gets from this camera: %1.").arg(figures));
+    default:
+        return say(tr("Stopped at the most moves allowed: %1.").arg(figures));
+    }
+}
+
+void OptimizeController::refine() {
+    SessionStore& store = m_bench.store();
+    if (!store.hasVolume() || isRunning()) return;
+    store.commit();
+    try {
+        // A few milliseconds, of the histogram alone: no reason to go to another thread.
+        const RefineResult result = pellucid::refine(*m_bench.scene().histogram, m_bench.scene().tf);
+        if (result.tf == m_bench.scene().tf) return say(tr("Refinement found nothing to improve."));
+        Run run;
+        run.kind = "refine";
+        run.ended = "done";
+        for (const Feature& f : result.tf.features) run.features.push_back(f.name);
+        run.before = result.energyMovableBefore;
+        run.after = result.energyMovableAfter;
+        run.iterations = result.iterations;
+        store.edit(tr("Refine"), {}, [&](Session& session) {
+            session.setTf(result.tf);
+            session.addRun(run);
+        });
+        say(tr("Refined in %1: energy %2, from %3.")
+                .arg(counted(result.iterations, tr("step"), tr("steps")), QString::number(run.after, 'g', 3),
+                     QString::number(run.before, 'g', 3)));
+    } catch (const Error& error) {
+        m_bench.showError(tr("Refinement failed"), error);
+    }
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,69 @@
+// Optimization and refinement: start, watch, stop, and what is said of them.
+#pragma once
+
+#include <QObject>
+
+#include "jobs/job.h"
+#include "session/workspace.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// While an optimization runs, its moves are previewed; it ends as one undo step, or without a trace. What it found is
+/// true of the camera and targets that it began with, and is said for as long as they are the present ones.
+class OptimizeController : public QObject {
+    Q_OBJECT
+public:
+    explicit OptimizeController(Workbench& bench);
+    ~OptimizeController() override;
+
+    void addActions();
+
+    void start();
+    void cancel();
+    bool isRunning() const { return m_job.isRunning(); }
+    void refine();
+
+    /// Of the run under way: its latest move (0 is the start; −1 before), and the distance F there.
+    int move() const { return m_move; }
+    double objective() const { return m_objective; }
+    double firstObjective() const { return m_firstObjective; }
+
+    /// What came of the latest run; empty as soon as it is not true of the present state any more.
+    const QString& message() const { return m_message; }
+
+Q_SIGNALS:
+    void runningChanged();
+    void moved(); ///< move() and objective() have changed
+    void messageChanged();
+
+private:
+    /// What a message is about.
+    struct About {
+        MeasureInput input;
+        std::vector<double> targets;
+        bool operator==(const About&) const = default;
+    };
+    struct Task {
+        MeasureInput input;
+        std::vector<double> targets;
+        OptimizeOptions options;
+        int number = 0;
+    };
+
+    About present() const;
+    void say(const QString& text);
+    void showMove(const Task& task, int move, const OptimizeState& state);
+    void finish(const Task& task, const OptimizeResult& result);
+
+    Workbench& m_bench;
+    QString m_message;
+    About m_about;
+    int m_number = 0; ///< of the latest run: answers of others are dropped
+    int m_move = -1;
+    double m_objective = 0, m_firstObjective = 0;
+    Job<Task, OptimizeResult> m_job;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,48 @@
+// Unsaved work that survives a crash.
+#pragma once
+
+#include <memory>
+
+#include <QObject>
+#include <QTimer>
+
+#include "jobs/job.h"
+#include "session/recovery.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// Writes the session to a recovery file within two seconds of every change that is not saved, and offers at the next
+/// start what a crash left behind.
+class RecoveryController : public QObject {
+    Q_OBJECT
+public:
+    explicit RecoveryController(Workbench& bench);
+    ~RecoveryController() override;
+
+    /// Where recovery files lie for this user.
+    static QString folder();
+    /// Begins to keep unsaved work; a window that is only photographed does not.
+    void start();
+    /// A notice with what was left behind, if anything was, once the first volume is open.
+    void offerWhenOpen();
+    void offer();
+    /// The user has decided about the work at hand: nothing is kept.
+    void discard();
+
+private:
+    struct Work {
+        std::optional<Session> session; ///< empty: there is nothing to keep
+        QString title;
+    };
+    void save();
+
+    Workbench& m_bench;
+    std::shared_ptr<RecoveryFile> m_file; // shared with the thread that writes it
+    QTimer m_timer;
+    std::vector<std::string> m_restored; ///< files of others whose work is here now, until it is written
+    Job<Work, bool> m_writing;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,188 @@
+#include "controllers/save_controller.h"
+
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QSettings>
+
+#include "controllers/open_controller.h"
+#include "engines/engines.h"
+#include "render/image.h"
+#include "session/session_json.h"
+#include "tf/formats/tf_json.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+QString baseName(const Scene& scene) {
+    return QFileInfo(QString::fromStdString(scene.volume->title)).completeBaseName();
+}
+
+} // namespace
+
+SaveController::SaveController(Workbench& bench)
+    : m_bench(bench),
+      m_images(
+          [](const Picture& picture, const JobControl& job) {
+              const auto renderer = makeRenderer(EngineChoice::Auto, picture.input.volume);
+              const Image image = renderer->render(picture.input.camera, picture.input.tf, picture.input.settings, job);
+              job.throwIfStopped();
+              writeImage(image, picture.path.toStdString());
+              return picture.path;
+          },
+          [this](const Picture&, const QString& path) {
+              Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+              Q_EMIT imageSaved(path);
+          },
+          WhenBusy::Queue) {
+    connect(&m_images, &JobBase::busyChanged, this, &SaveController::busyChanged);
+    connect(&m_images, &JobBase::progress, this, &SaveController::progress);
+    connect(&m_images, &JobBase::cancelled, this, &SaveController::cancelled);
+    connect(&m_images, &JobBase::failed, this,
+            [this](const Error& error) { m_bench.showError(tr("Cannot save the image"), error); });
+}
+
+SaveController::~SaveController() = default;
+
+void SaveController::addActions() {
+    const QString menu = tr("&File");
+    const auto open = [this] { return m_bench.store().hasVolume(); };
+    const auto add = [&](const QString& id, const QString& text, const QList<QKeySequence>& keys, const QString& tip,
+                         bool separator, bool toolBar, std::function<void()> trigger) {
+        m_bench.actions().add({.id = id,
+                               .menu = menu,
+                               .text = text,
+                               .keys = keys,
+                               .tip = tip,
+                               .trigger = std::move(trigger),
+                               .enabled = open,
+                               .checked = {},
+                               .say = {},
+                               .separatorBefore = separator,
+                               .inToolBar = toolBar});
+    };
+    add("saveSessionAction", tr("&Save session"), {QKeySequence("Ctrl+S")},
+        tr("Everything that you have set, with the name of the data, to go on from later"), true, false,
+        [this] { chooseSession(false); });
+    add("saveSessionAsAction", tr("Save session &as…"), {QKeySequence("Ctrl+Shift+S")}, {}, false, false,
+        [this] { chooseSession(true); });
+    add("saveTfAction", tr("Sa&ve transfer function"), {QKeySequence("Ctrl+T")}, {}, true, false,
+        [this] { chooseTf(false); });
+    add("saveTfAsAction", tr("Save transfer f&unction as…"), {QKeySequence("Ctrl+Shift+T")}, {}, false, false,
+        [this] { chooseTf(true); });
+    add("saveImageAction", tr("Save &image…"), {QKeySequence("Ctrl+E")}, tr("Save the picture"), true, true,
+        [this] { chooseImage(); });
+}
+
+bool SaveController::saveSession(const QString& path) {
+    if (!m_bench.store().hasVolume()) return false;
+    try {
+        writeSession(m_bench.store().committed().session, path.toStdString());
+        m_bench.opening().setSessionPath(path);
+        m_bench.store().setClean();
+        Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+        Q_EMIT sessionSaved();
+        return true;
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot save the session"), error);
+        return false;
+    }
+}
+
+bool SaveController::saveTf(const QString& path) {
+    if (!m_bench.store().hasVolume()) return false;
+    try {
+        writeTf(*m_bench.store().committed().session.tf(), path.toStdString());
+        m_bench.opening().setTfPath(path);
+        m_bench.store().setTfSaved();
+        Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+        return true;
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot save the transfer function"), error);
+        return false;
+    }
+}
+
+void SaveController::saveImage(const SaveImageOptions& options) {
+    if (!m_bench.store().hasVolume()) return;
+    const Picture picture{
+        pictureInput(m_bench.scene(), options.size.width(), options.size.height(), options.transparent), options.path};
+    try {
+        picture.input.settings.validate();
+        checkImageSuffix(options.path.toStdString());
+    } catch (const Error& error) {
+        return m_bench.showError(tr("Cannot save the image"), error);
+    }
+    m_busyText = tr("Saving %1…").arg(QFileInfo(options.path).fileName());
+    m_images.start(picture, options.path);
+    Q_EMIT busyChanged();
+}
+
+bool SaveController::chooseSession(bool askForName) {
+    if (!m_bench.store().hasVolume()) return false;
+    QString path = m_bench.opening().sessionPath();
+    if (askForName || path.isEmpty()) {
+        const QString folder = QSettings().value("sessionFolder").toString();
+        const QString offered =
+            path.isEmpty() ? QDir(folder).filePath(baseName(m_bench.scene()) + ".pellucid.json") : path;
+        path = QFileDialog::getSaveFileName(m_bench.window(), tr("Save session"), offered,
+                                            tr("Sessions (*.pellucid.json)"));
+        if (path.isEmpty()) return false;
+        if (!path.endsWith(".pellucid.json", Qt::CaseInsensitive)) path += ".pellucid.json";
+        QSettings().setValue("sessionFolder", QFileInfo(path).absolutePath());
+    }
+    return saveSession(path);
+}
+
+bool SaveController::chooseTf(bool askForName) {
+    if (!m_bench.store().hasVolume()) return false;
+    QString path = m_bench.opening().tfPath();
+    if (askForName || path.isEmpty()) {
+        const QString folder = QSettings().value("tfFolder").toString();
+        const QString offered = path.isEmpty() ? QDir(folder).filePath(baseName(m_bench.scene()) + ".tf.json") : path;
+        path = QFileDialog::getSaveFileName(m_bench.window(), tr("Save transfer function"), offered,
+                                            tr("Transfer functions (*.tf.json)"));
+        if (path.isEmpty()) return false;
+        if (!path.endsWith(".json", Qt::CaseInsensitive)) path += ".tf.json";
+        QSettings().setValue("tfFolder", QFileInfo(path).absolutePath());
+    }
+    return saveTf(path);
+}
+
+void SaveController::chooseImage() {
+    if (!m_bench.store().hasVolume()) return;
+    const QString folder = QSettings().value("imageFolder", QDir::homePath()).toString();
+    SaveImageDialog dialog(QDir(folder).filePath(baseName(m_bench.scene()) + ".png"), m_seen, m_bench.window());
+    while (dialog.exec() == QDialog::Accepted) {
+        const SaveImageOptions options = dialog.options();
+        if (options.path.isEmpty()) continue;
+        if (QFileInfo::exists(options.path) &&
+            QMessageBox::question(m_bench.window(), tr("Save image"),
+                                  tr("%1 exists. Replace it?").arg(QFileInfo(options.path).fileName())) !=
+                QMessageBox::Yes)
+            continue;
+        QSettings().setValue("imageFolder", QFileInfo(options.path).absolutePath());
+        return saveImage(options);
+    }
+}
+
+bool SaveController::maybeSave() {
+    if (!m_bench.store().hasVolume() || m_bench.store().isClean()) return true;
+    QMessageBox box(QMessageBox::Question, tr("Unsaved changes"), tr("What you have changed has not been saved."),
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, m_bench.window());
+    box.setObjectName("askSave");
+    box.setInformativeText(tr("Save the session before it is lost?"));
+    box.setDefaultButton(QMessageBox::Save);
+    switch (box.exec()) {
+    case QMessageBox::Save:
+        return chooseSession(false);
+    case QMessageBox::Discard:
+        return true;
+    default:
+        return false;
+    }
+}
+
+} // namespace pellucid::gui

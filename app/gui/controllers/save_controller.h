@@ -1,0 +1,57 @@
+// Saving: sessions, transfer functions and pictures.
+#pragma once
+
+#include <QObject>
+
+#include "jobs/job.h"
+#include "save_image_dialog.h"
+#include "session/scene.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+class SaveController : public QObject {
+    Q_OBJECT
+public:
+    explicit SaveController(Workbench& bench);
+    ~SaveController() override;
+
+    void addActions();
+
+    bool saveSession(const QString& path); ///< false: it could not be written, and a dialog says why
+    bool saveTf(const QString& path);
+    /// As seen by the present camera, in the background; several one after the other.
+    void saveImage(const SaveImageOptions& options);
+    /// Asks about unsaved work; false: the user wants to stay.
+    bool maybeSave();
+    /// Pixels of the view on the screen, which are offered first for pictures.
+    void setSeenSize(const QSize& pixels) { m_seen = pixels; }
+
+    bool isBusy() const { return m_images.isRunning(); }
+    const QString& busyText() const { return m_busyText; }
+    void cancel() { m_images.cancel(); }
+
+Q_SIGNALS:
+    void busyChanged();
+    void progress(double fraction);
+    void imageSaved(const QString& path);
+    void sessionSaved();
+    void cancelled();
+
+private:
+    struct Picture {
+        PictureInput input;
+        QString path;
+    };
+    bool chooseSession(bool askForName);
+    bool chooseTf(bool askForName);
+    void chooseImage();
+
+    Workbench& m_bench;
+    QString m_busyText;
+    QSize m_seen;
+    Job<Picture, QString> m_images;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,56 @@
+#include "controllers/tf_actions.h"
+
+#include "tf/sample_tf.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+QString menuName() { return QObject::tr("&Transfer function"); }
+
+void setTf(Workbench& bench, TransferFunction tf, const QString& text) {
+    const ValueRange window = bench.scene().volume->range();
+    if (!tf.range && window.lo < window.hi) tf.range = window;
+    bench.store().edit(text, {}, [&](Session& session) { session.setTf(tf); });
+}
+
+} // namespace
+
+void addTfActions(Workbench& bench) {
+    Actions& actions = bench.actions();
+    const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
+    const auto add = [&](const QString& id, const QString& menu, const QString& text, const QString& tip,
+                         bool separator, std::function<void()> trigger) {
+        actions.add({.id = id,
+                     .menu = menu,
+                     .text = text,
+                     .keys = {},
+                     .tip = tip,
+                     .trigger = std::move(trigger),
+                     .enabled = editable,
+                     .checked = {},
+                     .say = {},
+                     .separatorBefore = separator});
+    };
+    const QString presets = menuName() + "/" + QObject::tr("&Presets");
+    add("presetDefault", presets, QObject::tr("Default of this volume"), {}, false,
+        [&bench] { setTf(bench, defaultTf(*bench.scene().volume), QObject::tr("Default")); });
+    for (const char* spec : {"tents:1", "tents:2", "tents:3", "tents:4", "tents:6", "tents:8", "ramp:6", "ramp:12"}) {
+        const QString name = QString::fromLatin1(spec);
+        const QString number = name.section(':', 1);
+        const QString text = name.startsWith("tents")
+                                 ? (number == "1" ? QObject::tr("One tent, one feature")
+                                                  : QObject::tr("%1 tents, one feature each").arg(number))
+                                 : QObject::tr("Ramp of %1 points, one feature").arg(number);
+        add(name, presets, text, {}, name == "tents:1",
+            [&bench, name] { setTf(bench, *tfFromSpec(name.toStdString()), name); });
+    }
+    add("deriveFeaturesAction", menuName(), QObject::tr("&Features from the curve"),
+        QObject::tr("One feature for each interval of the curve between two points of opacity 0"), true, [&bench] {
+            TransferFunction tf = bench.scene().tf;
+            tf.features = deriveFeatures(tf);
+            setTf(bench, tf, QObject::tr("Features from the curve"));
+        });
+}
+
+} // namespace pellucid::gui

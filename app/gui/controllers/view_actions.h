@@ -1,0 +1,20 @@
+// How the camera is set: what the View menu and the hands on the picture share.
+#pragma once
+
+#include "store/session_store.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+enum class StandardView { Front, Back, Left, Right, Top, Bottom };
+
+void fitView(SessionStore& store);   ///< the same direction, the whole box
+void resetView(SessionStore& store); ///< as a volume opens
+void setStandardView(SessionStore& store, StandardView view);
+void setProjection(SessionStore& store, Projection projection);
+void zoomView(SessionStore& store, double factor, int gesture = 0);
+
+void addViewActions(Workbench& bench);
+
+} // namespace pellucid::gui

@@ -1,0 +1,32 @@
+// A panel: a dock that brings all of itself along.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <QKeySequence>
+#include <QString>
+#include <QWidget>
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// What the frame needs to know of a panel. `make` is called once; the widget takes everything else (the store,
+/// results, actions, jobs) from the workbench, and adds its own actions there.
+struct PanelInfo {
+    const char* id; ///< the dock's object name is "<id>Dock", its toggle's "<id>Action"
+    QString title;
+    Qt::DockWidgetArea area = Qt::RightDockWidgetArea;
+    bool visible = true; ///< at the first start
+    int size = 0;        ///< width (or height, at the bottom) at the first start, pixels; 0: as it likes
+    QKeySequence keys;   ///< show or hide it
+    QString tip;
+    std::function<QWidget*(Workbench&, QWidget* parent)> make;
+    std::function<void(Workbench&, bool visible)> shown; ///< it was shown or hidden; may be empty
+};
+
+/// All panels, in the order of the View menu. To add one: its own files, and its line in panels.cpp.
+std::vector<PanelInfo> panelRegistry();
+
+} // namespace pellucid::gui

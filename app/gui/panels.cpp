@@ -1,0 +1,22 @@
+#include "panel.h"
+
+// The registry: one line a panel. Each is a function of its own file that tells what the panel is.
+#define PELLUCID_PANELS(PANEL)                                                                                         \
+    PANEL(transferFunctionPanel)                                                                                       \
+    PANEL(featuresPanel)                                                                                               \
+    PANEL(influencePanel)                                                                                              \
+    PANEL(displayPanel)
+
+namespace pellucid::gui {
+
+#define PELLUCID_DECLARE_PANEL(name) PanelInfo name();
+PELLUCID_PANELS(PELLUCID_DECLARE_PANEL)
+#undef PELLUCID_DECLARE_PANEL
+
+std::vector<PanelInfo> panelRegistry() {
+#define PELLUCID_CALL_PANEL(name) name(),
+    return {PELLUCID_PANELS(PELLUCID_CALL_PANEL)};
+#undef PELLUCID_CALL_PANEL
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,300 @@
+#include "panels/features_panel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QColorDialog>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QGridLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QSignalBlocker>
+#include <QStyledItemDelegate>
+#include <QTableView>
+#include <QVBoxLayout>
+
+#include "controllers/optimize_controller.h"
+#include "opacity_editor.h"
+#include "panel.h"
+#include "theme.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kRowHeight = 26;
+constexpr int kSwatch = 26; // width of the colour in the name's cell
+
+/// A slider in each cell of the opacity column.
+class OpacityDelegate : public QStyledItemDelegate {
+public:
+    OpacityDelegate(FeaturesModel& model, QObject* parent) : QStyledItemDelegate(parent), m_model(model) {}
+
+    QWidget* createEditor(QWidget* parent, const QStyleOptionViewItem&, const QModelIndex& index) const override {
+        auto* editor = new OpacityEditor(parent);
+        const QPersistentModelIndex place(index);
+        FeaturesModel& model = m_model;
+        connect(editor, &OpacityEditor::dragged, &model, [&model, place](double opacity) {
+            if (place.isValid()) model.previewOpacity(place.row(), opacity);
+        });
+        connect(editor, &OpacityEditor::released, &model, &FeaturesModel::endPreview);
+        connect(editor, &OpacityEditor::edited, &model, [&model, place](double opacity) {
+            if (place.isValid()) model.setData(place, opacity);
+        });
+        return editor;
+    }
+    void setEditorData(QWidget* editor, const QModelIndex& index) const override {
+        static_cast<OpacityEditor*>(editor)->setOpacity(index.data(Qt::EditRole).toDouble());
+    }
+    void setModelData(QWidget*, QAbstractItemModel*, const QModelIndex&) const override {} // the signals have done it
+    void paint(QPainter*, const QStyleOptionViewItem&, const QModelIndex&) const override {
+    } // the editor is open always
+
+private:
+    FeaturesModel& m_model;
+};
+
+QPushButton* button(const QString& text, const char* name, const QString& tip, QWidget* parent) {
+    auto* b = new QPushButton(text, parent);
+    b->setObjectName(name);
+    b->setToolTip(tip);
+    b->setAutoDefault(false);
+    return b;
+}
+
+} // namespace
+
+FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_model(new FeaturesModel(bench.store(), bench.results(), this)),
+      m_table(new QTableView(this)), m_bars(new TargetBars(bench.store(), bench.results())),
+      m_method(new QComboBox(this)), m_tolerance(new QDoubleSpinBox(this)),
+      m_refine(button(tr("&Refine"), "refineButton",
+                      tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this)),
+      m_optimize(button(tr("&Optimize"), "optimizeButton",
+                        tr("Change the features' opacities until their saliency (VWS) meets the targets,\n"
+                           "as seen from this camera"),
+                        this)),
+      m_cancel(button(tr("&Cancel"), "cancelButton", tr("Stop, and go back to where the optimization began"), this)),
+      m_undo(button(tr("Undo"), "undoButton", tr("Undo the last change (Ctrl+Z)"), this)),
+      m_redo(button(tr("Redo"), "redoButton", tr("Redo the change that was undone (Ctrl+Shift+Z)"), this)),
+      m_progress(new QProgressBar(this)), m_distance(new QLabel(this)), m_message(new QLabel(this)) {
+    setObjectName("featuresPanel");
+
+    m_table->setObjectName("featuresTable");
+    m_table->setModel(m_model);
+    m_table->setItemDelegateForColumn(FeaturesModel::Opacity, new OpacityDelegate(*m_model, m_table));
+    for (const auto column : {FeaturesModel::Visibility, FeaturesModel::Vws, FeaturesModel::Target}) {
+        m_table->setColumnHidden(column, true); // the bars below show them
+    }
+    m_table->verticalHeader()->hide();
+    m_table->verticalHeader()->setDefaultSectionSize(kRowHeight);
+    m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+    m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Range, QHeaderView::ResizeToContents);
+    m_table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
+    m_table->horizontalHeader()->setHighlightSections(false);
+    m_table->setShowGrid(false);
+    m_table->setSelectionMode(QAbstractItemView::NoSelection);
+    m_table->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    m_table->setEditTriggers(QAbstractItemView::EditKeyPressed);
+    connect(m_table, &QTableView::doubleClicked, this, [this](const QModelIndex& index) {
+        if (index.column() != FeaturesModel::Name || m_bench.isReadOnly()) return;
+        // The swatch at the left of the cell, or the name in the rest of it.
+        const QPoint mouse = m_table->viewport()->mapFromGlobal(QCursor::pos());
+        if (mouse.x() > m_table->columnViewportPosition(FeaturesModel::Name) + kSwatch) return m_table->edit(index);
+        const QColor color =
+            QColorDialog::getColor(index.data(Qt::DecorationRole).value<QColor>(), this, tr("Colour of the feature"));
+        if (color.isValid()) m_model->setData(index, color, Qt::DecorationRole);
+    });
+    connect(m_model, &QAbstractItemModel::modelReset, this, &FeaturesPanel::adjustTable);
+
+    auto* scroll = new QScrollArea(this);
+    scroll->setObjectName("barsScroll");
+    scroll->setWidget(m_bars);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+
+    m_method->setObjectName("methodCombo");
+    m_method->addItem(tr("Parallel line search"), static_cast<int>(SearchMethod::Parallel));
+    m_method->addItem(tr("Line search"), static_cast<int>(SearchMethod::Line));
+    m_method->addItem(tr("Fixed steps"), static_cast<int>(SearchMethod::Fixed));
+    m_method->setToolTip(tr("How far each move goes: the best of eight lengths tried at once,\n"
+                            "one length found by doubling or halving, or always the same"));
+    m_tolerance->setObjectName("toleranceSpin");
+    m_tolerance->setRange(0.0001, 1.0);
+    m_tolerance->setDecimals(4);
+    m_tolerance->setSingleStep(0.01);
+    m_tolerance->setValue(0.03);
+    m_tolerance->setToolTip(tr("Optimize stops when the distance F of VWS from the targets is below this"));
+    m_progress->setObjectName("optimizeProgress");
+    m_progress->setRange(0, 1000);
+    m_progress->setTextVisible(true);
+    m_progress->setMaximumHeight(18);
+    m_distance->setObjectName("distanceLabel");
+    m_distance->setToolTip(tr("F: root of the mean squared difference between VWS and targets"));
+    // What is said must not change how wide the dock is, else the picture would be drawn anew.
+    for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    m_message->setObjectName("panelMessage");
+    m_message->setWordWrap(true);
+    m_message->setStyleSheet(QStringLiteral("color: %1").arg(theme::kFaint.name()));
+
+    auto* choices = new QGridLayout;
+    choices->setContentsMargins(10, 0, 10, 0);
+    choices->setHorizontalSpacing(8);
+    choices->setVerticalSpacing(6);
+    auto* methodLabel = new QLabel(tr("&Method"), this);
+    methodLabel->setBuddy(m_method);
+    auto* toleranceLabel = new QLabel(tr("&Tolerance"), this);
+    toleranceLabel->setBuddy(m_tolerance);
+    choices->addWidget(methodLabel, 0, 0);
+    choices->addWidget(m_method, 0, 1);
+    choices->addWidget(toleranceLabel, 0, 2);
+    choices->addWidget(m_tolerance, 0, 3);
+    choices->setColumnStretch(1, 1);
+    auto* buttons = new QGridLayout;
+    buttons->setContentsMargins(10, 0, 10, 0);
+    buttons->setSpacing(6);
+    buttons->addWidget(m_refine, 0, 0);
+    buttons->addWidget(m_optimize, 0, 1);
+    buttons->addWidget(m_cancel, 0, 1);
+    buttons->addWidget(m_undo, 0, 2);
+    buttons->addWidget(m_redo, 0, 3);
+    for (int i = 0; i < 4; ++i) buttons->setColumnStretch(i, 1);
+    auto* status = new QVBoxLayout;
+    status->setContentsMargins(10, 0, 10, 0);
+    status->setSpacing(4);
+    status->addWidget(m_distance);
+    status->addWidget(m_progress);
+    status->addWidget(m_message);
+
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 0, 0, 8);
+    column->setSpacing(8);
+    column->addWidget(m_table);
+    column->addWidget(scroll, 1);
+    column->addLayout(status);
+    column->addLayout(choices);
+    column->addLayout(buttons);
+
+    const auto triggers = [this](QPushButton* b, const char* action) {
+        connect(b, &QPushButton::clicked, this, [this, action] { m_bench.actions().find(action)->trigger(); });
+    };
+    triggers(m_refine, "refineAction");
+    triggers(m_optimize, "optimizeAction");
+    triggers(m_undo, "undoAction");
+    triggers(m_redo, "redoAction");
+    OptimizeController& optimizing = m_bench.optimizing();
+    connect(m_cancel, &QPushButton::clicked, &optimizing, &OptimizeController::cancel);
+    connect(m_method, &QComboBox::activated, this, &FeaturesPanel::editOptions);
+    connect(m_tolerance, &QDoubleSpinBox::valueChanged, this, &FeaturesPanel::editOptions);
+    connect(&optimizing, &OptimizeController::runningChanged, this, &FeaturesPanel::followRun);
+    connect(&optimizing, &OptimizeController::moved, this, &FeaturesPanel::followRun);
+    connect(&optimizing, &OptimizeController::messageChanged, this, &FeaturesPanel::showMessage);
+    connect(&m_bench.store(), &SessionStore::changed, this, &FeaturesPanel::follow);
+    connect(&m_bench.store(), &SessionStore::historyChanged, this, &FeaturesPanel::follow);
+    connect(&m_bench.results(), &Results::changed, this, &FeaturesPanel::follow);
+    adjustTable();
+    followRun();
+    showMessage();
+}
+
+void FeaturesPanel::editOptions() {
+    const auto method = static_cast<SearchMethod>(m_method->currentData().toInt());
+    const double tolerance = m_tolerance->value();
+    m_bench.store().edit(tr("Optimization settings"), "optimize-settings", [&](Session& session) {
+        session.optimize.edit([&](OptimizeOptions& options) {
+            options.method = method;
+            options.tolerance = tolerance;
+        });
+    });
+}
+
+void FeaturesPanel::adjustTable() {
+    for (int row = 0; row < m_model->rowCount(); ++row) {
+        m_table->openPersistentEditor(m_model->index(row, FeaturesModel::Opacity));
+    }
+    const int shown = std::clamp(m_model->rowCount(), 1, 6);
+    m_table->setFixedHeight(m_table->horizontalHeader()->sizeHint().height() + shown * kRowHeight + 2);
+}
+
+void FeaturesPanel::followRun() {
+    const OptimizeController& run = m_bench.optimizing();
+    const bool on = run.isRunning();
+    if (on && !m_cancel->isVisible()) m_cancel->setFocus();
+    if (m_cancel->isHidden() == on) {
+        m_bars->setReadOnly(on);
+        m_model->setReadOnly(on);
+    }
+    if (!on || run.move() < 0) {
+        m_progress->setValue(0);
+        m_progress->setFormat(on ? tr("measuring the start…") : QString());
+    } else {
+        // F falls by about the same factor in each move, so the way is measured in logarithms.
+        const double tolerance = m_bench.store().session().optimize->tolerance;
+        double done = 1;
+        if (run.objective() > tolerance && run.firstObjective() > tolerance)
+            done = std::log(run.firstObjective() / run.objective()) / std::log(run.firstObjective() / tolerance);
+        m_progress->setValue(static_cast<int>(1000 * std::clamp(done, 0.0, 1.0)));
+        m_progress->setFormat(tr("move %1, F = %2").arg(run.move()).arg(run.objective(), 0, 'f', 4));
+    }
+    m_optimize->setVisible(!on);
+    m_cancel->setVisible(on);
+    m_progress->setVisible(on);
+    m_distance->setVisible(!on);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_table, m_method, m_tolerance}) widget->setEnabled(!on);
+    follow();
+}
+
+void FeaturesPanel::showMessage() {
+    const QString& text = m_bench.optimizing().message();
+    m_message->setText(text);
+    m_message->setVisible(!text.isEmpty());
+}
+
+void FeaturesPanel::follow() {
+    const SessionStore& store = m_bench.store();
+    const OptimizeOptions& options = *store.session().optimize;
+    const QSignalBlocker blockMethod(m_method), blockTolerance(m_tolerance);
+    m_method->setCurrentIndex(m_method->findData(static_cast<int>(options.method)));
+    m_tolerance->setValue(options.tolerance);
+
+    const bool ready = store.hasVolume() && !m_bench.isReadOnly();
+    const bool features = !store.scene().tf.features.empty();
+    m_refine->setEnabled(ready);
+    m_optimize->setEnabled(ready && features);
+    m_undo->setEnabled(ready && store.canUndo());
+    m_redo->setEnabled(ready && store.canRedo());
+
+    const Results& results = m_bench.results();
+    m_distance->setEnabled(results.vwsIsCurrent());
+    if (results.state() == Results::State::Failed) {
+        m_distance->setText(tr("Not measured: %1").arg(QString::fromStdString(results.failure()->problem())));
+    } else if (const auto f = results.objective()) {
+        m_distance->setText(tr("Distance from the targets: F = %1").arg(*f, 0, 'f', 4));
+    } else {
+        m_distance->setText(store.hasVolume() && features ? tr("Measuring…") : QString());
+    }
+}
+
+PanelInfo featuresPanel() {
+    return {.id = "features",
+            .title = QObject::tr("Features"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = true,
+            .size = 380,
+            .keys = QKeySequence("Ctrl+2"),
+            .tip = QObject::tr("What each feature shows and what it should show"),
+            .make =
+                [](Workbench& bench, QWidget* parent) {
+                    auto* panel = new FeaturesPanel(bench, parent);
+                    panel->setMinimumWidth(340);
+                    return panel;
+                },
+            .shown = {}};
+}
+
+} // namespace pellucid::gui

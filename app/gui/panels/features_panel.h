@@ -1,0 +1,43 @@
+// The panel of the features: what each shows, what it should show, and the buttons that get it there.
+#pragma once
+
+#include <QWidget>
+
+#include "models/features_model.h"
+#include "target_bars.h"
+
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QProgressBar;
+class QPushButton;
+class QTableView;
+
+namespace pellucid::gui {
+
+class Workbench;
+
+class FeaturesPanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit FeaturesPanel(Workbench& bench, QWidget* parent = nullptr);
+
+private:
+    void editOptions();
+    void follow(); ///< the state, and what is computed of it
+    void followRun();
+    void showMessage();
+    void adjustTable();
+
+    Workbench& m_bench;
+    FeaturesModel* m_model;
+    QTableView* m_table;
+    TargetBars* m_bars;
+    QComboBox* m_method;
+    QDoubleSpinBox* m_tolerance;
+    QPushButton *m_refine, *m_optimize, *m_cancel, *m_undo, *m_redo;
+    QProgressBar* m_progress;
+    QLabel *m_distance, *m_message;
+};
+
+} // namespace pellucid::gui

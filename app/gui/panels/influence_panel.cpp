@@ -1,0 +1,157 @@
+#include "panels/influence_panel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QAction>
+#include <QApplication>
+#include <QClipboard>
+#include <QHeaderView>
+#include <QLabel>
+#include <QTableWidget>
+#include <QVBoxLayout>
+
+#include "panel.h"
+#include "theme.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+QString signedText(double value) { return QString::asprintf("%+.3g", value).replace('-', QChar(0x2212)); }
+
+QColor blend(const QColor& from, const QColor& to, double share) {
+    const auto part = [share](int a, int b) { return static_cast<int>(std::lround(a + share * (b - a))); };
+    return {part(from.red(), to.red()), part(from.green(), to.green()), part(from.blue(), to.blue())};
+}
+
+} // namespace
+
+PanelInfo influencePanel() {
+    return {.id = "influence",
+            .title = QObject::tr("Influence"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = false, // costs a sweep more
+            .size = 0,
+            .keys = QKeySequence("Ctrl+I"),
+            .tip = QObject::tr("How each feature's VWS follows each opacity"),
+            .make = [](Workbench& bench,
+                       QWidget* parent) { return new InfluencePanel(bench.store(), bench.results(), parent); },
+            .shown = [](Workbench& bench, bool visible) { bench.results().setInfluenceWanted(visible); }};
+}
+
+InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)
+    : QWidget(parent), m_store(store), m_results(results), m_table(new QTableWidget(this)),
+      m_copyAction(new QAction(tr("Copy the table"), m_table)) {
+    auto* label = new QLabel(tr("How fast each VWS (rows) follows each opacity (columns)"), this);
+    label->setWordWrap(true);
+    label->setToolTip(tr("∂W/∂x: the change of a feature's share per change of an opacity, both from 0 to 1,\n"
+                         "from this view and at the present opacities"));
+    m_table->setObjectName("influenceTable");
+    m_table->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    m_table->setSelectionMode(QAbstractItemView::NoSelection);
+    // As wide as the numbers: many features scroll, they are not cut off.
+    m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    m_table->setHorizontalScrollMode(QAbstractItemView::ScrollPerPixel);
+    m_table->setTextElideMode(Qt::ElideNone);
+    m_table->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    m_copyAction->setObjectName("copyInfluenceAction");
+    m_copyAction->setShortcut(QKeySequence::Copy);
+    m_copyAction->setShortcutContext(Qt::WidgetWithChildrenShortcut);
+    m_table->addAction(m_copyAction);
+    m_table->setContextMenuPolicy(Qt::ActionsContextMenu);
+    connect(m_copyAction, &QAction::triggered, this, &InfluencePanel::copy);
+    auto* column = new QVBoxLayout(this);
+    column->addWidget(label);
+    column->addWidget(m_table, 1);
+    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.tf.features == after.tf.features) {
+            refresh();
+        } else {
+            rebuild();
+        }
+    });
+    connect(&results, &Results::changed, this, &InfluencePanel::refresh);
+}
+
+void InfluencePanel::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    rebuild(); // while hidden it has followed nothing
+}
+
+void InfluencePanel::rebuild() {
+    if (!isVisible()) return;
+    const std::vector<Feature>& features = m_store.scene().tf.features;
+    const int n = static_cast<int>(features.size());
+    m_table->setRowCount(n);
+    m_table->setColumnCount(n);
+    for (int i = 0; i < n; ++i) {
+        const Feature& feature = features[static_cast<std::size_t>(i)];
+        const QString name = QString::fromStdString(feature.name);
+        for (const Qt::Orientation side : {Qt::Vertical, Qt::Horizontal}) {
+            auto* header = new QTableWidgetItem(name);
+            header->setData(Qt::DecorationRole, colorFromRgb(feature.color));
+            header->setToolTip(side == Qt::Vertical ? tr("VWS of %1").arg(name) : tr("Opacity of %1").arg(name));
+            side == Qt::Vertical ? m_table->setVerticalHeaderItem(i, header)
+                                 : m_table->setHorizontalHeaderItem(i, header);
+        }
+        for (int j = 0; j < n; ++j) {
+            auto* cell = new QTableWidgetItem;
+            cell->setTextAlignment(Qt::AlignCenter);
+            m_table->setItem(i, j, cell);
+        }
+    }
+    refresh();
+}
+
+void InfluencePanel::refresh() {
+    const auto* const influence = m_results.influence();
+    const int n = m_table->rowCount();
+    const bool known = influence && static_cast<int>(influence->size()) == n, current = m_results.influenceIsCurrent();
+    m_copyAction->setEnabled(known && current);
+    if (!isVisible()) return;
+    double largest = 0;
+    if (known)
+        for (const auto& row : *influence)
+            for (const double value : row) largest = std::max(largest, std::abs(value));
+    static const QColor kFalls{0xd9, 0x7a, 0x2b}; // with the accent a pair that everyone can tell apart
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            QTableWidgetItem* const cell = m_table->item(i, j);
+            if (!known) {
+                cell->setText({});
+                cell->setToolTip({});
+                cell->setBackground({});
+                continue;
+            }
+            const double value = (*influence)[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+            const double share = largest > 0 ? std::abs(value) / largest : 0;
+            cell->setText(signedText(value));
+            cell->setToolTip(current ? tr("Raising the opacity of %1 by 0.01 changes the VWS of %2 by about %3")
+                                           .arg(m_table->horizontalHeaderItem(j)->text(),
+                                                m_table->verticalHeaderItem(i)->text(), signedText(0.01 * value))
+                                     : tr("Of an older state; being measured"));
+            cell->setBackground(
+                blend(theme::kPanel, value < 0 ? kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
+            cell->setForeground(current ? theme::kText : theme::kFaint);
+        }
+}
+
+void InfluencePanel::copy() const {
+    const auto* const influence = m_results.influence();
+    if (influence == nullptr || !m_results.influenceIsCurrent() ||
+        static_cast<int>(influence->size()) != m_table->rowCount())
+        return;
+    QString text;
+    for (int j = 0; j < m_table->columnCount(); ++j) text += '\t' + m_table->horizontalHeaderItem(j)->text();
+    text += '\n';
+    for (int i = 0; i < m_table->rowCount(); ++i) {
+        text += m_table->verticalHeaderItem(i)->text();
+        for (const double value : (*influence)[static_cast<std::size_t>(i)])
+            text += '\t' + QString::number(value, 'g', 9);
+        text += '\n';
+    }
+    QApplication::clipboard()->setText(text);
+}
+
+} // namespace pellucid::gui

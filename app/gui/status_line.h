@@ -1,0 +1,35 @@
+// The line below the picture: what is open, from where it is seen, what draws and what measures, and what is under way.
+#pragma once
+
+#include <QObject>
+
+class QLabel;
+class QProgressBar;
+class QStatusBar;
+class QToolButton;
+
+namespace pellucid::gui {
+
+class VolumeView;
+class Workbench;
+
+class StatusLine : public QObject {
+    Q_OBJECT
+public:
+    StatusLine(Workbench& bench, VolumeView& view, QStatusBar& bar);
+
+private:
+    void followScene();
+    void followView();
+    void followFigures();
+    void followBackground();
+
+    Workbench& m_bench;
+    VolumeView& m_view;
+    QStatusBar& m_bar;
+    QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background;
+    QProgressBar* m_progress;
+    QToolButton* m_cancel;
+};
+
+} // namespace pellucid::gui

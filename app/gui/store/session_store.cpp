@@ -1,0 +1,229 @@
+#include "store/session_store.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/check.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr std::size_t kMostSteps = 500;
+constexpr std::size_t kMostCameras = 200;
+constexpr std::size_t kMostData = 3; // volumes that the history keeps in memory, the present one among them
+
+// The session without what has a history of its own.
+Session withoutCamera(Session session) {
+    session.camera.reset();
+    return session;
+}
+
+} // namespace
+
+SessionStore::SessionStore(QObject* parent) : QObject(parent) {}
+
+void SessionStore::open(Scene scene) {
+    m_committed.reset();
+    m_steps.clear();
+    m_index = 0;
+    m_cameras = {scene.camera};
+    m_cameraIndex = 0;
+    m_lastGesture = 0;
+    scene.session.camera = scene.camera;
+    m_clean = scene.session;
+    show(std::move(scene));
+    Q_EMIT historyChanged();
+}
+
+void SessionStore::show(Scene next) {
+    const Scene before = std::exchange(m_scene, std::move(next));
+    const Scene after = m_scene; // whoever hears of it may change it again
+    Q_EMIT changed(before, after);
+}
+
+Scene SessionStore::changedBy(const Change& change, const Scene& from, const Scene& basis) const {
+    Session session = from.session;
+    change(session);
+    PELLUCID_CHECK(!needsData(session, basis));
+    return resolve(std::move(session), basis);
+}
+
+Scene SessionStore::withPresentCamera(Scene scene) const {
+    scene.session.camera = m_scene.session.camera;
+    scene.camera = m_scene.camera;
+    return scene;
+}
+
+void SessionStore::push(const QString& text, const QString& mergeKey, Scene before) {
+    if (withoutCamera(before.session) == withoutCamera(m_scene.session)) return;
+    m_steps.resize(m_index);
+    const bool merges = !mergeKey.isEmpty() && m_index > 0 && m_steps.back().mergeKey == mergeKey;
+    if (merges) {
+        m_steps.back().after = m_scene;
+        if (withoutCamera(m_steps.back().before.session) == withoutCamera(m_scene.session)) {
+            m_steps.pop_back(); // there and back again
+            --m_index;
+        }
+    } else {
+        m_steps.push_back({text, mergeKey, std::move(before), m_scene});
+        ++m_index;
+        if (m_steps.size() > kMostSteps) {
+            m_steps.erase(m_steps.begin());
+            --m_index;
+        }
+        forgetOldData();
+    }
+    Q_EMIT historyChanged();
+}
+
+// A step keeps the data that it needs to be undone at once. Memory ends before the history does: of the oldest steps
+// that need yet other volumes there is no way back.
+void SessionStore::forgetOldData() {
+    std::set<const Volume*> kept;
+    std::size_t first = m_steps.size();
+    while (first > 0) {
+        for (const Scene* scene : {&m_steps[first - 1].before, &m_steps[first - 1].after})
+            kept.insert(scene->data.get());
+        if (kept.size() > kMostData) break;
+        --first;
+    }
+    m_steps.erase(m_steps.begin(), m_steps.begin() + static_cast<std::ptrdiff_t>(first));
+    m_index -= std::min(m_index, first);
+}
+
+void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change) {
+    commit();
+    edit(text, mergeKey, change, m_scene);
+}
+
+void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change, const Scene& basis) {
+    if (!hasVolume()) return;
+    commit();
+    Scene next = changedBy(change, m_scene, Scene(basis));
+    if (next.session == m_scene.session) return;
+    Scene before = m_scene;
+    show(std::move(next));
+    push(text, mergeKey, std::move(before));
+}
+
+void SessionStore::preview(const QString& text, const Change& change) {
+    if (!hasVolume()) return;
+    const bool first = !m_committed;
+    if (first) m_committed = m_scene;
+    m_previewText = text;
+    const Scene from = withPresentCamera(*m_committed); // the view may turn meanwhile
+    Scene next = changedBy(change, from, from);
+    if (!(next.session == m_scene.session)) show(std::move(next));
+    if (first) Q_EMIT historyChanged();
+}
+
+void SessionStore::commit(const QString& mergeKey) {
+    if (!m_committed) return;
+    Scene before = withPresentCamera(std::move(*m_committed));
+    m_committed.reset();
+    push(m_previewText, mergeKey, std::move(before));
+    Q_EMIT historyChanged();
+}
+
+void SessionStore::cancel() {
+    if (!m_committed) return;
+    Scene before = withPresentCamera(std::move(*m_committed));
+    m_committed.reset();
+    show(std::move(before));
+    Q_EMIT historyChanged();
+}
+
+QString SessionStore::undoText() const {
+    if (isPreviewing()) return m_previewText;
+    return m_index > 0 ? m_steps[m_index - 1].text : QString();
+}
+
+QString SessionStore::redoText() const { return canRedo() ? m_steps[m_index].text : QString(); }
+
+void SessionStore::undo() {
+    if (isPreviewing()) return cancel(); // a drag under way is what is undone
+    if (m_index == 0) return;
+    --m_index;
+    show(withPresentCamera(m_steps[m_index].before));
+    Q_EMIT historyChanged();
+}
+
+void SessionStore::redo() {
+    if (isPreviewing()) cancel();
+    if (m_index >= m_steps.size()) return;
+    ++m_index;
+    show(withPresentCamera(m_steps[m_index - 1].after));
+    Q_EMIT historyChanged();
+}
+
+int SessionStore::newGesture() {
+    static int s_last = 0;
+    return ++s_last;
+}
+
+void SessionStore::setCamera(const Camera& camera, int gesture) {
+    if (!hasVolume() || camera == m_scene.camera) return;
+    const bool sameStep = gesture != 0 && gesture == m_lastGesture && m_cameraIndex + 1 == m_cameras.size();
+    m_lastGesture = gesture;
+    if (!sameStep) {
+        m_cameras.resize(m_cameraIndex + 1);
+        m_cameras.push_back(camera);
+        if (m_cameras.size() > kMostCameras) m_cameras.erase(m_cameras.begin());
+        m_cameraIndex = m_cameras.size() - 1;
+    }
+    m_cameras[m_cameraIndex] = camera;
+    Scene next = m_scene;
+    next.session.camera = next.camera = camera;
+    show(std::move(next));
+    if (!sameStep) Q_EMIT historyChanged();
+}
+
+void SessionStore::undoCamera() {
+    if (!canUndoCamera()) return;
+    m_lastGesture = 0;
+    Scene next = m_scene;
+    next.session.camera = next.camera = m_cameras[--m_cameraIndex];
+    show(std::move(next));
+    Q_EMIT historyChanged();
+}
+
+void SessionStore::redoCamera() {
+    if (!canRedoCamera()) return;
+    m_lastGesture = 0;
+    Scene next = m_scene;
+    next.session.camera = next.camera = m_cameras[++m_cameraIndex];
+    show(std::move(next));
+    Q_EMIT historyChanged();
+}
+
+bool SessionStore::isClean() const { return m_clean && withoutCamera(*m_clean) == withoutCamera(committed().session); }
+
+void SessionStore::setClean() {
+    m_clean = committed().session;
+    Q_EMIT historyChanged();
+}
+
+void SessionStore::setUnsaved() {
+    m_clean.reset();
+    Q_EMIT historyChanged();
+}
+
+void SessionStore::setTfSaved() {
+    if (!m_clean) return;
+    Session other = committed().session;
+    // Were the transfer function as before, would anything be unsaved?
+    other.variables.edit([&](std::vector<Variable>& all) {
+        if (!all.empty() && !m_clean->isEmpty()) {
+            all.front().track = m_clean->variable().track;
+            all.front().window = m_clean->variable().window; // the file says it
+        }
+    });
+    for (const auto& [id, goal] : *m_clean->goals) {
+        const auto now = other.goals->find(id);
+        if (now == other.goals->end() || !(now->second == goal)) return;
+    }
+    other.goals = m_clean->goals; // those of new features came with them
+    if (withoutCamera(other) == withoutCamera(*m_clean)) setClean();
+}
+
+} // namespace pellucid::gui

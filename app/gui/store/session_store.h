@@ -1,0 +1,97 @@
+// The one place where a session changes: every change can be undone, and everybody hears of it once, when it is whole.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <QObject>
+#include <QString>
+
+#include "session/scene.h"
+
+namespace pellucid::gui {
+
+/// Holds the present scene and its history. Lives in the window's thread.
+///
+/// An edit is one step of the history. A preview (while the mouse is down, while an optimization runs) is none: it
+/// shows a change of the committed session until commit() or cancel(). An edit, undo or redo during a preview ends that
+/// first: an edit commits it, undo and redo cancel it. The camera has a history of its own: undo never turns the view.
+class SessionStore : public QObject {
+    Q_OBJECT
+public:
+    using Change = std::function<void(Session&)>;
+
+    explicit SessionStore(QObject* parent = nullptr);
+
+    const Scene& scene() const { return m_scene; }
+    const Session& session() const { return m_scene.session; }
+    bool hasVolume() const { return m_scene.volume != nullptr; }
+
+    /// Replaces everything; both histories begin anew.
+    void open(Scene scene);
+
+    /// One step named `text`. Steps with the same non-empty `mergeKey` in a row become one. No change, no step. The
+    /// change must not need other data than there are, see needsData(); with `basis`, than that scene has.
+    void edit(const QString& text, const QString& mergeKey, const Change& change);
+    void edit(const QString& text, const QString& mergeKey, const Change& change, const Scene& basis);
+
+    /// Shows `change` of the committed session, whatever was previewed before; the step will be named `text`.
+    void preview(const QString& text, const Change& change);
+    bool isPreviewing() const { return m_committed.has_value(); }
+    /// The scene without the preview.
+    const Scene& committed() const { return m_committed ? *m_committed : m_scene; }
+    void commit(const QString& mergeKey = {});
+    void cancel();
+
+    bool canUndo() const { return isPreviewing() || m_index > 0; }
+    bool canRedo() const { return m_index < m_steps.size(); }
+    QString undoText() const;
+    QString redoText() const;
+    int stepCount() const { return static_cast<int>(m_steps.size()); } ///< undone ones too
+    void undo();
+    void redo();
+
+    /// Moves with the same gesture in a row are one step of the camera's history; 0: each is one.
+    void setCamera(const Camera& camera, int gesture = 0);
+    static int newGesture(); ///< a number that no gesture has had
+    bool canUndoCamera() const { return m_cameraIndex > 0; }
+    bool canRedoCamera() const { return m_cameraIndex + 1 < m_cameras.size(); }
+    void undoCamera();
+    void redoCamera();
+
+    /// Nothing would be lost by closing: the present state is the one that was opened or saved.
+    bool isClean() const;
+    void setClean();
+    void setUnsaved(); ///< it has no file, whatever it is compared with
+    /// The transfer function alone was saved: clean where nothing else has changed since the state was.
+    void setTfSaved();
+
+Q_SIGNALS:
+    /// Of every change, the preview's and the camera's too. Both are whole; `after` is scene().
+    void changed(const pellucid::Scene& before, const pellucid::Scene& after);
+    void historyChanged(); ///< of undo, redo or clean
+
+private:
+    struct Step {
+        QString text, mergeKey;
+        Scene before, after;
+    };
+    void show(Scene next);
+    void push(const QString& text, const QString& mergeKey, Scene before);
+    void forgetOldData();
+    Scene changedBy(const Change& change, const Scene& from, const Scene& basis) const;
+    Scene withPresentCamera(Scene scene) const;
+
+    Scene m_scene;
+    std::optional<Scene> m_committed; // while previewing
+    QString m_previewText;
+    std::vector<Step> m_steps;
+    std::size_t m_index = 0;        // steps that are done
+    std::optional<Session> m_clean; // empty: it was never saved
+    std::vector<Camera> m_cameras;  // the history; the present one at m_cameraIndex
+    std::size_t m_cameraIndex = 0;
+    int m_lastGesture = 0;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,90 @@
+#include "workbench.h"
+
+#include "controllers/open_controller.h"
+#include "controllers/optimize_controller.h"
+#include "controllers/recovery_controller.h"
+#include "controllers/save_controller.h"
+#include "controllers/tf_actions.h"
+#include "controllers/view_actions.h"
+#include "error_dialog.h"
+
+namespace pellucid::gui {
+
+Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
+    m_optimizing = std::make_unique<OptimizeController>(*this);
+    m_saving = std::make_unique<SaveController>(*this);
+    m_opening = std::make_unique<OpenController>(*this);
+    m_recovery = std::make_unique<RecoveryController>(*this);
+
+    // The menus stand in the order in which their first actions come.
+    m_opening->addActions();
+    m_saving->addActions();
+    addEditActions();
+    addTfActions(*this);
+    m_optimizing->addActions();
+    addViewActions(*this);
+
+    connect(&m_store, &SessionStore::historyChanged, &m_actions, &Actions::refresh);
+    connect(&m_store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.volume != after.volume || before.tf.features.empty() != after.tf.features.empty() ||
+            before.camera.projection != after.camera.projection)
+            m_actions.refresh();
+    });
+    connect(&m_results, &Results::changed, this, &Workbench::idleChanged);
+    connect(&m_results, &Results::failed, this, [this](const Error& error) {
+        m_notices.add({tr("The figures could not be computed: %1").arg(QString::fromUtf8(error.what())), {}});
+    });
+    connect(m_optimizing.get(), &OptimizeController::runningChanged, this, [this] {
+        m_actions.refresh();
+        Q_EMIT readOnlyChanged();
+        Q_EMIT idleChanged();
+    });
+    connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
+}
+
+Workbench::~Workbench() {
+    m_store.disconnect(); // what ends below must not be heard by what has ended already
+    m_results.disconnect();
+    m_recovery.reset();
+    m_opening.reset();
+    m_saving.reset();
+    m_optimizing.reset();
+}
+
+void Workbench::addEditActions() {
+    const auto keys = [](auto... texts) { return QList<QKeySequence>{QKeySequence(texts)...}; };
+    m_actions.add({.id = "undoAction",
+                   .menu = tr("&Edit"),
+                   .text = tr("&Undo"),
+                   .keys = keys("Ctrl+Z"),
+                   .tip = {},
+                   .trigger = [this] { m_store.undo(); },
+                   .enabled = [this] { return !isReadOnly() && m_store.canUndo(); },
+                   .checked = {},
+                   .say = [this] { return m_store.canUndo() ? tr("Undo: %1").arg(m_store.undoText()) : tr("Undo"); },
+                   .inToolBar = true});
+    m_actions.add({.id = "redoAction",
+                   .menu = tr("&Edit"),
+                   .text = tr("&Redo"),
+                   .keys = keys("Ctrl+Shift+Z", "Ctrl+Y"),
+                   .tip = {},
+                   .trigger = [this] { m_store.redo(); },
+                   .enabled = [this] { return !isReadOnly() && m_store.canRedo(); },
+                   .checked = {},
+                   .say = [this] { return m_store.canRedo() ? tr("Redo: %1").arg(m_store.redoText()) : tr("Redo"); },
+                   .inToolBar = true});
+}
+
+bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
+
+bool Workbench::isIdle() const {
+    return m_store.hasVolume() && !m_opening->isBusy() && !m_saving->isBusy() && !m_optimizing->isRunning() &&
+           !m_results.isBusy();
+}
+
+void Workbench::showError(const QString& title, const Error& error) {
+    pellucid::gui::showError(m_window, title, error);
+}
+
+} // namespace pellucid::gui

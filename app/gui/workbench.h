@@ -1,0 +1,74 @@
+// What every part of a window may use: the state, what was computed of it, and what can be done.
+#pragma once
+
+#include <QObject>
+
+#include "actions.h"
+#include "jobs/lane.h"
+#include "notices.h"
+#include "results.h"
+#include "session/workspace.h"
+#include "store/session_store.h"
+
+class QWidget;
+
+namespace pellucid::gui {
+
+class OpenController;
+class OptimizeController;
+class RecoveryController;
+class SaveController;
+
+/// The services of one window. Panels and controllers get it, and know nothing of each other.
+class Workbench : public QObject {
+    Q_OBJECT
+    // The order is that of making; what uses something comes after it, and goes before it.
+    SessionStore m_store;
+    Notices m_notices;
+    Actions m_actions;
+    Workspace m_workspace; // used on m_compute alone
+    Lane m_compute;
+    Results m_results;
+
+public:
+    /// `window` is the parent of dialogs.
+    explicit Workbench(QWidget* window);
+    ~Workbench() override;
+
+    QWidget* window() const { return m_window; }
+    SessionStore& store() { return m_store; }
+    const Scene& scene() const { return m_store.scene(); }
+    Results& results() { return m_results; }
+    Notices& notices() { return m_notices; }
+    Actions& actions() { return m_actions; }
+    Workspace& workspace() { return m_workspace; }
+    Lane& compute() { return m_compute; }
+    OpenController& opening() { return *m_opening; }
+    SaveController& saving() { return *m_saving; }
+    OptimizeController& optimizing() { return *m_optimizing; }
+    RecoveryController& recovery() { return *m_recovery; }
+
+    /// Nothing may be edited: an optimization shows its moves.
+    bool isReadOnly() const;
+    /// The figures are of the present state, and nothing is under way.
+    bool isIdle() const;
+
+    void showError(const QString& title, const Error& error);
+
+Q_SIGNALS:
+    void readOnlyChanged();
+    void idleChanged(); ///< isIdle() may have changed
+    /// For a moment in the status line.
+    void message(const QString& text);
+
+private:
+    void addEditActions();
+
+    QWidget* m_window;
+    std::unique_ptr<OptimizeController> m_optimizing;
+    std::unique_ptr<SaveController> m_saving;
+    std::unique_ptr<OpenController> m_opening;
+    std::unique_ptr<RecoveryController> m_recovery;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,140 @@
+#include "volume/formats/byte_source.h"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+
+#include "base/check.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::size_t kPiece = 1u << 18;
+
+/// The next piece of `from` in `piece`, `at` its beginning; false at the end.
+bool refill(ByteSource& from, std::string& piece, std::size_t& at) {
+    piece.resize(kPiece);
+    piece.resize(from.read(piece.data(), piece.size()));
+    at = 0;
+    return !piece.empty();
+}
+
+int hexDigit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+} // namespace
+
+bool ByteSource::skip(std::uint64_t count) {
+    std::vector<char> dropped(static_cast<std::size_t>(std::min<std::uint64_t>(count, kPiece)));
+    while (count > 0) {
+        const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(count, dropped.size()));
+        if (read(dropped.data(), piece) < piece) return false;
+        count -= piece;
+    }
+    return true;
+}
+
+FileBytes::FileBytes(const std::string& path, std::uint64_t start, const JobControl& job)
+    : m_in(path, std::ios::binary), m_job(job) {
+    skip(start);
+}
+
+std::size_t FileBytes::read(char* to, std::size_t count) {
+    constexpr std::size_t kMostAtOnce = 16u << 20; // between two looks at whether to stop
+    std::size_t done = 0;
+    while (done < count && m_in) {
+        m_job.throwIfStopped();
+        m_in.read(to + done, static_cast<std::streamsize>(std::min(count - done, kMostAtOnce)));
+        done += static_cast<std::size_t>(m_in.gcount());
+    }
+    return done;
+}
+
+bool FileBytes::skip(std::uint64_t count) {
+    if (count > static_cast<std::uint64_t>(std::numeric_limits<std::streamoff>::max()))
+        m_in.setstate(std::ios::failbit);
+    else if (count > 0)
+        m_in.seekg(static_cast<std::streamoff>(count), std::ios::cur);
+    return static_cast<bool>(m_in);
+}
+
+InflatedBytes::InflatedBytes(const std::string& path, std::uint64_t start, bool zlib, const JobControl& job)
+    : m_in(path, std::ios::binary), m_zlib(zlib), m_job(job), m_packed(kPiece) {
+    m_in.seekg(static_cast<std::streamoff>(start));
+    PELLUCID_CHECK(inflateInit2(&m_stream, zlib ? MAX_WBITS + 32 : MAX_WBITS + 16) == Z_OK);
+}
+
+InflatedBytes::~InflatedBytes() { inflateEnd(&m_stream); }
+
+std::size_t InflatedBytes::read(char* to, std::size_t count) {
+    std::size_t done = 0;
+    while (done < count && m_end == End::None) {
+        if (m_stream.avail_in == 0) {
+            m_job.throwIfStopped();
+            m_in.read(reinterpret_cast<char*>(m_packed.data()), static_cast<std::streamsize>(m_packed.size()));
+            m_stream.next_in = m_packed.data();
+            m_stream.avail_in = static_cast<uInt>(m_in.gcount());
+            if (m_stream.avail_in == 0) {
+                m_end = m_memberEnded ? End::Whole : End::CutOff;
+                break;
+            }
+        }
+        // Only another gzip member may follow a finished one; other bytes are left alone.
+        if (m_memberEnded) {
+            if (m_zlib || *m_stream.next_in != 0x1f || inflateReset(&m_stream) != Z_OK) {
+                m_end = End::Whole;
+                break;
+            }
+            m_memberEnded = false;
+        }
+        const std::size_t piece = std::min<std::size_t>(count - done, 1u << 30);
+        m_stream.next_out = reinterpret_cast<Bytef*>(to + done);
+        m_stream.avail_out = static_cast<uInt>(piece);
+        const int status = inflate(&m_stream, Z_NO_FLUSH);
+        done += piece - m_stream.avail_out;
+        m_memberEnded = status == Z_STREAM_END;
+        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) m_end = End::Damaged;
+    }
+    return done;
+}
+
+HexBytes::HexBytes(const std::string& path, std::uint64_t start, const JobControl& job) : m_digits(path, start, job) {}
+
+std::size_t HexBytes::read(char* to, std::size_t count) {
+    for (std::size_t done = 0; done < count; ++done) {
+        int byte = 0;
+        for (int digits = 0; digits < 2;) {
+            if (m_at == m_piece.size() && !refill(m_digits, m_piece, m_at)) return done;
+            const char c = m_piece[m_at];
+            const int digit = hexDigit(c);
+            if (digit < 0 && std::isspace(static_cast<unsigned char>(c)) == 0) return done;
+            ++m_at;
+            if (digit < 0) continue;
+            byte = byte * 16 + digit;
+            ++digits;
+        }
+        to[done] = static_cast<char>(static_cast<unsigned char>(byte));
+    }
+    return count;
+}
+
+TextWords::TextWords(const std::string& path, std::uint64_t start, const JobControl& job) : m_text(path, start, job) {}
+
+bool TextWords::next(std::string& word) {
+    constexpr std::size_t kMostCharacters = 400;
+    word.clear();
+    while (m_at < m_piece.size() || refill(m_text, m_piece, m_at)) {
+        const char c = m_piece[m_at++];
+        const bool separates = c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0;
+        if (separates && !word.empty()) return true;
+        if (!separates && word.size() <= kMostCharacters) word += c;
+    }
+    return !word.empty();
+}
+
+} // namespace pellucid

@@ -1,0 +1,87 @@
+// The bytes of a file one after the other, as they are or decoded.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <zlib.h>
+
+#include "base/job.h"
+
+namespace pellucid {
+
+/// Bytes in the order of the file. Reads ahead by a fixed amount only, whatever the file holds.
+class ByteSource {
+public:
+    virtual ~ByteSource() = default;
+    /// The next `count` bytes, fewer where the data end or are damaged. Throws Cancelled.
+    virtual std::size_t read(char* to, std::size_t count) = 0;
+    /// Leaves out `count` bytes; false where there are fewer.
+    virtual bool skip(std::uint64_t count);
+};
+
+/// A file from byte `start` on.
+class FileBytes final : public ByteSource {
+public:
+    FileBytes(const std::string& path, std::uint64_t start, const JobControl& job);
+    std::size_t read(char* to, std::size_t count) override;
+    bool skip(std::uint64_t count) override;
+
+private:
+    std::ifstream m_in;
+    const JobControl& m_job;
+};
+
+/// What the deflate stream that begins at byte `start` of a file unpacks to: gzip, several members too; one of zlib or
+/// gzip where `zlib`.
+class InflatedBytes final : public ByteSource {
+public:
+    enum class End { None, Whole, CutOff, Damaged };
+
+    InflatedBytes(const std::string& path, std::uint64_t start, bool zlib, const JobControl& job);
+    ~InflatedBytes() override;
+    InflatedBytes(const InflatedBytes&) = delete;
+    InflatedBytes& operator=(const InflatedBytes&) = delete;
+    std::size_t read(char* to, std::size_t count) override;
+    /// How the stream ended; None before read() has returned fewer bytes than it was asked for.
+    End end() const { return m_end; }
+
+private:
+    std::ifstream m_in;
+    bool m_zlib;
+    const JobControl& m_job;
+    z_stream m_stream{};
+    std::vector<unsigned char> m_packed;
+    bool m_memberEnded = false;
+    End m_end = End::None;
+};
+
+/// The bytes that hexadecimal digits stand for, blanks and line ends left out. Anything else ends the data.
+class HexBytes final : public ByteSource {
+public:
+    HexBytes(const std::string& path, std::uint64_t start, const JobControl& job);
+    std::size_t read(char* to, std::size_t count) override;
+
+private:
+    FileBytes m_digits;
+    std::string m_piece;
+    std::size_t m_at = 0;
+};
+
+/// The words of a text, between blanks, line ends or commas.
+class TextWords {
+public:
+    TextWords(const std::string& path, std::uint64_t start, const JobControl& job);
+    /// False at the end of the file. A word longer than any number is cut.
+    bool next(std::string& word);
+
+private:
+    FileBytes m_text;
+    std::string m_piece;
+    std::size_t m_at = 0;
+};
+
+} // namespace pellucid

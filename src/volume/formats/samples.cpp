@@ -1,0 +1,308 @@
+#include "volume/formats/samples.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "volume/formats/byte_source.h"
+#include "volume/memory_use.h"
+
+namespace pellucid {
+
+namespace {
+
+/// Calls use(T{}) with the type that a value has in the file.
+template <class Use>
+auto withType(ValueType type, const Use& use) {
+    switch (type) {
+    case ValueType::U8:
+        return use(std::uint8_t{});
+    case ValueType::I8:
+        return use(std::int8_t{});
+    case ValueType::U16:
+        return use(std::uint16_t{});
+    case ValueType::I16:
+        return use(std::int16_t{});
+    case ValueType::U32:
+        return use(std::uint32_t{});
+    case ValueType::I32:
+        return use(std::int32_t{});
+    case ValueType::U64:
+        return use(std::uint64_t{});
+    case ValueType::I64:
+        return use(std::int64_t{});
+    case ValueType::F32:
+        return use(float{});
+    case ValueType::F64:
+        return use(double{});
+    }
+    PELLUCID_CHECK(false);
+}
+
+/// 64-bit integers have no sample type of their own.
+template <class T>
+using KeptType = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, double, T>;
+/// Scaled integers are no integers.
+template <class T>
+using ScaledType = std::conditional_t<sizeof(T) == 8, double, float>;
+
+/// Which values of the file make the volume: place of voxel (i,j,k) is first + i·stride.x + j·stride.y + k·stride.z,
+/// which grows with the voxel's index.
+struct Selection {
+    Int3 dims{1, 1, 1};
+    std::array<std::uint64_t, 3> stride{1, 1, 1};
+    std::uint64_t first = 0;
+    std::uint64_t components = 1, steps = 1;
+};
+
+Selection selectionOf(const FileLayout& layout, int component) {
+    Selection selection;
+    std::uint64_t stride = 1;
+    std::size_t spatial = 0;
+    for (const FileAxis& axis : layout.axes) {
+        const auto size = static_cast<std::uint64_t>(axis.size);
+        if (axis.components) {
+            selection.components = size;
+            const auto named = static_cast<std::size_t>(std::max(component, 0));
+            const bool ordered = named < layout.componentOrder.size();
+            selection.first = stride * (ordered ? static_cast<std::uint64_t>(layout.componentOrder[named]) : named);
+        } else if (spatial < 3) {
+            selection.dims[static_cast<int>(spatial)] = static_cast<int>(axis.size);
+            selection.stride[spatial++] = stride;
+        } else {
+            selection.steps *= size;
+        }
+        stride *= size;
+    }
+    for (; spatial < 3; ++spatial) // an axis of one voxel continues the one before it
+        selection.stride[spatial] = spatial == 0
+                                        ? 1
+                                        : selection.stride[spatial - 1] *
+                                              static_cast<std::uint64_t>(selection.dims[static_cast<int>(spatial) - 1]);
+    return selection;
+}
+
+[[noreturn]] void failEarly(const std::string& path, std::uint64_t bytes) {
+    throw FileError("the data cannot be read beyond " + std::to_string(bytes) + " decoded bytes", path,
+                    "the file may be damaged, write or copy it again");
+}
+
+/// The values of a file as bytes of this machine, one after the other.
+class Values {
+public:
+    virtual ~Values() = default;
+    virtual void read(char* to, std::size_t values) = 0;
+    virtual void skip(std::uint64_t values) = 0;
+};
+
+template <class T>
+class BinaryValues final : public Values {
+public:
+    BinaryValues(const FileLayout& layout, const JobControl& job)
+        : m_path(layout.dataPath),
+          m_swap(sizeof(T) > 1 && layout.bigEndian != (std::endian::native == std::endian::big)) {
+        if (layout.encoding == Encoding::Deflate)
+            m_bytes = std::make_unique<InflatedBytes>(m_path, layout.start, layout.zlib, job);
+        else if (layout.encoding == Encoding::Hex)
+            m_bytes = std::make_unique<HexBytes>(m_path, layout.start, job);
+        else
+            m_bytes = std::make_unique<FileBytes>(m_path, layout.start, job);
+        if (!m_bytes->skip(layout.skip)) failEarly(m_path, 0);
+    }
+    void read(char* to, std::size_t values) override {
+        const std::size_t bytes = values * sizeof(T);
+        const std::size_t there = m_bytes->read(to, bytes);
+        if (there < bytes) failEarly(m_path, m_done + there);
+        m_done += bytes;
+        if (m_swap)
+            for (char* value = to; value != to + bytes; value += sizeof(T)) std::reverse(value, value + sizeof(T));
+    }
+    void skip(std::uint64_t values) override {
+        if (values > 0 && !m_bytes->skip(values * sizeof(T))) failEarly(m_path, m_done);
+        m_done += values * sizeof(T);
+    }
+
+private:
+    std::string m_path;
+    bool m_swap;
+    std::unique_ptr<ByteSource> m_bytes;
+    std::uint64_t m_done = 0;
+};
+
+/// Numbers written out, in which byte order has no say.
+template <class T>
+class TextValues final : public Values {
+public:
+    TextValues(const FileLayout& layout, const JobControl& job)
+        : m_path(layout.dataPath), m_words(layout.dataPath, layout.start, job) {}
+    void read(char* to, std::size_t values) override {
+        for (std::size_t i = 0; i < values; ++i) {
+            const T value = next();
+            std::memcpy(to + i * sizeof(T), &value, sizeof(T));
+        }
+    }
+    void skip(std::uint64_t values) override {
+        for (; values > 0; --values)
+            if (!m_words.next(m_word)) failEarly(m_path, m_done);
+    }
+
+private:
+    T next() {
+        if (!m_words.next(m_word)) failEarly(m_path, m_done);
+        m_done += sizeof(T);
+        double value = 0;
+        if constexpr (std::is_integral_v<T>) {
+            std::int64_t whole = 0; // exact where a double is not
+            if (parseNumber(m_word, whole) && std::in_range<T>(whole)) return static_cast<T>(whole);
+            // Bounds as powers of two, which a double holds exactly: [−2^(b−1), 2^(b−1)) or [0, 2^b).
+            const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);
+            if (!parseNumber(m_word, value) || !(value >= (std::is_signed_v<T> ? -end : 0.0)) || value >= end)
+                throw FileError("the value " + inQuotes(m_word) + " does not fit the type of the samples", m_path,
+                                "correct the type in the header");
+            return static_cast<T>(value); // what lies behind the point is dropped
+        } else {
+            if (!parseNumber(m_word, value))
+                throw FileError("there is " + inQuotes(m_word) + " where a number belongs", m_path,
+                                "copy or write the file again");
+            if (std::isfinite(value) && std::abs(value) > static_cast<double>(std::numeric_limits<T>::max()))
+                throw FileError("the value " + inQuotes(m_word) + " does not fit the type of the samples", m_path,
+                                "correct the type in the header");
+            return static_cast<T>(value);
+        }
+    }
+
+    std::string m_path, m_word;
+    TextWords m_words;
+    std::uint64_t m_done = 0;
+};
+
+/// Voxels that follow each other at one stride, as many as the axes allow; `ny` times `nz` such lines.
+struct Lines {
+    std::uint64_t length, ny, nz;
+};
+
+Lines linesOf(const Selection& s) {
+    const auto size = [&](int a) { return static_cast<std::uint64_t>(s.dims[a]); };
+    Lines lines{size(0), size(1), size(2)};
+    if (s.stride[1] == size(0) * s.stride[0]) {
+        lines.length *= std::exchange(lines.ny, 1);
+        if (s.stride[2] == size(1) * s.stride[1]) lines.length *= std::exchange(lines.nz, 1);
+    }
+    return lines;
+}
+
+/// convert(T) of each voxel's value.
+template <class T, class Kept, class Convert>
+std::vector<Kept> collect(Values& values, const Selection& selection, const JobControl& job, const Convert& convert) {
+    constexpr std::uint64_t kPieceBytes = 4u << 20;
+    const Lines lines = linesOf(selection);
+    const std::uint64_t stride = selection.stride[0];
+    std::vector<Kept> kept(voxelCount(selection.dims));
+    // Voxels lie close together: read what is between them, too. Far apart: pass over it.
+    const std::uint64_t pieceVoxels = stride <= 4096 ? kPieceBytes / (stride * sizeof(T)) : 1;
+    std::vector<T> piece;
+    std::uint64_t at = 0; // the next value of the file
+    std::size_t done = 0, nextReport = 0;
+    const auto readLine = [&](std::uint64_t start) {
+        for (std::uint64_t i = 0; i < lines.length;) {
+            values.skip(start + i * stride - at);
+            const std::uint64_t voxels = std::min(pieceVoxels, lines.length - i);
+            const std::uint64_t span = (voxels - 1) * stride + 1;
+            piece.resize(static_cast<std::size_t>(span));
+            values.read(reinterpret_cast<char*>(piece.data()), piece.size());
+            for (std::uint64_t v = 0; v < voxels; ++v)
+                kept[done++] = convert(piece[static_cast<std::size_t>(v * stride)]);
+            at = start + i * stride + span;
+            i += voxels;
+            if (done < nextReport) continue;
+            job.throwIfStopped();
+            job.report(0.1 + 0.8 * static_cast<double>(done) / static_cast<double>(kept.size()));
+            nextReport = done + (1u << 20);
+        }
+    };
+    for (std::uint64_t k = 0; k < lines.nz; ++k)
+        for (std::uint64_t j = 0; j < lines.ny; ++j)
+            readLine(selection.first + j * selection.stride[1] + k * selection.stride[2]);
+    return kept;
+}
+
+template <class T, class Kept>
+Samples readAs(const FileLayout& layout, const Selection& selection, const JobControl& job) {
+    std::unique_ptr<Values> values;
+    if (layout.encoding == Encoding::Text)
+        values = std::make_unique<TextValues<T>>(layout, job);
+    else
+        values = std::make_unique<BinaryValues<T>>(layout, job);
+    if (!layout.scaling)
+        return collect<T, Kept>(*values, selection, job, [](T value) { return static_cast<Kept>(value); });
+    return collect<T, Kept>(*values, selection, job, [scaling = *layout.scaling](T value) {
+        return static_cast<Kept>(scaling.slope * static_cast<double>(value) + scaling.intercept);
+    });
+}
+
+} // namespace
+
+std::uint64_t bytesPerValue(ValueType type) {
+    return withType(type, [](auto zero) { return static_cast<std::uint64_t>(sizeof zero); });
+}
+
+std::uint64_t valuesIn(const FileLayout& layout, const std::string& path) {
+    std::vector<std::int64_t> sizes;
+    for (const FileAxis& axis : layout.axes) sizes.push_back(axis.size);
+    return valueCount(path, sizes, sizeof(double));
+}
+
+Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job) {
+    const std::string& path = source.path;
+    const Selection selection = selectionOf(layout, source.component);
+    const Geometry geometry{selection.dims, layout.spacing, layout.origin};
+    for (int a = 0; a < 3; ++a)
+        if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
+            throw FileError("spacing must be positive and finite, origin finite", path, "correct the header");
+    if (source.component < 0 || static_cast<std::uint64_t>(source.component) >= selection.components)
+        throw UsageError("there is no component " + std::to_string(source.component), path,
+                         selection.components == 1 ? "the file has one component, number 0"
+                                                   : "give 0 to " + std::to_string(selection.components - 1));
+
+    std::vector<std::string> notices = layout.notices;
+    if (selection.components > 1)
+        notices.push_back("component " + std::to_string(source.component) + " of " +
+                          std::to_string(selection.components) + " is shown");
+    if (selection.steps > 1)
+        notices.push_back("the first of " + std::to_string(selection.steps) + " time steps is shown");
+    if (!layout.axesAreIdentity)
+        notices.emplace_back(
+            "the directions of the axes in the file are not applied, the volume is shown along its grid");
+
+    job.report(0.1);
+    job.throwIfStopped();
+    Samples samples;
+    withType(layout.type, [&](auto zero) {
+        using T = decltype(zero);
+        const auto read = [&](auto keptZero) {
+            using Kept = decltype(keptZero);
+            const std::uint64_t bytes = voxelCount(selection.dims) * sizeof(Kept);
+            requireMemory(source.then, path, selection.dims, bytes, bytes);
+            samples = readAs<T, Kept>(layout, selection, job);
+        };
+        if (std::is_integral_v<T> && sizeof(T) == 8) notices.emplace_back("64-bit integers are kept as 64-bit floats");
+        if (layout.scaling)
+            read(ScaledType<T>{});
+        else
+            read(KeptType<T>{});
+    });
+    job.report(0.9);
+    Volume volume(geometry, std::move(samples), source.missing);
+    volume.notices = std::move(notices);
+    return volume;
+}
+
+} // namespace pellucid

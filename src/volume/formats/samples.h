@@ -1,0 +1,54 @@
+// From what a header says to a volume: the part that every format shares. No format library takes part, so that each
+// byte of a file passes through code that checks it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volume/formats/file_check.h"
+#include "volume/loader.h"
+
+namespace pellucid {
+
+/// One number in a file.
+enum class ValueType { U8, I8, U16, I16, U32, I32, U64, I64, F32, F64 };
+std::uint64_t bytesPerValue(ValueType type);
+
+/// One axis of a file's array.
+struct FileAxis {
+    std::int64_t size = 1;
+    bool components = false; ///< along it lie the components of a voxel, not places or times; one axis at most
+};
+
+/// value = slope · stored + intercept, both finite.
+struct ValueScaling {
+    double slope = 1, intercept = 0;
+};
+
+/// What a header says.
+struct FileLayout {
+    std::string dataPath; ///< the file that holds the samples
+    Encoding encoding = Encoding::Raw;
+    bool zlib = false;       ///< Deflate: a zlib stream may stand there, too
+    std::uint64_t start = 0; ///< the encoded data begin here, bytes of the file
+    std::uint64_t skip = 0;  ///< the first value begins here, bytes of the decoded data (Deflate only)
+    ValueType type = ValueType::U8;
+    bool bigEndian = false;          ///< no matter for Text
+    std::vector<FileAxis> axes;      ///< fastest first; 1 to 17
+    std::vector<int> componentOrder; ///< component n is entry componentOrder[n] of its axis; empty: entry n
+    Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
+    bool axesAreIdentity = true; ///< the axes of the grid are those of the world
+    std::optional<ValueScaling> scaling;
+    std::vector<std::string> notices;
+};
+
+/// Number of values along all axes together, which fits into 2^63 bytes. Throws FileError at `path`.
+std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
+
+/// Reads the first time step, component source.component. The caller has seen to it that the data are long enough
+/// (file_check.h); whatever is wrong nonetheless is a FileError. Throws UsageError for a component that is not there.
+Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job);
+
+} // namespace pellucid
