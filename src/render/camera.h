@@ -13,7 +13,7 @@ namespace pellucid {
 
 enum class Projection { Perspective, Orthographic };
 
-/// World units (MEASURES §1). Orthographic rays run along center − eye.
+/// World units (docs/method.md, "Volume and intensity"). Orthographic rays run along center − eye.
 struct Camera {
     Projection projection = Projection::Perspective;
     Vec3 eye{0, -3, 0};
@@ -47,7 +47,7 @@ Ray pixelRay(const Camera& camera, double x, double y, int width, int height);
 /// +x, positive elevation toward +z. zoom 1 fits the box's bounding sphere into the image, 2 is twice as large.
 Camera cameraFromView(const Geometry& geometry, double azimuth, double elevation, double zoom, Projection projection);
 
-/// *.camera.json (CLI.md, "Files"). Throw Error with place and reason.
+/// *.camera.json (docs/guide.md). Throw Error with place and reason.
 Camera cameraFromJson(const nlohmann::json& json, const std::string& where);
 nlohmann::json jsonFromCamera(const Camera& camera);
 Camera readCamera(const std::string& path);
