@@ -1,4 +1,5 @@
-// visibility_gather.comp: v = T * alpha of every voxel of some planes (MEASURES 4), or its sums per feature
+// visibility_gather.comp: v = T * alpha of every voxel of some planes (docs/method.md, "Visibility"), or its sums per
+//   feature
 //   in   light per ray and plane, as visibility_march.comp leaves it
 //   out  FIELD: v per voxel, a fastest, then b, then c - u_planes.x; 0 for voxels of other sweeps
 //        else: per work group, feature and item the sum over its voxels; items are v of each candidate, then v times

@@ -1,7 +1,7 @@
 // The volume's intensities, as 16-bit codes read as [0,1].
 //   HAS_INVALID   the volume has invalid voxels: the texture holds (code * valid, valid), so that filtering gives at
 //                 once the sum of the valid corners' weights and the intensity interpolated over them alone
-//                 (MEASURES 1)
+//                 (docs/method.md, "Volume and intensity")
 layout(binding = 0) uniform sampler3D u_volume;
 
 // t: [0,1] over the volume's box. Returns (code / 65535, weight of the valid corners in [0,1]).

@@ -14,7 +14,7 @@ namespace pellucid {
 
 enum class Projection { Perspective, Orthographic };
 
-/// World units (MEASURES §1). Orthographic rays run along center − eye.
+/// World units (docs/method.md, "Volume and intensity"). Orthographic rays run along center − eye.
 struct Camera {
     Projection projection = Projection::Perspective;
     Vec3 eye{0, -3, 0};

@@ -1,5 +1,5 @@
 // Anything that draws the volume: a pixel's alpha is 1 − exp(−∫τ), its colour the matching emission-absorption
-// integral (MEASURES §4).
+// integral (docs/method.md, "The picture").
 #pragma once
 
 #include <memory>

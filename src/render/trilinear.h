@@ -1,4 +1,4 @@
-// Intensity between voxel centres (MEASURES §1).
+// Intensity between voxel centres (docs/method.md, "Volume and intensity").
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// The visibility of every voxel, and what features gather of it: the interface that all engines share (MEASURES §4).
+// The visibility of every voxel, and what features gather of it (docs/method.md, "Visibility"): the interface that all
+// engines share.
 #pragma once
 
 #include <memory>
@@ -21,7 +22,7 @@ struct VisibilityField {
     Grid<float> values;
 };
 
-/// High: about half the error for about twice the time and more (docs/method.md, "Measured deviations"; MEASURES §10).
+/// High: about half the error for about twice the time and more (docs/method.md, "Tolerances").
 enum class Quality { Normal, High };
 
 /// Anything that can tell visibility from a camera. One call takes many transfer functions, so that a line search is
@@ -46,8 +47,8 @@ public:
     virtual VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job = {}) = 0;
 };
 
-/// MEASURES §4 written out in double precision: one straight line per voxel, steps of at most d0/`stepsPerD0` (≥ 1; 16
-/// is what tolerances refer to). Slow and obvious; the oracle of the others.
+/// docs/method.md, "The reference engine": double precision, one straight line per voxel, steps of at most
+/// d0/`stepsPerD0` (≥ 1; 16 is what tolerances refer to). Slow and obvious; the oracle of the others.
 std::unique_ptr<VisibilityEngine> makeReferenceEngine(std::shared_ptr<const Volume> volume, int stepsPerD0 = 16);
 
 /// Threads and SIMD, no GL. Same bits for any thread count.

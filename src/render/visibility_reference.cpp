@@ -1,4 +1,5 @@
-// MEASURES §4 written out: for each voxel one straight line toward the eye, double precision, steps of at most d0/16.
+// docs/method.md, "Visibility", written out: for each voxel one straight line toward the eye, double precision, steps
+// of at most d0/16.
 #include <array>
 #include <atomic>
 #include <cmath>

@@ -1,4 +1,4 @@
-// The attributes that saliency is made of, voxel by voxel (MEASURES §5).
+// The attributes that saliency is made of, voxel by voxel (docs/method.md, "Saliency").
 #pragma once
 
 #include <cstdint>

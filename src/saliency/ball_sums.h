@@ -1,5 +1,5 @@
-// The inner loops of saliency: weighted sums over the two balls around voxels (MEASURES §5), for rows of voxels. Plain
-// data, so that the loops can be compiled once per instruction set.
+// The inner loops of saliency (docs/method.md, "Saliency"): weighted sums over the two balls around voxels, for rows of
+// voxels. Plain data, so that the loops can be compiled once per instruction set.
 //
 // Rows hold both attributes of their voxels in turn, brightness first: float[2·voxels]. A ball's weights are a product
 // over the axes; only its outline couples them: at (dx, dy) it holds the voxels |dz| ≤ h(dx, dy). So the sums along z

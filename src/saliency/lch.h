@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// The appearance attributes of a colour (MEASURES §5).
+/// The appearance attributes of a colour (docs/method.md, "Saliency").
 struct Appearance {
     double brightness = 0; ///< O_b = L*/100, [0,1]
     double saturation = 0; ///< O_s = C*ab/100, [0, about 1.34] for sRGB colours

@@ -1,4 +1,4 @@
-// Centre against surround, per voxel (MEASURES §5, eq. 4.6–4.8).
+// Centre against surround, per voxel (docs/method.md, "Saliency"; eq. 4.6–4.8).
 #pragma once
 
 #include <array>

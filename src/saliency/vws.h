@@ -1,4 +1,5 @@
-// Feature sums → feature visibility and visibility-weighted saliency (MEASURES §§4, 6, eq. 4.12–4.13).
+// Feature sums → feature visibility and visibility-weighted saliency (docs/method.md, "Visibility"
+// and "Visibility-weighted saliency"; eq. 4.12–4.13).
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ void addVoxel(FeatureSums& sums, int feature, double v, double brightness, doubl
 void add(FeatureSums& total, const FeatureSums& part);
 
 /// How `sums` change with the features' peak opacities x_j, everything else held: what an exact optimizer step needs.
-/// Saliency does not depend on opacity (MEASURES §5), so that the weights are constants here.
+/// Saliency does not depend on opacity (docs/method.md, "Saliency"), so that the weights are constants here.
 struct SumsJacobian {
     FeatureSums sums;
     std::vector<FeatureSums> byOpacity; ///< [j]: every sum's derivative with respect to x_j
@@ -39,8 +40,8 @@ struct VwsOptions {
     bool operator==(const VwsOptions&) const = default;
 };
 
-/// The weights that count (MEASURES §6): an attribute whose sum over all voxels is 0 is nowhere salient and has no say,
-/// the other one then carries weight 1; both are 0 where both sums are.
+/// The weights that count (docs/method.md, "Visibility-weighted saliency"): an attribute whose sum over all voxels is 0
+/// is nowhere salient and has no say, the other one then carries weight 1; both are 0 where both sums are.
 std::array<double, 2> attributeWeights(const std::array<double, 2>& allWeighted, const VwsOptions& options);
 
 /// One feature's figures, each in [0,1].

@@ -1,4 +1,4 @@
-// MEASURES §10 on the random cases that tests/support/random_cases.h draws.
+// docs/method.md, "Tolerances", on the random cases that tests/support/random_cases.h draws.
 #include "gl_test.h"
 
 #include <array>
@@ -11,7 +11,7 @@
 using namespace pellucid;
 using namespace pellucid::test;
 
-TEST_CASE("the gl engine keeps the tolerances of MEASURES on 50 random cases", "[accuracy]") {
+TEST_CASE("the gl engine keeps its tolerances on 50 random cases", "[accuracy]") {
     if (!testing::haveGl()) return;
     constexpr std::uint32_t kCases = 50;
     constexpr std::array kQualities{std::pair{Quality::Normal, kNormalTolerances},

@@ -24,6 +24,13 @@ Difference difference(const Image& a, const Image& b) {
     return d;
 }
 
+/// Colours times alpha: what is seen of a pixel. The straight colour of a nearly transparent one means nothing.
+Image premultiplied(Image image) {
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+        for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] *= image.rgba[i + 3];
+    return image;
+}
+
 double meanAlpha(const Image& image) {
     double sum = 0;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += static_cast<double>(image.rgba[i]);
@@ -82,39 +89,41 @@ TEST_CASE("gl and cpu draw the same picture", "[gl]") {
     struct Case {
         std::string name;
         void (*change)(RenderSettings&);
-        double largest;
+        double largest, mean;
     };
+    // Both integrate the same segments. What is left of a transparent picture is the fraction between voxels, which
+    // textures round to 1/256, and entries of tables: 0.0009 at most and 0.0001 on average on llvmpipe. Ten times that
+    // is still far from any other picture.
     // Shading divides by the gradient's length: where that is small the picture hangs on the last bits.
-    const std::vector<Case> cases{{"plain", [](RenderSettings&) {}, 0.03},
-                                  {"transparent", [](RenderSettings& s) { s.background = {}; }, 0.03},
+    const std::vector<Case> cases{{"plain", [](RenderSettings&) {}, 0.03, 1.0 / 255},
+                                  {"transparent", [](RenderSettings& s) { s.background = {}; }, 0.01, 0.001},
                                   {"background",
                                    [](RenderSettings& s) {
                                        s.background = Rgb{0.2, 0.7, 1};
                                    },
-                                   0.03},
-                                  {"shading", [](RenderSettings& s) { s.shading = true; }, 0.1},
+                                   0.03, 1.0 / 255},
+                                  {"shading", [](RenderSettings& s) { s.shading = true; }, 0.1, 1.0 / 255},
                                   {"clipped",
                                    [](RenderSettings& s) {
                                        s.clipLo = {0.1, 0.3, 0.2};
                                        s.clipHi = {0.8, 1, 0.75};
                                    },
-                                   0.03},
-                                  {"one feature", [](RenderSettings& s) { s.onlyFeature = 1; }, 0.03}};
+                                   0.03, 1.0 / 255},
+                                  {"one feature", [](RenderSettings& s) { s.onlyFeature = 1; }, 0.03, 1.0 / 255}};
     const TransferFunction tf = tents(3, 0.25);
     for (const auto& [view, camera] : views)
         for (const Case& c : cases) {
             CAPTURE(view, c.name);
             RenderSettings settings = smallSettings();
             c.change(settings);
-            const Image a = gl->render(camera, tf, settings), b = cpu->render(camera, tf, settings);
+            Image a = gl->render(camera, tf, settings), b = cpu->render(camera, tf, settings);
             if (!settings.background) {
-                // Straight colours of nearly transparent pixels mean nothing: compare what is seen.
-                CHECK(meanAlpha(a) == Approx(meanAlpha(b)).margin(1e-3));
+                a = premultiplied(a);
+                b = premultiplied(b);
                 CHECK(meanAlpha(a) > 0.05);
-                continue;
             }
             const Difference d = difference(a, b);
-            CHECK(d.mean < 1.0 / 255);
+            CHECK(d.mean < c.mean);
             CHECK(d.largest < c.largest);
         }
 }

@@ -1,4 +1,4 @@
-// The three engines on real volumes: figures of MEASURES §10, from all sides.
+// The three engines on real volumes: the figures of docs/method.md, "Tolerances", from all sides.
 #include <catch2/catch.hpp>
 
 #include <filesystem>

@@ -1,4 +1,5 @@
-// MEASURES §10 on random cases: every kind of volume, camera and transfer function that support/random_cases.h draws.
+// docs/method.md, "Tolerances", on random cases: every kind of volume, camera and transfer function that
+// support/random_cases.h draws.
 #include <catch2/catch.hpp>
 
 #include "support/accuracy_check.h"
@@ -8,7 +9,7 @@
 using namespace pellucid;
 using namespace pellucid::test;
 
-TEST_CASE("the cpu engine keeps the tolerances of MEASURES on 50 random cases", "[visibility][cpu][accuracy]") {
+TEST_CASE("the cpu engine keeps its tolerances on 50 random cases", "[visibility][cpu][accuracy]") {
     checkRandomCases([](auto volume, Quality quality) { return makeCpuEngine(volume, quality); }, 50);
 }
 

@@ -50,7 +50,7 @@ TEST_CASE("derivatives of a homogeneous block are those of its closed form", "[v
         CHECK(j.byOpacity[0].allWeighted[1] == Approx(ls * expected));
         CHECK(vwsJacobian(j)[0][0] == Approx(0).margin(1e-12)); // one feature has W = 1 always
     }
-    // At the cap T does not move any more (MEASURES §4), and T = 1e-7 behind the first plane.
+    // At the cap T does not move any more (docs/method.md, "Visibility"), and T = 1e-7 behind the first plane.
     const SumsJacobian opaque = engine->jacobian(camera, homogeneous(1), &weights);
     CHECK(opaque.byOpacity[0].allVisibility == Approx(6 * (1 + 1e-7)).epsilon(1e-9));
 }

@@ -1,4 +1,4 @@
-// MEASURES §10 on random cases, for any engine.
+// docs/method.md, "Tolerances", on random cases, for any engine.
 #pragma once
 
 #include <catch2/catch.hpp>

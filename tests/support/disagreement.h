@@ -1,4 +1,4 @@
-// How far an engine lies from the reference: the figures of MEASURES §10.
+// How far an engine lies from the reference: the figures of docs/method.md, "Tolerances".
 #pragma once
 
 #include <algorithm>
@@ -48,7 +48,7 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-/// What each engine is held to (MEASURES §10).
+/// What each engine is held to (docs/method.md, "Tolerances").
 struct Tolerances {
     double visibilityRms = 0, figure = 0; ///< per case; `figure` of FV and of W
     double median = 0;                    ///< over cases, of FV and of W

@@ -33,9 +33,9 @@ inline FigureJacobians analyticJacobians(const SumsJacobian& jacobian, const Vws
 ///
 /// The steps are as small as double precision allows, because τ = −ln(1 − x·shape) is nearly singular at opacity 1: a
 /// sample with 1 − shape = δ lets light through as (x=1) δ^(1/16), which bends within δ, and a few samples of millions
-/// have δ < 1e-6. Those with δ < 1e-7 are at the cap of MEASURES §4, where τ no longer moves: a step below 1e-7 stays
-/// on the cap too, and so sees the function that is differentiated. Rounding of the sums, about 1e-15, divided by the
-/// step leaves 1e-6.
+/// have δ < 1e-6. Those with δ < 1e-7 are at the cap of α (docs/method.md, "Derivatives"), where τ no longer moves: a
+/// step below 1e-7 stays on the cap too, and so sees the function that is differentiated. Rounding of the sums, about
+/// 1e-15, divided by the step leaves 1e-6.
 inline FigureJacobians differencesOfSums(VisibilityEngine& engine, const Camera& camera, const TransferFunction& tf,
                                          const WeightFields& weights, const VwsOptions& options = {}) {
     const TransferFunction shapes = withFullPeaks(tf);

@@ -1,6 +1,6 @@
-// A ray per pixel: the emission-absorption integral (MEASURES §4, last point) over segments on which the intensity goes
-// linearly from one end to the other. What a segment absorbs and emits then is exact, by running integrals over the
-// transfer function, so that thin tents and steps leave no bands.
+// A ray per pixel: the emission-absorption integral (docs/method.md, "The picture") over segments on which the
+// intensity goes linearly from one end to the other. What a segment absorbs and emits then is exact, by running
+// integrals over the transfer function, so that thin tents and steps leave no bands.
 #include <atomic>
 #include <cmath>
 #include <utility>

@@ -4,9 +4,9 @@
 // Slices are the voxel planes across the axis along which rays cross most voxels, k = 0 the nearest to the eye. (u, v,
 // w) are voxel coordinates with w across the slices, growing away from the eye. Rays are fixed through the slices: ray
 // (a, b) meets the plane w at u = baseU(w) + a·scale(w), v = baseV(w) + b·scale(w). Each ray keeps the optical depth ∫τ
-// per lane. A voxel of slice k needs it d0/2 in front of its centre (MEASURES §4): it follows the last slice distance
-// along a line of its own and takes what lies before from the rays, interpolated once, so that nothing is resampled
-// from slice to slice.
+// per lane. A voxel of slice k needs it d0/2 in front of its centre (docs/method.md, "Visibility"): it follows the last
+// slice distance along a line of its own and takes what lies before from the rays, interpolated once, so that nothing
+// is resampled from slice to slice.
 #pragma once
 
 #include <cstddef>

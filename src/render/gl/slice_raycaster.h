@@ -23,8 +23,8 @@ struct DrawTarget {
     double resolutionScale = 1.0;
 };
 
-/// Emission and absorption along every pixel's ray (MEASURES §4): slices parallel to the image plane, each fragment
-/// weighted by the true length of its ray within its slice and the box.
+/// Emission and absorption along every pixel's ray (docs/method.md, "The picture"): slices parallel to the image plane,
+/// each fragment weighted by the true length of its ray within its slice and the box.
 ///
 /// Every member function, the constructor and the destructor need the same OpenGL context, 4.3 core or later, to be
 /// current. GL state afterwards: no program, vertex array or texture bound; blending, depth, stencil and scissor test

@@ -1,6 +1,6 @@
-// The sweeps of one volume on the device: visibility (MEASURES §4) and its sums per feature. Rays march through the
-// volume and leave in a buffer how much light they bring to every voxel plane; a second pass gathers from it, per
-// voxel, the light in front of it; a third one adds up. Lives in one OpenGL context.
+// The sweeps of one volume on the device: visibility (docs/method.md, "The gl engine") and its sums per feature. Rays
+// march through the volume and leave in a buffer how much light they bring to every voxel plane; a second pass gathers
+// from it, per voxel, the light in front of it; a third one adds up. Lives in one OpenGL context.
 #pragma once
 
 #include <functional>

@@ -23,8 +23,8 @@ struct Sampling {
     double tolerance;      ///< of T between neighbouring rays, see Sweep
 };
 // Measured against the reference engine on the 110 first cases of tests/support/random_cases.h: largest RMS 0.0145
-// (MEASURES §10: 0.015). Own planes help far more than more rays: what lies between two rays right in front of a voxel
-// no interpolation finds. Rays per voxel are whole, so that some stand on the voxel columns.
+// (docs/method.md, "Tolerances": 0.015). Own planes help far more than more rays: what lies between two rays right in
+// front of a voxel no interpolation finds. Rays per voxel are whole, so that some stand on the voxel columns.
 Sampling samplingOf(Quality quality) {
     if (quality == Quality::High) return {2.5, 2.0, {6, 24}, 0.005};
     return {1.5, 1.0, {4, 16}, 0.04};

@@ -1,0 +1,488 @@
+// Lines through the volume and the optical depth along them, in three parts: how the depths of eight lines lie in
+// vectors (the two lane policies), what lines meet in the volume (Lines), and the grid of rays that carries depths from
+// slice to slice (Rays). Implements of docs/method.md, "The cpu engine": "Rays are fixed lines through all slices",
+// "Segments are exact for a linear intensity" and, of rays, "What cannot be seen is left out".
+//
+// Coordinates are those of sweep.h: voxels, w across the slices and growing away from the eye. Depths are sums of
+// differences of SweepInput::integralTable, in its units; times depthUnit they are optical depths ∫τ.
+#pragma once
+
+#include "render/cpu/sweep_vectors.inl"
+
+namespace pellucid {
+namespace {
+
+// ==== How depths lie in vectors ============================================================================
+
+/// What eight lines absorb between two samples of each: weight · (table[high] − table[low]).
+struct Stretch {
+    Int8 low, high; ///< rows of the integral table, low < high
+    Vec8 weight;    ///< length in d0, per row between the two
+};
+
+// A lane policy says what the lanes of a vector are. Of eight neighbouring lines those that share a vector form a
+// *group*. All that is done with depths is written once, as "for each group, for each of its vectors".
+
+/// One transfer function: the eight lines are the lanes.
+struct LinePerLane {
+    static constexpr int kLanes = 1;   ///< depths of one line
+    static constexpr int kGroups = 1;  ///< of eight lines
+    static constexpr int kVectors = 1; ///< of a group
+    static Vec8 absorbed(const std::int32_t* table, const Stretch& s, int /*group*/, int /*part*/) {
+        return s.weight * toFloat(gathered(table, s.high) - gathered(table, s.low));
+    }
+};
+
+/// kCount transfer functions, or a depth and its derivatives: these are the lanes, and each line is a group.
+template <int kCount>
+struct FunctionPerLane {
+    static constexpr int kLanes = kCount;
+    static constexpr int kGroups = kWide;
+    static constexpr int kVectors = kCount / kWide;
+    static Vec8 absorbed(const std::int32_t* table, const Stretch& s, int line, int part) {
+        table += part * kWide;
+        return s.weight[line] * toFloat(load(table + static_cast<std::ptrdiff_t>(s.high[line]) * kCount) -
+                                        load(table + static_cast<std::ptrdiff_t>(s.low[line]) * kCount));
+    }
+};
+
+template <SweepMode kMode>
+struct LanePolicy {
+    using Type = FunctionPerLane<lanesOf(kMode)>;
+};
+template <>
+struct LanePolicy<SweepMode::Single> {
+    using Type = LinePerLane;
+};
+template <SweepMode kMode>
+using LanesOf = typename LanePolicy<kMode>::Type;
+
+/// What the depths in the first vector of a group stand for.
+struct DepthScale {
+    Vec8 unit;  ///< optical depth of one unit of the integral table; 0 in lanes that hold derivatives
+    Vec8 limit; ///< a lane at this depth, in units of the table, is exhausted: what lies behind is not seen
+};
+template <SweepMode kMode>
+DepthScale depthScaleOf(const SweepInput& in) {
+    DepthScale scale;
+    for (int lane = 0; lane < kWide; ++lane) {
+        const float unit = in.depthUnit[kMode == SweepMode::Single ? 0 : lane];
+        scale.unit[lane] = kMode == SweepMode::Jacobian && lane > 0 ? 0.0f : unit;
+        scale.limit[lane] = in.exhaustedDepth / unit;
+    }
+    return scale;
+}
+
+// ==== What lines meet ======================================================================================
+
+/// Where lines meet a plane w, in voxels: line (a, b) at u = baseU + a·scale, v = baseV + b·scale. The lines are rays,
+/// (a, b) their place in the grid of rays; or the lines of the voxels (a, b) of one slice.
+struct LinePlane {
+    double baseU, baseV, scale;
+    double u(double a) const { return roundedOnce(a, scale, baseU); }
+    double v(double b) const { return roundedOnce(b, scale, baseV); }
+};
+
+/// The intensities at which eight lines meet a plane.
+struct Samples {
+    Int8 entry; ///< nearest entry of the integral table
+    Vec8 share; ///< [0,1], of valid corners among those interpolated; set where voxels may be invalid
+};
+
+/// Sampling of the volume along lines. kInvalid: some voxels may be invalid. A small value: all who sample have their
+/// own.
+template <bool kInvalid>
+class Lines {
+    static constexpr float kNoShare = 1e-6f; ///< of valid corners: nothing there has an intensity
+
+public:
+    explicit Lines(const SweepInput& in)
+        : m_in(in), m_startW(in.perspective && in.eyeW > -0.5 ? in.eyeW : -0.5),
+          m_start(floorInt(m_startW * in.stepsPerSlice)) {}
+
+    // ---- Sample planes: stepsPerSlice to a slice distance, plane 0 in slice 0 ----
+
+    int start() const { return m_start; }      ///< the first plane …
+    double startW() const { return m_startW; } ///< … which is moved to the front of the box, or to the eye
+    double sampleW(int index) const {
+        return index == m_start ? m_startW : static_cast<double>(index) / m_in.stepsPerSlice;
+    }
+
+    /// The lines through the voxels of slice k, toward the eye, where they meet the plane w.
+    LinePlane voxelLines(double w, int k) const {
+        if (!m_in.perspective) return {m_in.slopeU * (w - k), m_in.slopeV * (w - k), 1.0};
+        const double scale = (w - m_in.eyeW) / (k - m_in.eyeW);
+        return {m_in.eyeU * (1 - scale), m_in.eyeV * (1 - scale), scale};
+    }
+    /// Length in d0 of a line from one slice to the next, of slopes in voxels.
+    double lengthOf(double slopeU, double slopeV) const {
+        return __builtin_sqrt(m_in.hw * m_in.hw + slopeU * m_in.hu * slopeU * m_in.hu +
+                              slopeV * m_in.hv * slopeV * m_in.hv);
+    }
+
+    // ---- Samples: trilinear, clamped to the outer centres ----
+
+    /// Up to four rows of voxels along u, around (v, w), and their weights. Eight samples beside each other share them.
+    struct Rows {
+        int count = 0;
+        const std::uint16_t* codes[4];
+        float weights[4];
+    };
+    Rows rowsAt(double v, double w) const {
+        v = clampTo(v, m_in.nv - 1);
+        w = clampTo(w, m_in.nw - 1);
+        const int v0 = smaller(static_cast<int>(v), larger(0, m_in.nv - 2)),
+                  w0 = smaller(static_cast<int>(w), larger(0, m_in.nw - 2));
+        const double fv = v - v0, fw = w - w0;
+        const double weights[4] = {(1 - fv) * (1 - fw), fv * (1 - fw), (1 - fv) * fw, fv * fw};
+        Rows rows;
+        for (int corner = 0; corner < 4; ++corner) {
+            if (weights[corner] < 1e-6) continue; // on a voxel plane: a row less to read
+            rows.codes[rows.count] =
+                m_in.codes + (v0 + (corner & 1)) * m_in.codeStrides.v + (w0 + (corner >> 1)) * m_in.codeStrides.w;
+            rows.weights[rows.count++] = static_cast<float>(weights[corner]);
+        }
+        return rows;
+    }
+
+    /// The volume at u = first + n·step, n = 0 … 7, along the rows.
+    inline Samples sample(const Rows& rows, double first, double step) const {
+        const float u0 = static_cast<float>(first), du = static_cast<float>(step);
+        Vec8 near = {}, far = {}, total = {}, share = {};
+        // One row's part: the codes before and behind each sample, f of the way between them.
+        const auto add = [&](int row, Vec8 f) {
+            const float weight = rows.weights[row];
+            if (kInvalid) { // the mean over the corners that have an intensity
+                const Vec8 invalid = Vec8{} + static_cast<float>(kInvalidCode), zero = {};
+                const Vec8 nearShare = near == invalid ? zero : (1.0f - f) * weight,
+                           farShare = far == invalid ? zero : f * weight;
+                total += nearShare * near + farShare * far;
+                share += nearShare + farShare;
+            } else {
+                total += weight * (near + f * (far - near));
+            }
+        };
+        if (du == 1.0f && u0 >= 0.0f && u0 + (kWide - 1) < static_cast<float>(m_in.nu - 1)) {
+            // A voxel apart and inside: all at the same fraction between neighbours in memory.
+            const int x = static_cast<int>(u0);
+            const Vec8 f = Vec8{} + (u0 - static_cast<float>(x));
+            for (int row = 0; row < rows.count; ++row) {
+                near = toFloat(load(rows.codes[row] + x));
+                far = toFloat(load(rows.codes[row] + x + 1));
+                add(row, f);
+            }
+        } else {
+            const Vec8 zero = {}, last = zero + static_cast<float>(m_in.nu - 1);
+            const Int8 lastPair = Int8{} + larger(0, m_in.nu - 2);
+            Vec8 u = u0 + kIota * du;
+            u = u > zero ? u : zero;
+            u = u < last ? u : last;
+            Int8 x = toInt(u);
+            x = x < lastPair ? x : lastPair;
+            const Vec8 f = u - toFloat(x);
+            for (int row = 0; row < rows.count; ++row) {
+                pairsAt(rows.codes[row], x, near, far);
+                add(row, f);
+            }
+        }
+        if (kInvalid) {
+            const Vec8 zero = {};
+            total = share > zero + kNoShare ? total / share : zero;
+        }
+        return {toInt(total * m_in.tableEntryOfCode + 0.5f), share};
+    }
+
+    /// What lies between two samples, `path` (d0) apart. The intensity goes linearly from one to the other, so τ is its
+    /// mean over the table entries between them, both included: what the running integral tells, and for neighbouring
+    /// entries the mean of the two.
+    static Stretch stretch(Samples from, Samples to, Vec8 path) {
+        if (kInvalid) { // a sample without intensity takes that of the other; what is absorbed fades with the share
+            const Vec8 nothing = Vec8{} + kNoShare;
+            from.entry = from.share > nothing ? from.entry : to.entry;
+            to.entry = to.share > nothing ? to.entry : from.entry;
+            path *= 0.5f * (from.share + to.share);
+        }
+        const Int8 low = from.entry < to.entry ? from.entry : to.entry,
+                   high = (from.entry < to.entry ? to.entry : from.entry) + 1;
+        return {low, high, path / toFloat(high - low)};
+    }
+
+    // ---- The sides of the box: half a voxel beyond the outer centres ----
+
+    bool insideU(double first, double last) const { return first >= -0.5 && last <= m_in.nu - 0.5; }
+    bool insideV(double v) const { return v >= -0.5 && v <= m_in.nv - 0.5; }
+
+    /// The parts, [0,1], of the lines (a … a + 7, b) between two planes that lie inside the sides.
+    Vec8 insideShare(const LinePlane& from, const LinePlane& to, double a, double b) const {
+        constexpr float kParallel = 1e-9f; // to a side, all along
+        const Vec8 zero = {}, fromU = static_cast<float>(from.u(a)) + kIota * static_cast<float>(from.scale),
+                   toU = static_cast<float>(to.u(a)) + kIota * static_cast<float>(to.scale);
+        const float fromV = static_cast<float>(from.v(b)), toV = static_cast<float>(to.v(b));
+        Vec8 enter = zero, leave = zero + 1.0f;
+        const auto cut = [&](Vec8 x0, Vec8 x1, int size) { // by the two sides x = −½ and x = size − ½
+            Vec8 way = x1 - x0;
+            way = (way < 0.0f ? -way : way) < kParallel ? zero + kParallel : way;
+            const Vec8 t0 = (-0.5f - x0) / way, t1 = (static_cast<float>(size) - 0.5f - x0) / way;
+            const Vec8 first = t0 < t1 ? t0 : t1, last = t0 < t1 ? t1 : t0;
+            enter = first > enter ? first : enter;
+            leave = last < leave ? last : leave;
+        };
+        cut(fromU, toU, m_in.nu);
+        cut(zero + fromV, zero + toV, m_in.nv);
+        return leave > enter ? leave - enter : zero;
+    }
+
+    // ---- The opaque map ----
+
+    /// A row of blocks along u.
+    struct OpaqueRow {
+        const std::uint8_t* blocks; ///< a bit per lane, SweepInput::opaqueStrides.u apart
+        SweepSpan span;             ///< of the blocks that are opaque in any lane
+    };
+    /// The one around (v, w).
+    OpaqueRow opaqueRow(double v, double w) const {
+        const int k = clampTo(floorInt(w + 0.5), 0, m_in.nw - 1),
+                  row = clampTo(floorInt(v + 0.5), 0, m_in.nv - 1) / kBlockSize,
+                  slice = (m_in.flipped ? m_in.nw - 1 - k : k) / kBlockSize;
+        return {m_in.opaque + row * m_in.opaqueStrides.v + slice * m_in.opaqueStrides.w,
+                m_in.opaqueSpans[row + ((m_in.nv - 1) / kBlockSize + 1) * slice]};
+    }
+    /// The lanes that are opaque in any block of a row from u = first to last.
+    unsigned opaqueBetween(const std::uint8_t* row, double first, double last) const {
+        const int end = clampTo(static_cast<int>(last + 0.5), 0, m_in.nu - 1) / kBlockSize;
+        unsigned lanes = 0;
+        for (int i = clampTo(static_cast<int>(first + 0.5), 0, m_in.nu - 1) / kBlockSize; i <= end; ++i)
+            lanes |= row[i * m_in.opaqueStrides.u];
+        return lanes;
+    }
+
+private:
+    const SweepInput& m_in;
+    double m_startW;
+    int m_start;
+};
+
+// ==== The grid of rays =====================================================================================
+
+/// What rays go through from one sample plane to the next.
+struct Advance {
+    static constexpr int kNowhere = -1000000;
+    int to = kNowhere; ///< index of the plane that they come to
+    double w0 = 0, w1 = 0;
+    LinePlane p0{}, p1{};
+    int firstBlock = 0, lastBlock = -1; ///< of rays inside the box
+};
+
+/// Two neighbouring rows of rays, as the voxels between them see them.
+struct Strip {
+    const float *below, *above;                  ///< depths, [ray][lanes]
+    const std::uint8_t *aliveBelow, *aliveAbove; ///< per block of eight rays, a bit per lane that is not exhausted
+    int first;                                   ///< the `a` of the first ray
+    int last;                                    ///< index of the last ray that voxels lie before
+};
+
+/// The rays (a, b) of one piece, rows b of blocks of eight along a: all that is known of them at the sample plane that
+/// they have come to.
+template <SweepMode kMode, bool kInvalid>
+class Rays {
+    using Lanes = LanesOf<kMode>;
+    static constexpr int K = Lanes::kLanes;
+    static constexpr std::uint8_t kAllLanes = 255;
+    static constexpr int kExhaustedEvery = 4; ///< slices between looks for exhausted rays
+
+public:
+    /// At the front, with no depth yet.
+    Rays(const SweepInput& in, const SweepPiece& piece, const Lines<kInvalid>& lines, SweepScratch& scratch)
+        : m_in(in), m_piece(piece), m_lines(lines), m_scale(depthScaleOf<kMode>(in)), m_b0(piece.firstRow),
+          m_b1(piece.lastRow) {
+        chooseRays();
+        startRays(scratch);
+    }
+
+    LinePlane plane(double w) const {
+        if (m_in.perspective) return {m_in.eyeU, m_in.eyeV, m_piece.slopeStep * (w - m_in.eyeW)};
+        return {m_in.slopeU * w, m_in.slopeV * w, m_in.raySpacing};
+    }
+
+    /// Between the rows b and b + 1.
+    Strip strip(int b) const {
+        const float* depth = m_depth + rowOf(b) * rowRays() * K;
+        const std::uint8_t* alive = m_alive + rowOf(b) * static_cast<std::size_t>(m_blocks);
+        return {depth, depth + rowRays() * K, alive, alive + m_blocks, m_a0, m_a1 - m_a0};
+    }
+
+    Advance advanceTo(int to) const {
+        Advance go{to, m_lines.sampleW(to - 1), m_lines.sampleW(to), {}, {}, 0, -1};
+        const LinePlane p0 = go.p0 = plane(go.w0), p1 = go.p1 = plane(go.w1);
+        // Rays inside the box on either plane; none are outside on both that come through an edge worth counting.
+        double lo = (-0.5 - p1.baseU) / p1.scale, hi = (m_in.nu - 0.5 - p1.baseU) / p1.scale;
+        if (p0.scale > 0) { // not at the eye
+            const double lo0 = (-0.5 - p0.baseU) / p0.scale, hi0 = (m_in.nu - 0.5 - p0.baseU) / p0.scale;
+            lo = lo0 < lo ? lo0 : lo;
+            hi = hi0 > hi ? hi0 : hi;
+        }
+        if (hi < m_a0 || lo > m_a1) return go;
+        go.firstBlock = lo < m_a0 ? 0 : (ceilInt(lo) - m_a0) / kWide;
+        go.lastBlock = hi > m_a1 ? m_blocks - 1 : (floorInt(hi) - m_a0) / kWide;
+        return go;
+    }
+
+    /// Takes a row of rays on by one sample plane. Blocks of eight that meet nothing opaque on either plane, in any
+    /// lane that is not exhausted, are passed over.
+    void advanceRow(const Advance& go, int b) {
+        const LinePlane &p0 = go.p0, &p1 = go.p1;
+        const double w0 = go.w0, w1 = go.w1;
+        const int from = go.to - 1, to = go.to;
+        const float slices = static_cast<float>(w1 - w0);
+        const bool look = to % (kExhaustedEvery * m_in.stepsPerSlice) == 0;
+
+        // Which part of the row is inside the box and near anything opaque?
+        const double v0 = p0.v(b), v1 = p1.v(b);
+        const bool inside0 = m_lines.insideV(v0), inside1 = m_lines.insideV(v1);
+        if (!inside0 && !inside1) return;
+        const auto opaque = m_lines.opaqueRow(v1, w1);
+        Blocks reach{m_blocks, -1};
+        widen(reach, m_lines.opaqueRow(v0, w0).span, p0);
+        widen(reach, opaque.span, p1);
+        reach.first = larger(reach.first, go.firstBlock);
+        reach.last = smaller(reach.last, go.lastBlock);
+        if (reach.first > reach.last) return;
+
+        const auto before = m_lines.rowsAt(v0, w0), now = m_lines.rowsAt(v1, w1);
+        for (int block = reach.first; block <= reach.last; ++block) {
+            const std::size_t at = rowOf(b) * static_cast<std::size_t>(m_blocks) + static_cast<std::size_t>(block);
+            if (m_alive[at] == 0) continue;
+            const int a = m_a0 + block * kWide;
+            const double u1 = p1.u(a), end1 = p1.u(a + kWide - 1);
+            const unsigned meets = m_lines.opaqueBetween(opaque.blocks, u1, end1), met = m_met[at];
+            m_met[at] = static_cast<std::uint8_t>(meets);
+            if (((met | meets) & m_alive[at]) == 0) continue;
+
+            // The sample at either end: the first is at hand, unless the block was passed over last time.
+            const std::size_t ray = at * kWide;
+            Samples s0;
+            if (m_stamp[at] == from) {
+                s0.entry = load(m_entry + ray);
+                if (kInvalid) s0.share = load(m_share + ray);
+            } else {
+                s0 = m_lines.sample(before, p0.u(a), p0.scale);
+            }
+            const Samples s1 = m_lines.sample(now, u1, p1.scale);
+            store(m_entry + ray, s1.entry);
+            if (kInvalid) store(m_share + ray, s1.share);
+            m_stamp[at] = to;
+
+            // The path between them, without what is outside the box; and what it absorbs.
+            Vec8 path = load(m_length + ray) * slices;
+            if (!(inside0 && inside1) || !m_lines.insideU(u1, end1) || !m_lines.insideU(p0.u(a), p0.u(a + kWide - 1)))
+                path *= m_lines.insideShare(p0, p1, a, b);
+            addDepth(m_depth + ray * K, m_lines.stretch(s0, s1, path));
+            if (look) m_alive[at] &= static_cast<std::uint8_t>(alive(m_depth + ray * K));
+        }
+    }
+
+private:
+    std::size_t rows() const { return static_cast<std::size_t>(m_b1 - m_b0 + 1); }
+    std::size_t rowRays() const { return static_cast<std::size_t>(m_blocks) * kWide; }
+    std::size_t rowOf(int b) const { return static_cast<std::size_t>(b - m_b0); }
+
+    /// Sets m_a0, m_a1: the rays that voxels of the piece will ask for.
+    void chooseRays() {
+        double lo = 1e30, hi = -1e30;
+        for (const int k : {m_piece.begin, m_piece.end - 1}) { // monotone in w: the extremes are at the ends
+            const LinePlane p = plane(k);
+            double first = 0, last = m_in.nu - 1;
+            if (m_in.pyramid) {
+                first = first > m_in.eyeU - (k - m_in.eyeW) ? first : m_in.eyeU - (k - m_in.eyeW);
+                last = last < m_in.eyeU + (k - m_in.eyeW) ? last : m_in.eyeU + (k - m_in.eyeW);
+                if (first > last) { // none on this slice: any may come in between
+                    first = m_in.eyeU - (k - m_in.eyeW);
+                    last = m_in.eyeU + (k - m_in.eyeW);
+                }
+            }
+            first = (first - p.baseU) / p.scale, last = (last - p.baseU) / p.scale;
+            lo = first < lo ? first : lo;
+            hi = last > hi ? last : hi;
+        }
+        m_a0 = floorInt(lo);
+        m_a1 = floorInt(hi) + 1;
+        m_blocks = (m_a1 - m_a0) / kWide + 1;
+    }
+
+    void startRays(SweepScratch& scratch) {
+        const std::size_t rays = rows() * rowRays(), blocks = rows() * static_cast<std::size_t>(m_blocks);
+        m_depth = memory<float>(scratch, SweepScratch::Depth, rays * K + 2 * kWide); // see pairsAt
+        m_entry = memory<int>(scratch, SweepScratch::Entry, rays);
+        if (kInvalid) m_share = memory<float>(scratch, SweepScratch::Share, rays);
+        m_length = memory<float>(scratch, SweepScratch::Length, rays);
+        m_stamp = memory<int>(scratch, SweepScratch::Stamp, blocks);
+        m_alive = memory<std::uint8_t>(scratch, SweepScratch::Alive, blocks);
+        m_met = memory<std::uint8_t>(scratch, SweepScratch::Met, blocks);
+        for (std::size_t i = 0; i < rays * K; ++i) m_depth[i] = 0.0f;
+        for (std::size_t i = 0; i < blocks; ++i) {
+            m_stamp[i] = Advance::kNowhere;
+            m_alive[i] = kAllLanes;
+            m_met[i] = 0;
+        }
+        for (int b = m_b0; b <= m_b1; ++b)
+            for (std::size_t i = 0; i < rowRays(); ++i)
+                m_length[rowOf(b) * rowRays() + i] = static_cast<float>(rayLength(m_a0 + static_cast<int>(i), b));
+    }
+    /// From slice to slice, in d0; the same all along a ray.
+    double rayLength(int a, int b) const {
+        return m_in.perspective ? m_lines.lengthOf(a * m_piece.slopeStep, b * m_piece.slopeStep)
+                                : m_lines.lengthOf(m_in.slopeU, m_in.slopeV);
+    }
+
+    /// Blocks of rays of a row; none where last < first.
+    struct Blocks {
+        int first, last;
+    };
+    /// Takes in the rays that meet a plane within a span of opaque blocks of voxels.
+    void widen(Blocks& reach, const SweepSpan& span, const LinePlane& p) const {
+        if (span.last < span.first || !(p.scale > 0)) return;
+        // Up to a voxel beyond the blocks; what is clamped to the edge belongs to the outermost block.
+        const double lowU = span.first == 0 ? -1e30 : span.first * kBlockSize - 1,
+                     highU = (span.last + 1) * kBlockSize >= m_in.nu ? 1e30 : (span.last + 1) * kBlockSize;
+        const double low = (lowU - p.baseU) / p.scale, high = (highU - p.baseU) / p.scale;
+        reach.first = smaller(reach.first, low <= m_a0 ? 0 : low > m_a1 ? m_blocks : (floorInt(low) - m_a0) / kWide);
+        reach.last = larger(reach.last, high >= m_a1  ? m_blocks - 1
+                                        : high < m_a0 ? -1
+                                                      : (ceilInt(high) - m_a0) / kWide);
+    }
+
+    /// Adds what eight rays absorb on a stretch.
+    void addDepth(float* depth, const Stretch& s) const {
+        const std::int32_t* table = m_in.integralTable; // stores may not change it, but the compiler cannot know
+        for (int group = 0; group < Lanes::kGroups; ++group)
+            for (int part = 0; part < Lanes::kVectors; ++part, depth += kWide)
+                store(depth, load(depth) + Lanes::absorbed(table, s, group, part));
+    }
+
+    /// The lanes in which any of eight rays is not exhausted; where not each lane is a depth of its own, all or none.
+    unsigned alive(const float* depth) const {
+        Int8 open = {};
+        for (int group = 0; group < Lanes::kGroups; ++group)
+            open |= load(depth + group * Lanes::kVectors * kWide) < m_scale.limit;
+        if (kMode == SweepMode::Batch) return bitsOf(open);
+        return none(open & (m_scale.unit > 0.0f)) ? 0 : kAllLanes;
+    }
+
+    const SweepInput& m_in;
+    const SweepPiece& m_piece;
+    const Lines<kInvalid> m_lines;
+    const DepthScale m_scale;
+    int m_a0 = 0, m_a1 = 0;          ///< rays of a row that voxels lie between
+    int m_blocks = 0;                ///< of eight rays in a row; the last may go beyond m_a1
+    int m_b0, m_b1;                  ///< rows of rays; m_b1 is the first of the next piece
+    float* m_depth = nullptr;        ///< [row][ray][K]
+    int* m_entry = nullptr;          ///< [row][ray], at the plane in m_stamp
+    float* m_share = nullptr;        ///< [row][ray], valid corners there
+    float* m_length = nullptr;       ///< [row][ray], d0 per slice
+    int* m_stamp = nullptr;          ///< [row][block], the plane of the last sample
+    std::uint8_t* m_alive = nullptr; ///< [row][block], a bit per lane that is not exhausted
+    std::uint8_t* m_met = nullptr;   ///< [row][block], the lanes that are opaque around the last sample plane
+};
+
+} // namespace
+} // namespace pellucid
