@@ -7,6 +7,7 @@
 #include <QString>
 
 #include "base/error.h"
+#include "render/box_in_image.h"
 #include "session/scene.h"
 
 class QWidget;
@@ -38,12 +39,5 @@ public:
 
 /// How long the scene must stay the same before it is drawn well, milliseconds.
 inline constexpr int kIdleBeforeRefining = 200;
-
-/// Part of the image that the box covers, pixels from the top left corner, and how deep the box is along the view.
-struct BoxInImage {
-    int x = 0, y = 0, width = 0, height = 0; ///< width 0: the box is outside the image
-    double depthInD0 = 0;
-};
-BoxInImage boxInImage(const Camera& camera, const Geometry& geometry, int width, int height);
 
 } // namespace pellucid::gui

@@ -6,16 +6,19 @@
 #include <QProcess>
 #include <QTemporaryDir>
 
+#include "session/session_json.h"
+
+using namespace pellucid;
 using namespace pellucid::gui;
 
 namespace {
 
-struct Run {
+struct Outcome {
     int status = -1;
     QString out, err;
 };
 
-Run start(const QStringList& arguments, bool display = true) {
+Outcome start(const QStringList& arguments, bool display = true) {
     const QTemporaryDir settings;
     QProcess process;
     QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
@@ -36,7 +39,7 @@ Run start(const QStringList& arguments, bool display = true) {
 TEST_CASE("a screenshot shows the window with picture and figures", "[program]") {
     const QTemporaryDir folder;
     const QString path = folder.filePath("window.png");
-    const Run run = start({"sample:disks", "--tf", "tents:2", "--size", "1000x700", "--screenshot", path});
+    const Outcome run = start({"sample:disks", "--tf", "tents:2", "--size", "1000x700", "--screenshot", path});
     INFO(run.err.toStdString());
     REQUIRE(run.status == 0);
     const QImage image(path);
@@ -50,11 +53,11 @@ TEST_CASE("a screenshot shows the window with picture and figures", "[program]")
 }
 
 TEST_CASE("help and version need no display, a window does", "[program]") {
-    const Run help = start({"--help"}, false);
+    const Outcome help = start({"--help"}, false);
     CHECK(help.status == 0);
     CHECK(help.out.contains("--screenshot"));
     CHECK(start({"--version"}, false).out.startsWith("pellucid "));
-    const Run window = start({}, false);
+    const Outcome window = start({}, false);
     CHECK(window.status == 1);
     CHECK(window.err.startsWith("pellucid: error: no display"));
     CHECK(window.err.count('\n') == 1);
@@ -63,16 +66,44 @@ TEST_CASE("help and version need no display, a window does", "[program]") {
 TEST_CASE("wrong usage is told in one line, with status 2", "[program]") {
     for (const QStringList& arguments :
          {QStringList{"--nonsense"}, {"--size", "12"}, {"--renderer", "pencil"}, {"a.tf.json", "b.tf.json"}}) {
-        const Run run = start(arguments);
+        const Outcome run = start(arguments);
         INFO(arguments.join(' ').toStdString() << ": " << run.err.toStdString());
         CHECK(run.status == 2);
         CHECK(run.err.contains("pellucid: error: "));
     }
 }
 
+TEST_CASE("a transfer function that cannot be read ends a screenshot with status 1", "[program]") {
+    const QTemporaryDir folder;
+    const Outcome run =
+        start({"sample:disks", "--tf", "/nonexistent/a.tf.json", "--screenshot", folder.filePath("a.png")});
+    CHECK(run.status == 1);
+    CHECK(run.err.startsWith("pellucid: error: no such file"));
+    CHECK_FALSE(QFile::exists(folder.filePath("a.png")));
+}
+
+TEST_CASE("a session is opened from a shell", "[program]") {
+    const QTemporaryDir folder;
+    const QString session = folder.filePath("s.pellucid.json"), picture = folder.filePath("a.png");
+    SceneInputs inputs;
+    VolumeSource source;
+    source.path = "sample:disks";
+    source.sampleSize = 20;
+    inputs.session = sessionOf(source);
+    writeSession(openScene(inputs).session, session.toStdString());
+    const Outcome run = start({"--session", session, "--screenshot", picture});
+    INFO(run.err.toStdString());
+    CHECK(run.status == 0);
+    CHECK(QFile::exists(picture));
+    std::ofstream(session.toStdString()) << R"({"format":"pellucid-session","version":99,"variables":[]})";
+    const Outcome newer = start({session, "--screenshot", picture});
+    CHECK(newer.status == 1);
+    CHECK(newer.err.contains("newer than this program knows"));
+}
+
 TEST_CASE("a volume that cannot be opened ends a screenshot with status 1", "[program]") {
     const QTemporaryDir folder;
-    const Run run = start({"/nonexistent/a.nrrd", "--screenshot", folder.filePath("a.png")});
+    const Outcome run = start({"/nonexistent/a.nrrd", "--screenshot", folder.filePath("a.png")});
     CHECK(run.status == 1);
     CHECK_FALSE(QFile::exists(folder.filePath("a.png")));
 }

@@ -138,7 +138,9 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
             session.variables.edit([&](std::vector<Variable>& all) { all.front().source.component = component; });
         });
     });
-    connect(&m_bench.opening(), &OpenController::busyChanged, this, &DisplayPanel::follow); // also where it failed
+    connect(&m_bench.opening(), &OpenController::busyChanged, this, [this] {
+        if (!m_bench.opening().isBusy()) follow(); // also where it failed; till then it shows what was asked for
+    });
     connect(&store, &SessionStore::changed, this, &DisplayPanel::follow);
     connect(&m_bench, &Workbench::readOnlyChanged, this, &DisplayPanel::follow);
     follow();

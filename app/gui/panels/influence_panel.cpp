@@ -35,8 +35,11 @@ PanelInfo influencePanel() {
             .size = 0,
             .keys = QKeySequence("Ctrl+I"),
             .tip = QObject::tr("How each feature's VWS follows each opacity"),
-            .make = [](Workbench& bench,
-                       QWidget* parent) { return new InfluencePanel(bench.store(), bench.results(), parent); },
+            .make =
+                [](Workbench& bench, QWidget* parent) {
+                    bench.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
+                    return new InfluencePanel(bench.store(), bench.results(), parent);
+                },
             .shown = [](Workbench& bench, bool visible) { bench.results().setInfluenceWanted(visible); }};
 }
 

@@ -220,7 +220,9 @@ void SessionStore::setTfSaved() {
     });
     for (const auto& [id, goal] : *m_clean->goals) {
         const auto now = other.goals->find(id);
-        if (now == other.goals->end() || !(now->second == goal)) return;
+        if (now == other.goals->end() || now->second.target != goal.target || now->second.locked != goal.locked ||
+            now->second.lowest != goal.lowest || now->second.highest != goal.highest)
+            return;
     }
     other.goals = m_clean->goals; // those of new features came with them
     if (withoutCamera(other) == withoutCamera(*m_clean)) setClean();
