@@ -349,10 +349,11 @@ public:
         if (reach.first > reach.last) return;
 
         const auto before = m_lines.rowsAt(v0, w0), now = m_lines.rowsAt(v1, w1);
-        for (int block = reach.first; block <= reach.last; ++block) {
-            const std::size_t at = rowOf(b) * static_cast<std::size_t>(m_blocks) + static_cast<std::size_t>(block);
+        const std::size_t row = rowOf(b) * static_cast<std::size_t>(m_blocks),
+                          last = row + static_cast<std::size_t>(reach.last);
+        int a = m_a0 + reach.first * kWide; // the first ray of the block
+        for (std::size_t at = row + static_cast<std::size_t>(reach.first); at <= last; ++at, a += kWide) {
             if (m_alive[at] == 0) continue;
-            const int a = m_a0 + block * kWide;
             const double u1 = p1.u(a), end1 = p1.u(a + kWide - 1);
             const unsigned meets = m_lines.opaqueBetween(opaque.blocks, u1, end1), met = m_met[at];
             m_met[at] = static_cast<std::uint8_t>(meets);
