@@ -47,7 +47,8 @@ std::vector<double> benchTargets(std::size_t features) {
     return normalizedTargets(std::move(targets), features);
 }
 
-/// What a parallel line search tries first (MEASURES §7): steps 0.05·2^i, i = −2 … 5, along −2(W − t).
+/// What a parallel line search tries first (docs/method.md, "Optimization"): steps 0.05·2^i, i = −2 … 5, along −2(W −
+/// t).
 std::vector<TransferFunction> searchCandidates(const TransferFunction& tf, const std::vector<double>& vws,
                                                double stepScale) {
     std::vector<TransferFunction> candidates;

@@ -54,7 +54,8 @@ double sumOfProducts(const Grid<float>& visibility, const WeightFields& weights,
 }
 
 /// Each voxel's share of the visibility-weighted saliency: u1·v·L_b / Σ v·L_b + u2·v·L_s / Σ v·L_s, so that the sum
-/// over the voxels of a feature is its W_F (MEASURES §6, with its rule for an attribute whose sum is 0).
+/// over the voxels of a feature is its W_F (docs/method.md, "Visibility-weighted saliency", with its rule for an
+/// attribute whose sum is 0).
 Grid<float> vwsField(const Grid<float>& visibility, const WeightFields& weights, const VwsOptions& options) {
     const double brightness = sumOfProducts(visibility, weights, 0);
     const double saturation = sumOfProducts(visibility, weights, 1);

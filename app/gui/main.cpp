@@ -1,4 +1,5 @@
 // pellucid: the window.
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -67,6 +68,7 @@ void describe(QCommandLineParser& parser) {
 } // namespace
 
 int main(int argc, char** argv) {
+    std::signal(SIGXFSZ, SIG_IGN); // a limit on file sizes is an error of writing, not the end of the program
     QCoreApplication::setApplicationName("pellucid");
     QCoreApplication::setOrganizationName("pellucid");
     QCoreApplication::setApplicationVersion(kVersion);

@@ -10,6 +10,7 @@
 #include <QVBoxLayout>
 
 #include "axis_ticks.h"
+#include "number_box.h"
 #include "panel.h"
 #include "store/edits.h"
 #include "tf_edit.h"
@@ -26,12 +27,6 @@ QIcon swatch(const QColor& color, const QSize& size = {22, 14}) {
     painter.setPen(QColor(0, 0, 0, 120));
     painter.drawRect(0, 0, size.width() - 1, size.height() - 1);
     return pixmap;
-}
-
-// Also where the box has been cleared and would keep that for the number it had.
-void showNumber(QDoubleSpinBox& box, double value) {
-    if (box.text().isEmpty()) box.setValue(value == box.minimum() ? box.maximum() : box.minimum());
-    box.setValue(value);
 }
 
 } // namespace

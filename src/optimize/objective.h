@@ -1,4 +1,4 @@
-// Distance of the features' VWS from their targets (MEASURES §7, eq. 5.1), many candidates at once.
+// Distance of the features' VWS from their targets (docs/method.md, "Optimization", eq. 5.1), many candidates at once.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Gradient descent of the features' opacities to target saliencies (MEASURES §7, thesis chapter 5).
+// Gradient descent of the features' opacities to target saliencies (docs/method.md, "Optimization", thesis chapter 5).
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Entropy refinement of the opacities (MEASURES §3, thesis chapter 3).
+// Entropy refinement of the opacities (docs/method.md, "Entropy refinement", thesis chapter 3).
 #pragma once
 
 #include <optional>

@@ -26,7 +26,7 @@ Camera rotated(const Camera& camera, const Geometry& geometry, double yaw, doubl
 Camera panned(const Camera& camera, const Geometry& geometry, double dx, double dy, int viewHeight);
 
 /// Magnifies by `factor` > 0. A perspective eye comes closer until it reaches the sphere around the box, then the angle
-/// narrows, since the eye must stay outside the box (MEASURES §4).
+/// narrows, since the eye must stay outside the box (docs/method.md, "Visibility").
 Camera zoomed(const Camera& camera, const Geometry& geometry, double factor);
 
 /// The same direction, with the whole box in the image.

@@ -1,4 +1,5 @@
-// A feature: the voxels of an intensity interval, under a name and a colour (MEASURES §2, eq. 4.1).
+// A feature: the voxels of an intensity interval, under a name and a colour (docs/method.md, "Transfer function",
+// eq. 4.1).
 #pragma once
 
 #include <cstdint>

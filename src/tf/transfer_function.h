@@ -1,4 +1,4 @@
-// The transfer function as people edit it: control points and features (MEASURES §2).
+// The transfer function as people edit it: control points and features (docs/method.md, "Transfer function").
 #pragma once
 
 #include <optional>

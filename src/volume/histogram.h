@@ -8,7 +8,8 @@
 
 namespace pellucid {
 
-/// Counts per intensity bin over valid voxels: bin ⌊bins·s⌋, the last one closed (MEASURES §3).
+/// Counts per intensity bin over valid voxels: bin ⌊bins·s⌋, the last one closed (docs/method.md, "Entropy
+/// refinement").
 struct Histogram {
     std::vector<std::uint64_t> counts;
     std::uint64_t total = 0;

@@ -56,7 +56,8 @@ struct SharedCodes {
 };
 
 /// Immutable once made; cheap to share by std::shared_ptr<const Volume>.
-/// Invalid voxels (NaN, infinite, or the declared missing value) count nowhere and are never drawn (MEASURES §1).
+/// Invalid voxels (NaN, infinite, or the declared missing value) count nowhere and are never drawn (docs/method.md,
+/// "Volume and intensity").
 class Volume {
 public:
     /// Throws Error where sizes and samples disagree, or a spacing is not positive and finite.
@@ -82,7 +83,8 @@ public:
 
     double value(std::size_t index) const; ///< data units; what the file says, NaN included
     bool isValid(std::size_t index) const;
-    /// Intensity in [0,1] (MEASURES §1); NaN where invalid. In a constant volume every intensity is 0.
+    /// Intensity in [0,1] (docs/method.md, "Volume and intensity"); NaN where invalid. In a constant volume every
+    /// intensity is 0.
     double intensity(std::size_t index) const;
     /// intensity() of a value in data units; NaN where not finite or missing.
     double intensityOfValue(double value) const;

@@ -126,7 +126,7 @@ TEST_CASE("measure prints figures that agree with each other", "[cli]") {
     for (std::size_t i = 0; i < 3; ++i) {
         const json& f = features[i];
         CHECK(f["name"] == "f" + std::to_string(i + 1));
-        // tents n: centre (i + ½)/n, bottoms 0.4/n to both sides, peak ½ (MEASURES §2)
+        // tents n: centre (i + ½)/n, bottoms 0.4/n to both sides, peak ½ (docs/method.md, "Transfer function")
         const double center = (static_cast<double>(i) + 0.5) / 3;
         CHECK(f["range"][0].get<double>() == Approx(center - 0.4 / 3));
         CHECK(f["range"][1].get<double>() == Approx(center + 0.4 / 3));
@@ -264,7 +264,7 @@ TEST_CASE("the reference engine and high quality measure the same within the tol
     };
     const auto reference = vws("reference", "normal"), normal = vws("cpu", "normal"), high = vws("cpu", "high");
     for (std::size_t i = 0; i < reference.size(); ++i) {
-        CHECK(normal[i] == Approx(reference[i]).margin(0.01)); // MEASURES §10
+        CHECK(normal[i] == Approx(reference[i]).margin(0.01)); // docs/method.md, "Tolerances"
         CHECK(high[i] == Approx(reference[i]).margin(0.005));
     }
 }
@@ -292,7 +292,8 @@ TEST_CASE("the OpenGL engine measures and draws as the cpu does, or says that th
     for (const char* key : {"visibility", "vws"}) {
         const auto a = column(byGl["features"], key), b = column(byCpu["features"], key);
         REQUIRE(a.size() == b.size());
-        for (std::size_t i = 0; i < a.size(); ++i) CHECK(a[i] == Approx(b[i]).margin(0.01)); // MEASURES §10
+        for (std::size_t i = 0; i < a.size(); ++i)
+            CHECK(a[i] == Approx(b[i]).margin(0.01)); // docs/method.md, "Tolerances"
     }
     for (const std::string engine : {"gl", "cpu"})
         CHECK(w.json({"render", "sample:shells", "--sample-size", "24", "--size", "64x64", "--engine", engine, "--out",

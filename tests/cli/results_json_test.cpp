@@ -15,7 +15,7 @@ std::vector<std::string> keysOf(const cli::Json& j) {
 
 } // namespace
 
-TEST_CASE("optimizations are written as CLI.md promises, in its order", "[cli][json]") {
+TEST_CASE("optimizations have their keys in the order of the manual", "[cli][json]") {
     OptimizeResult r;
     r.tf = tents(3, 0.5);
     r.targets = {0.1, 0.3, 0.6};
@@ -39,7 +39,7 @@ TEST_CASE("optimizations are written as CLI.md promises, in its order", "[cli][j
     CHECK(j["tf"]["format"] == "pellucid-tf");
 }
 
-TEST_CASE("refinements are written as CLI.md promises, in its order", "[cli][json]") {
+TEST_CASE("refinements have their keys in the order of the manual", "[cli][json]") {
     RefineResult r;
     r.tf = tents(1);
     r.iterations = 4;

@@ -29,7 +29,7 @@ std::string messageOf(const json& j) {
 
 } // namespace
 
-TEST_CASE("a transfer function file is read as CLI.md writes it", "[tf][json]") {
+TEST_CASE("a transfer function file is read as the guide writes it", "[tf][json]") {
     const TransferFunction tf = tfFromJson(good(), "file");
     REQUIRE(tf.points.size() == 3);
     CHECK(tf.points[0].fixed);

@@ -19,7 +19,7 @@ TEST_CASE("opacity of a step follows 1 − (1 − α)^(d/d0)", "[tf]") {
     CHECK(std::isfinite(opticalDepthOfOpacity(1)));
 }
 
-TEST_CASE("three tents stand where MEASURES puts them", "[tf]") {
+TEST_CASE("three tents stand where docs/method.md puts them", "[tf]") {
     const TransferFunction tf = tents(3, 0.5);
     REQUIRE(tf.points.size() == 9);
     // Tent 1: centre 1.5/3 = 0.5, bottoms at 0.5 ± 0.4/3, hue 180° (cyan).

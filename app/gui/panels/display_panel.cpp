@@ -16,6 +16,7 @@
 
 #include "axis_ticks.h"
 #include "controllers/open_controller.h"
+#include "number_box.h"
 #include "panel.h"
 #include "theme.h"
 #include "workbench.h"
@@ -82,6 +83,7 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
             box->setRange(0, 100);
             box->setDecimals(1);
             box->setSuffix(tr(" %"));
+            box->setKeyboardTracking(false);
             box->setToolTip(tr("The part of the box along %1 that is drawn, per cent of its length; figures are of all")
                                 .arg(kAxes[axis]));
             clip->addWidget(box, axis, side + 1);
@@ -187,8 +189,8 @@ void DisplayPanel::follow() {
     m_feature->setCurrentIndex(scene.onlyFeature() + 1);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int a = static_cast<int>(axis);
-        m_clip[axis][0]->setValue(100 * scene.session.clipping->lo[a]);
-        m_clip[axis][1]->setValue(100 * scene.session.clipping->hi[a]);
+        showNumber(*m_clip[axis][0], 100 * scene.session.clipping->lo[a]);
+        showNumber(*m_clip[axis][1], 100 * scene.session.clipping->hi[a]);
     }
     m_resetClip->setEnabled(!(*scene.session.clipping == Clipping{}));
     const ValueRange window = scene.volume->range();
@@ -198,14 +200,14 @@ void DisplayPanel::follow() {
         box->setSingleStep(span > 0 ? span / 100 : 1);
         box->setEnabled(ready && !scene.data->isConstant());
     }
-    m_lo->setValue(window.lo);
-    m_hi->setValue(window.hi);
+    showNumber(*m_lo, window.lo);
+    showNumber(*m_hi, window.hi);
     const ValueRange all = scene.data->range();
     m_wholeRange->setEnabled(window != all);
     m_note->setText(tr("The data has values from %1 to %2.")
                         .arg(numberText(all.lo, all.hi - all.lo), numberText(all.hi, all.hi - all.lo)));
     const VolumeSource& source = scene.session.variable().source;
-    m_component->setValue(source.component);
+    if (m_component->value() != source.component) m_component->setValue(source.component);
     m_component->setEnabled(ready && !source.isSample() && !source.raw);
     m_showing = false;
 }

@@ -18,6 +18,7 @@
 #include <QVBoxLayout>
 
 #include "controllers/optimize_controller.h"
+#include "number_box.h"
 #include "opacity_editor.h"
 #include "panel.h"
 #include "theme.h"
@@ -126,6 +127,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
                             "one length found by doubling or halving, or always the same"));
     m_tolerance->setObjectName("toleranceSpin");
     m_tolerance->setRange(0.0001, 1.0);
+    m_tolerance->setKeyboardTracking(false);
     m_tolerance->setDecimals(4);
     m_tolerance->setSingleStep(0.01);
     m_tolerance->setValue(0.03);
@@ -260,7 +262,7 @@ void FeaturesPanel::follow() {
     const OptimizeOptions& options = *store.session().optimize;
     const QSignalBlocker blockMethod(m_method), blockTolerance(m_tolerance);
     m_method->setCurrentIndex(m_method->findData(static_cast<int>(options.method)));
-    m_tolerance->setValue(options.tolerance);
+    showNumber(*m_tolerance, options.tolerance);
 
     const bool ready = store.hasVolume() && !m_bench.isReadOnly();
     const bool features = !store.scene().tf.features.empty();

@@ -55,17 +55,21 @@ Scene SessionStore::withPresentCamera(Scene scene) const {
 }
 
 void SessionStore::push(const QString& text, const QString& mergeKey, Scene before) {
+    // What can be made anew is not kept for a state that may never come back.
+    Scene after = m_scene;
+    before.codes.reset();
+    after.codes.reset();
     if (withoutCamera(before.session) == withoutCamera(m_scene.session)) return;
     m_steps.resize(m_index);
     const bool merges = !mergeKey.isEmpty() && m_index > 0 && m_steps.back().mergeKey == mergeKey;
     if (merges) {
-        m_steps.back().after = m_scene;
+        m_steps.back().after = std::move(after);
         if (withoutCamera(m_steps.back().before.session) == withoutCamera(m_scene.session)) {
             m_steps.pop_back(); // there and back again
             --m_index;
         }
     } else {
-        m_steps.push_back({text, mergeKey, std::move(before), m_scene});
+        m_steps.push_back({text, mergeKey, std::move(before), std::move(after)});
         ++m_index;
         if (m_steps.size() > kMostSteps) {
             m_steps.erase(m_steps.begin());

@@ -1,0 +1,46 @@
+// Makes the pictures of docs/images; run by hand:
+//   PELLUCID_PICTURES=docs/images xvfb-run -a -s "-screen 0 1600x1000x24" build/release/bin/test_gui "[.pictures]"
+#include "gui_support.h"
+
+#include <QAction>
+#include <QDoubleSpinBox>
+#include <QSignalSpy>
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+namespace {
+
+void grab(OpenWindow& w, const char* name) {
+    w.settle();
+    QTest::qWait(300); // docks arrange themselves
+    w.settle();
+    REQUIRE(w.window.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + name));
+}
+
+} // namespace
+
+TEST_CASE("pictures for the guide", "[.pictures]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    grab(w, "window_opened.png");
+    w.child<QAction>("displayAction").trigger();
+    w.child<QAction>("shadingAction").trigger();
+    w.child<QDoubleSpinBox>("clipXHi").setValue(60);
+    grab(w, "window_display.png");
+    w.child<QAction>("displayAction").trigger();
+    w.document().undo();
+    w.document().undo();
+    w.document().setTargets({1.0 / 6, 2.0 / 6, 3.0 / 6});
+    w.optimizing().start();
+    REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    grab(w, "window_optimized.png");
+    w.child<QAction>("influenceAction").trigger();
+    grab(w, "window_influence.png");
+}
