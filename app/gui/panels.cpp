@@ -1,11 +1,14 @@
 #include "panel.h"
 
 // The registry: one line a panel. Each is a function of its own file that tells what the panel is.
-#define PELLUCID_PANELS(PANEL)                                                                                         \
-    PANEL(transferFunctionPanel)                                                                                       \
-    PANEL(featuresPanel)                                                                                               \
-    PANEL(influencePanel)                                                                                              \
-    PANEL(displayPanel)
+// clang-format off
+#define PELLUCID_PANELS(PANEL) \
+    PANEL(transferFunctionPanel) \
+    PANEL(featuresPanel) \
+    PANEL(influencePanel) \
+    PANEL(displayPanel) \
+    /* the end, so that a new line changes no other */
+// clang-format on
 
 namespace pellucid::gui {
 
