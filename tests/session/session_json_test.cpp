@@ -218,17 +218,17 @@ TEST_CASE("session and data can be moved together", "[session][json]") {
     const TempFolder folder;
     namespace fs = std::filesystem;
     fs::create_directories(folder.path("here/data"));
-    fs::create_directories(folder.path("here/work"));
+    fs::create_directories(folder.path("here/project"));
     folder.write("here/data/v.raw", std::string(8, '\1'));
     Session s;
     Variable v;
     v.source.path = folder.path("here/data/v.raw");
     s.variables = std::vector<Variable>{v};
-    writeSession(s, folder.path("here/work/a.pellucid.json"));
-    CHECK(readSession(folder.path("here/work/a.pellucid.json")).session == s);
+    writeSession(s, folder.path("here/project/a.pellucid.json"));
+    CHECK(readSession(folder.path("here/project/a.pellucid.json")).session == s);
 
     fs::rename(folder.path("here"), folder.path("there"));
-    const SessionFile moved = readSession(folder.path("there/work/a.pellucid.json"));
+    const SessionFile moved = readSession(folder.path("there/project/a.pellucid.json"));
     CHECK(moved.session.variable().source.path == folder.path("there/data/v.raw"));
     CHECK(moved.notices.empty());
 
