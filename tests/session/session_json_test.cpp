@@ -233,7 +233,7 @@ TEST_CASE("session and data can be moved together", "[session][json]") {
     CHECK(moved.notices.empty());
 
     // Through a link to the folder, whose parent is not where the data is
-    fs::create_directory_symlink(folder.path("there/work"), folder.path("link"));
+    fs::create_directory_symlink(folder.path("there/project"), folder.path("link"));
     CHECK(fs::equivalent(readSession(folder.path("link/a.pellucid.json")).session.variable().source.path,
                          folder.path("there/data/v.raw")));
 
