@@ -112,12 +112,7 @@ Command addFields(CLI::App& program) {
         "fields",
         "Writes visibility, saliency and each voxel's share of the VWS as NRRD files (float32, the volume's grid)");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app);
-    o->scene.session.add(*app);
-    o->scene.tf.add(*app);
-    o->scene.camera.add(*app);
-    o->scene.engine.add(*app, "high: half the error, more time");
-    o->scene.saliency.add(*app);
+    o->scene.addForFigures(*app);
     addValue(
         *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },
         "folder for visibility.nrrd, saliency_brightness.nrrd, saliency_saturation.nrrd, vws.nrrd; made where missing")

@@ -103,12 +103,7 @@ Answer run(const Options& o, Progress& progress) {
 Command addMeasure(CLI::App& program) {
     CLI::App* app = program.add_subcommand("measure", "Visibility and visibility-weighted saliency of each feature");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app);
-    o->scene.session.add(*app);
-    o->scene.tf.add(*app);
-    o->scene.camera.add(*app);
-    o->scene.engine.add(*app, "high: half the error, more time");
-    o->scene.saliency.add(*app);
+    o->scene.addForFigures(*app);
     app->add_flag("--jacobian", o->jacobian, "the derivatives of each VWS with respect to each feature's opacity too");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

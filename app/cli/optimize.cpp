@@ -149,12 +149,7 @@ Command addOptimize(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("optimize", "Finds the opacities that give each feature its target saliency");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app);
-    o->scene.session.add(*app);
-    o->scene.tf.add(*app);
-    o->scene.camera.add(*app);
-    o->scene.engine.add(*app, "high: half the error, more time");
-    o->scene.saliency.add(*app);
+    o->scene.addForFigures(*app);
     addValue(
         *app, "--target", "T1,T2,...",
         [o](const std::string& text, const std::string& option) { o->targets = parseTargets(text, option); },

@@ -4,6 +4,15 @@
 
 namespace pellucid::cli {
 
+void SceneOptions::addForFigures(CLI::App& app) {
+    volume.add(app);
+    session.add(app);
+    tf.add(app);
+    camera.add(app);
+    engine.add(app, "high: half the error, more time");
+    saliency.add(app);
+}
+
 SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<std::string>& notices) {
     SessionFile file = options.session.read();
     notices.insert(notices.end(), file.notices.begin(), file.notices.end());

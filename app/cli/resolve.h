@@ -24,6 +24,9 @@ struct SceneOptions {
     EngineOptions engine;
     SaliencyInput saliency;
     PictureOptions picture;
+
+    /// All that figures of a view depend on: the groups of `measure`, `fields` and `optimize`.
+    void addForFigures(CLI::App& app);
 };
 
 /// What a command does with the volume, and the memory that it takes beside it, bytes per voxel.

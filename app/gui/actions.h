@@ -16,15 +16,15 @@ namespace pellucid::gui {
 
 /// One entry of the list. Texts are for people; `id` is the action's object name, for tests and settings.
 struct ActionSpec {
-    QString id;
-    QString menu; ///< "&File", or "&Transfer function/&Presets" for one inside another; empty: in no menu
-    QString text; ///< with the menu's mnemonic
-    QList<QKeySequence> keys;
-    QString tip; ///< beyond the text: tool tip and status line; may be empty
-    std::function<void()> trigger;
-    std::function<bool()> enabled; ///< empty: always
-    std::function<bool()> checked; ///< empty: not checkable
-    std::function<QString()> say;  ///< what the present text is, where it changes ("Undo: Move point")
+    QString id = {};
+    QString menu = {}; ///< "&File", or "&Transfer function/&Presets" for one inside another; empty: in no menu
+    QString text = {}; ///< with the menu's mnemonic
+    QList<QKeySequence> keys = {};
+    QString tip = {}; ///< beyond the text: tool tip and status line; may be empty
+    std::function<void()> trigger = {};
+    std::function<bool()> enabled = {}; ///< empty: always
+    std::function<bool()> checked = {}; ///< empty: not checkable
+    std::function<QString()> say = {};  ///< what the present text is, where it changes ("Undo: Move point")
     bool separatorBefore = false;
     bool inToolBar = false;
     bool inKeyTable = true; ///< only where it has keys

@@ -30,6 +30,11 @@ QString numberText(double value, double span) {
     return text == "-0" ? QStringLiteral("0") : text;
 }
 
+QString rangeText(const ValueRange& range) {
+    const double span = range.hi - range.lo;
+    return QStringLiteral("%1 – %2").arg(numberText(range.lo, span), numberText(range.hi, span));
+}
+
 int decimalsFor(double span) {
     if (!(span > 0) || !std::isfinite(span)) return 3;
     return std::clamp(4 - static_cast<int>(std::floor(std::log10(span))), 0, 12);

@@ -84,9 +84,7 @@ void MainWindow::addPanels() {
                      .keys = {panel.keys},
                      .tip = panel.tip,
                      .trigger = [dock] { dock->setVisible(dock->isHidden()); },
-                     .enabled = {},
                      .checked = [dock] { return !dock->isHidden(); },
-                     .say = {},
                      .separatorBefore = std::exchange(first, false)});
         connect(dock, &QDockWidget::visibilityChanged, &actions, &Actions::refresh);
     }
@@ -100,11 +98,7 @@ void MainWindow::addHelpActions() {
                      .menu = menu,
                      .text = text,
                      .keys = keys.isEmpty() ? QList<QKeySequence>{} : QList<QKeySequence>{keys},
-                     .tip = {},
-                     .trigger = std::move(trigger),
-                     .enabled = {},
-                     .checked = {},
-                     .say = {}});
+                     .trigger = std::move(trigger)});
     };
     const QString volume = tr("Volume");
     actions.addGestures({{volume, tr("Left drag, arrow keys"), tr("rotate")},

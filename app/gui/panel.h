@@ -23,7 +23,7 @@ struct PanelInfo {
     QKeySequence keys;   ///< show or hide it
     QString tip;
     std::function<QWidget*(Workbench&, QWidget* parent)> make;
-    std::function<void(Workbench&, bool visible)> shown; ///< it was shown or hidden; may be empty
+    std::function<void(Workbench&, bool visible)> shown = {}; ///< it was shown or hidden; may be empty
 };
 
 /// All panels, in the order of the View menu. To add one: its own files, and its line in panels.cpp.

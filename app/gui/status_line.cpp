@@ -18,11 +18,6 @@ namespace {
 
 constexpr int kMessageTime = 4000; // milliseconds
 
-QString rangeText(const ValueRange& range) {
-    const double span = range.hi - range.lo;
-    return QStringLiteral("%1 – %2").arg(numberText(range.lo, span), numberText(range.hi, span));
-}
-
 } // namespace
 
 StatusLine::StatusLine(Workbench& bench, VolumeView& view, QStatusBar& bar)

@@ -39,22 +39,20 @@ PanelInfo transferFunctionPanel() {
             .size = 250,
             .keys = QKeySequence("Ctrl+1"),
             .tip = QObject::tr("The curve of opacity and colour over the histogram"),
-            .make =
-                [](Workbench& bench, QWidget* parent) {
-                    auto* editor = new TfEditorWidget(bench.store(), bench.results(), parent);
-                    QObject::connect(&bench, &Workbench::readOnlyChanged, editor,
-                                     [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
-                    const QString place = QObject::tr("Transfer function");
-                    bench.actions().addGestures(
-                        {{place, QObject::tr("Drag a point (Shift: along one axis)"),
-                          QObject::tr("change its value and opacity")},
-                         {place, QObject::tr("Double-click"), QObject::tr("add a point; on a point: its colour")},
-                         {place, QObject::tr("Enter, Space, Delete"), QObject::tr("colour, fix, remove the point")},
-                         {place, QObject::tr("Arrow keys (Shift: finer)"), QObject::tr("move the point")},
-                         {place, QObject::tr("Page Up, Page Down"), QObject::tr("choose another point")}});
-                    return editor;
-                },
-            .shown = {}};
+            .make = [](Workbench& bench, QWidget* parent) {
+                auto* editor = new TfEditorWidget(bench.store(), bench.results(), parent);
+                QObject::connect(&bench, &Workbench::readOnlyChanged, editor,
+                                 [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
+                const QString place = QObject::tr("Transfer function");
+                bench.actions().addGestures(
+                    {{place, QObject::tr("Drag a point (Shift: along one axis)"),
+                      QObject::tr("change its value and opacity")},
+                     {place, QObject::tr("Double-click"), QObject::tr("add a point; on a point: its colour")},
+                     {place, QObject::tr("Enter, Space, Delete"), QObject::tr("colour, fix, remove the point")},
+                     {place, QObject::tr("Arrow keys (Shift: finer)"), QObject::tr("move the point")},
+                     {place, QObject::tr("Page Up, Page Down"), QObject::tr("choose another point")}});
+                return editor;
+            }};
 }
 
 TfEditorWidget::TfEditorWidget(SessionStore& store, Results& results, QWidget* parent)

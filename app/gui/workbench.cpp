@@ -58,20 +58,16 @@ void Workbench::addEditActions() {
                    .menu = tr("&Edit"),
                    .text = tr("&Undo"),
                    .keys = keys("Ctrl+Z"),
-                   .tip = {},
                    .trigger = [this] { m_store.undo(); },
                    .enabled = [this] { return !isReadOnly() && m_store.canUndo(); },
-                   .checked = {},
                    .say = [this] { return m_store.canUndo() ? tr("Undo: %1").arg(m_store.undoText()) : tr("Undo"); },
                    .inToolBar = true});
     m_actions.add({.id = "redoAction",
                    .menu = tr("&Edit"),
                    .text = tr("&Redo"),
                    .keys = keys("Ctrl+Shift+Z", "Ctrl+Y"),
-                   .tip = {},
                    .trigger = [this] { m_store.redo(); },
                    .enabled = [this] { return !isReadOnly() && m_store.canRedo(); },
-                   .checked = {},
                    .say = [this] { return m_store.canRedo() ? tr("Redo: %1").arg(m_store.redoText()) : tr("Redo"); },
                    .inToolBar = true});
 }

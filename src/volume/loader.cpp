@@ -15,8 +15,6 @@ namespace {
 
 constexpr std::string_view kSamplePrefix = "sample:";
 
-bool isSample(const std::string& path) { return path.starts_with(kSamplePrefix); }
-
 const std::array<const VolumeReader*, 3>& readers() {
     static const std::array<const VolumeReader*, 3> kReaders{&nrrdReader(), &metaImageReader(), &niftiReader()};
     return kReaders;
@@ -116,7 +114,7 @@ RawLayout parseRawLayout(const std::string& text) {
 
 Volume loadVolume(const VolumeSource& source, const JobControl& job) {
     if (source.path.empty()) throw UsageError("no volume is named", "", "give a file or sample:NAME");
-    const bool builtIn = isSample(source.path);
+    const bool builtIn = source.isSample();
     Volume volume = builtIn ? sample(source, job) : readFile(source, job);
     if (!volume.hasValidVoxels())
         volume.notices.emplace_back("no voxel has a valid value");
@@ -130,7 +128,7 @@ Volume loadVolume(const VolumeSource& source, const JobControl& job) {
 }
 
 std::vector<std::string> filesOf(const VolumeSource& source) {
-    if (isSample(source.path)) return {};
+    if (source.isSample()) return {};
     const VolumeReader* reader = source.raw ? nullptr : readerFor(source.path);
     if (reader == nullptr) return {source.path};
     try {

@@ -36,11 +36,6 @@ bool hasKnownSuffix(const QString& path) {
     return QDir::match(patterns, QFileInfo(path).fileName());
 }
 
-QString rangeText(const ValueRange& range) {
-    const double span = range.hi - range.lo;
-    return QStringLiteral("%1 – %2").arg(numberText(range.lo, span), numberText(range.hi, span));
-}
-
 // Recent files that need more than a name to be opened again are kept as a session of nothing but their source.
 QString recentEntry(const VolumeSource& source) {
     const QString path = QFileInfo(QString::fromStdString(source.path)).absoluteFilePath();
@@ -103,9 +98,7 @@ void OpenController::addActions() {
                           .keys = keys,
                           .tip = tip,
                           .trigger = std::move(trigger),
-                          .enabled = std::move(enabled),
-                          .checked = {},
-                          .say = {}};
+                          .enabled = std::move(enabled)};
     };
     ActionSpec open = add("openAction", menu, tr("&Open…"), {QKeySequence("Ctrl+O")},
                           tr("Open a volume, a session or a transfer function"), [this] { chooseVolume(); });
@@ -227,43 +220,32 @@ void OpenController::openTf(const QString& specOrPath) {
             });
             session.setTf(std::move(placed));
         };
-        const auto opened = [this, tf, isFile, specOrPath] {
+        editData(tr("Open transfer function"), change, [this, tf, isFile, specOrPath] {
             if (isFile) {
                 m_tfPath = specOrPath;
                 m_bench.store().setTfSaved();
             }
             noteWindow(tf);
-        };
-        Session next = store.session();
-        change(next);
-        if (!needsData(next, store.scene())) {
-            const ValueRange window = m_bench.scene().volume->range();
-            store.edit(tr("Open transfer function"), {}, [&](Session& session) {
-                change(session);
-                if (tf.range || !(window.lo < window.hi)) return;
-                TransferFunction placed = *session.tf();
-                placed.range = window;
-                session.setTf(std::move(placed));
-            });
-            return opened();
-        }
-        // The picture waits for the data of the new window, and shows both at once.
-        m_busyText = tr("Opening %1…").arg(QFileInfo(specOrPath).fileName());
-        m_afterData = opened;
-        m_data.start({tr("Open transfer function"), change, store.scene()}, specOrPath);
+        });
     } catch (const Error& error) {
         m_bench.showError(tr("Cannot open the transfer function"), error);
     }
 }
 
-void OpenController::editData(const QString& text, const SessionStore::Change& change) {
+void OpenController::editData(const QString& text, const SessionStore::Change& change,
+                              const std::function<void()>& then) {
     SessionStore& store = m_bench.store();
     if (!store.hasVolume() || m_bench.isReadOnly()) return;
     Session next = store.session();
     change(next);
-    if (!needsData(next, store.scene())) return store.edit(text, {}, change);
+    if (!needsData(next, store.scene())) {
+        store.edit(text, {}, change);
+        if (then) then();
+        return;
+    }
+    // The picture waits for the data, and shows everything at once.
     m_busyText = text + QChar(0x2026);
-    m_afterData = {};
+    m_afterData = then;
     m_data.start({text, change, store.scene()}, QString::fromStdString(store.scene().volume->title));
 }
 

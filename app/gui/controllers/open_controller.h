@@ -37,8 +37,8 @@ public:
     void openAtStart(const QString& path, const QString& tfSpec);
 
     /// A change of the session that needs other data, or the same through another window: one undo step named `text`
-    /// once the data is there. A later one takes the place of one under way.
-    void editData(const QString& text, const SessionStore::Change& change);
+    /// once the data is there; `then` follows it. A later one takes the place of one under way.
+    void editData(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
 
     bool isBusy() const { return m_open.isRunning() || m_data.isRunning(); }
     QString busyText() const; ///< "Opening scan.nrrd…"

@@ -73,8 +73,6 @@ void OptimizeController::addActions() {
                            .tip = tr("Opacities by entropy: values that are common get less, rare ones more"),
                            .trigger = [this] { refine(); },
                            .enabled = [this] { return m_bench.store().hasVolume() && !isRunning(); },
-                           .checked = {},
-                           .say = {},
                            .separatorBefore = true});
     m_bench.actions().add(
         {.id = "optimizeAction",
@@ -84,9 +82,7 @@ void OptimizeController::addActions() {
          .tip = tr("Opacities until the features' saliency (VWS) meets the targets, from this camera"),
          .trigger = [this] { start(); },
          .enabled =
-             [this] { return m_bench.store().hasVolume() && !isRunning() && !m_bench.scene().tf.features.empty(); },
-         .checked = {},
-         .say = {}});
+             [this] { return m_bench.store().hasVolume() && !isRunning() && !m_bench.scene().tf.features.empty(); }});
 }
 
 OptimizeController::About OptimizeController::present() const {

@@ -58,8 +58,6 @@ void SaveController::addActions() {
                                .tip = tip,
                                .trigger = std::move(trigger),
                                .enabled = open,
-                               .checked = {},
-                               .say = {},
                                .separatorBefore = separator,
                                .inToolBar = toolBar});
     };

@@ -1,5 +1,6 @@
 #include "controllers/tf_actions.h"
 
+#include "store/edits.h"
 #include "tf/sample_tf.h"
 #include "workbench.h"
 
@@ -7,12 +8,6 @@ namespace pellucid::gui {
 namespace {
 
 QString menuName() { return QObject::tr("&Transfer function"); }
-
-void setTf(Workbench& bench, TransferFunction tf, const QString& text) {
-    const ValueRange window = bench.scene().volume->range();
-    if (!tf.range && window.lo < window.hi) tf.range = window;
-    bench.store().edit(text, {}, [&](Session& session) { session.setTf(tf); });
-}
 
 } // namespace
 
@@ -24,17 +19,14 @@ void addTfActions(Workbench& bench) {
         actions.add({.id = id,
                      .menu = menu,
                      .text = text,
-                     .keys = {},
                      .tip = tip,
                      .trigger = std::move(trigger),
                      .enabled = editable,
-                     .checked = {},
-                     .say = {},
                      .separatorBefore = separator});
     };
     const QString presets = menuName() + "/" + QObject::tr("&Presets");
     add("presetDefault", presets, QObject::tr("Default of this volume"), {}, false,
-        [&bench] { setTf(bench, defaultTf(*bench.scene().volume), QObject::tr("Default")); });
+        [&bench] { editTf(bench.store(), defaultTf(*bench.scene().volume), QObject::tr("Default")); });
     for (const char* spec : {"tents:1", "tents:2", "tents:3", "tents:4", "tents:6", "tents:8", "ramp:6", "ramp:12"}) {
         const QString name = QString::fromLatin1(spec);
         const QString number = name.section(':', 1);
@@ -43,13 +35,13 @@ void addTfActions(Workbench& bench) {
                                                   : QObject::tr("%1 tents, one feature each").arg(number))
                                  : QObject::tr("Ramp of %1 points, one feature").arg(number);
         add(name, presets, text, {}, name == "tents:1",
-            [&bench, name] { setTf(bench, *tfFromSpec(name.toStdString()), name); });
+            [&bench, name] { editTf(bench.store(), *tfFromSpec(name.toStdString()), name); });
     }
     add("deriveFeaturesAction", menuName(), QObject::tr("&Features from the curve"),
         QObject::tr("One feature for each interval of the curve between two points of opacity 0"), true, [&bench] {
             TransferFunction tf = bench.scene().tf;
             tf.features = deriveFeatures(tf);
-            setTf(bench, tf, QObject::tr("Features from the curve"));
+            editTf(bench.store(), tf, QObject::tr("Features from the curve"));
         });
 }
 

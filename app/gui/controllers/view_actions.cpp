@@ -64,8 +64,6 @@ void addViewActions(Workbench& bench) {
                      .tip = tip,
                      .trigger = std::move(trigger),
                      .enabled = open,
-                     .checked = {},
-                     .say = {},
                      .separatorBefore = separator,
                      .inToolBar = true});
     };
@@ -98,7 +96,6 @@ void addViewActions(Workbench& bench) {
                      },
                  .enabled = open,
                  .checked = [&store] { return store.scene().camera.projection == Projection::Perspective; },
-                 .say = {},
                  .separatorBefore = true,
                  .inToolBar = true});
     actions.add({.id = "undoViewAction",
@@ -108,18 +105,13 @@ void addViewActions(Workbench& bench) {
                  .tip = QObject::tr("Where the eye was before it moved last"),
                  .trigger = [&store] { store.undoCamera(); },
                  .enabled = [&store] { return store.canUndoCamera(); },
-                 .checked = {},
-                 .say = {},
                  .separatorBefore = true});
     actions.add({.id = "redoViewAction",
                  .menu = menu,
                  .text = QObject::tr("&Next view"),
                  .keys = {QKeySequence("Alt+Right")},
-                 .tip = {},
                  .trigger = [&store] { store.redoCamera(); },
-                 .enabled = [&store] { return store.canRedoCamera(); },
-                 .checked = {},
-                 .say = {}});
+                 .enabled = [&store] { return store.canRedoCamera(); }});
 }
 
 } // namespace pellucid::gui

@@ -143,7 +143,12 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     connect(&m_bench.opening(), &OpenController::busyChanged, this, [this] {
         if (!m_bench.opening().isBusy()) follow(); // also where it failed; till then it shows what was asked for
     });
-    connect(&store, &SessionStore::changed, this, &DisplayPanel::follow);
+    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        const Session &old = before.session, &now = after.session;
+        const bool same = before.volume == after.volume && before.tf.features == after.tf.features &&
+                          old.display.isSame(now.display) && old.clipping.isSame(now.clipping);
+        if (!same) follow(); // the view turns, the curve is dragged: nothing of this panel's
+    });
     connect(&m_bench, &Workbench::readOnlyChanged, this, &DisplayPanel::follow);
     follow();
 }
@@ -220,33 +225,30 @@ PanelInfo displayPanel() {
             .size = 0,
             .keys = QKeySequence("Ctrl+D"),
             .tip = QObject::tr("Light, clipping, one feature alone, range of values, component"),
-            .make =
-                [](Workbench& bench, QWidget* parent) {
-                    SessionStore& store = bench.store();
-                    bench.actions().add(
-                        {.id = "shadingAction",
-                         .menu = QObject::tr("&View"),
-                         .text = QObject::tr("&Shading"),
-                         .keys = {QKeySequence("L")},
-                         .tip = QObject::tr("Light from the eye, by the gradient"),
-                         .trigger =
-                             [&store] {
-                                 store.edit(QObject::tr("Shading"), {}, [](Session& session) {
-                                     session.display.edit([](DisplaySettings& d) { d.shading = !d.shading; });
+            .make = [](Workbench& bench, QWidget* parent) {
+                SessionStore& store = bench.store();
+                bench.actions().add({.id = "shadingAction",
+                                     .menu = QObject::tr("&View"),
+                                     .text = QObject::tr("&Shading"),
+                                     .keys = {QKeySequence("L")},
+                                     .tip = QObject::tr("Light from the eye, by the gradient"),
+                                     .trigger =
+                                         [&store] {
+                                             store.edit(QObject::tr("Shading"), {}, [](Session& session) {
+                                                 session.display.edit(
+                                                     [](DisplaySettings& d) { d.shading = !d.shading; });
+                                             });
+                                         },
+                                     .enabled = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); },
+                                     .checked = [&store] { return store.session().display->shading; },
+                                     .separatorBefore = true});
+                QObject::connect(&store, &SessionStore::changed, &bench.actions(),
+                                 [&bench](const Scene& before, const Scene& after) {
+                                     if (!before.session.display.isSame(after.session.display))
+                                         bench.actions().refresh();
                                  });
-                             },
-                         .enabled = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); },
-                         .checked = [&store] { return store.session().display->shading; },
-                         .say = {},
-                         .separatorBefore = true});
-                    QObject::connect(&store, &SessionStore::changed, &bench.actions(),
-                                     [&bench](const Scene& before, const Scene& after) {
-                                         if (!before.session.display.isSame(after.session.display))
-                                             bench.actions().refresh();
-                                     });
-                    return new DisplayPanel(bench, parent);
-                },
-            .shown = {}};
+                return new DisplayPanel(bench, parent);
+            }};
 }
 
 } // namespace pellucid::gui

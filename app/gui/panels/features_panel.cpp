@@ -290,13 +290,11 @@ PanelInfo featuresPanel() {
             .size = 380,
             .keys = QKeySequence("Ctrl+2"),
             .tip = QObject::tr("What each feature shows and what it should show"),
-            .make =
-                [](Workbench& bench, QWidget* parent) {
-                    auto* panel = new FeaturesPanel(bench, parent);
-                    panel->setMinimumWidth(340);
-                    return panel;
-                },
-            .shown = {}};
+            .make = [](Workbench& bench, QWidget* parent) {
+                auto* panel = new FeaturesPanel(bench, parent);
+                panel->setMinimumWidth(340);
+                return panel;
+            }};
 }
 
 } // namespace pellucid::gui

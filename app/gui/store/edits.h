@@ -5,7 +5,7 @@
 
 namespace pellucid::gui {
 
-/// `tf` is written for the window, as Scene::tf is.
+/// `tf` is written for the window, as Scene::tf is; one without a range is taken to be.
 inline void editTf(SessionStore& store, const TransferFunction& tf, const QString& text, const QString& mergeKey = {}) {
     store.edit(text, mergeKey, [&](Session& session) { session.setTf(tf); });
 }

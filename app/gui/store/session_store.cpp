@@ -77,7 +77,6 @@ void SessionStore::push(const QString& text, const QString& mergeKey, Scene befo
         }
         forgetOldData();
     }
-    Q_EMIT historyChanged();
 }
 
 // A step keeps the data that it needs to be undone at once. Memory ends before the history does: of the oldest steps
@@ -96,18 +95,18 @@ void SessionStore::forgetOldData() {
 }
 
 void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change) {
-    commit();
     edit(text, mergeKey, change, m_scene);
 }
 
 void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change, const Scene& basis) {
     if (!hasVolume()) return;
     commit();
-    Scene next = changedBy(change, m_scene, Scene(basis));
+    Scene next = changedBy(change, m_scene, basis);
     if (next.session == m_scene.session) return;
     Scene before = m_scene;
     show(std::move(next));
     push(text, mergeKey, std::move(before));
+    Q_EMIT historyChanged();
 }
 
 void SessionStore::preview(const QString& text, const Change& change) {
