@@ -77,7 +77,7 @@ Answer run(const Options& o, Progress& progress) {
     const std::string engineName = prepare(workspace, input, progress).engine;
     const WeightFields& weights = workspace.weights(input);
     const VisibilityField visibility =
-        workspace.engine(input).field(input.camera, input.tf, progress.phase("visibility"));
+        workspace.engine(input).field(input.view, input.tf, progress.phase("visibility"));
     workspace.releaseEngine(); // and one file after the other: the program keeps no more fields than it needs
 
     const OutputFolder folder(o.out);

@@ -28,13 +28,13 @@ std::vector<Feature> intervalsWithin(const std::vector<Feature>& features) {
 
 } // namespace
 
-Measures measure(VisibilityEngine& engine, const Camera& camera, const TransferFunction& tf,
+Measures measure(VisibilityEngine& engine, const View& view, const TransferFunction& tf,
                  const WeightFields& weights, const VwsOptions& options, const JobControl& job) {
     const auto start = std::chrono::steady_clock::now();
     // To the engine the histogram's bins are features too, so that one sweep gives it all and no field is stored.
     TransferFunction divided = tf;
     divided.features = intervalsWithin(tf.features);
-    const FeatureSums parts = engine.sums(camera, {&divided, 1}, &weights, job)[0];
+    const FeatureSums parts = engine.sums(view, {&divided, 1}, &weights, job)[0];
 
     Measures measures;
     measures.visibilityHistogram.assign(kBins, 0.0);

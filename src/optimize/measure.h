@@ -17,7 +17,7 @@ struct Measures {
 };
 
 /// In one sweep. `weights` from saliencyFields() of the same tf. Throws as VisibilityEngine::sums() does.
-Measures measure(VisibilityEngine& engine, const Camera& camera, const TransferFunction& tf,
+Measures measure(VisibilityEngine& engine, const View& view, const TransferFunction& tf,
                  const WeightFields& weights, const VwsOptions& options = {}, const JobControl& job = {});
 
 } // namespace pellucid

@@ -31,9 +31,9 @@ double objectiveOf(std::span<const double> vws, std::span<const double> targets)
     return std::sqrt(sum / static_cast<double>(vws.size()));
 }
 
-VwsFunction::VwsFunction(VisibilityEngine& engine, const Camera& camera, const TransferFunction& base,
+VwsFunction::VwsFunction(VisibilityEngine& engine, const View& view, const TransferFunction& base,
                          const WeightFields& weights, const VwsOptions& options)
-    : m_engine(engine), m_camera(camera), m_base(base), m_weights(weights), m_options(options) {}
+    : m_engine(engine), m_view(view), m_base(base), m_weights(weights), m_options(options) {}
 
 std::vector<std::vector<double>> VwsFunction::evaluate(std::span<const std::vector<double>> candidates,
                                                        const JobControl& job) const {
@@ -41,7 +41,7 @@ std::vector<std::vector<double>> VwsFunction::evaluate(std::span<const std::vect
     tfs.reserve(candidates.size());
     for (const auto& x : candidates) tfs.push_back(withFeatureOpacities(m_base, x));
     std::vector<std::vector<double>> all;
-    for (const FeatureSums& sums : m_engine.sums(m_camera, tfs, &m_weights, job)) all.push_back(vwsOf(sums, m_options));
+    for (const FeatureSums& sums : m_engine.sums(m_view, tfs, &m_weights, job)) all.push_back(vwsOf(sums, m_options));
     return all;
 }
 

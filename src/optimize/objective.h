@@ -15,11 +15,11 @@ std::vector<double> normalizedTargets(std::vector<double> targets, std::size_t f
 /// F = sqrt(Σ (W − t)² / n).
 double objectiveOf(std::span<const double> vws, std::span<const double> targets);
 
-/// VWS as a function of the features' peak opacities, from one camera. Keeps references: engine and weights outlive it.
+/// VWS as a function of the features' peak opacities, of one view. Keeps references: engine and weights outlive it.
 class VwsFunction {
 public:
     /// `base` gives the shapes that the opacities scale.
-    VwsFunction(VisibilityEngine& engine, const Camera& camera, const TransferFunction& base,
+    VwsFunction(VisibilityEngine& engine, const View& view, const TransferFunction& base,
                 const WeightFields& weights, const VwsOptions& options = {});
 
     std::size_t featureCount() const { return m_base.features.size(); }
@@ -30,7 +30,7 @@ public:
 
 private:
     VisibilityEngine& m_engine;
-    Camera m_camera;
+    View m_view;
     TransferFunction m_base;
     const WeightFields& m_weights;
     VwsOptions m_options;

@@ -10,15 +10,13 @@
 namespace pellucid {
 
 BoxInImage boxInImage(const Camera& camera, const Geometry& geometry, int width, int height) {
-    const Vec3 lo = geometry.boxMin(), hi = geometry.boxMax();
     const Vec3 forward = camera.forward(), right = camera.right(), up = camera.trueUp();
     const double halfTangent = std::tan(camera.fovY * std::numbers::pi / 360.0);
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
     double left = kInfinite, top = kInfinite, far = -kInfinite, rightmost = -kInfinite, bottom = -kInfinite;
     double near = kInfinite;
     for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 p((corner & 1) ? hi.x : lo.x, (corner & 2) ? hi.y : lo.y, (corner & 4) ? hi.z : lo.z);
-        const Vec3 fromEye = p - camera.eye;
+        const Vec3 fromEye = geometry.corner(corner) - camera.eye;
         const double depth = glm::dot(fromEye, forward);
         near = std::min(near, depth);
         far = std::max(far, depth);

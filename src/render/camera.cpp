@@ -55,10 +55,7 @@ void Camera::validate(const std::string& where) const {
 void Camera::validate(const Geometry& geometry, const std::string& where) const {
     validate(where);
     if (projection == Projection::Orthographic) return;
-    const Vec3 lo = geometry.boxMin(), hi = geometry.boxMax();
-    bool inside = true;
-    for (int a = 0; a < 3; ++a) inside = inside && eye[a] > lo[a] && eye[a] < hi[a];
-    if (inside)
+    if (geometry.contains(eye))
         throw Error("the eye is inside the volume's box", where, "move it outside, or use an orthographic camera");
 }
 
@@ -78,7 +75,7 @@ Camera cameraFromView(const Geometry& geometry, double azimuth, double elevation
     if (!(zoom > 0) || !std::isfinite(zoom)) throw UsageError("zoom is a positive factor", "view", "correct it");
     const double az = azimuth * kRadians, el = elevation * kRadians;
     const Vec3 toEye{std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el), std::sin(el)};
-    const double radius = 0.5 * glm::length(geometry.boxMax() - geometry.boxMin());
+    const double radius = geometry.radius();
 
     Camera camera;
     camera.projection = projection;

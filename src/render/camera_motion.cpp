@@ -27,7 +27,7 @@ double heightAtCenter(const Camera& c) {
 // Brings the eye out of the sphere around the box, along its own line of sight. A perspective view narrows so that the
 // size of things at the center stays; an orthographic picture does not change at all.
 Camera keptOutside(Camera c, const Geometry& geometry) {
-    const double radius = 1.02 * boundingRadius(geometry);
+    const double radius = 1.02 * geometry.radius();
     const Vec3 fromBox = c.eye - geometry.boxCenter();
     if (glm::length(fromBox) >= radius) return c;
     const Vec3 back = -c.forward();
@@ -42,11 +42,9 @@ Camera keptOutside(Camera c, const Geometry& geometry) {
 
 // How far the box's corners reach from the image's middle, in halves of its height: 1 touches its upper or lower edge.
 double reachOfBox(const Camera& c, const Geometry& geometry) {
-    const Vec3 lo = geometry.boxMin(), hi = geometry.boxMax();
     double reach = 0;
     for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 p((corner & 1) ? hi.x : lo.x, (corner & 2) ? hi.y : lo.y, (corner & 4) ? hi.z : lo.z);
-        const Vec3 fromEye = p - c.eye;
+        const Vec3 fromEye = geometry.corner(corner) - c.eye;
         const double unit = c.projection == Projection::Orthographic
                                 ? 0.5 * c.height
                                 : std::max(1e-12, glm::dot(fromEye, c.forward())) * halfTangent(c.fovY);
@@ -84,8 +82,6 @@ double fittingHeight(const Geometry& geometry) {
 
 } // namespace
 
-double boundingRadius(const Geometry& geometry) { return 0.5 * glm::length(geometry.boxMax() - geometry.boxMin()); }
-
 Camera homeCamera(const Geometry& geometry, Projection projection) {
     return standardCamera(geometry, 30, 20, projection);
 }
@@ -107,7 +103,7 @@ Camera panned(const Camera& camera, const Geometry& geometry, double dx, double 
     const double perPixel = heightAtCenter(camera) / std::max(1, viewHeight);
     Vec3 shift = perPixel * (-dx * camera.right() + dy * camera.trueUp());
     // The volume must not get lost: the center stays within the sphere around the box.
-    const double radius = boundingRadius(geometry);
+    const double radius = geometry.radius();
     Vec3 offset = camera.center + shift - geometry.boxCenter();
     if (glm::length(offset) > radius) offset *= radius / glm::length(offset);
     shift = geometry.boxCenter() + offset - camera.center;
@@ -133,7 +129,7 @@ Camera zoomed(const Camera& camera, const Geometry& geometry, double factor) {
         factor = reached / wanted;
     }
     c.eye = c.center + (c.eye - c.center) / factor;
-    const double farthest = kFarthest * boundingRadius(geometry);
+    const double farthest = kFarthest * geometry.radius();
     if (distance(c) > farthest) c.eye = c.center - farthest * c.forward();
     return keptOutside(c, geometry);
 }

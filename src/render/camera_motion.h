@@ -14,9 +14,6 @@ Camera homeCamera(const Geometry& geometry, Projection projection);
 /// The whole box from a direction given in degrees, see cameraFromView().
 Camera standardCamera(const Geometry& geometry, double azimuth, double elevation, Projection projection);
 
-/// Radius of the sphere around the box, world units.
-double boundingRadius(const Geometry& geometry);
-
 /// Turns the eye around camera.center: by `yaw` about the camera's up, by `pitch` about its right axis, degrees.
 /// Positive yaw moves the eye to the right, positive pitch upward.
 Camera rotated(const Camera& camera, const Geometry& geometry, double yaw, double pitch);

@@ -3,20 +3,48 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
-#include "render/camera.h"
+#include "render/clipping.h"
 #include "tf/color.h"
 #include "tf/transfer_function.h"
 
 namespace pellucid {
 
+/// What becomes of the intensities along a ray (docs/method.md, "The picture").
+enum class RenderMode {
+    Composite, ///< emission and absorption by the transfer function
+    Mip,       ///< the largest intensity, as grey
+    MinIp,     ///< the smallest
+    Average,   ///< the mean along the path
+    Surface    ///< the first surface of each feature
+};
+const char* name(RenderMode mode); ///< "composite", "mip", "minip", "average", "surface"
+std::optional<RenderMode> renderModeFromName(const std::string& name);
+
+/// Light and what helps to see depth (docs/method.md, "Light"). It changes colours; measures, and the alpha of pixels
+/// but for `gradientOpacity`, are those of the unlit transfer function.
+struct Light {
+    bool on = false;
+    double ambient = 0.35, diffuse = 0.65, specular = 0.25; ///< [0, 2]
+    double shininess = 24;                                  ///< exponent of the highlight, [1, 1000]
+    Vec3 direction{0, 0, 1};   ///< toward the light, in the camera's right, up and toward the viewer; any length but 0
+    double gradientOpacity = 0; ///< [0,1], how far homogeneous regions fade
+    double occlusion = 0;       ///< [0,1], strength of ambient occlusion
+    double depthCue = 0;        ///< [0,1], how far the farthest fades into the background
+    double silhouettes = 0;     ///< [0,1], how dark surfaces get that are seen edge-on
+    bool operator==(const Light&) const = default;
+};
+
 struct RenderSettings {
     int width = 512, height = 512;                ///< pixels, each in [1, 16384]
     std::optional<Rgb> background = Rgb{0, 0, 0}; ///< empty: transparent
+    std::optional<Rgb> backgroundTop;             ///< at the top of the picture, `background` at its bottom; empty: plain
     double stepInD0 = 0.5;                        ///< largest distance of samples along a ray, in d0, (0, 16]
-    bool shading = false;                         ///< diffuse and specular light from the eye, by the gradient
-    /// The part of the box that is drawn, in fractions [0,1] of it along each axis, lo < hi.
-    Vec3 clipLo{0, 0, 0}, clipHi{1, 1, 1};
+    RenderMode mode = RenderMode::Composite;
+    Light light;
+    Clipping clipping;
+    bool jitter = false;  ///< shifts the samples of each pixel by a part of a step, against banding
     int onlyFeature = -1; ///< index: draw the voxels of this feature alone; −1: all
 
     void validate() const; ///< throws UsageError

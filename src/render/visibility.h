@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "base/job.h"
-#include "render/camera.h"
+#include "render/view.h"
 #include "saliency/vws.h"
 #include "tf/transfer_function.h"
 
 namespace pellucid {
 
-/// How much each voxel contributes to the image from one camera.
+/// How much each voxel contributes to the image of one view.
 ///   shape   the volume's own grid, x fastest
-///   range   [0, 1], no unit; 0 means hidden, transparent or invalid
+///   range   [0, 1], no unit; 0 means hidden, transparent, clipped away or invalid
 ///   source  docs/method.md, "Visibility": v = T·α, T the transmittance toward the eye
 struct VisibilityField {
     Grid<float> values;
@@ -25,7 +25,7 @@ struct VisibilityField {
 /// High: about half the error for about twice the time and more (docs/method.md, "Tolerances").
 enum class Quality { Normal, High };
 
-/// Anything that can tell visibility from a camera. One call takes many transfer functions, so that a line search is
+/// Anything that can tell visibility. One call takes many transfer functions, so that a line search is
 /// parallel inside: SIMD lanes and threads on the CPU, render targets on GL. Order is kept.
 /// An engine is made for one volume and is used by one thread at a time.
 class VisibilityEngine {
@@ -37,14 +37,14 @@ public:
     /// Sums per feature of each of `tfs`, which share the features of the first (checked). `weights` may be null.
     /// Throws Cancelled where `job` was asked to stop, Error where the camera is inside the volume, and where the
     /// device fails. The same holds for the other calls.
-    virtual std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
+    virtual std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
                                           const WeightFields* weights, const JobControl& job = {}) = 0;
     /// The sums of `tf` and their exact derivatives with respect to the features' peak opacities, in one sweep
     /// (docs/method.md, "Derivatives").
-    virtual SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+    virtual SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
                                   const JobControl& job = {}) = 0;
     /// The field itself, for those who want to look at it.
-    virtual VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job = {}) = 0;
+    virtual VisibilityField field(const View& view, const TransferFunction& tf, const JobControl& job = {}) = 0;
 };
 
 /// docs/method.md, "The reference engine": double precision, one straight line per voxel, steps of at most

@@ -3,6 +3,9 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -35,15 +38,16 @@ public:
     std::string name() const override { return "reference"; }
     const Volume& volume() const override { return *m_volume; }
 
-    std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
                                   const WeightFields* weights, const JobControl& job) override {
         std::vector<FeatureSums> all;
         for (const TransferFunction& tf : tfs) {
             PELLUCID_CHECK(tf.features == tfs[0].features);
             const TfSampler sampler(tf);
+            const Lines lines = linesOf(view);
             Parts parts(slices(), emptySums(tf.features.size()));
-            forEachVoxel(camera, job, [&](const Voxel& voxel) {
-                const double v = visibility(camera, sampler, voxel);
+            forEachVoxel(view, job, [&](const Voxel& voxel) {
+                const double v = visibility(lines, sampler, voxel);
                 const auto [lb, ls] = weightsAt(weights, voxel.index);
                 addVoxel(parts[voxel.slice], featureAt(tf.features, voxel.intensity), v, lb, ls);
             });
@@ -54,20 +58,21 @@ public:
 
     /// Inside feature j ∂α/∂x_j is the shape that x_j scales; so ∂τ/∂x_j = shape/(1 − α), but 0 where the cap holds τ.
     /// From v = α·T: ∂v/∂x_j = ∂α/∂x_j·T − v·∫∂τ/∂x_j. The same samples as in sums(), so that it is its derivative.
-    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+    SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
         const std::size_t features = tf.features.size();
         const TfSampler sampler(tf), shapes(withFullPeaks(tf));
+        const Lines lines = linesOf(view);
         Parts parts(slices(), emptySums(features));
         std::vector<Parts> partsByOpacity(features, parts);
-        forEachVoxel(camera, job, [&](const Voxel& voxel) {
+        forEachVoxel(view, job, [&](const Voxel& voxel) {
             const int feature = featureAt(tf.features, voxel.intensity);
             const double alpha = sampler.opacity(voxel.intensity);
             const double shape = feature < 0 ? 0.0 : shapes.opacity(voxel.intensity);
             if (alpha == 0 && shape == 0) return;
             double depth = 0;
             std::vector<double> depthByOpacity(features, 0.0);
-            forEachSample(camera, voxel.centre, [&](double s, double steps) {
+            forEachSample(lines, voxel.centre, [&](double s, double steps) {
                 const double a = sampler.opacity(s);
                 depth += steps * opticalDepthOfOpacity(a);
                 const int f = featureAt(tf.features, s);
@@ -88,11 +93,12 @@ public:
         return result;
     }
 
-    VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
+    VisibilityField field(const View& view, const TransferFunction& tf, const JobControl& job) override {
         const TfSampler sampler(tf);
+        const Lines lines = linesOf(view);
         VisibilityField field{Grid<float>(m_volume->dims())};
-        forEachVoxel(camera, job, [&](const Voxel& voxel) {
-            field.values[voxel.index] = static_cast<float>(visibility(camera, sampler, voxel));
+        forEachVoxel(view, job, [&](const Voxel& voxel) {
+            field.values[voxel.index] = static_cast<float>(visibility(lines, sampler, voxel));
         });
         return field;
     }
@@ -103,7 +109,7 @@ private:
     struct Voxel {
         std::size_t slice, index;
         double intensity;
-        Vec3 centre; ///< world units
+        Vec3 centre; ///< voxel coordinates
     };
 
     std::size_t slices() const { return static_cast<std::size_t>(m_volume->dims().z); }
@@ -119,19 +125,35 @@ private:
         return {weights->brightness(i), weights->saturation(i)};
     }
 
-    /// body(voxel) for each valid voxel; slices on different threads.
+    /// What the lines toward the eye need to know, in voxel coordinates.
+    struct Lines {
+        const Camera& camera;
+        std::vector<VoxelPlane> planes;
+        Mat3 worldFromIndex, indexFromWorld;
+        Vec3 eye;
+    };
+    Lines linesOf(const View& view) const {
+        const Geometry& g = m_volume->geometry();
+        return {view.camera, planesInVoxels(view.clipping, g), g.worldFromIndex(), g.indexFromWorld(),
+                g.voxelFromWorld(view.camera.eye)};
+    }
+
+    /// body(voxel) for each valid voxel that is not clipped away; slices on different threads.
     template <class Body>
-    void forEachVoxel(const Camera& camera, const JobControl& job, const Body& body) const {
+    void forEachVoxel(const View& view, const JobControl& job, const Body& body) const {
         const Geometry& geometry = m_volume->geometry();
-        camera.validate(geometry, "camera");
+        view.camera.validate(geometry, "camera");
+        view.clipping.validate();
+        const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, geometry);
         std::atomic<std::size_t> done = 0;
         parallelFor(slices(), [&](std::size_t k) {
             for (int j = 0; j < geometry.dims.y; ++j) {
                 job.throwIfStopped();
                 for (int i = 0; i < geometry.dims.x; ++i) {
                     const std::size_t at = m_intensity.index(i, j, static_cast<int>(k));
-                    if (!m_valid.empty() && !m_valid[at]) continue;
-                    body(Voxel{k, at, m_intensity[at], geometry.worldFromVoxel(Vec3(i, j, static_cast<double>(k)))});
+                    const Vec3 centre(i, j, static_cast<double>(k));
+                    if ((!m_valid.empty() && !m_valid[at]) || !keeps(planes, centre)) continue;
+                    body(Voxel{k, at, m_intensity[at], centre});
                 }
             }
             job.report(static_cast<double>(++done) / static_cast<double>(slices()));
@@ -139,33 +161,40 @@ private:
     }
 
     /// v = T·α of one voxel.
-    double visibility(const Camera& camera, const TfSampler& sampler, const Voxel& voxel) const {
+    double visibility(const Lines& lines, const TfSampler& sampler, const Voxel& voxel) const {
         const double alpha = sampler.opacity(voxel.intensity);
         if (alpha == 0) return 0;
         double depth = 0;
-        forEachSample(camera, voxel.centre, [&](double s, double steps) {
+        forEachSample(lines, voxel.centre, [&](double s, double steps) {
             depth += steps * opticalDepthOfOpacity(sampler.opacity(s));
             return depth <= kDark;
         });
         return alpha * std::exp(-depth);
     }
 
-    /// take(s, d) for each sample from d0/2 in front of `centre` to where the line toward the eye leaves the box, or
-    /// meets the eye: s the intensity, d the path that it stands for in units of d0. Until take() says false.
+    /// take(s, d) for each sample from d0/2 in front of `centre` to where the line toward the eye leaves the box or
+    /// meets a clip plane or the eye: s the intensity, d the path that it stands for in units of d0. Until take() says
+    /// false. What is left of the volume is convex, so that a line that has left it does not come back.
     template <class Take>
-    void forEachSample(const Camera& camera, const Vec3& centre, const Take& take) const {
-        const Geometry& g = m_volume->geometry();
-        const double d0 = g.d0();
-        const Ray ray{centre, camera.towardEye(centre)};
-        double end = intersectBox(ray, g.boxMin(), g.boxMax()).exit;
-        if (camera.projection == Projection::Perspective) end = std::min(end, glm::length(camera.eye - centre));
-        const double length = end - d0 / 2;
+    void forEachSample(const Lines& lines, const Vec3& centre, const Take& take) const {
+        const double d0 = m_volume->geometry().d0();
+        Ray ray{centre, {}}; // in voxel coordinates, t the length in the world
+        double end = std::numeric_limits<double>::infinity();
+        if (lines.camera.projection == Projection::Orthographic) {
+            ray.direction = lines.indexFromWorld * -lines.camera.forward();
+        } else {
+            end = glm::length(lines.worldFromIndex * (lines.eye - centre));
+            ray.direction = (lines.eye - centre) / end;
+        }
+        RayInterval inside = intersectBox(ray, m_volume->geometry());
+        cut(inside, ray, lines.planes);
+        const double length = std::min(end, inside.exit) - d0 / 2;
         if (!(length > 0)) return;
         const int steps = static_cast<int>(std::ceil(length / d0 * m_stepsPerD0));
         const double step = length / steps;
         for (int n = 0; n < steps; ++n) {
             const Vec3 p = ray.origin + ray.direction * (d0 / 2 + (n + 0.5) * step);
-            const Interpolated s = interpolate(m_intensity, m_valid, g.voxelFromWorld(p));
+            const Interpolated s = interpolate(m_intensity, m_valid, p);
             if (s.validShare > 0 && !take(s.value, s.validShare * step / d0)) return;
         }
     }

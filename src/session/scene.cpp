@@ -147,7 +147,9 @@ void prepareToShow(Scene& scene, const JobControl& job) {
     if (!scene.codes) scene.codes = sharedIntensityGrid(*scene.volume);
 }
 
-MeasureInput measureInput(const Scene& scene) { return {scene.volume, scene.tf, scene.camera, *scene.session.measure}; }
+MeasureInput measureInput(const Scene& scene) { 
+    return {scene.volume, scene.tf, {scene.camera, *scene.session.clipping}, *scene.session.measure};
+}
 
 PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent) {
     PictureInput input{scene.volume, scene.tf, scene.camera, {}};
@@ -160,9 +162,10 @@ PictureInput pictureInput(const Scene& scene, int width, int height, bool transp
     else
         s.background = display.background;
     s.stepInD0 = scene.session.measure->quality == Quality::High ? 0.25 : 0.5;
-    s.shading = display.shading;
-    s.clipLo = scene.session.clipping->lo;
-    s.clipHi = scene.session.clipping->hi;
+    s.backgroundTop = transparent ? std::nullopt : display.backgroundTop;
+    s.mode = display.mode;
+    s.light = display.light;
+    s.clipping = *scene.session.clipping;
     s.onlyFeature = scene.onlyFeature();
     return input;
 }

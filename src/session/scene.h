@@ -65,7 +65,7 @@ Session sessionOf(const VolumeSource& source);
 struct MeasureInput {
     std::shared_ptr<const Volume> volume;
     TransferFunction tf;
-    Camera camera;
+    View view;
     MeasureSettings settings;
     bool operator==(const MeasureInput&) const = default;
 };

@@ -10,6 +10,7 @@
 #include "optimize/optimizer.h"
 #include "render/engine_choice.h"
 #include "render/render_settings.h"
+#include "render/view.h"
 #include "saliency/saliency_field.h"
 #include "session/part.h"
 #include "tf/transfer_function.h"
@@ -58,16 +59,12 @@ struct FeatureGoal {
 /// Goals of all features that the session has seen: one that comes back (an undo, a preset) finds its own.
 using FeatureGoals = std::map<FeatureId, FeatureGoal>;
 
-/// What is cut away of the volume in pictures.
-struct Clipping {
-    Vec3 lo{0, 0, 0}, hi{1, 1, 1}; ///< the part of the box that is left, in fractions of it, lo < hi
-    bool operator==(const Clipping&) const = default;
-};
-
 /// How the picture looks. No figure depends on it.
 struct DisplaySettings {
-    bool shading = false; ///< light from the eye, by the gradient
+    RenderMode mode = RenderMode::Composite;
+    Light light;
     Rgb background{0, 0, 0};
+    std::optional<Rgb> backgroundTop; ///< at the top of the picture; empty: `background` everywhere
     FeatureId onlyFeature = 0; ///< draw the voxels of this feature alone; 0: all
     bool operator==(const DisplaySettings&) const = default;
 };
@@ -100,7 +97,7 @@ struct Session {
     int frame = 0;
     Part<FeatureGoals> goals;
     std::optional<Camera> camera; ///< empty: the home view of the volume
-    Part<Clipping> clipping;
+    Part<Clipping> clipping; ///< what is cut away, of pictures and of figures
     Part<DisplaySettings> display;
     Part<MeasureSettings> measure;
     Part<OptimizeOptions> optimize;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
@@ -345,17 +346,83 @@ Run toRun(const JsonValue& j) {
     return r;
 }
 
+/// A vector of the world.
+Vec3 toWorld(const JsonValue& j) { return toVec(j, -1e30, 1e30); }
+
+json fromLight(const Light& l) {
+    return {{"on", l.on},
+            {"ambient", l.ambient},
+            {"diffuse", l.diffuse},
+            {"specular", l.specular},
+            {"shininess", l.shininess},
+            {"direction", fromVec(l.direction)},
+            {"gradient_opacity", l.gradientOpacity},
+            {"occlusion", l.occlusion},
+            {"depth_cue", l.depthCue},
+            {"silhouettes", l.silhouettes}};
+}
+
+Light toLight(const JsonValue& j) {
+    j.requireObject();
+    Light l;
+    if (j.has("on")) l.on = j["on"].boolean();
+    const auto number = [&](const char* key, double& value, double lo, double hi) {
+        if (j.has(key)) value = j[key].number(lo, hi);
+    };
+    number("ambient", l.ambient, 0, 2);
+    number("diffuse", l.diffuse, 0, 2);
+    number("specular", l.specular, 0, 2);
+    number("shininess", l.shininess, 1, 1000);
+    if (j.has("direction")) l.direction = toWorld(j["direction"]);
+    if (!(glm::length(l.direction) > 0)) j["direction"].fail("the light needs a direction that is not 0");
+    number("gradient_opacity", l.gradientOpacity, 0, 1);
+    number("occlusion", l.occlusion, 0, 1);
+    number("depth_cue", l.depthCue, 0, 1);
+    number("silhouettes", l.silhouettes, 0, 1);
+    return l;
+}
+
+json fromDisplay(const DisplaySettings& d) {
+    json j{{"mode", name(d.mode)},
+           {"light", fromLight(d.light)},
+           {"background", jsonFromColor(d.background)},
+           {"only_feature", d.onlyFeature}};
+    if (d.backgroundTop) j["background_top"] = jsonFromColor(*d.backgroundTop);
+    return j;
+}
+
 DisplaySettings toDisplay(const JsonValue& j) {
     j.requireObject();
     DisplaySettings d;
-    if (j.has("shading")) d.shading = j["shading"].boolean();
+    if (j.has("shading")) d.light.on = j["shading"].boolean(); // as files without "light" have it
+    if (j.has("light")) d.light = toLight(j["light"]);
+    if (j.has("mode")) {
+        const std::optional<RenderMode> mode = renderModeFromName(j["mode"].text());
+        if (!mode) j["mode"].fail("it is none of composite, mip, minip, average, surface");
+        d.mode = *mode;
+    }
     if (j.has("background")) d.background = colorFromJson(j["background"]);
+    if (j.has("background_top")) d.backgroundTop = colorFromJson(j["background_top"]);
     if (j.has("only_feature")) d.onlyFeature = static_cast<FeatureId>(j["only_feature"].integer(0, INT64_MAX / 2));
     return d;
 }
 
+json fromClipping(const Clipping& c) {
+    json j{{"lo", fromVec(c.lo)}, {"hi", fromVec(c.hi)}};
+    for (const ClipPlane& plane : c.planes)
+        j["planes"].push_back({{"normal", fromVec(plane.normal)}, {"offset", plane.offset}});
+    return j;
+}
+
 Clipping toClipping(const JsonValue& j) {
-    const Clipping c{toVec(j["lo"], 0, 1), toVec(j["hi"], 0, 1)};
+    Clipping c{toVec(j["lo"], 0, 1), toVec(j["hi"], 0, 1), {}};
+    if (j.has("planes")) {
+        for (const JsonValue& plane : j["planes"].items()) {
+            c.planes.push_back({toWorld(plane["normal"]), plane["offset"].number(-1e30, 1e30)});
+            if (!(glm::length(c.planes.back().normal) > 0)) plane.fail("a clip plane needs a normal that is not 0");
+        }
+        if (c.planes.size() > kMostClipPlanes) j["planes"].fail("these are too many planes");
+    }
     for (int a = 0; a < 3; ++a)
         if (!(c.lo[a] < c.hi[a])) j.fail("a clip interval needs its lower end below its upper one");
     return c;
@@ -369,11 +436,8 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"variables", json::array()},
            {"frame", s.frame},
            {"features", fromGoals(*s.goals)},
-           {"clip", {{"lo", fromVec(s.clipping->lo)}, {"hi", fromVec(s.clipping->hi)}}},
-           {"display",
-            {{"shading", s.display->shading},
-             {"background", jsonFromColor(s.display->background)},
-             {"only_feature", s.display->onlyFeature}}},
+           {"clip", fromClipping(*s.clipping)},
+           {"display", fromDisplay(*s.display)},
            {"measure", fromMeasure(*s.measure)},
            {"optimize", fromOptimize(*s.optimize)},
            {"runs", json::array()}};

@@ -80,7 +80,7 @@ Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
             const bool all = !haveWeights(input); // half of the work, or none
             const WeightFields& w = weights(input, all ? job.part(0, 2) : job);
             const Measures measures =
-                pellucid::measure(e, input.camera, input.tf, w, input.settings.vws, all ? job.part(1, 2) : job);
+                pellucid::measure(e, input.view, input.tf, w, input.settings.vws, all ? job.part(1, 2) : job);
             m_seconds.visibility = measures.visibilitySeconds;
             return measures;
         },
@@ -95,7 +95,7 @@ std::vector<std::vector<double>> Workspace::jacobian(const MeasureInput& input, 
             const WeightFields& w = weights(input, all ? job.part(0, 2) : job);
             const auto start = Clock::now();
             auto matrix =
-                vwsJacobian(e.jacobian(input.camera, input.tf, &w, all ? job.part(1, 2) : job), input.settings.vws);
+                vwsJacobian(e.jacobian(input.view, input.tf, &w, all ? job.part(1, 2) : job), input.settings.vws);
             m_seconds.visibility = secondsSince(start);
             return matrix;
         },
@@ -110,7 +110,7 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             VisibilityEngine& e = engine(input);
             const WeightFields& w = weights(input, job);
             const auto start = Clock::now();
-            const VwsFunction function(e, input.camera, input.tf, w, input.settings.vws);
+            const VwsFunction function(e, input.view, input.tf, w, input.settings.vws);
             OptimizeResult result = pellucid::optimize(function, targets, options, job, watch);
             m_seconds.visibility = secondsSince(start);
             return result;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "base/check.h"
@@ -14,6 +15,7 @@ namespace pellucid {
 
 using Int3 = glm::ivec3;
 using Vec3 = glm::dvec3;
+using Mat3 = glm::dmat3; ///< columns first, as glm
 
 /// Number of voxels of a grid; 64 bit, since nx·ny·nz overflows an int long before memory ends.
 inline std::size_t voxelCount(const Int3& dims) {

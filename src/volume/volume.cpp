@@ -5,6 +5,10 @@
 #include <mutex>
 #include <type_traits>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -72,6 +76,46 @@ std::optional<SampleType> sampleTypeFromName(const std::string& name) {
     return {};
 }
 
+Mat3 Geometry::worldFromIndex() const {
+    return {directions[0] * spacing.x, directions[1] * spacing.y, directions[2] * spacing.z};
+}
+
+Mat3 Geometry::indexFromWorld() const { return glm::inverse(worldFromIndex()); }
+
+Vec3 Geometry::voxelFromWorld(const Vec3& world) const {
+    return glm::inverse(directions) * (world - origin) / spacing;
+}
+
+Vec3 Geometry::corner(int n) const {
+    const Vec3 lo = voxelBoxMin(), hi = voxelBoxMax();
+    return worldFromVoxel({(n & 1) != 0 ? hi.x : lo.x, (n & 2) != 0 ? hi.y : lo.y, (n & 4) != 0 ? hi.z : lo.z});
+}
+
+Vec3 Geometry::boxCenter() const { return worldFromVoxel(0.5 * (Vec3(dims) - 1.0)); }
+
+double Geometry::radius() const {
+    double longest = 0;
+    for (int n = 0; n < 4; ++n) longest = std::max(longest, glm::length(corner(n) - corner(7 - n)));
+    return 0.5 * longest;
+}
+
+Vec3 Geometry::boundsMin() const {
+    Vec3 lo = corner(0);
+    for (int n = 1; n < 8; ++n) lo = glm::min(lo, corner(n));
+    return lo;
+}
+
+Vec3 Geometry::boundsMax() const {
+    Vec3 hi = corner(0);
+    for (int n = 1; n < 8; ++n) hi = glm::max(hi, corner(n));
+    return hi;
+}
+
+bool Geometry::contains(const Vec3& world) const {
+    const Vec3 p = voxelFromWorld(world), lo = voxelBoxMin(), hi = voxelBoxMax();
+    return p.x > lo.x && p.y > lo.y && p.z > lo.z && p.x < hi.x && p.y < hi.y && p.z < hi.z;
+}
+
 Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> missing)
     : m_geometry(geometry), m_missing(missing) {
     const Int3 d = geometry.dims;
@@ -80,6 +124,11 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
         if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
             throw Error("spacing must be positive and finite, origin finite", "", "correct the header",
                         Remedy::GiveSpacing);
+    constexpr double kFlat = 1e-6; // of the volume that three axes of length 1 span
+    bool unit = true;
+    for (int a = 0; a < 3; ++a) unit = unit && std::abs(glm::length(geometry.directions[a]) - 1) < 1e-6;
+    if (!unit || !(std::abs(glm::determinant(geometry.directions)) > kFlat))
+        throw Error("the axes of the grid lie in one plane, or are no directions", "", "correct the header");
     const std::size_t count = std::visit([](const auto& v) { return v.size(); }, samples);
     if (count != voxelCount(d)) throw Error("number of samples and dimensions disagree", "", "");
     m_samples = std::make_shared<const Samples>(std::move(samples));

@@ -31,20 +31,38 @@ struct ValueRange {
     bool operator==(const ValueRange&) const = default;
 };
 
-/// Where the voxels lie: centre of voxel (i,j,k) at origin + (i·sx, j·sy, k·sz), world units.
+/// What the axes of the world are.
+enum class Frame {
+    File,   ///< the file's own; units as it gives them
+    Patient ///< millimetres to the patient's left, back and head (LPS)
+};
+
+/// Where the voxels lie (docs/method.md, "Volume and intensity"): centre of voxel v at origin + A·v, world units; A, of
+/// columns spacing[a]·directions[a], turns, mirrors, stretches and shears. The *box* of the volume, half a voxel beyond
+/// the outer centres on every side, is a parallelepiped in the world and [−½, dims − ½] in voxel coordinates: straight
+/// lines are straight in both, so that geometry is done in voxel coordinates and only lengths are the world's.
 struct Geometry {
     Int3 dims{0, 0, 0};
-    Vec3 spacing{1, 1, 1};
+    Vec3 spacing{1, 1, 1}; ///< lengths of A's columns
     Vec3 origin{0, 0, 0};
+    Mat3 directions{1}; ///< unit columns: where the axes i, j, k point in the world; need not be at right angles
+    Frame frame = Frame::File;
 
-    /// The box of the volume: half a voxel beyond the outer centres on every side, world units.
-    Vec3 boxMin() const { return origin - 0.5 * spacing; }
-    Vec3 boxMax() const { return origin + (Vec3(dims) - 0.5) * spacing; }
-    Vec3 boxCenter() const { return 0.5 * (boxMin() + boxMax()); }
+    Mat3 worldFromIndex() const; ///< A, for differences of voxel coordinates
+    Mat3 indexFromWorld() const; ///< its inverse
+    Vec3 worldFromVoxel(const Vec3& voxel) const { return origin + directions * (voxel * spacing); }
+    Vec3 voxelFromWorld(const Vec3& world) const;
+
+    Vec3 voxelBoxMin() const { return Vec3(-0.5); }          ///< of the box, voxel coordinates
+    Vec3 voxelBoxMax() const { return Vec3(dims) - 0.5; }    ///< of the box, voxel coordinates
+    Vec3 corner(int n) const;                                ///< of the box, world; bits 0, 1, 2 of n: far along i, j, k
+    Vec3 boxCenter() const;                                  ///< world
+    double radius() const;                                   ///< of the sphere around the box, world units
+    Vec3 boundsMin() const;                                  ///< of the box along the world's axes
+    Vec3 boundsMax() const;                                  ///< likewise
+    bool contains(const Vec3& world) const;                  ///< strictly inside the box
     /// The reference length: one unit of path for opacity, world units.
     double d0() const { return std::min(spacing.x, std::min(spacing.y, spacing.z)); }
-    Vec3 worldFromVoxel(const Vec3& voxel) const { return origin + voxel * spacing; }
-    Vec3 voxelFromWorld(const Vec3& world) const { return (world - origin) / spacing; }
 };
 
 struct IntensityGrid;
@@ -60,7 +78,7 @@ struct SharedCodes {
 /// "Volume and intensity").
 class Volume {
 public:
-    /// Throws Error where sizes and samples disagree, or a spacing is not positive and finite.
+    /// Throws Error where sizes and samples disagree, a spacing is not positive and finite, or the axes lie in a plane.
     Volume(const Geometry& geometry, Samples samples, std::optional<double> missing = {});
 
     const Geometry& geometry() const noexcept { return m_geometry; }
@@ -96,7 +114,7 @@ public:
     /// Free text for people, set by readers and generators.
     std::string title;  ///< file name or sample name
     std::string format; ///< "NRRD", "MetaImage", "NIfTI", "raw", "sample"
-    /// Remarks the user should see once, e.g. "rotation of the axes is ignored".
+    /// Remarks the user should see once, e.g. "the first of 25 time steps is shown".
     std::vector<std::string> notices;
 
 private:

@@ -80,7 +80,7 @@ TEST_CASE("gl and cpu draw the same picture", "[gl]") {
     const auto gl = makeGlRenderer(volume);
     const auto cpu = makeCpuRenderer(volume);
     const Geometry& g = volume->geometry();
-    const Vec3 half = 0.5 * (g.boxMax() - g.boxMin());
+    const Vec3 half = 0.5 * (g.boundsMax() - g.boundsMin());
     const std::vector<std::pair<std::string, Camera>> views{{"from afar", perspective(g, {40, -60, 20})},
                                                             {"from close", perspective(g, {2, -half.y - 1, -2})},
                                                             {"from a corner", perspective(g, half + Vec3(1, 2, 1))},
@@ -102,11 +102,11 @@ TEST_CASE("gl and cpu draw the same picture", "[gl]") {
                                        s.background = Rgb{0.2, 0.7, 1};
                                    },
                                    0.03, 1.0 / 255},
-                                  {"shading", [](RenderSettings& s) { s.shading = true; }, 0.1, 1.0 / 255},
+                                  {"shading", [](RenderSettings& s) { s.light.on = true; }, 0.1, 1.0 / 255},
                                   {"clipped",
                                    [](RenderSettings& s) {
-                                       s.clipLo = {0.1, 0.3, 0.2};
-                                       s.clipHi = {0.8, 1, 0.75};
+                                       s.clipping.lo = {0.1, 0.3, 0.2};
+                                       s.clipping.hi = {0.8, 1, 0.75};
                                    },
                                    0.03, 1.0 / 255},
                                   {"one feature", [](RenderSettings& s) { s.onlyFeature = 1; }, 0.03, 1.0 / 255}};
@@ -256,10 +256,10 @@ TEST_CASE("a volume drawn in bricks is the same picture", "[gl]") {
     } restore;
     const auto volume = waves({50, 37, 41}, {1, 0.8, 1.5});
     const Geometry& g = volume->geometry();
-    const Vec3 half = 0.5 * (g.boxMax() - g.boxMin());
+    const Vec3 half = 0.5 * (g.boundsMax() - g.boundsMin());
     RenderSettings settings = smallSettings();
     settings.stepInD0 = 1;
-    settings.clipLo = {0.05, 0.1, 0};
+    settings.clipping.lo = {0.05, 0.1, 0};
     const TransferFunction tf = tents(3, 0.3);
     gl::HeadlessContext context;
     context.run([&] {
@@ -281,7 +281,7 @@ TEST_CASE("a volume drawn in bricks is the same picture", "[gl]") {
              {perspective(g, {40, -60, 20}), perspective(g, {2, -half.y - 1, -2}), perspective(g, half + Vec3(1, 2, 1)),
               orthographic(g, {0, 0, -1}, 60), orthographic(g, {1, -0.7, 0.4}, 60)})
             for (const bool shading : {false, true}) {
-                settings.shading = shading;
+                settings.light.on = shading;
                 const auto expected = drawn(whole, camera);
                 CHECK(*std::max_element(expected.begin(), expected.end()) > 0.2f);
                 for (gl::SliceRaycaster* other : {&cut, &streamed}) {

@@ -79,7 +79,7 @@ TEST_CASE("sweep coordinates and the volume's own agree", "[sweep]") {
 }
 
 TEST_CASE("every voxel's ray lies between rays of its sweep", "[sweep]") {
-    const Vec3 c = kBox.boxCenter(), hi = kBox.boxMax();
+    const Vec3 c = kBox.boxCenter(), hi = kBox.boundsMax();
     for (const Vec3& eye :
          {c + Vec3(30, -50, 20), c + Vec3(0, -2.8, 0), hi + Vec3(0.5, 0.6, 0.4), Vec3(c.x, c.y, hi.z + 0.1)}) {
         Camera camera = perspective(kBox, eye - c);
@@ -190,9 +190,9 @@ TEST_CASE("rays of the picture are the camera's", "[slices]") {
         for (const auto& [x, y] : {std::pair(0.5, 0.5), std::pair(20.25, 3.0)}) {
             const Vec3 picture(2 * x / settings.width - 1, 1 - 2 * y / settings.height, 1);
             const Ray ray = pixelRay(camera, x, y, settings.width, settings.height);
-            const Vec3 size = kBox.boxMax() - kBox.boxMin();
+            const Vec3 size = kBox.boundsMax() - kBox.boundsMin();
             const Vec3 direction = glm::normalize(view.rayDirection(kBox) * picture * size);
-            const Vec3 point = kBox.boxMin() + view.rayOrigin(kBox) * picture * size;
+            const Vec3 point = kBox.boundsMin() + view.rayOrigin(kBox) * picture * size;
             CHECK(glm::length(direction - ray.direction) < 1e-9);
             // The point lies on the camera's ray.
             const Vec3 off = point - ray.origin;

@@ -39,7 +39,7 @@ Deviation deviation(const Volume& volume, const TransferFunction& tf, const Grid
 }
 
 std::vector<std::pair<std::string, Camera>> everyKindOfView(const Geometry& g) {
-    const Vec3 half = 0.5 * (g.boxMax() - g.boxMin());
+    const Vec3 half = 0.5 * (g.boundsMax() - g.boundsMin());
     return {{"along an axis", orthographic(g, {0, 0, -1}, 40)},
             {"at 45 degrees", orthographic(g, {1, 1, 0}, 40)},
             {"along a diagonal", orthographic(g, {1, -1, 1}, 40)},

@@ -71,7 +71,7 @@ public:
         case 6:
             return store.edit(name, {}, [&](Session& s) {
                 s.display.edit([&](DisplaySettings& d) {
-                    d.shading = !d.shading;
+                    d.light.on = !d.light.on;
                     d.background = {number(), number(), number()};
                 });
             });
@@ -223,7 +223,7 @@ TEST_CASE("the display panel changes the picture and no figure", "[display]") {
     const QImage plain = w.picture();
     const Measures measures = *w.document().measures();
     QTest::mouseClick(&w.child<QCheckBox>("shadingCheck"), Qt::LeftButton, {}, {6, 8});
-    CHECK(w.bench().store().session().display->shading);
+    CHECK(w.bench().store().session().display->light.on);
     const QImage lit = w.picture();
     CHECK(lit != plain);
     w.child<QDoubleSpinBox>("clipXHi").setValue(50);

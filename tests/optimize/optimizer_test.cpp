@@ -17,7 +17,7 @@ public:
         : m_volume(slab({2, 2, 2}, 0.5)), m_gains(std::move(gains)) {}
     std::string name() const override { return "proportional"; }
     const Volume& volume() const override { return *m_volume; }
-    std::vector<FeatureSums> sums(const Camera&, std::span<const TransferFunction> tfs, const WeightFields*,
+    std::vector<FeatureSums> sums(const View&, std::span<const TransferFunction> tfs, const WeightFields*,
                                   const JobControl& job) override {
         job.throwIfStopped();
         ++calls;
@@ -33,9 +33,9 @@ public:
         }
         return all;
     }
-    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+    SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
-        SumsJacobian result{sums(camera, {&tf, 1}, weights, job)[0], {}};
+        SumsJacobian result{sums(view, {&tf, 1}, weights, job)[0], {}};
         for (std::size_t j = 0; j < m_gains.size(); ++j) {
             FeatureSums d;
             d.visibility.assign(m_gains.size(), 0.0);
@@ -46,7 +46,7 @@ public:
         }
         return result;
     }
-    VisibilityField field(const Camera&, const TransferFunction&, const JobControl&) override {
+    VisibilityField field(const View&, const TransferFunction&, const JobControl&) override {
         return {Grid<float>(m_volume->dims())};
     }
 

@@ -20,8 +20,8 @@ void checkEqual(const Vec3& a, const Vec3& b) {
 
 TEST_CASE("the box reaches half a voxel beyond the outer centres", "[camera]") {
     const Geometry g = geometryOf({4, 2, 3}, {1, 2, 0.5}, {10, 0, -1});
-    checkEqual(g.boxMin(), {9.5, -1, -1.25});
-    checkEqual(g.boxMax(), {13.5, 3, 0.25});
+    checkEqual(g.boundsMin(), {9.5, -1, -1.25});
+    checkEqual(g.boundsMax(), {13.5, 3, 0.25});
     CHECK(g.d0() == 0.5);
     checkEqual(g.voxelFromWorld(g.worldFromVoxel({1, 2, 3})), {1, 2, 3});
 }

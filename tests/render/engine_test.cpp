@@ -45,7 +45,7 @@ Camera randomCamera(std::mt19937& random, const Geometry& g, int kind) {
     if (kind == 2)
         return cameraFromView(g, 45 * std::round(az / 45), 45 * std::round(el / 45), 1, Projection::Orthographic);
     Camera camera = cameraFromView(g, az, el, 1, Projection::Perspective);
-    const RayInterval t = intersectBox({camera.eye, camera.forward()}, g.boxMin(), g.boxMax());
+    const RayInterval t = intersectBox({camera.eye, camera.forward()}, g.boundsMin(), g.boundsMax());
     camera.eye += camera.forward() * (t.enter * (0.97 - 0.3 * unit(random)));
     return camera;
 }
@@ -263,7 +263,7 @@ TEST_CASE("progress grows to 1, however many sweeps there are", "[visibility][cp
     std::mt19937 random(9);
     const auto volume = roughVolume(random, {20, 20, 20}, Vec3(1));
     Camera camera = cameraFromView(volume->geometry(), 40, 30, 1, Projection::Perspective);
-    camera.eye = volume->geometry().boxMax() + Vec3(1, 1, 1); // so near that several axes share the voxels
+    camera.eye = volume->geometry().boundsMax() + Vec3(1, 1, 1); // so near that several axes share the voxels
     const std::vector<TransferFunction> tfs(17, tents(3));
     const TransferFunction many = tents(20);
     const auto engine = makeCpuEngine(volume);

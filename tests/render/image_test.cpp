@@ -55,7 +55,7 @@ TEST_CASE("clipping shortens the path", "[image]") {
     Camera camera = lookingAlong(volume->geometry(), {0, 1, 0});
     camera.height = 4;
     RenderSettings settings = small();
-    settings.clipHi.y = 0.5;
+    settings.clipping.hi.y = 0.5;
     CHECK(makeCpuRenderer(volume)->render(camera, homogeneous(0.1), settings).pixel(15, 10)[3] ==
           Approx(1 - std::pow(0.9, 5)).margin(1e-3));
 }
@@ -96,7 +96,7 @@ TEST_CASE("shading changes colours, never alpha", "[image]") {
     const Camera camera = cameraFromView(volume->geometry(), 30, 20, 1, Projection::Perspective);
     RenderSettings settings = small();
     const Image flat = makeCpuRenderer(volume)->render(camera, tents(2), settings);
-    settings.shading = true;
+    settings.light.on = true;
     const Image lit = makeCpuRenderer(volume)->render(camera, tents(2), settings);
     double difference = 0;
     for (std::size_t i = 0; i < flat.rgba.size(); ++i) {
@@ -176,5 +176,5 @@ TEST_CASE("impossible settings are refused", "[image]") {
     refused([](RenderSettings& s) { s.width = 0; });
     refused([](RenderSettings& s) { s.height = 20000; });
     refused([](RenderSettings& s) { s.stepInD0 = 0; });
-    refused([](RenderSettings& s) { s.clipLo.x = 1; });
+    refused([](RenderSettings& s) { s.clipping.lo.x = 1; });
 }

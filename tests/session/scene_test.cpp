@@ -271,11 +271,18 @@ TEST_CASE("a picture is made of what the session shows", "[session]") {
     SceneInputs in = files.inputs();
     in.tf = "tents:3";
     Scene scene = openScene(in);
-    scene.session.display = DisplaySettings{true, {0.1, 0.2, 0.3}, scene.tf.features[1].id};
-    scene.session.clipping = Clipping{{0, 0.25, 0}, {1, 1, 0.5}};
+    scene.session.display = DisplaySettings{
+        RenderMode::Mip, Light{.on = true, .occlusion = 0.5}, {0.1, 0.2, 0.3}, Rgb{1, 1, 1}, scene.tf.features[1].id};
+    scene.session.clipping = Clipping{{0, 0.25, 0}, {1, 1, 0.5}, {{{1, 2, 3}, 4}}};
     scene.session.measure.edit([](MeasureSettings& m) { m.quality = Quality::High; });
     PictureInput picture = pictureInput(scene, 40, 30);
-    CHECK(picture.settings == RenderSettings{40, 30, Rgb{0.1, 0.2, 0.3}, 0.25, true, {0, 0.25, 0}, {1, 1, 0.5}, 1});
+    RenderSettings expected{.width = 40, .height = 30, .background = Rgb{0.1, 0.2, 0.3}, .stepInD0 = 0.25};
+    expected.backgroundTop = Rgb{1, 1, 1};
+    expected.mode = RenderMode::Mip;
+    expected.light = Light{.on = true, .occlusion = 0.5};
+    expected.clipping = *scene.session.clipping;
+    expected.onlyFeature = 1;
+    CHECK(picture.settings == expected);
     CHECK(picture.volume == scene.volume);
     CHECK(picture.tf == scene.tf);
     CHECK(picture.camera == scene.camera);
@@ -286,5 +293,6 @@ TEST_CASE("a picture is made of what the session shows", "[session]") {
     scene = resolve(fewer, scene);
     CHECK(pictureInput(scene, 40, 30).settings.onlyFeature == -1);
     CHECK(measureInput(scene).settings == *scene.session.measure);
+    CHECK(measureInput(scene).view.clipping == *scene.session.clipping); // figures are of what is left
     CHECK(pictureInput(resolve({}, {}), 4, 3).volume == nullptr);
 }

@@ -193,7 +193,7 @@ TEST_CASE("a part that an edit leaves as it was stays the same part", "[session]
     Session b = a;
     CHECK(b == a);
     CHECK(b.variables.isSame(a.variables));
-    b.display.edit([](DisplaySettings& d) { d.shading = false; });
+    b.display.edit([](DisplaySettings& d) { d.light.on = false; });
     CHECK(b.display.isSame(a.display));
     b.measure.set(MeasureSettings{});
     CHECK(b.measure.isSame(a.measure));
@@ -201,11 +201,11 @@ TEST_CASE("a part that an edit leaves as it was stays the same part", "[session]
     CHECK(b.variables.isSame(a.variables));
     CHECK(b.goals.isSame(a.goals));
 
-    b.display.edit([](DisplaySettings& d) { d.shading = true; });
+    b.display.edit([](DisplaySettings& d) { d.light.on = true; });
     CHECK_FALSE(b.display.isSame(a.display));
     CHECK_FALSE(b == a);
-    CHECK_FALSE(a.display->shading); // the copy has its own
-    b.display.edit([](DisplaySettings& d) { d.shading = false; });
+    CHECK_FALSE(a.display->light.on); // the copy has its own
+    b.display.edit([](DisplaySettings& d) { d.light.on = false; });
     CHECK(b == a); // equal again, though not the same
     CHECK_FALSE(b.display.isSame(a.display));
     CHECK(Part<Clipping>().isSame(Part<Clipping>()));

@@ -51,7 +51,7 @@ std::vector<MeasureInput> variations() {
         i.tf.features[1].color = {0.2, 0.9, 0.4};
     });
     add([](MeasureInput& i) { i.tf = tents(5); });
-    add([](MeasureInput& i) { i.camera = cameraFromView(i.volume->geometry(), 80, -10, 1, Projection::Orthographic); });
+    add([](MeasureInput& i) { i.view = cameraFromView(i.volume->geometry(), 80, -10, 1, Projection::Orthographic); });
     add([](MeasureInput& i) { i.settings.quality = Quality::High; });
     add([](MeasureInput& i) { i.settings.engine = EngineChoice::Reference; });
     add([](MeasureInput& i) { i.settings.saliency.sigma = 3; });
@@ -98,7 +98,7 @@ TEST_CASE("derivatives and searches do not depend on it either", "[session][work
     const auto engine = makeCpuEngine(inputs[1].volume);
     const WeightFields weights = saliencyFields(*inputs[1].volume, inputs[1].tf);
     const OptimizeResult c =
-        optimize(VwsFunction(*engine, inputs[1].camera, inputs[1].tf, weights), {1, 2, 3}, options);
+        optimize(VwsFunction(*engine, inputs[1].view, inputs[1].tf, weights), {1, 2, 3}, options);
     CHECK(a.history == c.history);
 }
 
@@ -136,8 +136,8 @@ TEST_CASE("progress goes from the beginning to the end once", "[session][workspa
 TEST_CASE("an engine that has failed is not kept", "[session][workspace]") {
     const MeasureInput good = variations()[0];
     MeasureInput inside = good;
-    inside.camera.projection = Projection::Perspective;
-    inside.camera.eye = good.volume->geometry().boxCenter() + Vec3(0.5, 0, 0);
+    inside.view.camera.projection = Projection::Perspective;
+    inside.view.camera.eye = good.volume->geometry().boxCenter() + Vec3(0.5, 0, 0);
     const auto holders = [&, alone = good.volume.use_count()] { return good.volume.use_count() - alone; };
     Workspace workspace;
     workspace.measure(good);

@@ -17,10 +17,10 @@ struct Disagreement {
 };
 
 /// `engine` against `expected`, the reference's field of the engine's own volume.
-inline Disagreement compareWithField(const Grid<float>& expected, VisibilityEngine& engine, const Camera& camera,
+inline Disagreement compareWithField(const Grid<float>& expected, VisibilityEngine& engine, const View& view,
                                      const TransferFunction& tf, const WeightFields& weights) {
     Disagreement d;
-    const Grid<float> found = engine.field(camera, tf).values;
+    const Grid<float> found = engine.field(view, tf).values;
     double largest = 0, squares = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         largest = std::max(largest, static_cast<double>(expected[i]));
@@ -28,7 +28,7 @@ inline Disagreement compareWithField(const Grid<float>& expected, VisibilityEngi
     }
     if (largest > 0) d.visibilityRms = std::sqrt(squares / static_cast<double>(expected.size())) / largest;
     const auto a = featureMeasures(sumsOfField(engine.volume(), tf.features, expected, &weights));
-    const auto b = featureMeasures(engine.sums(camera, {&tf, 1}, &weights)[0]);
+    const auto b = featureMeasures(engine.sums(view, {&tf, 1}, &weights)[0]);
     for (std::size_t f = 0; f < a.size(); ++f) {
         d.visibility = std::max(d.visibility, std::abs(a[f].visibility - b[f].visibility));
         d.vws = std::max(d.vws, std::abs(a[f].vws - b[f].vws));
@@ -36,9 +36,9 @@ inline Disagreement compareWithField(const Grid<float>& expected, VisibilityEngi
     return d;
 }
 
-inline Disagreement compare(VisibilityEngine& reference, VisibilityEngine& engine, const Camera& camera,
+inline Disagreement compare(VisibilityEngine& reference, VisibilityEngine& engine, const View& view,
                             const TransferFunction& tf, const WeightFields& weights) {
-    return compareWithField(reference.field(camera, tf).values, engine, camera, tf, weights);
+    return compareWithField(reference.field(view, tf).values, engine, view, tf, weights);
 }
 
 /// The upper median: of `values`, which are not empty.

@@ -36,7 +36,7 @@ inline FigureJacobians analyticJacobians(const SumsJacobian& jacobian, const Vws
 /// have δ < 1e-6. Those with δ < 1e-7 are at the cap of α (docs/method.md, "Derivatives"), where τ no longer moves: a
 /// step below 1e-7 stays on the cap too, and so sees the function that is differentiated. Rounding of the sums, about
 /// 1e-15, divided by the step leaves 1e-6.
-inline FigureJacobians differencesOfSums(VisibilityEngine& engine, const Camera& camera, const TransferFunction& tf,
+inline FigureJacobians differencesOfSums(VisibilityEngine& engine, const View& view, const TransferFunction& tf,
                                          const WeightFields& weights, const VwsOptions& options = {}) {
     const TransferFunction shapes = withFullPeaks(tf);
     const std::vector<double> x = featureOpacities(tf), raisable = featureOpacities(shapes);
@@ -48,11 +48,11 @@ inline FigureJacobians differencesOfSums(VisibilityEngine& engine, const Camera&
         std::vector<double> moved = x;
         moved[j] = value;
         const TransferFunction there = withFeatureOpacities(shapes, moved);
-        const FeatureSums sums = engine.sums(camera, {&there, 1}, &weights)[0];
+        const FeatureSums sums = engine.sums(view, {&there, 1}, &weights)[0];
         return Figures{vwsOf(sums, options), sums.visibility};
     };
     const Figures here = at(0, x[0]);
-    const double all = engine.sums(camera, {&tf, 1}, &weights)[0].allVisibility;
+    const double all = engine.sums(view, {&tf, 1}, &weights)[0].allVisibility;
     FigureJacobians result{Jacobian(n, std::vector<double>(n, 0.0)), Jacobian(n, std::vector<double>(n, 0.0))};
     for (std::size_t j = 0; j < n; ++j) {
         if (raisable[j] == 0) continue; // no shape, no derivative

@@ -358,7 +358,7 @@ TransferFunction randomTf(const std::string& kind, Random& random, const Volume&
 
 Camera randomCamera(const std::string& kind, Random& random, const Geometry& g) {
     Camera camera;
-    const Vec3 lo = g.boxMin(), hi = g.boxMax();
+    const Vec3 lo = g.boundsMin(), hi = g.boundsMax();
     const double radius = 0.5 * glm::length(hi - lo);
     camera.projection = kind.starts_with("ortho") ? Projection::Orthographic : Projection::Perspective;
     camera.center = g.boxCenter();

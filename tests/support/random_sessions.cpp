@@ -193,10 +193,23 @@ Session randomSession(std::uint32_t number) {
     s.frame = random.chance(0.6) ? 0 : random.below(60);
     s.goals = randomGoals(random, features);
     if (random.chance(0.5)) s.camera = randomCamera(random);
-    if (random.chance(0.5)) s.clipping = Clipping{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1)};
+    if (random.chance(0.5)) {
+        Clipping clipping{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1), {}};
+        for (int i = random.below(3); i > 0; --i)
+            clipping.planes.push_back({oddVector(random, 0.1, 1), oddVector(random, -100, 100).x});
+        s.clipping = clipping;
+    }
     if (random.chance(0.7)) {
         const auto only = random.chance(0.3) ? static_cast<FeatureId>(1 + random.below(3)) : FeatureId{0};
-        s.display = DisplaySettings{random.chance(0.5), randomColor(random), only};
+        const Vec3 parts = oddVector(random, 0, 1);
+        DisplaySettings d;
+        d.mode = static_cast<RenderMode>(random.below(5));
+        d.light = {random.chance(0.5), parts.x, parts.y, parts.z, 1 + 99 * parts.x, oddVector(random, -1, 1),
+                   parts.y, parts.z, parts.x, parts.y};
+        d.background = randomColor(random);
+        if (random.chance(0.3)) d.backgroundTop = randomColor(random);
+        d.onlyFeature = only;
+        s.display = d;
     }
     if (random.chance(0.7)) s.measure = randomMeasure(random);
     if (random.chance(0.7)) s.optimize = randomOptimize(random);

@@ -65,8 +65,8 @@ TEST_CASE("geometry and samples must agree", "[volume]") {
 
 TEST_CASE("the box reaches half a voxel beyond the outer centres", "[volume]") {
     const Geometry g{{4, 3, 2}, {1, 2, 4}, {10, 20, 30}};
-    CHECK(g.boxMin() == Vec3(9.5, 19, 28));
-    CHECK(g.boxMax() == Vec3(13.5, 25, 36)); // 10 + 3.5·1, 20 + 2.5·2, 30 + 1.5·4
+    CHECK(g.boundsMin() == Vec3(9.5, 19, 28));
+    CHECK(g.boundsMax() == Vec3(13.5, 25, 36)); // 10 + 3.5·1, 20 + 2.5·2, 30 + 1.5·4
     CHECK(g.boxCenter() == Vec3(11.5, 22, 32));
     CHECK(g.d0() == 1.0);
     CHECK(g.worldFromVoxel({1, 2, 1}) == Vec3(11, 24, 34));

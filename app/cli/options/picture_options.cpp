@@ -33,7 +33,7 @@ void PictureOptions::add(CLI::App& app) {
 void PictureOptions::applyTo(SceneInputs& inputs) const {
     inputs.session.display.edit([this](DisplaySettings& d) {
         d.background = background.value_or(d.background);
-        d.shading = d.shading || shading;
+        d.light.on = d.light.on || shading;
     });
     if (clips.empty()) return;
     Clipping left;

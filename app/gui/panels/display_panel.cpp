@@ -180,7 +180,7 @@ void DisplayPanel::follow() {
     setEnabled(ready);
     if (!m_bench.store().hasVolume()) return;
     m_showing = true;
-    m_shading->setChecked(scene.session.display->shading);
+    m_shading->setChecked(scene.session.display->light.on);
     QPixmap swatch(22, 14);
     swatch.fill(colorFromRgb(scene.session.display->background));
     m_background->setIcon(swatch);
@@ -236,11 +236,11 @@ PanelInfo displayPanel() {
                                          [&store] {
                                              store.edit(QObject::tr("Shading"), {}, [](Session& session) {
                                                  session.display.edit(
-                                                     [](DisplaySettings& d) { d.shading = !d.shading; });
+                                                     [](DisplaySettings& d) { d.light.on = !d.light.on; });
                                              });
                                          },
                                      .enabled = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); },
-                                     .checked = [&store] { return store.session().display->shading; },
+                                     .checked = [&store] { return store.session().display->light.on; },
                                      .separatorBefore = true});
                 QObject::connect(&store, &SessionStore::changed, &bench.actions(),
                                  [&bench](const Scene& before, const Scene& after) {

@@ -224,28 +224,28 @@ public:
     std::string name() const override { return "cpu"; }
     const Volume& volume() const override { return *m_volume; }
 
-    std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
                                   const WeightFields* weights, const JobControl& job) override {
         std::vector<FeatureSums> all;
         for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features == tfs[0].features);
         const std::size_t batches = (tfs.size() + kSweepLanes - 1) / kSweepLanes;
         for (std::size_t first = 0; first < tfs.size(); first += kSweepLanes) {
             const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
-            const Sums sums = sweep(camera, SweepTables(batch, m_codeSpace), weights, nullptr,
+            const Sums sums = sweep(view.camera, SweepTables(batch, m_codeSpace), weights, nullptr,
                                     job.part(first / kSweepLanes, batches));
             for (std::size_t lane = 0; lane < batch.size(); ++lane) all.push_back(sums.ofLane(lane));
         }
         return all;
     }
 
-    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+    SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
         SumsJacobian result;
         constexpr std::size_t kAtOnce = kJacobianLanes - 1;
         const std::size_t sweeps = std::max<std::size_t>(1, (tf.features.size() + kAtOnce - 1) / kAtOnce);
         for (std::size_t first = 0; first < sweeps * kAtOnce; first += kAtOnce) {
             const SweepTables tables(tf, static_cast<int>(first), m_codeSpace);
-            const Sums sums = sweep(camera, tables, weights, nullptr, job.part(first / kAtOnce, sweeps));
+            const Sums sums = sweep(view.camera, tables, weights, nullptr, job.part(first / kAtOnce, sweeps));
             if (first == 0) result.sums = sums.ofLane(0);
             for (std::size_t lane = 1; lane < kJacobianLanes && first + lane <= tf.features.size(); ++lane)
                 result.byOpacity.push_back(sums.ofLane(lane));
@@ -253,9 +253,9 @@ public:
         return result;
     }
 
-    VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override {
+    VisibilityField field(const View& view, const TransferFunction& tf, const JobControl& job) override {
         VisibilityField field{Grid<float>(m_volume->dims())};
-        sweep(camera, SweepTables({&tf, 1}, m_codeSpace), nullptr, &field.values, job);
+        sweep(view.camera, SweepTables({&tf, 1}, m_codeSpace), nullptr, &field.values, job);
         return field;
     }
 
@@ -320,7 +320,7 @@ private:
     static Vec3 permuted(const Vec3& p, const Axes& x) { return {p[x.u], p[x.v], p[x.w]}; }
 
     /// One sweep of those that together visit every voxel once.
-    struct View {
+    struct Pass {
         Axes axes;
         bool pyramid; ///< visits only the voxels that the eye sees along this axis rather than another
     };
@@ -329,7 +329,7 @@ private:
     static constexpr double kSteepest = 1.25;
 
     /// Axes are compared in voxels, so that rays cross about one voxel per slice however unequal the spacing is.
-    std::vector<View> viewsOf(const Camera& camera) const {
+    std::vector<Pass> passesOf(const Camera& camera) const {
         const auto axesOf = [](int w, bool flipped) { return Axes{w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped}; };
         const Geometry& g = m_volume->geometry();
         if (camera.projection == Projection::Orthographic) {
@@ -353,16 +353,16 @@ private:
             best = w;
         }
         if (best >= 0) return {{axesOf(best, eye[best] > 0), false}};
-        std::vector<View> views;
+        std::vector<Pass> passes;
         for (int w = 0; w < 3; ++w)
             for (const bool flipped : {false, true}) {
                 const double away = flipped ? eye[w] : last[w] - eye[w]; // of the farthest slice
                 bool any = away > 0;
                 for (int a = 0; a < 3; ++a)
                     if (a != w) any = any && eye[a] + away >= 0 && eye[a] - away <= last[a];
-                if (any) views.push_back({axesOf(w, flipped), true});
+                if (any) passes.push_back({axesOf(w, flipped), true});
             }
-        return views;
+        return passes;
     }
 
     /// Rounded, so that differences from voxels are exact and each voxel is on one side of a pyramid's face.
@@ -372,8 +372,8 @@ private:
 
     bool isSmall() const { return m_volume->size() < kSmallVolume; }
 
-    void setRays(SweepInput& in, const Camera& camera, const View& view) const {
-        const Axes& axes = view.axes;
+    void setRays(SweepInput& in, const Camera& camera, const Pass& pass) const {
+        const Axes& axes = pass.axes;
         const Geometry& g = m_volume->geometry();
         const Vec3 h = permuted(g.spacing, axes) / g.d0();
         in.hu = h.x, in.hv = h.y, in.hw = h.z;
@@ -400,7 +400,7 @@ private:
         in.eyeU = eye.x;
         in.eyeV = eye.y;
         in.eyeW = axes.flipped ? in.nw - 1 - eye.z : eye.z;
-        in.pyramid = view.pyramid;
+        in.pyramid = pass.pyramid;
         in.ownsTieU = axes.w < axes.u;
         in.ownsTieV = axes.w < axes.v;
     }
@@ -465,9 +465,9 @@ private:
         }
         const std::vector<std::uint8_t> opaque = tables.opaqueBlocks(m_ranges);
         Sums sums;
-        const std::vector<View> views = viewsOf(camera);
-        for (std::size_t n = 0; n < views.size(); ++n) {
-            Sums part = sweep(camera, views[n], tables, opaque, weights, field, job.part(n, views.size()));
+        const std::vector<Pass> passes = passesOf(camera);
+        for (std::size_t n = 0; n < passes.size(); ++n) {
+            Sums part = sweep(camera, passes[n], tables, opaque, weights, field, job.part(n, passes.size()));
             if (n == 0) {
                 sums = std::move(part);
                 continue;
@@ -477,11 +477,11 @@ private:
         return sums;
     }
 
-    Sums sweep(const Camera& camera, const View& view, const SweepTables& tables,
+    Sums sweep(const Camera& camera, const Pass& pass, const SweepTables& tables,
                const std::vector<std::uint8_t>& opaque, const WeightFields* weights, Grid<float>* field,
                const JobControl& job) {
         const Geometry& g = m_volume->geometry();
-        const Axes& axes = view.axes;
+        const Axes& axes = pass.axes;
         SweepInput in;
         tables.giveTo(in);
         in.nu = g.dims[axes.u], in.nv = g.dims[axes.v], in.nw = g.dims[axes.w];
@@ -507,7 +507,7 @@ private:
             for (int a = 0; a < 2; ++a) units[asSize(a + 1)] = weights->scale(a);
         }
         if (field) in.field = field->data() + start;
-        setRays(in, camera, view);
+        setRays(in, camera, pass);
         in.exhaustedDepth = static_cast<float>(m_quality == Quality::High || isSmall() ? kExhaustedExact
                                                : in.mode == SweepMode::Jacobian        ? kExhaustedDerivative
                                                                                        : kExhausted);

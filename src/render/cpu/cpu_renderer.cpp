@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
 #include "base/parallel.h"
@@ -90,8 +91,9 @@ private:
 
     Light trace(const Ray& ray, const Camera& camera, const SegmentTable& table, const RenderSettings& settings) const {
         const Geometry& g = m_volume->geometry();
-        const Vec3 lo = g.boxMin(), size = g.boxMax() - lo;
-        RayInterval t = intersectBox(ray, lo + size * settings.clipLo, lo + size * settings.clipHi);
+        const Ray voxelRay = inVoxels(ray, g);
+        RayInterval t = intersectBox(voxelRay, g);
+        cut(t, voxelRay, planesInVoxels(settings.clipping, g));
         if (camera.projection == Projection::Perspective) t.enter = std::max(t.enter, 0.0);
         Light light;
         if (t.empty()) return light;
@@ -99,7 +101,7 @@ private:
         const double step = (t.exit - t.enter) / steps;
         const double stepInD0 = step / g.d0();
         const auto voxelAt = [&](double n) {
-            return g.voxelFromWorld(ray.origin + ray.direction * (t.enter + n * step));
+            return voxelRay.origin + voxelRay.direction * (t.enter + n * step);
         };
         Interpolated from = interpolate(m_grid.codes, m_grid.valid, voxelAt(0));
         for (int n = 1; n <= steps && light.transmittance > kDark; ++n) {
@@ -113,7 +115,7 @@ private:
             if (mean.w <= 0) continue;
             const double alpha = -std::expm1(-mean.w * share * stepInD0);
             Vec3 color = Vec3(mean) / mean.w;
-            if (settings.shading) color = shaded(color, voxelAt(n - 0.5), ray.direction);
+            if (settings.light.on) color = shaded(color, voxelAt(n - 0.5), ray.direction);
             light.rgb += light.transmittance * alpha * color;
             light.transmittance *= 1 - alpha;
         }
@@ -127,8 +129,9 @@ private:
             step[a] = 1;
             const Interpolated ahead = interpolate(m_grid.codes, m_grid.valid, at + step),
                                behind = interpolate(m_grid.codes, m_grid.valid, at - step);
-            gradient[a] = (ahead.value - behind.value) / m_volume->geometry().spacing[a];
+            gradient[a] = (ahead.value - behind.value) / 2;
         }
+        gradient = glm::transpose(m_volume->geometry().indexFromWorld()) * gradient;
         const double length = glm::length(gradient);
         if (length * m_volume->geometry().d0() < 1e-6 * m_grid.maxCode)
             return color; // inside a homogeneous region there is no surface to light

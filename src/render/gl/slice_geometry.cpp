@@ -24,8 +24,8 @@ struct Box {
 };
 
 Box clippedBox(const Geometry& g, const RenderSettings& settings) {
-    const Vec3 size = g.boxMax() - g.boxMin();
-    return {g.boxMin() + size * settings.clipLo, g.boxMin() + size * settings.clipHi};
+    const Vec3 size = g.boundsMax() - g.boundsMin();
+    return {g.boundsMin() + size * settings.clipping.lo, g.boundsMin() + size * settings.clipping.hi};
 }
 
 /// Andrew's monotone chain, counter-clockwise; fewer than three corners where the points lie on a line.
@@ -90,15 +90,15 @@ glm::dvec2 SliceView::pictureFromWorld(const Vec3& world) const {
 
 glm::dmat3 SliceView::rayOrigin(const Geometry& g) const {
     const double scale = perspective ? -eyeDepth : 1.0; // depth 0 is that far from the eye
-    const Vec3 size = g.boxMax() - g.boxMin();
+    const Vec3 size = g.boundsMax() - g.boundsMin();
     // The view's axis pierces the plane of depth 0 here.
     const Vec3 axis = camera.eye - eyeDepth * camera.forward();
     return {camera.right() * (halfExtent.x * scale) / size, camera.trueUp() * (halfExtent.y * scale) / size,
-            (axis - g.boxMin()) / size};
+            (axis - g.boundsMin()) / size};
 }
 
 glm::dmat3 SliceView::rayDirection(const Geometry& g) const {
-    const Vec3 size = g.boxMax() - g.boxMin();
+    const Vec3 size = g.boundsMax() - g.boundsMin();
     const double spread = perspective ? 1.0 : 0.0;
     return {camera.right() * (halfExtent.x * spread) / size, camera.trueUp() * (halfExtent.y * spread) / size,
             camera.forward() / size};
@@ -125,7 +125,7 @@ std::vector<SlabVertex> slabTriangles(const SliceView& view, const Geometry& geo
     const int count = std::max(1, static_cast<int>(slabs));
     const double thickness = (farthest - nearest) / count;
 
-    const Vec3 origin = geometry.boxMin(), size = geometry.boxMax() - origin;
+    const Vec3 origin = geometry.boundsMin(), size = geometry.boundsMax() - origin;
     box = {glm::max(box.lo, origin + size * partLo), glm::min(box.hi, origin + size * partHi)};
     if (!glm::all(glm::lessThan(box.lo, box.hi))) return {};
     depth = depthsOf(box);

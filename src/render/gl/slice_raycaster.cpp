@@ -211,7 +211,7 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
     const glm::vec2 tileLow(2.0f * static_cast<float>(tile.x) / picture.x - 1.0f,
                             1.0f - 2.0f * static_cast<float>(tile.y + tile.height) / picture.y);
 
-    const SliceProgram& p = program(settings.shading);
+    const SliceProgram& p = program(settings.light.on);
     p.use();
     p.setEntriesPerCode(static_cast<float>(65535.0 / bricks->maxCode() * (kTableSize - 1)));
     p.setIntegralStart(kTableSize);
@@ -220,9 +220,9 @@ void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings
     p.setRays(glm::mat3(view.rayOrigin(g)), glm::mat3(view.rayDirection(g)));
     p.setTangents(view.perspective ? glm::vec2(view.halfExtent) : glm::vec2(0));
     p.setPerD0(static_cast<float>(1 / g.d0()));
-    p.setClip(glm::vec3(settings.clipLo), glm::vec3(settings.clipHi));
-    if (settings.shading)
-        p.setShading(glm::vec3(1.0 / Vec3(g.dims)), glm::vec3(g.spacing), glm::vec3(g.boxMax() - g.boxMin()),
+    p.setClip(glm::vec3(settings.clipping.lo), glm::vec3(settings.clipping.hi));
+    if (settings.light.on)
+        p.setShading(glm::vec3(1.0 / Vec3(g.dims)), glm::vec3(g.spacing), glm::vec3(g.boundsMax() - g.boundsMin()),
                      65535.0f / static_cast<float>(bricks->maxCode()));
     bindTexture(1, GL_TEXTURE_2D, table.name());
 

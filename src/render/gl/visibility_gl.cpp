@@ -38,15 +38,15 @@ public:
     std::string name() const override { return "gl"; }
     const Volume& volume() const override { return *m_volume; }
 
-    std::vector<FeatureSums> sums(const Camera& camera, std::span<const TransferFunction> tfs,
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
                                   const WeightFields* weights, const JobControl& job) override;
     /// The device has no derivative sweep: the cpu engine answers, on the same volume.
-    SumsJacobian jacobian(const Camera& camera, const TransferFunction& tf, const WeightFields* weights,
+    SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
         if (!m_cpu) m_cpu = makeCpuEngine(m_volume, m_quality);
-        return m_cpu->jacobian(camera, tf, weights, job);
+        return m_cpu->jacobian(view, tf, weights, job);
     }
-    VisibilityField field(const Camera& camera, const TransferFunction& tf, const JobControl& job) override;
+    VisibilityField field(const View& view, const TransferFunction& tf, const JobControl& job) override;
 
 private:
     /// Slot of every code: the index of its feature, or the number of features for "in none".
@@ -70,8 +70,9 @@ std::vector<std::uint16_t> GlEngine::slotsOfCodes(const std::vector<Feature>& fe
     return slots;
 }
 
-std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const TransferFunction> tfs,
+std::vector<FeatureSums> GlEngine::sums(const View& view, std::span<const TransferFunction> tfs,
                                         const WeightFields* weights, const JobControl& job) {
+    const Camera& camera = view.camera;
     camera.validate(m_volume->geometry(), "camera");
     if (tfs.empty()) return {};
     const std::vector<Feature>& features = tfs.front().features;
@@ -125,7 +126,8 @@ std::vector<FeatureSums> GlEngine::sums(const Camera& camera, std::span<const Tr
     return results;
 }
 
-VisibilityField GlEngine::field(const Camera& camera, const TransferFunction& tf, const JobControl& job) {
+VisibilityField GlEngine::field(const View& view, const TransferFunction& tf, const JobControl& job) {
+    const Camera& camera = view.camera;
     camera.validate(m_volume->geometry(), "camera");
     gl::SweepRequest request;
     request.sweeps = gl::makeSweeps(camera, m_volume->geometry(), m_quality);

@@ -149,14 +149,29 @@ Vec3 spacingIn(const MetaHeader& header, std::size_t axes, const std::string& pa
     return spacing;
 }
 
-bool axesAreIdentity(const MetaHeader& header, std::size_t axes, const std::string& path) {
+/// Row n of the header's matrix is where axis n points.
+Mat3 directionsIn(const MetaHeader& header, std::size_t axes, const std::string& path) {
+    Mat3 directions(1);
     const std::vector<double> matrix =
         numbersIn(header, {"TransformMatrix", "Rotation", "Orientation"}, axes * axes, path);
-    if (matrix.empty()) return true;
-    for (std::size_t row = 0; row < std::min<std::size_t>(axes, 3); ++row)
-        for (std::size_t c = 0; c < std::min<std::size_t>(axes, 3); ++c)
-            if (std::abs(matrix[row * axes + c] - (c == row ? 1.0 : 0.0)) > 1e-6) return false;
-    return true;
+    if (matrix.empty()) return directions;
+    const int inSpace = static_cast<int>(std::min<std::size_t>(axes, 3));
+    for (int axis = 0; axis < inSpace; ++axis) {
+        Vec3 direction(0);
+        for (int c = 0; c < inSpace; ++c)
+            direction[c] = matrix[static_cast<std::size_t>(axis) * axes + static_cast<std::size_t>(c)];
+        directions[axis] = cleanDirection(direction);
+    }
+    return directions;
+}
+
+/// MetaImage's world is LPS wherever a patient is spoken of, which those do who name the anatomy of the axes.
+Frame frameIn(const MetaHeader& header) {
+    const std::string letters = lowerCase(header.get("AnatomicalOrientation"));
+    const bool known = letters.size() >= 3 && std::all_of(letters.begin(), letters.begin() + 3, [](char c) {
+                           return std::string_view("rlapsi").find(c) != std::string_view::npos;
+                       });
+    return known ? Frame::Patient : Frame::File;
 }
 
 bool isBigEndian(const MetaHeader& header, const std::string& path) {
@@ -199,7 +214,8 @@ FileLayout checkedLayout(const std::string& path, const JobControl& job) {
     const std::vector<double> origin = numbersIn(header, {"Origin", "Offset", "Position"}, sizes.size(), path);
     for (std::size_t a = 0; a < std::min<std::size_t>({3, sizes.size(), origin.size()}); ++a)
         layout.origin[static_cast<int>(a)] = origin[a];
-    layout.axesAreIdentity = axesAreIdentity(header, sizes.size(), path);
+    layout.directions = directionsIn(header, sizes.size(), path);
+    layout.frame = frameIn(header);
     layout.bigEndian = isBigEndian(header, path);
     layout.encoding = encodingIn(header, path);
     layout.zlib = true;

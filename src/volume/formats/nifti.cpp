@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <zlib.h>
 
 #include "volume/formats/file_check.h"
@@ -140,13 +141,13 @@ std::optional<ValueScaling> scalingIn(const NiftiHeader& header, const NiftiType
     return ValueScaling{slope, intercept};
 }
 
-/// Where the grid lies according to one of the header's two forms: columns of `axes` of length 1, in NIfTI's world.
+/// Where the grid lies according to one of the header's two forms, in NIfTI's world and the header's unit.
 struct Placement {
-    std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-    Vec3 origin{0, 0, 0};
+    Mat3 axes{1}; ///< unit columns
+    Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
 };
 
-Placement fromQform(const NiftiHeader& header) {
+Placement fromQform(const NiftiHeader& header, const Vec3& spacing) {
     double b = header.qform(0), c = header.qform(1), d = header.qform(2);
     double a = 0;
     const double square = b * b + c * c + d * d;
@@ -159,28 +160,26 @@ Placement fromQform(const NiftiHeader& header) {
         a = std::sqrt(1 - square);
     }
     const double third = header.pixdim(0) < 0 ? -1 : 1;
-    return {{Vec3{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)},
-             Vec3{2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)},
-             third * Vec3{2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b}},
+    return {Mat3{Vec3{a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)},
+                 Vec3{2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)},
+                 third * Vec3{2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b}},
+            spacing,
             {header.qform(3), header.qform(4), header.qform(5)}};
 }
 
-/// None where its axes are not at right angles, or not as long as the header's spacing.
+/// None where it is no map of space onto itself.
 std::optional<Placement> fromSform(const NiftiHeader& header) {
     Placement placement;
     for (int column = 0; column < 3; ++column) {
         const Vec3 axis{header.sform(0, column), header.sform(1, column), header.sform(2, column)};
         const double length = glm::length(axis);
-        const double spacing = header.pixdim(column + 1);
         if (!(length > 0) || !std::isfinite(length)) return {};
-        if (column < header.dim(0) && std::abs(length - spacing) > 1e-3 * spacing) return {};
-        placement.axes[static_cast<std::size_t>(column)] = axis / length;
+        placement.axes[column] = axis / length;
+        // pixdim says the same with other rounding; where it does not, the map is what is meant.
+        const double pixdim = header.pixdim(column + 1);
+        placement.spacing[column] = std::abs(length - pixdim) < 1e-5 * length ? pixdim : length;
     }
-    constexpr double kRounding = 1e-4;
-    const auto& [x, y, z] = placement.axes;
-    if (std::abs(glm::dot(x, y)) > kRounding || std::abs(glm::dot(y, z)) > kRounding ||
-        std::abs(glm::dot(z, x)) > kRounding)
-        return {};
+    if (!(std::abs(glm::determinant(placement.axes)) > 1e-6)) return {};
     placement.origin = {header.sform(0, 3), header.sform(1, 3), header.sform(2, 3)};
     return placement;
 }
@@ -188,12 +187,13 @@ std::optional<Placement> fromSform(const NiftiHeader& header) {
 bool agree(const Placement& one, const Placement& other) {
     constexpr double kRounding = 1e-4;
     bool same = glm::length(one.origin - other.origin) <= kRounding;
-    for (std::size_t a = 0; a < 3; ++a) same = same && glm::length(one.axes[a] - other.axes[a]) <= kRounding;
+    for (int a = 0; a < 3; ++a) same = same && glm::length(one.axes[a] - other.axes[a]) <= kRounding;
     return same;
 }
 
-/// The form that ITK takes, too: sform where it speaks of the scanner, stands alone or says the same as qform.
-Placement placementIn(const NiftiHeader& header, const std::string& path) {
+/// The form that ITK takes, too: sform where it speaks of the scanner, stands alone or says the same as qform. Empty
+/// where the header has none: then the grid's own axes are the world's.
+std::optional<Placement> placementIn(const NiftiHeader& header, const Vec3& spacing, const std::string& path) {
     const bool hasQform = header.qformCode() > 0, hasSform = header.sformCode() > 0;
     constexpr int kScanner = 1;
     bool finite = true;
@@ -203,13 +203,12 @@ Placement placementIn(const NiftiHeader& header, const std::string& path) {
         throw FileError("the place of the volume has numbers that are not finite", path,
                         "correct qform and sform in the header");
     const std::optional<Placement> sform = hasSform ? fromSform(header) : std::nullopt;
-    if (sform && (!hasQform || header.sformCode() == kScanner || agree(*sform, fromQform(header)))) return *sform;
-    if (hasQform) return fromQform(header);
+    if (sform && (!hasQform || header.sformCode() == kScanner || agree(*sform, fromQform(header, spacing)))) return sform;
+    if (hasQform) return fromQform(header, spacing);
     if (hasSform)
-        throw FileError("the axes that sform gives are not at right angles or not as long as pixdim says", path,
+        throw FileError("the axes that sform gives lie in one plane", path,
                         "correct sform, or give qform in the header");
-    // No form: the grid's own axes. NIfTI's world has x to the right and y to the front, ours the opposite.
-    return {{Vec3{-1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}}, {0, 0, 0}};
+    return {};
 }
 
 /// Millimetres of the header's unit of length.
@@ -226,16 +225,18 @@ void placeGrid(FileLayout& layout, const NiftiHeader& header, const std::string&
             throw FileError("the spacing of axis " + std::to_string(a - 1) + " is " + std::to_string(header.pixdim(a)) +
                                 ", it must be positive and finite",
                             path, "correct pixdim in the header");
-        layout.spacing[a - 1] = header.pixdim(a) * millimetres;
+        layout.spacing[a - 1] = header.pixdim(a);
     }
-    const Placement placement = placementIn(header, path);
-    const Vec3 flip{-1, -1, 1}; // our x goes to the left, our y to the back
-    for (int a = 0; a < axes; ++a) {
-        layout.origin[a] = placement.origin[a] == 0 ? 0 : flip[a] * placement.origin[a] * millimetres;
-        const Vec3 axis = flip * placement.axes[static_cast<std::size_t>(a)];
-        for (int c = 0; c < axes; ++c)
-            if (std::abs(axis[c] - (c == a ? 1.0 : 0.0)) > 1e-6) layout.axesAreIdentity = false;
+    if (const std::optional<Placement> placement = placementIn(header, layout.spacing, path)) {
+        layout.frame = Frame::Patient;
+        const Vec3 flip{-1, -1, 1}; // our x goes to the left, our y to the back
+        for (int a = 0; a < 3; ++a) {
+            layout.origin[a] = placement->origin[a] == 0 ? 0 : flip[a] * placement->origin[a] * millimetres;
+            layout.directions[a] = cleanDirection(flip * placement->axes[a]);
+            if (a < axes) layout.spacing[a] = placement->spacing[a];
+        }
     }
+    for (int a = 0; a < axes; ++a) layout.spacing[a] *= millimetres;
 }
 
 FileLayout checkedLayout(const std::string& path, const JobControl& job) {

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -209,30 +210,37 @@ std::size_t componentAxis(const NrrdHeader& header, const std::vector<std::int64
     return found;
 }
 
-/// What turns the header's space into ours, whose axes go to the left, the back and the top; 1 where the header's
-/// space has no such names.
-Vec3 flipOfSpace(const NrrdHeader& header, const std::string& path) {
-    const std::string space = lowerCase(header.get("space"));
+/// What turns the header's space into ours, whose axes go to the left, the back and the top; empty where the header's
+/// space knows of no patient.
+std::optional<Vec3> flipOfSpace(const NrrdHeader& header, const std::string& path) {
+    std::string space = lowerCase(header.get("space"));
+    static const std::set<std::string> kInTime{"rast", "last", "lpst"};
+    if (space.ends_with("-superior-time")) space.resize(space.size() - 5);
+    if (kInTime.count(space) > 0) space.resize(3);
     static const std::set<std::string> kOthers{"",
-                                               "left-posterior-superior",
-                                               "lps",
-                                               "right-anterior-superior-time",
-                                               "rast",
-                                               "left-anterior-superior-time",
-                                               "last",
-                                               "left-posterior-superior-time",
-                                               "lpst",
                                                "scanner-xyz",
                                                "scanner-xyz-time",
                                                "3d-right-handed",
                                                "3d-left-handed",
                                                "3d-right-handed-time",
                                                "3d-left-handed-time"};
-    if (space == "right-anterior-superior" || space == "ras") return {-1, -1, 1};
-    if (space == "left-anterior-superior" || space == "las") return {-1, 1, 1};
+    if (space == "right-anterior-superior" || space == "ras") return Vec3{-1, -1, 1};
+    if (space == "left-anterior-superior" || space == "las") return Vec3{1, -1, 1};
+    if (space == "left-posterior-superior" || space == "lps") return Vec3{1, 1, 1};
     if (kOthers.count(space) == 0)
         throw FileError("the space " + inQuotes(header.get("space")) + " is not known", path, "correct the header");
-    return {1, 1, 1};
+    return {};
+}
+
+/// Millimetres of the header's unit of length; 1 where it names none that is known.
+double millimetresIn(const NrrdHeader& header) {
+    const std::string units = lowerCase(header.get("spaceunits"));
+    const std::size_t begin = units.find_first_not_of("\" ");
+    if (begin == std::string::npos) return 1;
+    const std::string unit = units.substr(begin, units.find_first_of("\" ", begin) - begin);
+    static const std::map<std::string, double> kUnits{{"m", 1e3}, {"cm", 10}, {"um", 1e-3}, {"µm", 1e-3}, {"nm", 1e-6}};
+    const auto it = kUnits.find(unit);
+    return it == kUnits.end() ? 1 : it->second;
 }
 
 /// The number of axis `a` in a field of numbers; NaN where there is none.
@@ -272,7 +280,10 @@ void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& 
     const std::size_t axes = layout.axes.size();
     const auto spacings = wordsPerAxis(header, "spacings", axes, path);
     const auto directions = wordsPerAxis(header, "spacedirections", axes, path);
-    const Vec3 flip = flipOfSpace(header, path);
+    const std::optional<Vec3> patient = flipOfSpace(header, path);
+    const Vec3 flip = patient.value_or(Vec3(1));
+    layout.frame = patient ? Frame::Patient : Frame::File;
+    const double unit = patient ? millimetresIn(header) : 1;
     std::vector<std::size_t> inSpace;
     for (std::size_t a = 0; a < axes && inSpace.size() < 3; ++a)
         if (!layout.axes[a].components) inSpace.push_back(a);
@@ -289,14 +300,15 @@ void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& 
             if (std::abs(numberOfAxis(spacings, a) - length) > 1e-6 * length)
                 throw FileError("the header gives two spacings of axis " + std::to_string(a), path,
                                 "correct spacings or space directions");
-            for (std::size_t c = 0; c < std::min(vector.size(), inSpace.size()); ++c)
-                if (std::abs(flip[static_cast<int>(c)] * vector[c] / length - (c == i ? 1.0 : 0.0)) > 1e-6)
-                    layout.axesAreIdentity = false;
+            Vec3 direction(0);
+            for (int c = 0; c < 3 && static_cast<std::size_t>(c) < vector.size(); ++c)
+                direction[c] = flip[c] * vector[static_cast<std::size_t>(c)] / length;
+            layout.directions[static_cast<int>(i)] = cleanDirection(direction);
         } else if (!spacings.empty()) {
             text = spacings[a];
             layout.spacing[static_cast<int>(i)] = numberOfAxis(spacings, a);
         }
-        const double spacing = layout.spacing[static_cast<int>(i)];
+        const double spacing = layout.spacing[static_cast<int>(i)] *= unit;
         if (!(spacing > 0) || !std::isfinite(spacing))
             throw FileError("the spacing of axis " + std::to_string(a) + " is " + inQuotes(text) +
                                 ", it must be positive and finite",
@@ -307,7 +319,7 @@ void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& 
     if (origin.empty() || isNone(origin.front())) return;
     const std::vector<double> place = vectorIn(origin.front(), path);
     for (std::size_t c = 0; c < std::min(place.size(), inSpace.size()); ++c)
-        layout.origin[static_cast<int>(c)] = flip[static_cast<int>(c)] * place[c];
+        layout.origin[static_cast<int>(c)] = flip[static_cast<int>(c)] * place[c] * unit;
 }
 
 /// Bytes of `lines` lines from byte `start` of a file; more than any file has where there are fewer lines.

@@ -10,6 +10,9 @@
 #include <type_traits>
 #include <utility>
 
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
 #include "base/check.h"
 #include "base/error.h"
 #include "volume/formats/byte_source.h"
@@ -260,13 +263,27 @@ std::uint64_t valuesIn(const FileLayout& layout, const std::string& path) {
     return valueCount(path, sizes, sizeof(double));
 }
 
+Vec3 cleanDirection(const Vec3& direction) {
+    const double length = glm::length(direction);
+    if (!(length > 0) || !std::isfinite(length)) return Vec3(0);
+    Vec3 unit = direction / length;
+    for (int a = 0; a < 3; ++a) {
+        Vec3 axis(0);
+        axis[a] = std::copysign(1.0, unit[a]);
+        if (glm::length(unit - axis) < 1e-6) return axis;
+    }
+    return unit;
+}
+
 Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job) {
     const std::string& path = source.path;
     const Selection selection = selectionOf(layout, source.component);
-    const Geometry geometry{selection.dims, layout.spacing, layout.origin};
+    const Geometry geometry{selection.dims, layout.spacing, layout.origin, layout.directions, layout.frame};
     for (int a = 0; a < 3; ++a)
         if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
             throw FileError("spacing must be positive and finite, origin finite", path, "correct the header");
+    if (!(std::abs(glm::determinant(geometry.directions)) > 1e-6))
+        throw FileError("the directions of the axes lie in one plane", path, "correct the header");
     if (source.component < 0 || static_cast<std::uint64_t>(source.component) >= selection.components)
         throw UsageError("there is no component " + std::to_string(source.component), path,
                          selection.components == 1 ? "the file has one component, number 0"
@@ -278,9 +295,6 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
                           std::to_string(selection.components) + " is shown");
     if (selection.steps > 1)
         notices.push_back("the first of " + std::to_string(selection.steps) + " time steps is shown");
-    if (!layout.axesAreIdentity)
-        notices.emplace_back(
-            "the directions of the axes in the file are not applied, the volume is shown along its grid");
 
     job.report(0.1);
     job.throwIfStopped();

@@ -39,10 +39,15 @@ struct FileLayout {
     std::vector<FileAxis> axes;      ///< fastest first; 1 to 17
     std::vector<int> componentOrder; ///< component n is entry componentOrder[n] of its axis; empty: entry n
     Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
-    bool axesAreIdentity = true; ///< the axes of the grid are those of the world
+    Mat3 directions{1}; ///< unit columns: where the axes of the grid point
+    Frame frame = Frame::File;
     std::optional<ValueScaling> scaling;
     std::vector<std::string> notices;
 };
+
+/// A direction as headers have it, made a unit vector; rounding of the header's numbers, up to 1e-6, is taken out, so
+/// that axes along the world's are exactly that. Zero, and so refused later, where it is no direction.
+Vec3 cleanDirection(const Vec3& direction);
 
 /// Number of values along all axes together, which fits into 2^63 bytes. Throws FileError at `path`.
 std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
