@@ -23,10 +23,11 @@ constexpr qint64 kWheelPause = 600; // milliseconds that part two zooms
 
 } // namespace
 
-VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent) : QWidget(parent), m_store(store) {
+VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent) : QWidget(parent), m_store(store), m_overlay(new ViewOverlay(store, this)) {
     setObjectName("volumeView");
     setAccessibleName(tr("Volume"));
     setFocusPolicy(Qt::StrongFocus);
+    setMouseTracking(true);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     const auto available = renderer == ViewRenderer::Cpu ? GlSurface::Available::No : GlSurface::available();
@@ -49,7 +50,9 @@ VolumeView::~VolumeView() {
 void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
     m_surface = std::move(surface);
     m_surface->widget()->setFocusPolicy(Qt::NoFocus);
+    m_surface->widget()->setMouseTracking(true);
     layout()->addWidget(m_surface->widget());
+    m_overlay->raise();
     m_surface->onFrame = [this] { Q_EMIT frameShown(); };
     m_surface->onFailure = [this](const Error& error) { surfaceFailed(error); };
     updateScene();
@@ -72,7 +75,11 @@ void VolumeView::updateScene() {
 }
 
 void VolumeView::mousePressEvent(QMouseEvent* event) {
-    if (m_motion != Motion::None) return; // the first button decides until it is released
+    if (m_motion != Motion::None || m_overlay->isDragging()) return; // the first button decides until it is released
+    if (event->button() == Qt::LeftButton && m_overlay->press(event->position(), event->modifiers())) {
+        m_button = event->button();
+        return;
+    }
     const bool shift = event->modifiers().testFlag(Qt::ShiftModifier);
     switch (event->button()) {
     case Qt::LeftButton:
@@ -93,6 +100,8 @@ void VolumeView::mousePressEvent(QMouseEvent* event) {
 }
 
 void VolumeView::mouseMoveEvent(QMouseEvent* event) {
+    if (m_overlay->isDragging()) return m_overlay->drag(event->position(), event->modifiers());
+    if (m_motion == Motion::None) setCursor(m_overlay->cursorAt(event->position()));
     if (m_motion == Motion::None || !m_store.hasVolume()) return;
     const QPointF way = event->position() - m_last;
     m_last = event->position();
@@ -117,7 +126,9 @@ void VolumeView::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void VolumeView::mouseReleaseEvent(QMouseEvent* event) {
-    if (event->button() == m_button) m_motion = Motion::None;
+    if (event->button() != m_button) return;
+    m_motion = Motion::None;
+    m_overlay->release();
 }
 
 void VolumeView::mouseDoubleClickEvent(QMouseEvent* event) {
@@ -130,6 +141,11 @@ void VolumeView::wheelEvent(QWheelEvent* event) {
     m_sinceWheel.start();
     zoomView(m_store, std::pow(kZoomPerNotch, event->angleDelta().y() / 120.0), m_wheelGesture);
     event->accept();
+}
+
+void VolumeView::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    m_overlay->setGeometry(rect());
 }
 
 void VolumeView::keyPressEvent(QKeyEvent* event) {

@@ -8,6 +8,7 @@
 #include <QWidget>
 
 #include "store/session_store.h"
+#include "view_overlay.h"
 #include "view_surface.h"
 
 namespace pellucid::gui {
@@ -25,6 +26,7 @@ public:
 
     const FrameInfo& frame() const { return m_surface->frame(); }
     bool isComplete() const { return m_surface->frame().complete; }
+    ViewOverlay& overlay() { return *m_overlay; }
     QString rendererName() const { return m_surface->rendererName(); }
 
     QSize sizeHint() const override { return {860, 520}; }
@@ -42,6 +44,7 @@ protected:
     void mouseDoubleClickEvent(QMouseEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
 private:
     enum class Motion { None, Rotate, Pan, Zoom };
@@ -51,6 +54,7 @@ private:
 
     SessionStore& m_store;
     std::unique_ptr<ViewSurface> m_surface;
+    ViewOverlay* m_overlay; // a child
     Motion m_motion = Motion::None;
     Qt::MouseButton m_button = Qt::NoButton;
     QPointF m_last;

@@ -1,0 +1,59 @@
+// What is drawn over the picture: handles that the mouse can take hold of, letters, scales.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <QWidget>
+
+#include "store/session_store.h"
+
+namespace pellucid::gui {
+
+/// What a layer is about: the present scene, which has a volume, and the view's size in logical pixels, as all points
+/// here are.
+struct OverlayView {
+    const Scene& scene;
+    QSizeF size;
+};
+
+/// One sort of things over the picture. Layers keep no state of the scene: they are asked anew.
+class OverlayLayer {
+public:
+    virtual ~OverlayLayer() = default;
+    virtual void paint(QPainter& painter, const OverlayView& view) = 0;
+    /// The cursor over a point where a press would be taken; Qt::ArrowCursor elsewhere.
+    virtual Qt::CursorShape cursorAt(const QPointF& /*point*/, const OverlayView& /*view*/) { return Qt::ArrowCursor; }
+    /// True: the press is taken, and drags and the release go here.
+    virtual bool press(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const OverlayView& /*view*/) {
+        return false;
+    }
+    virtual void drag(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const OverlayView& /*view*/) {}
+    virtual void release() {}
+};
+
+/// A transparent widget over the view that holds layers, the last one on top. The view hands it the mouse.
+class ViewOverlay : public QWidget {
+public:
+    ViewOverlay(SessionStore& store, QWidget* view);
+
+    void add(std::unique_ptr<OverlayLayer> layer);
+
+    bool press(const QPointF& point, Qt::KeyboardModifiers keys);
+    bool isDragging() const { return m_holder != nullptr; }
+    void drag(const QPointF& point, Qt::KeyboardModifiers keys);
+    void release();
+    Qt::CursorShape cursorAt(const QPointF& point);
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+
+private:
+    OverlayView overlayView() const { return {m_store.scene(), QSizeF(size())}; }
+
+    SessionStore& m_store;
+    std::vector<std::unique_ptr<OverlayLayer>> m_layers;
+    OverlayLayer* m_holder = nullptr; ///< has taken the press
+};
+
+} // namespace pellucid::gui
