@@ -23,7 +23,8 @@ constexpr qint64 kWheelPause = 600; // milliseconds that part two zooms
 
 } // namespace
 
-VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent) : QWidget(parent), m_store(store), m_overlay(new ViewOverlay(store, this)) {
+VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent)
+    : QWidget(parent), m_store(store), m_overlay(new ViewOverlay(store, this)) {
     setObjectName("volumeView");
     setAccessibleName(tr("Volume"));
     setFocusPolicy(Qt::StrongFocus);

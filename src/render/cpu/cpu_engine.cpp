@@ -227,15 +227,15 @@ public:
     std::string name() const override { return "cpu"; }
     const Volume& volume() const override { return *m_volume; }
 
-    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
-                                  const WeightFields* weights, const JobControl& job) override {
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights,
+                                  const JobControl& job) override {
         std::vector<FeatureSums> all;
         for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features == tfs[0].features);
         const std::size_t batches = (tfs.size() + kSweepLanes - 1) / kSweepLanes;
         for (std::size_t first = 0; first < tfs.size(); first += kSweepLanes) {
             const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
-            const Sums sums = sweep(view, SweepTables(batch, m_codeSpace), weights, nullptr,
-                                    job.part(first / kSweepLanes, batches));
+            const Sums sums =
+                sweep(view, SweepTables(batch, m_codeSpace), weights, nullptr, job.part(first / kSweepLanes, batches));
             for (std::size_t lane = 0; lane < batch.size(); ++lane) all.push_back(sums.ofLane(lane));
         }
         return all;

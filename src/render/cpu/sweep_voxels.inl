@@ -376,8 +376,7 @@ private:
     Vec8 ownLengths(const VoxelBlock& block) const {
         if (!m_in.perspective) return Vec8{} + static_cast<float>(m_lines.lengthOf(m_in.slopeU, m_in.slopeV));
         const double perSlice = 1 / (block.k - m_in.eyeW), v = (block.v - m_in.eyeV) * perSlice;
-        const Vec8 u =
-            static_cast<float>((block.u - m_in.eyeU) * perSlice) + kIota * static_cast<float>(perSlice);
+        const Vec8 u = static_cast<float>((block.u - m_in.eyeU) * perSlice) + kIota * static_cast<float>(perSlice);
         Vec8 length = u * (static_cast<float>(m_in.guu) * u + static_cast<float>(2 * (m_in.guv * v + m_in.guw))) +
                       static_cast<float>(m_in.gww + v * (m_in.gvv * v + 2 * m_in.gvw));
         for (int n = 0; n < kWide; ++n) length[n] = __builtin_sqrtf(length[n]);
@@ -462,8 +461,8 @@ private:
         }
     }
 
-    /// What clip planes leave of the first `reach` (w) of the own lines between two planes, of which `from` and `to` are
-    /// made the ends: [0,1].
+    /// What clip planes leave of the first `reach` (w) of the own lines between two planes, of which `from` and `to`
+    /// are made the ends: [0,1].
     Vec8 clippedShare(const VoxelBlock& block, const OwnPlane& p0, const OwnPlane& p1, Vec8 reach, Samples& from,
                       Samples& to) const {
         const Vec8 zero = {}, one = zero + 1.0f;
