@@ -238,7 +238,7 @@ public:
 
     /// What clip planes leave of eight lines between two planes: parts [0,1] of the way, none where leave ≤ enter.
     struct Kept {
-        Vec8 enter, leave;
+        Vec8 enter = {}, leave = {};
     };
     enum class Clipped { Nothing, Part, All };
     /// Of the lines (a … a + 7, b) from the plane w0 to the plane w1. `kept` is set where a part is clipped.
