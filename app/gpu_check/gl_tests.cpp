@@ -4,6 +4,7 @@
 #include "gl_tests.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace pellucid::gpu_check {
 
@@ -62,7 +63,10 @@ std::vector<GlTest> glTests() {
     std::vector<const Catch::TestCase*> found;
     for (const Catch::TestCase& test : Catch::getRegistryHub().getTestCaseRegistry().getAllTests())
         if (!test.isHidden() && !hasTag(test, {"real", "files"})) found.push_back(&test);
-    std::sort(found.begin(), found.end(), [](const auto* a, const auto* b) { return a->lineInfo < b->lineInfo; });
+    std::sort(found.begin(), found.end(), [](const auto* a, const auto* b) {
+        return std::tuple(std::string(a->lineInfo.file), a->lineInfo.line) <
+               std::tuple(std::string(b->lineInfo.file), b->lineInfo.line);
+    });
     std::vector<GlTest> all;
     for (const Catch::TestCase* test : found) all.push_back({test->name, hasTag(*test, {"accuracy", "orbit", "slow"})});
     return all;

@@ -26,7 +26,7 @@ namespace pellucid::gpu_check {
 namespace {
 
 constexpr const char* kProgram = "pellucid-gpu-check";
-constexpr int kQuickSize = 64; ///< voxels along the longest side
+constexpr int kQuickSize = 64;                                            ///< voxels along the longest side
 constexpr double kGlSeconds = 60, kTestSeconds = 300, kRowsSeconds = 900; ///< what a part may take
 
 struct Options {
@@ -42,8 +42,7 @@ void tell(const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str());
 
 std::string secondsText(double seconds) {
     std::string text(32, '\0');
-    text.resize(static_cast<std::size_t>(std::snprintf(text.data(), text.size(),
-                                                       seconds < 1 ? "%.2f ms" : "%.2f s",
+    text.resize(static_cast<std::size_t>(std::snprintf(text.data(), text.size(), seconds < 1 ? "%.2f ms" : "%.2f s",
                                                        seconds < 1 ? 1e3 * seconds : seconds)));
     return text;
 }
@@ -96,8 +95,8 @@ public:
         json["memcpy"] = m_memcpy;
         json["rows"] = m_rows;
         json["notices"] = m_notices;
-        json["summary"] = {{"ok", ok},           {"tests", m_tests.size()},    {"passed", m_passed},
-                           {"failed", m_failed}, {"skipped", m_skipped},       {"rows", m_rows.size()},
+        json["summary"] = {{"ok", ok},           {"tests", m_tests.size()},     {"passed", m_passed},
+                           {"failed", m_failed}, {"skipped", m_skipped},        {"rows", m_rows.size()},
                            {"broken", m_broken}, {"seconds", m_watch.seconds()}};
         const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
         if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
@@ -145,12 +144,11 @@ private:
                 failures = (*result.answer)["failures"];
             const bool passed = failures.empty(), skipped = passed && !result.skipped.empty();
             ++(!passed ? m_failed : skipped ? m_skipped : m_passed);
-            Json test{
-                {"name", all[n].name}, {"passed", passed}, {"seconds", result.seconds}, {"failures", failures}};
+            Json test{{"name", all[n].name}, {"passed", passed}, {"seconds", result.seconds}, {"failures", failures}};
             if (skipped) test["skipped"] = result.skipped;
             m_tests.push_back(std::move(test));
             tell("test " + std::to_string(n + 1) + "/" + std::to_string(all.size()) + "  " +
-                 (!passed  ? "FAILED  "
+                 (!passed   ? "FAILED  "
                   : skipped ? "skipped "
                             : "passed  ") +
                  all[n].name + "  (" + secondsText(result.seconds) + ")");
@@ -169,8 +167,9 @@ private:
         for (const char* engine : {"gl", "cpu"})
             for (const std::string& volumes : rowVolumes()) {
                 if (engine == std::string("gl") && !m_gl.is_object()) continue;
-                std::vector<std::string> arguments{"--part", "rows",   "--name",   volumes,   "--engine",
-                                                   engine,   "--size", std::to_string(size()), "--memcpy", memcpyText};
+                std::vector<std::string> arguments{"--part",   "rows",    "--name", volumes,
+                                                   "--engine", engine,    "--size", std::to_string(size()),
+                                                   "--memcpy", memcpyText};
                 if (m_options.quick) arguments.emplace_back("--quick");
                 const PartResult result = runPart(arguments, kRowsSeconds);
                 addRows(result, std::string(engine) + " " + volumes);

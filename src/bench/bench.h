@@ -35,10 +35,10 @@ struct BenchResult {
     Int3 dims{0, 0, 0};
     int threads = 1;
     std::optional<int> candidates, features;
-    int runs = 0;          ///< warm ones
-    double seconds = 0;    ///< median of the warm runs
-    double cpuSeconds = 0; ///< of all threads together, median too: hardly changes where others use the machine
-    double bytes = 0;      ///< that have to be read or written at least once, see docs/performance.md
+    int runs = 0;                 ///< warm ones
+    double seconds = 0;           ///< median of the warm runs
+    double cpuSeconds = 0;        ///< of all threads together, median too: hardly changes where others use the machine
+    double bytes = 0;             ///< that have to be read or written at least once, see docs/performance.md
     nlohmann::ordered_json extra; ///< further fields of this row, an object
 };
 

@@ -26,14 +26,13 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/engines", {"base", "volume", "tf", "saliency", "render"}},
     {"src/bench", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/session", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
-    {"app/cli", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "bench", "session",
-                 "cli"}},
+    {"app/cli",
+     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "bench", "session", "cli"}},
     {"app/gui", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "gui"}},
     {"app/gpu_check", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "bench", "gpu_check"}},
 };
-const std::set<std::string> kOurFolders{"base",     "volume",  "tf",      "saliency", "render",
-                                        "image_io", "optimize", "engines", "bench",    "session",
-                                        "cli",      "gui",      "gpu_check"};
+const std::set<std::string> kOurFolders{"base",    "volume", "tf",      "saliency", "render", "image_io", "optimize",
+                                        "engines", "bench",  "session", "cli",      "gui",    "gpu_check"};
 
 struct Include {
     std::string file; ///< relative to the sources' top
