@@ -186,7 +186,7 @@ private:
         for (const Json& row : (*result.answer)["rows"]) {
             std::string line = "row  " + row["engine"].get<std::string>() + "  " + row["volume"].get<std::string>() +
                                "  " + row.value("tf", std::string()) + "  " + row["name"].get<std::string>();
-            for (const char* key : {"candidates", "features", "size", "threads"})
+            for (const char* key : {"candidates", "features", "size", "lit", "threads"})
                 if (row.contains(key)) line += std::string("  ") + key + " " + row[key].dump();
             tell(line + "  " + secondsText(row["seconds"].get<double>()));
             m_rows.push_back(row);

@@ -70,7 +70,7 @@ Json measureRows(const RowsOptions& o) {
     options.threads = benchThreads();
     if (o.once) options.repeat = 1;
     options.engine = o.engine;
-    if (!o.once) options.pictures.push_back({1920, 1080});
+    if (!o.once) options.pictures = {{512, 512}, {512, 512, true}, {1920, 1080}, {1920, 1080, true}};
     const std::size_t slash = o.volumes.find('/');
     const std::vector<BenchCase> cases =
         o.volumes.starts_with("cubes") ? cubes(o) : knee(o.volumes.substr(slash + 1), o);

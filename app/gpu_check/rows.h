@@ -13,7 +13,7 @@ struct RowsOptions {
     EngineChoice engine = EngineChoice::Gl; ///< Gl or Cpu
     std::string volumes;                    ///< one of rowVolumes()
     int size = 0;                           ///< voxels along the longest side; 0: those of docs/performance.md
-    bool once = false;                      ///< each row runs once after a warm-up; one size of picture
+    bool once = false;                      ///< each row runs once after a warm-up; one picture
     std::vector<double> memcpyGbPerS;       ///< with each of benchThreads()
 };
 

@@ -208,12 +208,14 @@ private:
 
     void addRender() {
         const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_case.volume);
-        for (const PictureSize& size : m_options.pictures) {
+        for (const BenchPicture& picture : m_options.pictures) {
             RenderSettings settings;
-            settings.width = size.width;
-            settings.height = size.height;
+            settings.width = picture.width;
+            settings.height = picture.height;
+            settings.light.on = picture.lit;
             BenchResult r = row(BenchRow::Render, renderer->name());
-            r.extra = {{"size", {size.width, size.height}}};
+            r.extra = {{"size", {picture.width, picture.height}}};
+            if (picture.lit) r.extra["lit"] = true;
             add(r, voxels() * kBytesPerCode, [this, renderer, settings](BenchResult&, const JobControl& j) {
                 renderer->render(m_case.camera, m_case.tf, settings, j);
             });

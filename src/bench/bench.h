@@ -74,8 +74,9 @@ TransferFunction sparseTf(const Volume& volume);
 /// engine can make larger ones slower.
 std::shared_ptr<const Volume> tiled(const Volume& block, int n);
 
-struct PictureSize {
+struct BenchPicture {
     int width = 512, height = 512; ///< pixels
+    bool lit = false;
 };
 
 struct BenchOptions {
@@ -83,7 +84,7 @@ struct BenchOptions {
     std::optional<int> repeat; ///< runs of each row after a warm-up; else as many as tell enough, 3 at least
     EngineChoice engine = EngineChoice::Auto;
     Quality quality = Quality::Normal;
-    std::vector<PictureSize> pictures{{}}; ///< a row `render` of each
+    std::vector<BenchPicture> pictures{{}}; ///< a row `render` of each
 };
 
 struct BenchResults {
