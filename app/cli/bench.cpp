@@ -28,10 +28,8 @@ constexpr const char* kCube = "cube:"; ///< followed by the number of voxels alo
 constexpr int kCubeSize = 128;         ///< of the smallest
 
 /// All rows at once: what measuring takes, weights for nine features (4), a renderer's codes (3) and, while `setup`
-/// runs, another engine (5).
-constexpr double kBenchBytesPerVoxel = kMeasureBytesPerVoxel + 4 + 3 + 5;
-
-const Work kWork{"measuring", kBenchBytesPerVoxel, true};
+/// runs, another engine (5). Of lean volumes the weights (1) come twice.
+const Work kWork{{"measuring", kMeasureBytesPerVoxel + 4 + 3 + 5, kLeanMeasureBytesPerVoxel + 1}, true};
 
 /// One name per comma.
 std::set<BenchRow> parseRows(const std::string& text, const std::string& option) {
@@ -58,7 +56,7 @@ std::shared_ptr<const Volume> tiled(const Volume& block, int n) {
     geometry.dims = d * n;
     Samples samples = std::visit(
         [&](const auto& from) -> Samples {
-            std::decay_t<decltype(from)> to;
+            std::vector<typename std::decay_t<decltype(from)>::value_type> to;
             to.reserve(voxelCount(geometry.dims));
             for (int k = 0; k < geometry.dims.z; ++k)
                 for (int j = 0; j < geometry.dims.y; ++j) {
@@ -117,7 +115,8 @@ public:
         const Scene block = openScene(inputs, m_progress.phase("loading"));
         const bool dense = !m_options.scene.tf.spec;
         const int largest = m_options.full ? 4 : 2;
-        requireMemory(inputs.then, kCube + std::to_string(largest * kCubeSize), block.volume->dims() * largest);
+        requireMemory(inputs.then, kCube + std::to_string(largest * kCubeSize), block.volume->dims() * largest,
+                      block.volume->sampleType());
         std::vector<BenchCase> cubes;
         for (int n = 1; n <= largest; n *= 2) {
             const auto volume = n == 1 ? block.volume : tiled(*block.volume, n);

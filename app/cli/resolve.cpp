@@ -24,8 +24,8 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.engine.applyTo(inputs);
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);
-    const bool byReference = work.byEngine && inputs.session.measure->engine == EngineChoice::Reference;
-    inputs.then = {work.doing, work.bytesPerVoxel + (byReference ? kMoreByReferenceBytesPerVoxel : 0.0)};
+    const bool reference = work.byEngine && inputs.session.measure->engine == EngineChoice::Reference;
+    inputs.then = reference ? byReference(work.use) : work.use;
     return inputs;
 }
 

@@ -63,7 +63,7 @@ OpenController::OpenController(Workbench& bench)
           [](const DataChange& change, const JobControl& job) {
               Session session = change.basis.session;
               change.change(session);
-              Scene scene = resolve(std::move(session), change.basis, {"showing", kViewBytesPerVoxel}, job);
+              Scene scene = resolve(std::move(session), change.basis, toView("showing"), job);
               prepareToShow(scene, job);
               return scene;
           },
@@ -170,7 +170,7 @@ void OpenController::openRecovered(const SessionFile& file) {
 OpenController::Opened OpenController::load(const Request& request, const JobControl& job) {
     Opened opened;
     SceneInputs inputs = request.inputs;
-    inputs.then = {"showing", kViewBytesPerVoxel};
+    inputs.then = toView("showing");
     if (request.tfIsOptional) {
         try {
             static_cast<void>(loadTf(*inputs.tf));
