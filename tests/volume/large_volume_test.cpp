@@ -274,14 +274,14 @@ TEST_CASE("what exceeds memory is downsampled by the smallest factor that fits, 
     CHECK(volume.excerpt->factor == 3);
     CHECK(volume.excerpt->forMemory);
     REQUIRE(!volume.notices.empty());
-    CHECK_THAT(volume.notices[0], Contains("downsampled by 3 to 22 x 22 x 22 voxels: all 64 x 64 x 64 need 26 GB") &&
+    CHECK_THAT(volume.notices[0], Contains("downsampled by 3 to 22 x 22 x 22 voxels: all 64 x 64 x 64 need 26.2 GB") &&
                                       Contains("at full resolution"));
     source.region = VoxelRegion{{0, 0, 0}, {20, 20, 20}}; // 8000 voxels need 0.8 GB
     CHECK(loadVolume(source).dims() == Int3(20));
     source.downsample = 1;
     CHECK(loadVolume(source).dims() == Int3(20));
     source.region.reset();
-    CHECK_THROWS_WITH(loadVolume(source), Contains("needs 26 GB"));
+    CHECK_THROWS_WITH(loadVolume(source), Contains("needs 26.2 GB"));
     source.then = {"measuring", 1e12}; // not even one voxel
     source.downsample = 0;
     CHECK_THROWS_AS(loadVolume(source), FileError);
