@@ -199,6 +199,21 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan) {
     return throughWindowOf(std::move(volume), whole.range());
 }
 
+VoxelRegion regionBetween(const Volume& volume, const Vec3& lo, const Vec3& hi) {
+    const Excerpt e = volume.excerpt.value_or(Excerpt{volume.dims(), VoxelRegion{Int3(0), volume.dims()}, 1, false});
+    const Int3 size = e.region.hi - e.region.lo, factors = glm::min(Int3(e.factor), size);
+    constexpr double kRounding = 1e-6; // voxels: fractions of a border are not exact
+    VoxelRegion region;
+    for (int a = 0; a < 3; ++a) {
+        const double box = static_cast<double>(volume.dims()[a]) * factors[a];
+        const int first = std::clamp(static_cast<int>(std::floor(lo[a] * box + kRounding)), 0, size[a] - 1);
+        const int end = std::clamp(static_cast<int>(std::ceil(hi[a] * box - kRounding)), first + 1, size[a]);
+        region.lo[a] = e.region.lo[a] + first;
+        region.hi[a] = e.region.lo[a] + end;
+    }
+    return region;
+}
+
 Volume throughWindowOf(Volume volume, const ValueRange& dataRange) {
     const bool isWindow = dataRange.lo < dataRange.hi && volume.hasValidVoxels();
     return isWindow && !(volume.range() == dataRange) ? volume.withRange(dataRange) : volume;

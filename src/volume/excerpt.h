@@ -63,6 +63,10 @@ private:
 /// The same part of a volume in memory, with its missing value, title and format; the window stays that of `whole`.
 Volume excerptOf(const Volume& whole, const ExcerptPlan& plan);
 
+/// The voxels of the data that lie, wholly or in part, between the fractions `lo` and `hi` of the volume's box along
+/// each axis; 0 ≤ lo < hi ≤ 1.
+VoxelRegion regionBetween(const Volume& volume, const Vec3& lo, const Vec3& hi);
+
 /// The volume with the window of the data that it was made of, so that intensities mean what they did there.
 Volume throughWindowOf(Volume volume, const ValueRange& dataRange);
 

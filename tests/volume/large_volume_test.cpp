@@ -11,6 +11,7 @@
 #include "support/temp_folder.h"
 #include "volume/excerpt.h"
 #include "volume/formats/samples.h"
+#include "volume/intensity_grid.h"
 #include "volume/loader.h"
 #include "volume/noise.h"
 
@@ -296,4 +297,43 @@ TEST_CASE("a region must lie in the data", "[large]") {
         source.region = bad;
         CHECK_THROWS_AS(loadVolume(source), UsageError);
     }
+}
+
+TEST_CASE("what a box leaves of a downsampled volume is a region of its data", "[large]") {
+    VolumeSource source;
+    source.path = "sample:disks";
+    source.sampleSize = 24;
+    const Int3 full = loadVolume(source).dims();
+    source.downsample = 5; // which does not divide 24: the box is 25 voxels long
+    REQUIRE(full.x == 24);
+    const VoxelRegion all = regionBetween(loadVolume(source), Vec3(0), Vec3(1));
+    CHECK(all == VoxelRegion{{0, 0, 0}, full});
+    const VoxelRegion part = regionBetween(loadVolume(source), Vec3(0.2, 0.25, 0), Vec3(0.4, 0.5, 0.01));
+    CHECK(part.lo.x == 5); // 0.2 · 25
+    CHECK(part.hi.x == 10);
+    CHECK(part.lo.z == 0);
+    CHECK(part.hi.z == 1);
+    source.region = VoxelRegion{{4, 4, 4}, {14, 14, 8}}; // 2 voxels along x and y, and one of 4 along z
+    const VoxelRegion inner = regionBetween(loadVolume(source), Vec3(0.5), Vec3(1));
+    CHECK(inner == VoxelRegion{{9, 9, 6}, {14, 14, 8}});
+}
+
+TEST_CASE("mapped 8-bit samples are their own codes", "[large]") {
+    const TempFolder folder;
+    VolumeSource source;
+    std::string bytes(256 * 256 * 256, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 31 >> 5);
+    source.path = folder.write("a.raw", bytes);
+    source.raw = parseRawLayout("256,256,256,u8");
+    const Volume volume = loadVolume(source);
+    REQUIRE(volume.isMapped());
+    const auto& samples = std::get<SampleArray<std::uint8_t>>(volume.samples());
+    const IntensityGrid grid = makeIntensityGrid(volume, CodeWidth::Narrow);
+    CHECK(grid.codes.narrow() == samples.data());
+    CHECK(grid.maxCode == 255);
+    // Where the window cuts values off they are codes of their own.
+    const IntensityGrid cut = makeIntensityGrid(volume.withRange({0, 100}), CodeWidth::Narrow);
+    REQUIRE(cut.codes.isNarrow());
+    CHECK(cut.codes.narrow() != samples.data());
+    CHECK(cut.codes[8] == std::min<int>(100, samples[8]));
 }

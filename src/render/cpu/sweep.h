@@ -20,9 +20,9 @@ inline constexpr int kSweepLanes = 8;     ///< candidates of one sweep
 inline constexpr int kJacobianLanes = 16; ///< of a sweep for derivatives: the depth itself and up to 15 of them
 inline constexpr std::uint16_t kTransparent = 65535; ///< in SweepInput::featureOfCode: opacity 0 in every candidate
 inline constexpr std::uint16_t kInvalidCode = 65535;
-inline constexpr int kCodePadding = 16; ///< codes that may be read behind the last voxel
+inline constexpr int kCodePadding = 16;     ///< codes that may be read behind the last voxel
 inline constexpr int kMostSweepPlanes = 12; ///< sides of a part of the box, and oblique ones
-inline constexpr int kBlockSize = 8;    ///< voxels along each edge of a block of the opaque map
+inline constexpr int kBlockSize = 8;        ///< voxels along each edge of a block of the opaque map
 
 enum class SweepMode {
     Single,  ///< one lane, one transfer function; writes the field if asked to
@@ -55,11 +55,14 @@ struct SweepInput {
 
     // The volume.
     int nu = 0, nv = 0, nw = 0;
-    const std::uint16_t* codes = nullptr; ///< codeStrides.u is 1; kInvalidCode where invalid
+    const std::uint16_t* codes = nullptr;      ///< codeStrides.u is 1; kInvalidCode where invalid
+    const std::uint8_t* narrowCodes = nullptr; ///< in place of them, none invalid; codeStrides.u may be any
     SweepStrides codeStrides;
     bool someInvalid = false;
-    const std::uint32_t* weights = nullptr; ///< low half L_b, high half L_s; null: no weighted sums; fieldStrides
-    float* field = nullptr;                 ///< Single only: where v goes, zero before; null: not wanted; fieldStrides
+    const std::uint32_t* weights = nullptr;       ///< low half L_b, high half L_s; fieldStrides
+    const std::uint8_t* compactWeights = nullptr; ///< in place of them, entries of weightOfByte; both null: no sums
+    const std::uint32_t* weightOfByte = nullptr;  ///< [256], as `weights` are
+    float* field = nullptr; ///< Single only: where v goes, zero before; null: not wanted; fieldStrides
     SweepStrides fieldStrides;
     /// Per block, a bit per lane that is opaque there or up to a voxel around (Jacobian: 255 if any is); opaqueStrides.
     const std::uint8_t* opaque = nullptr;
@@ -93,9 +96,9 @@ struct SweepInput {
     /// The length in d0 of a difference Δ of voxel coordinates is √(Δᵀ·metric·Δ): guu … the entries of that symmetric
     /// matrix.
     double guu = 1, gvv = 1, gww = 1, guv = 0, guw = 0, gvw = 0;
-    int stepsPerSlice = 1;                   ///< samples of a line per slice distance
-    int ownSteps = 4;    ///< samples per slice distance of the lines of voxels that are followed all the way
-    float tolerance = 1; ///< transmittance: where neighbouring rays differ by more, voxels follow their own line
+    int stepsPerSlice = 1; ///< samples of a line per slice distance
+    int ownSteps = 4;      ///< samples per slice distance of the lines of voxels that are followed all the way
+    float tolerance = 1;   ///< transmittance: where neighbouring rays differ by more, voxels follow their own line
 };
 
 /// A part of a sweep that needs no other: the voxels of the slices [begin, end) that lie between the rows of rays
