@@ -25,10 +25,8 @@ struct Options {
 constexpr int kCubeSize = 128; ///< of the smallest
 
 /// All rows at once: what measuring takes, weights for nine features (4), a renderer's codes (3) and, while `setup`
-/// runs, another engine (5).
-constexpr double kBenchBytesPerVoxel = kMeasureBytesPerVoxel + 4 + 3 + 5;
-
-const Work kWork{"measuring", kBenchBytesPerVoxel, true};
+/// runs, another engine (5). Of lean volumes the weights (1) come twice.
+const Work kWork{{"measuring", kMeasureBytesPerVoxel + 4 + 3 + 5, kLeanMeasureBytesPerVoxel + 1}, true};
 
 /// One name per comma.
 std::set<BenchRow> parseRows(const std::string& text, const std::string& option) {
@@ -93,7 +91,8 @@ public:
         const Scene block = openScene(inputs, m_progress.phase("loading"));
         const bool isDense = !m_options.scene.tf.spec;
         const int largest = m_options.full ? 4 : 2;
-        requireMemory(inputs.then, kCube + std::to_string(largest * kCubeSize), block.volume->dims() * largest);
+        requireMemory(inputs.then, kCube + std::to_string(largest * kCubeSize), block.volume->dims() * largest,
+                      block.volume->sampleType());
         std::vector<BenchCase> cubes;
         for (int n = 1; n <= largest; n *= 2) {
             const auto volume = n == 1 ? block.volume : tiled(*block.volume, n);

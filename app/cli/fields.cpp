@@ -71,7 +71,7 @@ Grid<float> vwsField(const Grid<float>& visibility, const WeightFields& weights,
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     checkOutputFolder(o.out, "--out", kFiles, inputFiles(o.scene));
-    const Opened opened = resolve(o.scene, progress, {"measuring", kFieldsBytesPerVoxel, true});
+    const Opened opened = resolve(o.scene, progress, {toWriteFields(), true});
     const MeasureInput input = measureInput(opened.scene);
     Workspace workspace;
     const std::string engineName = prepare(workspace, input, progress).engine;

@@ -6,6 +6,12 @@ namespace pellucid::cli {
 
 namespace {
 
+std::string regionText(const VoxelRegion& r) {
+    std::string text;
+    for (int a = 0; a < 3; ++a) text += (a > 0 ? "," : "") + std::to_string(r.lo[a]) + ":" + std::to_string(r.hi[a]);
+    return text;
+}
+
 std::string textOf(const Volume& v) {
     std::vector<std::pair<std::string, std::string>> lines{
         {"title", v.title},
@@ -16,6 +22,12 @@ std::string textOf(const Volume& v) {
         {"origin", vectorText(v.geometry().origin) + " world units"},
         {"range", rangeText(v.range().lo, v.range().hi)},
     };
+    if (v.excerpt) {
+        const Excerpt& e = *v.excerpt;
+        lines.emplace_back("data", dimsText(e.fullDims) + " voxels");
+        lines.emplace_back("region", regionText(e.region));
+        lines.emplace_back("downsampled", "by " + std::to_string(e.factor));
+    }
     if (v.range() != v.dataRange()) lines.emplace_back("values", rangeText(v.dataRange().lo, v.dataRange().hi));
     lines.emplace_back("invalid", countText(v.invalidCount()) + " of " + countText(v.size()) + " voxels");
     lines.emplace_back("memory", bytesText(v.memoryBytes()));
@@ -24,8 +36,12 @@ std::string textOf(const Volume& v) {
 }
 
 Json jsonOf(const Volume& v) {
+    const Excerpt whole{v.dims(), {Int3(0), v.dims()}, 1, false}, e = v.excerpt.value_or(whole);
     return {{"command", "info"},
             {"dims", jsonFromDims(v.dims())},
+            {"full_dims", jsonFromDims(e.fullDims)},
+            {"region", {jsonFromDims(e.region.lo), jsonFromDims(e.region.hi)}},
+            {"downsample", e.factor},
             {"type", name(v.sampleType())},
             {"spacing", jsonFromVector(v.geometry().spacing)},
             {"origin", jsonFromVector(v.geometry().origin)},

@@ -77,7 +77,7 @@ Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m,
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    const Opened opened = resolve(o.scene, progress, {"measuring", kMeasureBytesPerVoxel, true});
+    const Opened opened = resolve(o.scene, progress, {toMeasure("measuring"), true});
     const MeasureInput input = measureInput(opened.scene);
     Workspace workspace;
     const auto [engine, saliencySeconds] = prepare(workspace, input, progress);

@@ -91,7 +91,7 @@ Answer run(const Options& o, Progress& progress) {
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
-    const Opened opened = resolve(o.scene, progress, {"optimizing", kMeasureBytesPerVoxel, true});
+    const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
     const Scene& scene = opened.scene;
     const std::vector<double> targets = o.targets.value_or(scene.targets());
     atOption("--target", [&] { return normalizedTargets(targets, scene.tf.features.size()); });

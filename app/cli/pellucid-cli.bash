@@ -38,9 +38,9 @@ _pellucid_cli() {
             compopt -o filenames 2>/dev/null
             return
             ;;
-        --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --view | --step | \
-            --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
-            --max-iterations | --repeat | --fix | --target | --tolerance)
+        --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
+            --region | --view | --step | --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
+            --saliency-background | --step-down | --max-iterations | --repeat | --fix | --target | --tolerance)
             return
             ;;
     esac

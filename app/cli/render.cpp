@@ -40,7 +40,7 @@ void check(const Options& o) {
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     check(o);
-    const Opened opened = resolve(o.scene, progress, {"drawing", kViewBytesPerVoxel});
+    const Opened opened = resolve(o.scene, progress, {toView("drawing")});
     const PictureInput picture = o.scene.picture.pictureOf(opened.scene);
     const auto renderer = makeRenderer(opened.scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;

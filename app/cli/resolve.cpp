@@ -24,14 +24,16 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.engine.applyTo(inputs);
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);
-    const bool byReference = work.byEngine && inputs.session.measure->engine == EngineChoice::Reference;
-    inputs.then = {work.doing, work.bytesPerVoxel + (byReference ? kMoreByReferenceBytesPerVoxel : 0.0)};
+    const bool reference = work.byEngine && inputs.session.measure->engine == EngineChoice::Reference;
+    inputs.then = reference ? byReference(work.use) : work.use;
     return inputs;
 }
 
 std::vector<std::string> Opened::notices() const {
     std::vector<std::string> all = sessionNotices;
     all.insert(all.end(), scene.volume->notices.begin(), scene.volume->notices.end());
+    if (scene.volume->excerpt && scene.volume->excerpt->forMemory)
+        all.emplace_back("--region X0:X1,Y0:Y1,Z0:Z1 opens a part at full resolution, --downsample 1 all or nothing");
     return all;
 }
 

@@ -29,10 +29,9 @@ struct SceneOptions {
     void addForFigures(CLI::App& app);
 };
 
-/// What a command does with the volume, and the memory that it takes beside it, bytes per voxel.
+/// What a command does with the volume, and the memory that it takes beside it.
 struct Work {
-    std::string doing; ///< "measuring"; empty: nothing
-    double bytesPerVoxel = 0;
+    MemoryUse use;
     bool byEngine = false; ///< the reference engine takes more
 };
 

@@ -72,15 +72,15 @@ std::uint64_t leftByGroups(const fs::path& mounted, const std::string& group, co
     return least;
 }
 
-/// Pages of the process: all that are mapped, and those in memory.
+/// Pages of the process: all that are mapped, and those in memory that are not files, which the system can drop.
 struct Pages {
-    std::uint64_t mapped = 0, resident = 0;
+    std::uint64_t mapped = 0, taken = 0;
 };
 Pages pagesOfThisProcess() {
-    Pages pages;
+    std::uint64_t mapped = 0, resident = 0, files = 0;
     std::ifstream in("/proc/self/statm");
-    if (!(in >> pages.mapped >> pages.resident)) return {};
-    return pages;
+    if (!(in >> mapped >> resident >> files)) return {};
+    return {mapped, left(resident, files)};
 }
 
 std::uint64_t pageBytes() {
@@ -113,7 +113,7 @@ std::uint64_t availableMemoryBytes(const fs::path& root) {
 
 std::uint64_t availableMemoryBytes() {
     if (const std::uint64_t limit = g_limit; limit != kUnknown)
-        return left(limit, pagesOfThisProcess().resident * pageBytes());
+        return left(limit, pagesOfThisProcess().taken * pageBytes());
     std::uint64_t least = availableMemoryBytes(fs::path("/"));
 #if defined(__linux__)
     rlimit space{};
@@ -133,7 +133,7 @@ void requireMemory(const std::string& doing, const std::string& where, std::uint
     if (limit == kUnknown)
         throw FileError(needs + describeBytes(available) + " are free", where,
                         "close other programs, use a larger machine or a smaller volume");
-    const std::uint64_t taken = pagesOfThisProcess().resident * pageBytes();
+    const std::uint64_t taken = pagesOfThisProcess().taken * pageBytes();
     throw FileError(needs + describeBytes(available) + " are free: the program itself takes " + describeBytes(taken) +
                         " of the " + describeBytes(limit) + " allowed",
                     where, "allow more, or use a smaller volume", Remedy::AllowMoreMemory);

@@ -16,7 +16,7 @@ std::uint64_t availableMemoryBytes();
 /// The same, from a tree of files that looks like `root`/proc and `root`/sys, without the limit on address space.
 std::uint64_t availableMemoryBytes(const std::filesystem::path& root);
 
-/// What the whole process may use from now on, bytes; empty: what there is.
+/// What the whole process may use from now on, bytes, files that it has mapped left out; empty: what there is.
 void setMemoryLimit(std::optional<std::uint64_t> bytes);
 
 /// Throws FileError where `needed` bytes are not available: "`doing` needs … of memory, … are free, `where`, …".

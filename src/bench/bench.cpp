@@ -337,7 +337,7 @@ std::shared_ptr<const Volume> tiled(const Volume& block, int n) {
     geometry.dims = d * n;
     Samples samples = std::visit(
         [&](const auto& from) -> Samples {
-            std::decay_t<decltype(from)> to;
+            std::vector<typename std::decay_t<decltype(from)>::value_type> to;
             to.reserve(voxelCount(geometry.dims));
             for (int k = 0; k < geometry.dims.z; ++k)
                 for (int j = 0; j < geometry.dims.y; ++j) {

@@ -1,16 +1,32 @@
-// What measuring and drawing take of memory beside the volume itself, bytes per voxel.
+// What measuring and drawing take of memory beside the volume itself.
 #pragma once
+
+#include "volume/memory_use.h"
 
 namespace pellucid {
 
+// Bytes per voxel; "lean" those of large volumes of 8-bit samples, see isLean().
+
 /// 2 for intensity codes, 2 for the same in the order of sweeps along x, 4 for the two weights of saliency. Measuring
-/// and optimizing store nothing else.
-inline constexpr double kMeasureBytesPerVoxel = 8;
-/// 4 more for the visibility that is written.
-inline constexpr double kFieldsBytesPerVoxel = 12;
+/// and optimizing store nothing else. Lean: codes take at most 1, in one order, weights 1.
+inline constexpr double kMeasureBytesPerVoxel = 8, kLeanMeasureBytesPerVoxel = 2;
+/// 4 more for the visibility that is written. Lean: likewise, and for each weight in its turn.
+inline constexpr double kFieldsBytesPerVoxel = 12, kLeanFieldsBytesPerVoxel = 10;
 /// The reference engine keeps intensities as doubles, and which are valid, in the place of codes: so much more.
-inline constexpr double kMoreByReferenceBytesPerVoxel = 5;
+inline constexpr double kMoreByReferenceBytesPerVoxel = 5, kLeanMoreByReferenceBytesPerVoxel = 8;
 /// To look at a volume takes its codes, and which are valid.
-inline constexpr double kViewBytesPerVoxel = 3;
+inline constexpr double kViewBytesPerVoxel = 3, kLeanViewBytesPerVoxel = 1;
+
+inline MemoryUse toMeasure(std::string doing) {
+    return {std::move(doing), kMeasureBytesPerVoxel, kLeanMeasureBytesPerVoxel};
+}
+inline MemoryUse toWriteFields() { return {"measuring", kFieldsBytesPerVoxel, kLeanFieldsBytesPerVoxel}; }
+inline MemoryUse toView(std::string doing) { return {std::move(doing), kViewBytesPerVoxel, kLeanViewBytesPerVoxel}; }
+/// The same by the reference engine.
+inline MemoryUse byReference(MemoryUse use) {
+    use.bytesPerVoxel += kMoreByReferenceBytesPerVoxel;
+    use.leanBytesPerVoxel += kLeanMoreByReferenceBytesPerVoxel;
+    return use;
+}
 
 } // namespace pellucid

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volume/grid.h"
+#include "volume/intensity_grid.h"
 
 namespace pellucid {
 
@@ -16,10 +17,10 @@ struct Interpolated {
     double validShare = 0; ///< weight of the valid corners, [0,1]
 };
 
-/// Trilinear between centres, clamped to the edge beyond the outer ones. `at` is in voxels. `valid` may be empty.
+/// Trilinear between centres, clamped to the edge beyond the outer ones, of a grid of `n` values. `at` is in voxels.
+/// `valid` may be empty.
 template <class T>
-Interpolated interpolate(const Grid<T>& grid, const std::vector<std::uint8_t>& valid, const Vec3& at) {
-    const Int3 n = grid.dims();
+Interpolated interpolate(const T* grid, const Int3& n, const std::vector<std::uint8_t>& valid, const Vec3& at) {
     int base[3];
     double fraction[3];
     std::size_t step[3] = {1, static_cast<std::size_t>(n.x),
@@ -30,7 +31,8 @@ Interpolated interpolate(const Grid<T>& grid, const std::vector<std::uint8_t>& v
         fraction[a] = p - base[a];
         if (n[a] == 1) step[a] = 0;
     }
-    const std::size_t corner = grid.index(base[0], base[1], base[2]);
+    const std::size_t corner = static_cast<std::size_t>(base[0]) + step[1] * static_cast<std::size_t>(base[1]) +
+                               step[2] * static_cast<std::size_t>(base[2]);
     if (valid.empty()) { // nearly always: no weights to keep
         const auto alongX = [&](std::size_t i) {
             const auto low = static_cast<double>(grid[i]), high = static_cast<double>(grid[i + step[0]]);
@@ -58,6 +60,14 @@ Interpolated interpolate(const Grid<T>& grid, const std::vector<std::uint8_t>& v
     }
     if (result.validShare > 0) result.value /= result.validShare;
     return result;
+}
+
+template <class T>
+Interpolated interpolate(const Grid<T>& grid, const std::vector<std::uint8_t>& valid, const Vec3& at) {
+    return interpolate(grid.data(), grid.dims(), valid, at);
+}
+inline Interpolated interpolate(const CodeGrid& codes, const std::vector<std::uint8_t>& valid, const Vec3& at) {
+    return codes.visit([&](const auto* grid) { return interpolate(grid, codes.dims(), valid, at); });
 }
 
 } // namespace pellucid

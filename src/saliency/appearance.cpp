@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "volume/memory_use.h"
 
 namespace pellucid {
 
@@ -184,7 +185,7 @@ TransferFunction colorsOf(const TransferFunction& tf) {
 
 WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options) {
     const double w = std::max(options.w1, options.w2);
-    return {dims, w, 1.34 * w};
+    return {dims, w, 1.34 * w, voxelCount(dims) >= kLeanVoxels ? WeightForm::Compact : WeightForm::Exact};
 }
 
 bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOptions& options) {

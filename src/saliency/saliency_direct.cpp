@@ -1,7 +1,6 @@
 #include "saliency/saliency_direct.h"
 
 #include <atomic>
-#include <cstring>
 
 #include "base/parallel.h"
 #include "saliency/slice_ring.h"
@@ -50,8 +49,7 @@ void sweepTile(const BallPair& balls, const std::array<std::vector<std::vector<f
                 static_cast<std::size_t>(tile.x0) +
                 static_cast<std::size_t>(dims.x) *
                     (static_cast<std::size_t>(y) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(z));
-            std::memcpy(fields.data() + voxel, packed.get() + kHaloVoxels,
-                        static_cast<std::size_t>(width) * sizeof(std::uint32_t));
+            fields.store(voxel, packed.get() + kHaloVoxels, static_cast<std::size_t>(width));
         }
     }
 }

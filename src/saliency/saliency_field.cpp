@@ -83,9 +83,7 @@ private:
             static_cast<std::size_t>(m_dims.x) *
                 (static_cast<std::size_t>(y) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(z));
         if (m_constantWeight > 0) fillRow(y, z, first);
-        if (m_constantWeight == 0 && m_used)
-            std::memset(m_fields.data() + first, 0,
-                        static_cast<std::size_t>(m_tile.x1 - m_tile.x0) * sizeof(std::uint32_t));
+        if (m_constantWeight == 0 && m_used) m_fields.clear(first, static_cast<std::size_t>(m_tile.x1 - m_tile.x0));
         const std::uint64_t blocks = busy(y);
         if (blocks == 0) return;
         const float** rows = m_rows.data() + m_reachY;
@@ -95,8 +93,8 @@ private:
         forEachRun(blocks, [&](int from, int to) {
             m_kernel.packRow(m_plan, rows, scales, from, to, m_profiles.get(), m_packed.get());
             const int x = from / 2 - kHaloVoxels, count = std::min(to / 2 - kHaloVoxels, m_tile.x1 - m_tile.x0) - x;
-            std::memcpy(m_fields.data() + first + x, m_packed.get() + from / 2,
-                        static_cast<std::size_t>(count) * sizeof(std::uint32_t));
+            m_fields.store(first + static_cast<std::size_t>(x), m_packed.get() + from / 2,
+                           static_cast<std::size_t>(count));
         });
     }
 

@@ -25,7 +25,7 @@ struct SaliencyOptions {
 
 /// All 0, with room for the largest weights possible: L ≤ max(w1, w2)·O (4.8), and no sRGB colour has O_b above 1 or
 /// O_s above 1.34. These bounds do not depend on the colours at hand, so that greys, whose chroma is 0 but for
-/// rounding, get weights of exactly 0.
+/// rounding, get weights of exactly 0. Compact from kLeanVoxels on.
 WeightFields emptyWeightFields(const Int3& dims, const SaliencyOptions& options);
 /// Makes `fields` such as emptyWeightFields() returns, but keeps memory and values that fit: true where it does.
 bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOptions& options);

@@ -153,6 +153,10 @@ json fromSource(const VolumeSource& s, const std::string& folder, DataPaths path
     }
     if (s.component != 0) j["component"] = s.component;
     if (s.missing) j["missing"] = *s.missing;
+    if (s.downsample != 0) j["downsample"] = s.downsample;
+    if (s.region)
+        j["region"] = {{s.region->lo.x, s.region->lo.y, s.region->lo.z},
+                       {s.region->hi.x, s.region->hi.y, s.region->hi.z}};
     return j;
 }
 
@@ -172,6 +176,17 @@ RawLayout toRawLayout(const JsonValue& j) {
     return raw;
 }
 
+VoxelRegion toRegion(const JsonValue& j) {
+    VoxelRegion region;
+    const auto ends = j.items(2), lo = ends[0].items(3), hi = ends[1].items(3);
+    for (int a = 0; a < 3; ++a) {
+        const auto i = static_cast<std::size_t>(a);
+        region.lo[a] = static_cast<int>(lo[i].integer(0, std::numeric_limits<int>::max() - 1));
+        region.hi[a] = static_cast<int>(hi[i].integer(region.lo[a] + 1, std::numeric_limits<int>::max()));
+    }
+    return region;
+}
+
 VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
     j.requireObject();
     VolumeSource s;
@@ -188,6 +203,8 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
     if (j.has("raw")) s.raw = toRawLayout(j["raw"]);
     if (j.has("component")) s.component = static_cast<int>(j["component"].integer(0, 1'000'000));
     if (j.has("missing")) s.missing = j["missing"].number();
+    if (j.has("downsample")) s.downsample = static_cast<int>(j["downsample"].integer(1, 65536));
+    if (j.has("region")) s.region = toRegion(j["region"]);
     if (!s.isSample() && j.has("bytes") && j.has("crc32")) {
         const auto bytes = static_cast<std::uint64_t>(j["bytes"].integer(0, INT64_MAX));
         const std::string crc = j["crc32"].text();

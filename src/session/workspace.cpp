@@ -22,8 +22,9 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
             m_weightsVolume.reset();
             m_weights = {};
         }
-        const double more = settings.engine == EngineChoice::Reference ? kMoreByReferenceBytesPerVoxel : 0.0;
-        requireMemory({"measuring", kMeasureBytesPerVoxel + more}, input.volume->title, input.volume->dims());
+        const MemoryUse use = toMeasure("measuring");
+        requireMemory(settings.engine == EngineChoice::Reference ? byReference(use) : use, input.volume->title,
+                      input.volume->dims(), input.volume->sampleType());
         m_engine = makeEngine(settings.engine, input.volume, settings.quality);
         m_engineVolume = input.volume;
         m_choice = settings.engine;

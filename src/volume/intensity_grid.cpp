@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "base/parallel.h"
+#include "volume/memory_use.h"
 
 namespace pellucid {
 
@@ -21,28 +22,85 @@ IntensityCoder::IntensityCoder(const Volume& volume) {
     }
 }
 
-IntensityGrid makeIntensityGrid(const Volume& volume) {
-    const IntensityCoder coder(volume);
-    IntensityGrid grid;
-    grid.codes = Grid<std::uint16_t>(volume.dims());
-    grid.maxCode = coder.maxCode();
-    grid.codeStep = coder.codeStep();
-    if (volume.invalidCount() > 0) grid.valid.assign(volume.size(), 1);
+CodeGrid::CodeGrid(const Int3& dims, ZeroedVector<std::uint16_t> wide) : m_dims(dims) {
+    PELLUCID_CHECK(wide.size() == size() + kPadding);
+    auto held = std::make_shared<const ZeroedVector<std::uint16_t>>(std::move(wide));
+    m_wide = held->data();
+    m_owner = std::move(held);
+}
+
+CodeGrid::CodeGrid(const Int3& dims, ZeroedVector<std::uint8_t> narrow) : m_dims(dims) {
+    PELLUCID_CHECK(narrow.size() == size() + kPadding);
+    auto held = std::make_shared<const ZeroedVector<std::uint8_t>>(std::move(narrow));
+    m_narrow = held->data();
+    m_owner = std::move(held);
+}
+
+CodeGrid::CodeGrid(const Int3& dims, SampleArray<std::uint8_t> narrow) : m_dims(dims) {
+    static_assert(kPadding <= MappedFile::kPadding);
+    PELLUCID_CHECK(narrow.size() == size() && narrow.isMapped());
+    auto held = std::make_shared<const SampleArray<std::uint8_t>>(std::move(narrow));
+    m_narrow = held->data();
+    m_owner = std::move(held);
+}
+
+namespace {
+
+/// Calls make(i, value) for every voxel, on threads.
+template <class Make>
+void forEachVoxel(const Volume& volume, const Make& make) {
     std::visit(
         [&](const auto& values) {
             const std::size_t slices = static_cast<std::size_t>(volume.dims().z);
             const std::size_t plane = volume.size() / slices;
             parallelFor(slices, [&](std::size_t k) {
-                for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
-                    const double s = volume.intensityOfValue(static_cast<double>(values[i]));
-                    if (std::isnan(s))
-                        grid.valid[i] = 0;
-                    else
-                        grid.codes[i] = coder.code(s);
-                }
+                for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) make(i, values[i]);
             });
         },
         volume.samples());
+}
+
+/// 8-bit samples of a window from 0 up to their largest value or beyond it are their own codes.
+const SampleArray<std::uint8_t>* asCodes(const Volume& volume) {
+    const auto* samples = std::get_if<SampleArray<std::uint8_t>>(&volume.samples());
+    const bool asTheyAre = volume.range().lo == 0 && volume.dataRange().hi <= volume.range().hi;
+    return samples != nullptr && samples->isMapped() && asTheyAre ? samples : nullptr;
+}
+
+} // namespace
+
+IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width) {
+    const IntensityCoder coder(volume);
+    IntensityGrid grid;
+    grid.maxCode = coder.maxCode();
+    grid.codeStep = coder.codeStep();
+    const bool wanted =
+        width == CodeWidth::Narrow || (width == CodeWidth::BySize && isLean(volume.dims(), volume.sampleType()));
+    if (wanted && coder.exact() && grid.maxCode / grid.codeStep <= 255 && volume.invalidCount() == 0) {
+        grid.maxCode /= grid.codeStep;
+        if (const auto* samples = asCodes(volume)) {
+            grid.codes = CodeGrid(volume.dims(), *samples);
+        } else {
+            ZeroedVector<std::uint8_t> codes(volume.size() + CodeGrid::kPadding);
+            forEachVoxel(volume, [&](std::size_t i, auto value) {
+                const double s = volume.intensityOfValue(static_cast<double>(value));
+                codes[i] = static_cast<std::uint8_t>(coder.code(s) / grid.codeStep);
+            });
+            grid.codes = CodeGrid(volume.dims(), std::move(codes));
+        }
+        grid.codeStep = 1;
+        return grid;
+    }
+    ZeroedVector<std::uint16_t> codes(volume.size() + CodeGrid::kPadding);
+    if (volume.invalidCount() > 0) grid.valid.assign(volume.size(), 1);
+    forEachVoxel(volume, [&](std::size_t i, auto value) {
+        const double s = volume.intensityOfValue(static_cast<double>(value));
+        if (std::isnan(s))
+            grid.valid[i] = 0;
+        else
+            codes[i] = coder.code(s);
+    });
+    grid.codes = CodeGrid(volume.dims(), std::move(codes));
     return grid;
 }
 

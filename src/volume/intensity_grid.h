@@ -1,9 +1,10 @@
-// Intensities as 16-bit codes: what the fast engines and the GPU read instead of the samples.
+// Intensities as codes of 16 bits or 8: what the fast engines and the GPU read instead of the samples.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "base/zeroed_memory.h"
 #include "volume/volume.h"
 
 namespace pellucid {
@@ -30,14 +31,56 @@ private:
     bool m_exact = false;
 };
 
+/// The codes of a volume, x fastest: 16 bits each ("wide") or 8 ("narrow"). Immutable; copies share them.
+class CodeGrid {
+public:
+    static constexpr std::size_t kPadding = 16; ///< codes that may be read behind the last one
+
+    CodeGrid() = default;
+    CodeGrid(const Int3& dims, ZeroedVector<std::uint16_t> wide); ///< kPadding more than voxels
+    CodeGrid(const Int3& dims, ZeroedVector<std::uint8_t> narrow);
+    CodeGrid(const Int3& dims, SampleArray<std::uint8_t> narrow); ///< mapped samples, which are codes as they are
+
+    const Int3& dims() const noexcept { return m_dims; }
+    std::size_t size() const noexcept { return voxelCount(m_dims); }
+    std::size_t index(int i, int j, int k) const {
+        return static_cast<std::size_t>(i) +
+               static_cast<std::size_t>(m_dims.x) *
+                   (static_cast<std::size_t>(j) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(k));
+    }
+    bool isNarrow() const noexcept { return m_narrow != nullptr; }
+    const std::uint16_t* wide() const noexcept { return m_wide; }    ///< null where narrow
+    const std::uint8_t* narrow() const noexcept { return m_narrow; } ///< null where wide
+    std::uint16_t operator[](std::size_t i) const { return m_narrow ? m_narrow[i] : m_wide[i]; }
+    /// Calls use(pointer) with the one that is not null.
+    template <class Use>
+    decltype(auto) visit(const Use& use) const {
+        return m_narrow ? use(m_narrow) : use(m_wide);
+    }
+
+private:
+    Int3 m_dims{0, 0, 0};
+    std::shared_ptr<const void> m_owner;
+    const std::uint16_t* m_wide = nullptr;
+    const std::uint8_t* m_narrow = nullptr;
+};
+
 struct IntensityGrid {
-    Grid<std::uint16_t> codes;       ///< shape of the volume; 0 where invalid
+    CodeGrid codes;                  ///< 0 where invalid
     int maxCode = 64000;             ///< intensity is code / maxCode
     int codeStep = 1;                ///< codes are multiples of this
     std::vector<std::uint8_t> valid; ///< one byte per voxel, 1 = valid; empty where every voxel is valid
 };
 
-IntensityGrid makeIntensityGrid(const Volume& volume);
+/// Whether codes are narrow: where 8 bits hold all intensities exactly and every voxel is valid, it saves memory and
+/// costs nothing but that textures of 8 bits are filtered more coarsely by some graphics devices.
+enum class CodeWidth {
+    BySize, ///< of volumes that isLean()
+    Wide,   ///< never
+    Narrow  ///< wherever it can be
+};
+/// Narrow codes are value − lo, in the window 0 … maxCode the mapped samples themselves: these take no memory.
+IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width = CodeWidth::BySize);
 
 /// The same, made once for a volume in its window and shared by all who hold it at a time: picture and measure. Made on
 /// the calling thread; gone with the last holder. Any thread may call.

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "volume/excerpt.h"
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
 #include "volume/procedural.h"
@@ -62,14 +63,20 @@ Volume sample(const VolumeSource& source, const JobControl& job) {
     if (source.raw) throw UsageError("a sample has no raw layout", source.path, "ask for none");
     if (source.component != 0)
         throw UsageError("a sample has one component", source.path, "ask for none", Remedy::NoComponent);
-    Volume volume =
-        makeSample(source.path.substr(kSamplePrefix.size()), source.sampleSize, source.seed, job, source.then);
-    if (!source.missing) return volume;
-    Volume other(volume.geometry(), volume.samples(), source.missing);
-    if (volume.range() != volume.dataRange()) other = other.withRange(volume.range());
-    other.title = volume.title;
-    other.format = volume.format;
-    return other;
+    Volume volume = makeSample(source.path.substr(kSamplePrefix.size()), source.sampleSize, source.seed, job,
+                               source.downsample > 1 || source.region ? MemoryUse{} : source.then);
+    if (source.missing) {
+        Volume other(volume.geometry(), volume.samples(), source.missing);
+        if (volume.range() != volume.dataRange()) other = other.withRange(volume.range());
+        other.title = volume.title;
+        other.format = volume.format;
+        volume = std::move(other);
+    }
+    // A sample has a size of its own to be chosen: only what is asked for makes it coarser.
+    VolumeSource asked = source;
+    asked.downsample = std::max(1, source.downsample);
+    const ExcerptPlan plan = planExcerpt(asked, volume.dims(), volume.sampleType(), false);
+    return plan.isWhole() ? volume : excerptOf(volume, plan);
 }
 
 /// "7", "-0.5": a value as people write it.

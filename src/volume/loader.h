@@ -33,13 +33,17 @@ struct VolumeSource {
     int component = 0;               ///< of a multi-component file
     int sampleSize = 0;              ///< --size of a sample, 0 = its default
     std::uint32_t seed = 1;          ///< of a sample
-    MemoryUse then;                  ///< what is done with it next; checked before anything is allocated
+    /// Each voxel is the mean of so many along each axis (see excerpt.h). 1: all voxels, or an error where memory has
+    /// no room for them; 0: likewise, but by the smallest factor for which there is room.
+    int downsample = 0;
+    std::optional<VoxelRegion> region; ///< only these voxels, in voxels of the data, before `downsample`
+    MemoryUse then;                    ///< what is done with it next; checked before anything is allocated
 
     bool isSample() const { return path.starts_with("sample:"); }
     /// Whether both name the same data, whatever is done with it.
     bool operator==(const VolumeSource& o) const {
         return path == o.path && raw == o.raw && missing == o.missing && range == o.range && component == o.component &&
-               sampleSize == o.sampleSize && seed == o.seed;
+               sampleSize == o.sampleSize && seed == o.seed && downsample == o.downsample && region == o.region;
     }
 };
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "volume/grid.h"
+#include "volume/volume.h"
 
 namespace pellucid {
 
@@ -12,12 +12,20 @@ namespace pellucid {
 struct MemoryUse {
     std::string doing; ///< "measuring"; empty: nothing
     double bytesPerVoxel = 0;
+    double leanBytesPerVoxel = 0; ///< the same of volumes that isLean(); at most bytesPerVoxel
 };
 
+/// Large volumes of few different values are worked on in less memory: kLeanVoxels or more, of 8-bit samples.
+inline constexpr std::size_t kLeanVoxels = std::size_t{3} << 27; // three times 512³
+bool isLean(const Int3& dims, SampleType type);
+
+/// Bytes that `use` of a volume takes.
+std::uint64_t bytesOf(const MemoryUse& use, const Int3& dims, SampleType type);
+
 /// Throws FileError where a volume in memory leaves no room for `use`: "`doing` NX x NY x NZ voxels needs …".
-void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims);
+void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims, SampleType type);
 /// The same for a volume to be read: `reading` bytes at most while it is read, `kept` afterwards, when `use` begins.
-void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims, std::uint64_t reading,
-                   std::uint64_t kept);
+void requireMemory(const MemoryUse& use, const std::string& where, const Int3& dims, SampleType type,
+                   std::uint64_t reading, std::uint64_t kept);
 
 } // namespace pellucid

@@ -263,7 +263,7 @@ Volume makeSample(const std::string& name, int size, std::uint32_t seed, const J
                          "give " + std::to_string(kLeast) + " to " + std::to_string(kMost) + " voxels");
     const Geometry geometry = geometryOf(*found, size);
     const std::uint64_t bytes = voxelCount(geometry.dims) * 2; // of 16-bit samples, the largest there are
-    requireMemory(then, "sample:" + name, geometry.dims, bytes, bytes);
+    requireMemory(then, "sample:" + name, geometry.dims, SampleType::U16, bytes, bytes);
     Volume volume = found->make(geometry, seed, job);
     volume.title = name;
     volume.format = "sample";

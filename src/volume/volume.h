@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "volume/grid.h"
+#include "volume/sample_array.h"
 
 namespace pellucid {
 
@@ -21,9 +22,9 @@ const char* name(SampleType type);
 std::optional<SampleType> sampleTypeFromName(const std::string& name);
 std::size_t bytesPerSample(SampleType type);
 
-using Samples = std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
-                             std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
-                             std::vector<float>, std::vector<double>>;
+using Samples = std::variant<SampleArray<std::uint8_t>, SampleArray<std::int8_t>, SampleArray<std::uint16_t>,
+                             SampleArray<std::int16_t>, SampleArray<std::uint32_t>, SampleArray<std::int32_t>,
+                             SampleArray<float>, SampleArray<double>>;
 
 /// An intensity window in data units; intensity 0 at lo, 1 at hi.
 struct ValueRange {
@@ -63,6 +64,21 @@ struct Geometry {
     bool contains(const Vec3& world) const;               ///< strictly inside the box
     /// The reference length: one unit of path for opacity, world units.
     double d0() const { return std::min(spacing.x, std::min(spacing.y, spacing.z)); }
+};
+
+/// Voxels lo … hi − 1 along each axis.
+struct VoxelRegion {
+    Int3 lo{0, 0, 0}, hi{0, 0, 0};
+    bool operator==(const VoxelRegion&) const = default;
+};
+
+/// Which part of its data a volume is, and how fine: where it is not all of them.
+struct Excerpt {
+    Int3 fullDims{0, 0, 0};
+    VoxelRegion region;     ///< in voxels of the data
+    int factor = 1;         ///< each voxel is the mean over so many of the data along each axis
+    bool forMemory = false; ///< the factor was chosen because memory has no room for more
+    bool operator==(const Excerpt&) const = default;
 };
 
 struct IntensityGrid;
@@ -110,10 +126,15 @@ public:
 
     SharedCodes& sharedCodes() const noexcept { return *m_codes; }
     std::size_t memoryBytes() const noexcept { return size() * bytesPerSample(sampleType()); }
+    /// The samples lie in their file, which the system reads as they are looked at.
+    bool isMapped() const {
+        return std::visit([](const auto& values) { return values.isMapped(); }, *m_samples);
+    }
 
     /// Free text for people, set by readers and generators.
-    std::string title;  ///< file name or sample name
-    std::string format; ///< "NRRD", "MetaImage", "NIfTI", "raw", "sample"
+    std::string title;              ///< file name or sample name
+    std::string format;             ///< "NRRD", "MetaImage", "NIfTI", "raw", "sample"
+    std::optional<Excerpt> excerpt; ///< empty: all voxels of the data
     /// Remarks the user should see once, e.g. "the first of 25 time steps is shown".
     std::vector<std::string> notices;
 

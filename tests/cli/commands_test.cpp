@@ -95,6 +95,24 @@ TEST_CASE("info tells what a generated file holds", "[cli]") {
     }
 }
 
+TEST_CASE("a volume opens coarser, or a part of it", "[cli]") {
+    const Workshop w;
+    w.json({"generate", "knee", "--size", "24", "--out", "knee.nrrd"}); // 24 x 15 x 19
+    const json all = w.json({"info", "knee.nrrd"});
+    CHECK(all["full_dims"] == all["dims"]);
+    CHECK(all["downsample"] == 1);
+    const json j = w.json({"info", "knee.nrrd", "--downsample", "3", "--region", "2:14,0:6,3:7"});
+    CHECK(j["dims"] == json({4, 2, 2})); // 12, 6 and 4 by 3, rounded up
+    CHECK(j["full_dims"] == json({24, 15, 19}));
+    CHECK(j["region"] == json({{2, 0, 3}, {14, 6, 7}}));
+    CHECK(j["downsample"] == 3);
+    CHECK(j["notices"].size() == 2);
+    CHECK(w.run({"info", "knee.nrrd", "--region", "2:14,0:6"}).status == 2);
+    CHECK(w.run({"info", "knee.nrrd", "--region", "2:14,6:6,0:1"}).status == 2);
+    CHECK(w.run({"info", "knee.nrrd", "--region", "2:25,0:6,0:1"}).status == 2);
+    CHECK(w.run({"info", "knee.nrrd", "--downsample", "0"}).status == 2);
+}
+
 TEST_CASE("info reads headerless data as the options lay it out", "[cli]") {
     const Workshop w;
     // 3 bytes to skip, then the eight u16 0x0100 … 0x0107, big endian, the last one missing.

@@ -268,7 +268,9 @@ std::shared_ptr<const Volume> randomVolume(std::string& kind, Random& random, do
             [&](auto& integers) {
                 using T = typename std::decay_t<decltype(integers)>::value_type;
                 if constexpr (std::is_integral_v<T>) {
-                    invalidate(holes, geometry.dims, integers, std::numeric_limits<T>::max());
+                    std::vector<T> holed(integers.begin(), integers.end());
+                    invalidate(holes, geometry.dims, holed, std::numeric_limits<T>::max());
+                    integers = std::move(holed);
                     missing = static_cast<double>(std::numeric_limits<T>::max());
                     kind += " holes";
                 }

@@ -47,6 +47,11 @@ VolumeSource randomSource(Random& random) {
         if (random.chance(0.3)) s.component = random.below(5);
     }
     if (random.chance(0.4)) s.missing = oddNumber(random, -1e300, 1e300);
+    if (random.chance(0.3)) s.downsample = 1 + random.below(9);
+    if (random.chance(0.3)) {
+        s.region = VoxelRegion{{random.below(100), random.below(100), random.below(100)}, {}};
+        s.region->hi = s.region->lo + Int3(1 + random.below(100), 1 + random.below(100), 1 + random.below(100));
+    }
     return s;
 }
 

@@ -146,10 +146,13 @@ TEST_CASE("a volume that memory cannot hold is refused before it is allocated", 
     VolumeSource source;
     source.path = path;
     source.raw = parseRawLayout("10000,10000,10000,u8");
+    source.downsample = 1;
     CHECK_THAT(errorOf(source), Contains("needs 1 TB of memory"));
     const std::string header = folder.write("huge.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 10000 10000 10000\n"
                                                         "ElementType = MET_UCHAR\nElementDataFile = huge.raw\n");
-    CHECK_THAT(errorOf(header), Contains("of memory"));
+    source.raw.reset();
+    source.path = header;
+    CHECK_THAT(errorOf(source), Contains("of memory"));
 }
 
 TEST_CASE("a dimension below one is refused", "[bad-input]") {

@@ -32,8 +32,9 @@ std::vector<T> extremesOf(std::size_t count) {
 }
 
 template <class T>
-const std::vector<T>& samplesOf(const Volume& volume) {
-    return std::get<std::vector<T>>(volume.samples());
+std::vector<T> samplesOf(const Volume& volume) {
+    const auto& samples = std::get<SampleArray<T>>(volume.samples());
+    return {samples.begin(), samples.end()};
 }
 
 } // namespace

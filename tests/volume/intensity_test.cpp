@@ -45,7 +45,7 @@ TEST_CASE("codes of 16-bit data over its whole range are the values themselves",
     std::iota(values.begin(), values.end(), std::uint16_t{0});
     const IntensityGrid grid = makeIntensityGrid(lineOf(values));
     CHECK(grid.maxCode == 65535);
-    CHECK(std::equal(values.begin(), values.end(), grid.codes.begin()));
+    CHECK(std::equal(values.begin(), values.end(), grid.codes.wide()));
 }
 
 TEST_CASE("codes of floats are intensities rounded to 1/64000; invalid voxels are marked", "[intensity]") {
@@ -115,7 +115,7 @@ TEST_CASE("histogram and codes are the same with one thread and with three", "[h
     setThreadCount(0);
     CHECK(one.counts == three.counts);
     CHECK(one.total == volume.size());
-    CHECK(std::equal(gridOne.codes.begin(), gridOne.codes.end(), gridThree.codes.begin()));
+    CHECK(std::equal(gridOne.codes.wide(), gridOne.codes.wide() + gridOne.codes.size(), gridThree.codes.wide()));
 }
 
 TEST_CASE("a window wider than the largest double has finite intensities", "[volume]") {

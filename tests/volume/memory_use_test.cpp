@@ -18,7 +18,7 @@ struct LimitedMemory {
 
 std::string problemOf(const MemoryUse& use, const Int3& dims, std::uint64_t reading, std::uint64_t kept) {
     try {
-        requireMemory(use, "a.nrrd", dims, reading, kept);
+        requireMemory(use, "a.nrrd", dims, SampleType::U16, reading, kept);
     } catch (const Error& e) {
         return e.what();
     }
@@ -39,9 +39,9 @@ TEST_CASE("what memory will not do for is refused, and the message says why", "[
     CHECK_THAT(problemOf({"showing", 2}, {2000, 2000, 2000}, 64'000'000'000, 8'000'000'000),
                Contains("reading 2000 x 2000 x 2000 voxels needs 64 GB"));
     CHECK_THAT(problemOf({}, {2000, 2000, 2000}, 64'000'000'000, 64'000'000'000), Contains("reading 2000 x 2000"));
-    CHECK_THROWS_WITH(requireMemory({"measuring", 12}, "disks", Int3(2000)),
+    CHECK_THROWS_WITH(requireMemory({"measuring", 12}, "disks", Int3(2000), SampleType::U16),
                       Contains("measuring 2000 x 2000 x 2000 voxels needs 96 GB") && Contains("disks"));
-    CHECK_NOTHROW(requireMemory({"measuring", 12}, "disks", Int3(1000)));
+    CHECK_NOTHROW(requireMemory({"measuring", 12}, "disks", Int3(1000), SampleType::U16));
 }
 
 TEST_CASE("volumes are refused before they are read, for what would be done with them", "[memory]") {
@@ -58,6 +58,7 @@ TEST_CASE("volumes are refused before they are read, for what would be done with
     for (VolumeSource source : {raw, nrrd, sample}) {
         CAPTURE(source.path);
         CHECK(loadVolume(source).size() == 1'000'000);
+        source.downsample = 1;
         source.then = {"measuring", 12};
         CHECK(loadVolume(source).size() == 1'000'000);
         source.then.bytesPerVoxel = 1e9; // 1 PB

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "base/text.h"
 #include "parse.h"
 
 namespace pellucid::cli {
@@ -16,6 +17,31 @@ Vec3 parseSpacing(const std::string& text, const std::string& option) {
         if (!(s > 0))
             throw UsageError("the spacing " + text + " is not positive", option, "give three numbers above 0");
     return {v[0], v[1], v[2]};
+}
+
+/// "X0:X1,Y0:Y1,Z0:Z1".
+VoxelRegion parseRegion(const std::string& text, const std::string& option) {
+    VoxelRegion region;
+    const auto fail = [&] {
+        return UsageError("'" + text + "' is no region", option,
+                          "give X0:X1,Y0:Y1,Z0:Z1, the first voxel along each axis and the one after the last");
+    };
+    std::size_t at = 0;
+    for (int a = 0; a < 3; ++a) {
+        const std::size_t end = a < 2 ? text.find(',', at) : text.size();
+        if (end == std::string::npos) throw fail();
+        const std::string part = text.substr(at, end - at);
+        const std::size_t colon = part.find(':');
+        std::int64_t lo = 0, hi = 0;
+        constexpr std::int64_t kMost = std::numeric_limits<int>::max();
+        if (colon == std::string::npos || !parseNumber(part.substr(0, colon), lo) ||
+            !parseNumber(part.substr(colon + 1), hi) || lo < 0 || hi <= lo || hi > kMost)
+            throw fail();
+        region.lo[a] = static_cast<int>(lo);
+        region.hi[a] = static_cast<int>(hi);
+        at = end + 1;
+    }
+    return region;
 }
 
 } // namespace
@@ -71,10 +97,20 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
             seed = static_cast<std::uint32_t>(parseInteger(text, option, 0, std::numeric_limits<std::uint32_t>::max()));
         },
         "seed of a sample's noise (default 1)", kGroup);
+    addValue(
+        app, "--downsample", "N",
+        [this](const std::string& text, const std::string& option) {
+            downsample = static_cast<int>(parseInteger(text, option, 1, 65536));
+        },
+        "each voxel is the mean of N along each axis (default: 1, or the least that memory has room for)", kGroup);
+    addValue(
+        app, "--region", "X0:X1,Y0:Y1,Z0:Z1",
+        [this](const std::string& text, const std::string& option) { region = parseRegion(text, option); },
+        "only these voxels of the data, from the first to the one before the second", kGroup);
 }
 
 bool VolumeOptions::anyDetail() const {
-    return raw || spacing || skipBytes || missing || range || component || sampleSize || seed;
+    return raw || spacing || skipBytes || missing || range || component || sampleSize || seed || downsample || region;
 }
 
 void VolumeOptions::applyTo(SceneInputs& inputs) const {
@@ -101,6 +137,8 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
     if (component) source.component = *component;
     if (sampleSize) source.sampleSize = *sampleSize;
     if (seed) source.seed = *seed;
+    if (downsample) source.downsample = *downsample;
+    if (region) source.region = region;
 
     session.variables.edit([&](std::vector<Variable>& all) {
         if (all.empty()) all.emplace_back();

@@ -1,4 +1,5 @@
-// VOLUME, --raw, --spacing, --skip, --missing, --range, --component, --sample-size, --seed: what is opened.
+// VOLUME, --raw, --spacing, --skip, --missing, --range, --component, --sample-size, --seed,
+// --downsample, --region: what is opened.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,8 @@ struct VolumeOptions {
     std::optional<ValueRange> range;
     std::optional<int> component;
     std::optional<int> sampleSize;
+    std::optional<int> downsample;
+    std::optional<VoxelRegion> region;
     std::optional<std::uint32_t> seed;
 
     /// --size is a second name of --sample-size, except in commands whose --size is an image's.

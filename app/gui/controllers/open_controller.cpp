@@ -13,6 +13,7 @@
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
 #include "tf/formats/tf_json.h"
+#include "volume/excerpt.h"
 #include "volume/procedural.h"
 #include "workbench.h"
 
@@ -39,7 +40,8 @@ bool hasKnownSuffix(const QString& path) {
 // Recent files that need more than a name to be opened again are kept as a session of nothing but their source.
 QString recentEntry(const VolumeSource& source) {
     const QString path = QFileInfo(QString::fromStdString(source.path)).absoluteFilePath();
-    if (!source.raw && source.component == 0 && !source.missing) return path;
+    if (!source.raw && source.component == 0 && !source.missing && !source.region && source.downsample == 0)
+        return path;
     VolumeSource absolute = source;
     absolute.path = path.toStdString();
     return QString::fromStdString(jsonFromSession(sessionOf(absolute), "", DataPaths::Absolute).dump());
@@ -63,13 +65,16 @@ OpenController::OpenController(Workbench& bench)
           [](const DataChange& change, const JobControl& job) {
               Session session = change.basis.session;
               change.change(session);
-              Scene scene = resolve(std::move(session), change.basis, {"showing", kViewBytesPerVoxel}, job);
+              Scene scene = resolve(std::move(session), change.basis, toView("showing"), job);
               prepareToShow(scene, job);
               return scene;
           },
           [this](const DataChange& change, Scene& scene) {
               // Other edits may have come meanwhile: the change is made of what is there now.
+              const bool otherVoxels = scene.data != change.basis.data;
+              const std::vector<std::string> notices = scene.volume->notices;
               m_bench.store().edit(change.text, {}, change.change, scene);
+              if (otherVoxels) showNotices(notices);
               if (const auto then = std::exchange(m_afterData, {})) then();
           }) {
     for (JobBase* job : {static_cast<JobBase*>(&m_open), static_cast<JobBase*>(&m_data)}) {
@@ -126,6 +131,26 @@ void OpenController::addActions() {
         [this] { chooseTf(); }, [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); });
     openTf.separatorBefore = true;
     actions.add(openTf);
+    ActionSpec region = add(
+        "regionAction", menu, tr("Re&gion at full resolution"), {},
+        tr("What the clipping box leaves of a volume that was too large for memory, in all its voxels"),
+        [this] { openRegion(); },
+        [this] {
+            const SessionStore& store = m_bench.store();
+            if (!store.hasVolume() || m_bench.isReadOnly()) return false;
+            const Clipping& clipping = *store.session().clipping;
+            const auto& excerpt = store.scene().volume->excerpt;
+            return excerpt && excerpt->factor > 1 && (clipping.lo != Vec3(0) || clipping.hi != Vec3(1));
+        });
+    region.separatorBefore = true;
+    actions.add(region);
+    actions.add(add(
+        "wholeVolumeAction", menu, tr("W&hole volume"), {}, tr("All of the data, as fine as memory allows"),
+        [this] { openWhole(); },
+        [this] {
+            const SessionStore& store = m_bench.store();
+            return store.hasVolume() && !m_bench.isReadOnly() && store.session().variable().source.region.has_value();
+        }));
 }
 
 // ---- opening
@@ -170,7 +195,7 @@ void OpenController::openRecovered(const SessionFile& file) {
 OpenController::Opened OpenController::load(const Request& request, const JobControl& job) {
     Opened opened;
     SceneInputs inputs = request.inputs;
-    inputs.then = {"showing", kViewBytesPerVoxel};
+    inputs.then = toView("showing");
     if (request.tfIsOptional) {
         try {
             static_cast<void>(loadTf(*inputs.tf));
@@ -187,9 +212,9 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 void OpenController::show(const Request& request, Opened& opened) {
     const bool ownTf = opened.tfError || request.tfPath.isEmpty() || tfFromSpec(request.tfPath.toStdString());
     m_tfPath = ownTf ? QString() : request.tfPath;
-    m_bench.notices().clear();
-    for (const auto* notices : {&opened.scene.volume->notices, &request.notices})
-        for (const std::string& notice : *notices) m_bench.notices().add({QString::fromStdString(notice), {}});
+    std::vector<std::string> notices = opened.scene.volume->notices;
+    notices.insert(notices.end(), request.notices.begin(), request.notices.end());
+    showNotices(notices);
     const VolumeSource source = opened.scene.session.variable().source;
     m_bench.store().open(std::move(opened.scene));
     if (request.unsaved) m_bench.store().setUnsaved();
@@ -205,6 +230,37 @@ void OpenController::show(const Request& request, Opened& opened) {
         m_bench.showError(tr("Cannot open the transfer function"), *opened.tfError);
         Q_EMIT tfFailed(*opened.tfError);
     }
+}
+
+void OpenController::showNotices(const std::vector<std::string>& notices) {
+    m_bench.notices().clear();
+    for (const std::string& notice : notices) m_bench.notices().add({QString::fromStdString(notice), {}});
+}
+
+// ---- parts of large volumes
+
+void OpenController::openRegion() {
+    const Scene& scene = m_bench.store().scene();
+    const Clipping& clipping = *scene.session.clipping;
+    const VoxelRegion region = regionBetween(*scene.volume, clipping.lo, clipping.hi);
+    editData(tr("Region at full resolution"), [region, window = scene.volume->range()](Session& session) {
+        session.variables.edit([&](std::vector<Variable>& all) {
+            all.front().source.region = region;
+            all.front().source.downsample = 0;
+            if (!all.front().window && window.lo < window.hi) all.front().window = window; // not that of the region
+        });
+        session.clipping.edit([](Clipping& c) { c.lo = Vec3(0), c.hi = Vec3(1); });
+    });
+}
+
+void OpenController::openWhole() {
+    editData(tr("Whole volume"), [](Session& session) {
+        session.variables.edit([](std::vector<Variable>& all) {
+            all.front().source.region.reset();
+            all.front().source.downsample = 0;
+        });
+        session.clipping.edit([](Clipping& c) { c.lo = Vec3(0), c.hi = Vec3(1); });
+    });
 }
 
 void OpenController::openTf(const QString& specOrPath) {

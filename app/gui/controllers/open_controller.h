@@ -77,6 +77,10 @@ private:
 
     static Opened load(const Request& request, const JobControl& job);
     void show(const Request& request, Opened& opened);
+    void showNotices(const std::vector<std::string>& notices);
+    /// What the clipping box leaves of the data, at full resolution; and back.
+    void openRegion();
+    void openWhole();
     bool askRawLayout(VolumeSource& source); ///< false: the user gave up
     void chooseVolume();
     void chooseRaw();

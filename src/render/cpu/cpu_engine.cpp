@@ -208,19 +208,13 @@ class CpuEngine final : public VisibilityEngine {
 public:
     CpuEngine(std::shared_ptr<const Volume> volume, Quality quality, SweepKernel kernel)
         : m_volume(std::move(volume)), m_quality(quality), m_kernel(kernel) {
-        const std::shared_ptr<const IntensityGrid> shared = sharedIntensityGrid(*m_volume);
-        const IntensityGrid& grid = *shared;
+        m_shared = sharedIntensityGrid(*m_volume);
+        const IntensityGrid& grid = *m_shared;
         const bool someInvalid = !grid.valid.empty();
         // Without gaps, so that tables are short; and with one code for all that is invalid.
         m_codeSpace = {grid.maxCode / grid.codeStep, someInvalid, quality == Quality::High || isSmall()};
-        m_codes = ZeroedVector<std::uint16_t>(grid.codes.size() + kCodePadding);
-        inPieces(grid.codes.size(), [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i)
-                m_codes[i] = static_cast<std::uint16_t>(grid.codes[i] / grid.codeStep);
-            if (someInvalid)
-                for (std::size_t i = first; i < last; ++i)
-                    m_codes[i] = grid.valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
-        });
+        static_assert(kCodePadding <= CodeGrid::kPadding);
+        if (!grid.codes.isNarrow() && (grid.codeStep > 1 || someInvalid)) makeOwnCodes(grid);
         findRanges();
     }
 
@@ -291,6 +285,22 @@ private:
         }
     };
 
+    void makeOwnCodes(const IntensityGrid& grid) {
+        const bool someInvalid = !grid.valid.empty();
+        m_codes = ZeroedVector<std::uint16_t>(grid.codes.size() + kCodePadding);
+        const std::uint16_t* codes = grid.codes.wide();
+        inPieces(grid.codes.size(), [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i)
+                m_codes[i] = static_cast<std::uint16_t>(codes[i] / grid.codeStep);
+            if (someInvalid)
+                for (std::size_t i = first; i < last; ++i)
+                    m_codes[i] = grid.valid[i] ? std::min<std::uint16_t>(m_codes[i], kInvalidCode - 1) : kInvalidCode;
+        });
+        m_shared.reset(); // others may need it, not we
+    }
+    const std::uint8_t* narrowCodes() const { return m_shared ? m_shared->codes.narrow() : nullptr; }
+    const std::uint16_t* wideCodes() const { return m_shared ? m_shared->codes.wide() : m_codes.data(); }
+
     /// The codes that occur in each block of voxels and one voxel around it: what interpolation there can give.
     void findRanges() {
         const Int3 n = m_volume->dims();
@@ -302,19 +312,26 @@ private:
                 auto* row = &m_ranges[asSize(m_blocks.x) * (asSize(by) + asSize(m_blocks.y) * bz)];
                 for (int z = std::max(0, z0 - 1); z <= std::min(n.z - 1, z0 + kBlockSize); ++z)
                     for (int y = std::max(0, by * kBlockSize - 1); y <= std::min(n.y - 1, (by + 1) * kBlockSize); ++y)
-                        widen(row, &m_codes[asSize(n.x) * (asSize(y) + asSize(n.y) * asSize(z))]);
+                        widenBy(row, asSize(n.x) * (asSize(y) + asSize(n.y) * asSize(z)));
             }
         });
     }
-    void widen(std::array<std::uint16_t, 2>* ranges, const std::uint16_t* codes) const {
+    void widenBy(std::array<std::uint16_t, 2>* ranges, std::size_t firstVoxel) const {
+        if (narrowCodes())
+            widen(ranges, narrowCodes() + firstVoxel);
+        else
+            widen(ranges, wideCodes() + firstVoxel);
+    }
+    template <class Code>
+    void widen(std::array<std::uint16_t, 2>* ranges, const Code* codes) const {
         const int nx = m_volume->dims().x;
         for (int block = 0; block < m_blocks.x; ++block) {
             auto [low, high] = ranges[block];
             const int last = std::min(nx - 1, (block + 1) * kBlockSize);
             for (int x = std::max(0, block * kBlockSize - 1); x <= last; ++x) {
                 if (codes[x] == kInvalidCode && m_codeSpace.someInvalid) continue;
-                low = std::min(low, codes[x]);
-                high = std::max(high, codes[x]);
+                low = std::min<std::uint16_t>(low, codes[x]);
+                high = std::max<std::uint16_t>(high, codes[x]);
             }
             ranges[block] = {low, high};
         }
@@ -439,25 +456,26 @@ private:
             });
     }
 
-    /// Codes laid out so that neighbours along u are neighbours in memory.
-    const std::uint16_t* codesFor(const Axes& axes, SweepStrides& strides) {
+    /// Codes laid out so that neighbours along u are neighbours in memory; narrow ones as they are, for all directions.
+    void setCodes(SweepInput& in, const Axes& axes) {
         const Int3 n = m_volume->dims();
-        const std::ptrdiff_t nx = n.x, ny = n.y, nz = n.z;
-        if (axes.w != 0) {
-            strides = axes.w == 2 ? SweepStrides{1, nx, nx * ny} : SweepStrides{1, nx * ny, nx};
-            return m_codes.data();
-        }
+        const std::ptrdiff_t ny = n.y, nz = n.z;
+        in.narrowCodes = narrowCodes();
+        in.codeStrides = stridesOf(n, axes);
+        if (in.narrowCodes) return;
+        in.codes = wideCodes();
+        if (axes.w != 0) return;
         if (m_codesYZX.empty()) {
-            m_codesYZX = ZeroedVector<std::uint16_t>(m_codes.size());
+            m_codesYZX = ZeroedVector<std::uint16_t>(m_volume->size() + kCodePadding);
             parallelFor(asSize(n.z), [&](std::size_t k) {
                 for (std::size_t i = 0; i < asSize(n.x); ++i)
                     for (std::size_t j = 0; j < asSize(n.y); ++j)
                         m_codesYZX[j + asSize(n.y) * (k + asSize(n.z) * i)] =
-                            m_codes[i + asSize(n.x) * (j + asSize(n.y) * k)];
+                            in.codes[i + asSize(n.x) * (j + asSize(n.y) * k)];
             });
         }
-        strides = {1, ny, ny * nz};
-        return m_codesYZX.data();
+        in.codeStrides = {1, ny, ny * nz};
+        in.codes = m_codesYZX.data();
     }
 
     static SweepStrides stridesOf(const Int3& dims, const Axes& axes) {
@@ -522,7 +540,7 @@ private:
         SweepInput in;
         tables.giveTo(in);
         in.nu = g.dims[axes.u], in.nv = g.dims[axes.v], in.nw = g.dims[axes.w];
-        in.codes = codesFor(axes, in.codeStrides);
+        setCodes(in, axes);
         in.someInvalid = m_codeSpace.someInvalid;
         in.fieldStrides = stridesOf(g.dims, axes);
         in.opaqueStrides = stridesOf(m_blocks, axes);
@@ -533,14 +551,23 @@ private:
         std::ptrdiff_t start = 0;
         if (axes.flipped) {
             start = (in.nw - 1) * in.fieldStrides.w;
-            in.codes += (in.nw - 1) * in.codeStrides.w;
+            const std::ptrdiff_t last = (in.nw - 1) * in.codeStrides.w;
+            if (in.narrowCodes)
+                in.narrowCodes += last;
+            else
+                in.codes += last;
             in.fieldStrides.w = -in.fieldStrides.w;
             in.codeStrides.w = -in.codeStrides.w;
         }
         std::array<double, 3> units{1, 1, 1};
         if (weights) {
             PELLUCID_CHECK(weights->dims() == g.dims);
-            in.weights = weights->data() + start;
+            if (weights->isCompact()) {
+                in.compactWeights = weights->compactData() + start;
+                in.weightOfByte = weights->weightOfByte().data();
+            } else {
+                in.weights = weights->data() + start;
+            }
             for (int a = 0; a < 2; ++a) units[asSize(a + 1)] = weights->scale(a);
         }
         if (field) in.field = field->data() + start;
@@ -587,7 +614,8 @@ private:
     Quality m_quality;
     SweepKernel m_kernel;
     Codes m_codeSpace;
-    ZeroedVector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more
+    std::shared_ptr<const IntensityGrid> m_shared; ///< whose codes are read as they are; null: m_codes are
+    ZeroedVector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more: without gaps, or with invalid ones
     Int3 m_blocks{0, 0, 0};
     std::vector<std::array<std::uint16_t, 2>> m_ranges; ///< per block: the lowest and highest code
     ZeroedVector<std::uint16_t> m_codesYZX;             ///< made when a sweep along x first needs it

@@ -55,11 +55,14 @@ struct SweepInput {
 
     // The volume.
     int nu = 0, nv = 0, nw = 0;
-    const std::uint16_t* codes = nullptr; ///< codeStrides.u is 1; kInvalidCode where invalid
+    const std::uint16_t* codes = nullptr;      ///< codeStrides.u is 1; kInvalidCode where invalid
+    const std::uint8_t* narrowCodes = nullptr; ///< in place of them, none invalid; codeStrides.u may be any
     SweepStrides codeStrides;
     bool someInvalid = false;
-    const std::uint32_t* weights = nullptr; ///< low half L_b, high half L_s; null: no weighted sums; fieldStrides
-    float* field = nullptr;                 ///< Single only: where v goes, zero before; null: not wanted; fieldStrides
+    const std::uint32_t* weights = nullptr;       ///< low half L_b, high half L_s; fieldStrides
+    const std::uint8_t* compactWeights = nullptr; ///< in place of them, entries of weightOfByte; both null: no sums
+    const std::uint32_t* weightOfByte = nullptr;  ///< [256], as `weights` are
+    float* field = nullptr; ///< Single only: where v goes, zero before; null: not wanted; fieldStrides
     SweepStrides fieldStrides;
     /// Per block, a bit per lane that is opaque there or up to a voxel around (Jacobian: 255 if any is); opaqueStrides.
     const std::uint8_t* opaque = nullptr;

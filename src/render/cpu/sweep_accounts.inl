@@ -33,7 +33,9 @@ public:
         const std::int32_t* integral;
         const float* alpha;
         const std::uint16_t* featureOfCode;
-        const std::uint32_t* weights; ///< of the first voxel of the block; null where not wanted
+        const std::uint32_t* weights;       ///< of the first voxel of the block; null where not wanted
+        const std::uint8_t* compactWeights; ///< likewise, in place of them
+        const std::uint32_t* weightOfByte;
         std::ptrdiff_t weightStep;
         float* sums;           ///< the accumulator
         std::ptrdiff_t spread; ///< from one accumulator to the one that takes turns with it
@@ -44,6 +46,8 @@ public:
                   m_in.alphaTable,
                   m_in.featureOfCode,
                   m_in.weights ? m_in.weights + block.field : nullptr,
+                  m_in.compactWeights ? m_in.compactWeights + block.field : nullptr,
+                  m_in.weightOfByte,
                   m_in.fieldStrides.u,
                   m_accumulator,
                   static_cast<std::ptrdiff_t>(m_in.features + 1) * 3 * K,
@@ -88,6 +92,12 @@ private:
         for (std::size_t i = 0; i < size(); ++i) m_accumulator[i] = 0.0f;
     }
 
+    static bool isWeighted(const Page& page) { return page.weights || page.compactWeights; }
+    static std::uint32_t weightsOf(const Page& page, int n) {
+        const std::ptrdiff_t at = n * page.weightStep;
+        return page.weights ? page.weights[at] : page.weightOfByte[page.compactWeights[at]];
+    }
+
     /// One transfer function, eight voxels in the lanes.
     void addEight(const Page& page, const VoxelBlock& block, Vec8 depth) const {
         // What each listed voxel is: opacity, feature and weights. The others have opacity 0 and no feature.
@@ -97,8 +107,8 @@ private:
             const int n = block.list[i];
             alpha[n] = page.alpha[block.codes[n]];
             feature[n] = page.featureOfCode[block.codes[n]];
-            if (!page.weights) continue;
-            const std::uint32_t both = page.weights[n * page.weightStep];
+            if (!isWeighted(page)) continue;
+            const std::uint32_t both = weightsOf(page, n);
             weights[0][n] = static_cast<float>(both & 0xffff);
             weights[1][n] = static_cast<float>(both >> 16);
         }
@@ -134,8 +144,8 @@ private:
             differentiate(page, depth, code, feature, seen);
         float* sum = page.sums + (i & (kSpread - 1)) * page.spread + feature * (3 * K);
         addWeighted(sum, seen, 1.0f);
-        if (!page.weights) return;
-        const std::uint32_t both = page.weights[n * page.weightStep];
+        if (!isWeighted(page)) return;
+        const std::uint32_t both = weightsOf(page, n);
         addWeighted(sum + K, seen, static_cast<float>(both & 0xffff));
         addWeighted(sum + 2 * K, seen, static_cast<float>(both >> 16));
     }

@@ -10,8 +10,8 @@
 namespace pellucid {
 namespace {
 
-/// One piece of a sweep. kInvalid: some voxels may be invalid.
-template <SweepMode kMode, bool kInvalid>
+/// One piece of a sweep.
+template <SweepMode kMode, CodeKind kCodes>
 class Sweeper {
     static constexpr int kFlushEvery = 4; ///< slices
 
@@ -64,18 +64,20 @@ private:
 
     const SweepInput& m_in;
     const SweepPiece& m_piece;
-    Lines<kInvalid> m_lines;
-    Rays<kMode, kInvalid> m_rays;
+    Lines<kCodes> m_lines;
+    Rays<kMode, kCodes> m_rays;
     Accounts<kMode> m_accounts;
-    Voxels<kMode, kInvalid> m_voxels;
+    Voxels<kMode, kCodes> m_voxels;
 };
 
 void sweepPiece(const SweepInput& in, const SweepPiece& piece, SweepScratch& scratch, double* sums) {
     const auto run = [&]<SweepMode kMode>() {
-        if (in.someInvalid)
-            Sweeper<kMode, true>(in, piece, scratch, sums).run();
+        if (in.narrowCodes)
+            Sweeper<kMode, CodeKind::Narrow>(in, piece, scratch, sums).run();
+        else if (in.someInvalid)
+            Sweeper<kMode, CodeKind::WideSomeInvalid>(in, piece, scratch, sums).run();
         else
-            Sweeper<kMode, false>(in, piece, scratch, sums).run();
+            Sweeper<kMode, CodeKind::Wide>(in, piece, scratch, sums).run();
     };
     switch (in.mode) {
     case SweepMode::Single:

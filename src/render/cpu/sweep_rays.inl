@@ -89,10 +89,28 @@ struct Samples {
     Vec8 share; ///< [0,1], of valid corners among those interpolated; set where voxels may be invalid
 };
 
-/// Sampling of the volume along lines. kInvalid: some voxels may be invalid. A small value: all who sample have their
-/// own.
-template <bool kInvalid>
+/// What the volume's codes are.
+enum class CodeKind {
+    Wide,            ///< 16 bits
+    WideSomeInvalid, ///< likewise, kInvalidCode where invalid
+    Narrow           ///< 8 bits; neighbours along u may lie apart
+};
+template <CodeKind kCodes>
+struct CodeOf {
+    using Type = std::uint16_t;
+    static const Type* first(const SweepInput& in) { return in.codes; }
+};
+template <>
+struct CodeOf<CodeKind::Narrow> {
+    using Type = std::uint8_t;
+    static const Type* first(const SweepInput& in) { return in.narrowCodes; }
+};
+
+/// Sampling of the volume along lines. A small value: all who sample have their own.
+template <CodeKind kCodes>
 class Lines {
+    static constexpr bool kInvalid = kCodes == CodeKind::WideSomeInvalid; ///< some voxels may be invalid
+    using Code = typename CodeOf<kCodes>::Type;
     static constexpr float kNoShare = 1e-6f; ///< of valid corners: nothing there has an intensity
 
 public:
@@ -125,7 +143,7 @@ public:
     /// Up to four rows of voxels along u, around (v, w), and their weights. Eight samples beside each other share them.
     struct Rows {
         int count = 0;
-        const std::uint16_t* codes[4];
+        const Code* codes[4];
         float weights[4];
     };
     Rows rowsAt(double v, double w) const {
@@ -138,11 +156,19 @@ public:
         Rows rows;
         for (int corner = 0; corner < 4; ++corner) {
             if (weights[corner] < 1e-6) continue; // on a voxel plane: a row less to read
-            rows.codes[rows.count] =
-                m_in.codes + (v0 + (corner & 1)) * m_in.codeStrides.v + (w0 + (corner >> 1)) * m_in.codeStrides.w;
+            rows.codes[rows.count] = row(v0 + (corner & 1), w0 + (corner >> 1));
             rows.weights[rows.count++] = static_cast<float>(weights[corner]);
         }
         return rows;
+    }
+
+    /// The codes of the voxels (u … u + 7, v, k); anything beyond the end of the row.
+    void codesAt(int u, int v, int k, std::uint16_t (&codes)[kWide]) const {
+        const Code* from = row(v, k);
+        if (apart())
+            for (int n = 0; n < kWide; ++n) codes[n] = from[smaller(u + n, m_in.nu - 1) * m_in.codeStrides.u];
+        else
+            store(codes, asCodes(from + u));
     }
 
     /// The volume at u = first + n·step, n = 0 … 7, along the rows.
@@ -167,8 +193,7 @@ public:
             const int x = static_cast<int>(u0);
             const Vec8 f = Vec8{} + (u0 - static_cast<float>(x));
             for (int row = 0; row < rows.count; ++row) {
-                near = toFloat(load(rows.codes[row] + x));
-                far = toFloat(load(rows.codes[row] + x + 1));
+                eightAt(rows.codes[row], x, near, far);
                 add(row, f);
             }
         } else {
@@ -181,7 +206,10 @@ public:
             x = x < lastPair ? x : lastPair;
             const Vec8 f = u - toFloat(x);
             for (int row = 0; row < rows.count; ++row) {
-                pairsAt(rows.codes[row], x, near, far);
+                if (apart())
+                    pairsApart(rows.codes[row], x, near, far);
+                else
+                    pairsAt(rows.codes[row], x, near, far);
                 add(row, f);
             }
         }
@@ -310,6 +338,33 @@ public:
     }
 
 private:
+    const Code* row(int v, int k) const {
+        return CodeOf<kCodes>::first(m_in) + v * m_in.codeStrides.v + k * m_in.codeStrides.w;
+    }
+    /// Whether neighbours along u are no neighbours in memory.
+    bool apart() const { return kCodes == CodeKind::Narrow && m_in.codeStrides.u != 1; }
+
+    /// Codes x … x + 7 of a row, and those behind each. All are inside the row.
+    void eightAt(const Code* row, int x, Vec8& near, Vec8& far) const {
+        if (!apart()) {
+            near = asFloats(row + x);
+            far = asFloats(row + x + 1);
+            return;
+        }
+        const Code* at = row + x * m_in.codeStrides.u;
+        float values[kWide + 1];
+        for (int n = 0; n <= kWide; ++n, at += m_in.codeStrides.u) values[n] = static_cast<float>(*at);
+        near = load(values);
+        far = load(values + 1);
+    }
+    void pairsApart(const Code* row, Int8 x, Vec8& near, Vec8& far) const {
+        for (int n = 0; n < kWide; ++n) {
+            const Code* at = row + x[n] * m_in.codeStrides.u;
+            near[n] = static_cast<float>(*at);
+            far[n] = static_cast<float>(m_in.nu > 1 ? at[m_in.codeStrides.u] : *at);
+        }
+    }
+
     const SweepInput& m_in;
     double m_startW;
     int m_start;
@@ -336,8 +391,9 @@ struct Strip {
 
 /// The rays (a, b) of one piece, rows b of blocks of eight along a: all that is known of them at the sample plane that
 /// they have come to.
-template <SweepMode kMode, bool kInvalid>
+template <SweepMode kMode, CodeKind kCodes>
 class Rays {
+    static constexpr bool kInvalid = kCodes == CodeKind::WideSomeInvalid;
     using Lanes = LanesOf<kMode>;
     static constexpr int K = Lanes::kLanes;
     static constexpr std::uint8_t kAllLanes = 255;
@@ -345,7 +401,7 @@ class Rays {
 
 public:
     /// At the front, with no depth yet.
-    Rays(const SweepInput& in, const SweepPiece& piece, const Lines<kInvalid>& lines, SweepScratch& scratch)
+    Rays(const SweepInput& in, const SweepPiece& piece, const Lines<kCodes>& lines, SweepScratch& scratch)
         : m_in(in), m_piece(piece), m_lines(lines), m_scale(depthScaleOf<kMode>(in)), m_b0(piece.firstRow),
           m_b1(piece.lastRow) {
         chooseRays();
@@ -431,11 +487,11 @@ public:
             if (!(inside0 && inside1) || !m_lines.insideU(u1, end1) || !m_lines.insideU(p0.u(a), p0.u(a + kWide - 1)))
                 path *= m_lines.insideShare(p0, p1, a, b);
             if (m_lines.clips()) {
-                typename Lines<kInvalid>::Kept kept;
+                typename Lines<kCodes>::Kept kept;
                 const auto clipped = m_lines.clip(p0, p1, w0, w1, a, b, kept);
-                if (clipped == Lines<kInvalid>::Clipped::All) continue;
+                if (clipped == Lines<kCodes>::Clipped::All) continue;
                 Samples end = s1; // the next stretch begins with s1
-                if (clipped == Lines<kInvalid>::Clipped::Part) {
+                if (clipped == Lines<kCodes>::Clipped::Part) {
                     const Vec8 part = kept.leave - kept.enter;
                     path *= part > 0.0f ? part : Vec8{};
                     m_lines.narrow(s0, end, kept);
@@ -537,7 +593,7 @@ private:
 
     const SweepInput& m_in;
     const SweepPiece& m_piece;
-    const Lines<kInvalid> m_lines;
+    const Lines<kCodes> m_lines;
     const DepthScale m_scale;
     int m_a0 = 0, m_a1 = 0;          ///< rays of a row that voxels lie between
     int m_blocks = 0;                ///< of eight rays in a row; the last may go beyond m_a1

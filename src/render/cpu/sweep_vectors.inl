@@ -21,11 +21,13 @@ namespace {
 typedef float Vec8 __attribute__((vector_size(32)));
 typedef int Int8 __attribute__((vector_size(32)));
 typedef std::uint16_t UShort8 __attribute__((vector_size(16)));
+typedef std::uint8_t UChar8 __attribute__((vector_size(8)));
 
 // The same in memory: at any element, and whatever type was stored there.
 typedef float Vec8InMemory __attribute__((vector_size(32), aligned(4), may_alias));
 typedef int Int8InMemory __attribute__((vector_size(32), aligned(4), may_alias));
 typedef std::uint16_t UShort8InMemory __attribute__((vector_size(16), aligned(2), may_alias));
+typedef std::uint8_t UChar8InMemory __attribute__((vector_size(8), aligned(1), may_alias));
 
 constexpr int kWide = 8;            ///< rays, voxels or transfer functions in one vector
 static_assert(kWide == kBlockSize); // a vector of voxels lies in one block of the opaque map
@@ -34,6 +36,8 @@ constexpr Vec8 kIota = {0, 1, 2, 3, 4, 5, 6, 7};
 inline Vec8 load(const float* p) { return *reinterpret_cast<const Vec8InMemory*>(p); }
 inline Int8 load(const int* p) { return *reinterpret_cast<const Int8InMemory*>(p); }
 inline UShort8 load(const std::uint16_t* p) { return *reinterpret_cast<const UShort8InMemory*>(p); }
+inline UChar8 load(const std::uint8_t* p) { return *reinterpret_cast<const UChar8InMemory*>(p); }
+inline void store(std::uint16_t* p, UShort8 v) { *reinterpret_cast<UShort8InMemory*>(p) = v; }
 inline void store(float* p, Vec8 v) { *reinterpret_cast<Vec8InMemory*>(p) = v; }
 inline void store(int* p, Int8 v) { *reinterpret_cast<Int8InMemory*>(p) = v; }
 
@@ -41,7 +45,10 @@ inline Vec8 toFloat(Int8 v) { return __builtin_convertvector(v, Vec8); }
 inline Vec8 toFloat(UShort8 v) { return __builtin_convertvector(__builtin_convertvector(v, Int8), Vec8); }
 inline Int8 toInt(Vec8 v) { return __builtin_convertvector(v, Int8); } ///< towards 0
 inline Vec8 asFloats(const std::uint16_t* p) { return toFloat(load(p)); }
+inline Vec8 asFloats(const std::uint8_t* p) { return toFloat(__builtin_convertvector(load(p), Int8)); }
 inline Vec8 asFloats(const float* p) { return load(p); }
+inline UShort8 asCodes(const std::uint16_t* p) { return load(p); }
+inline UShort8 asCodes(const std::uint8_t* p) { return __builtin_convertvector(load(p), UShort8); }
 
 // ---- Reading from scattered places ------------------------------------------------------------------------
 

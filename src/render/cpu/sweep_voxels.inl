@@ -47,10 +47,10 @@ struct Slice {
 /// Eight voxels of a row, u … u + 7, and where they lie among the rays.
 struct VoxelBlock {
     int u = 0, v = 0, k = 0;
-    const std::uint16_t* codes = nullptr; ///< of the eight
-    std::ptrdiff_t field = 0;             ///< index of the first in weights and field
-    int list[kWide];                      ///< those that count, 0 … 7 …
-    int listed = 0;                       ///< … so many
+    std::uint16_t codes[kWide]; ///< of the eight
+    std::ptrdiff_t field = 0;   ///< index of the first in weights and field
+    int list[kWide];            ///< those that count, 0 … 7 …
+    int listed = 0;             ///< … so many
 
     const float* below; ///< depths of the row of rays below along v, [ray][lanes]
     const float* above; ///< and of the one above
@@ -116,15 +116,16 @@ private:
 
 // ==== Depths in front of voxels ============================================================================
 
-template <SweepMode kMode, bool kInvalid>
+template <SweepMode kMode, CodeKind kCodes>
 class Voxels {
+    static constexpr bool kInvalid = kCodes == CodeKind::WideSomeInvalid;
     using Lanes = LanesOf<kMode>;
     static constexpr int kGroups = Lanes::kGroups, kVectors = Lanes::kVectors;
     static constexpr int kLookEvery = 8; ///< stretches of an own line between looks for light
     static constexpr float kDark = 10;   ///< times the depth at which rays are given up: exp(−60) at most
 
 public:
-    Voxels(const SweepInput& in, const Lines<kInvalid>& lines, SweepScratch& scratch, Accounts<kMode>& accounts)
+    Voxels(const SweepInput& in, const Lines<kCodes>& lines, SweepScratch& scratch, Accounts<kMode>& accounts)
         : m_in(in), m_lines(lines), m_accounts(accounts), m_scale(depthScaleOf<kMode>(in)),
           m_follows(in.tolerance < 1e30f) {
         const auto planes = static_cast<std::size_t>(in.nw + 2);
@@ -148,7 +149,6 @@ public:
         block.fractionV = fractionV;
         block.below = strip.below;
         block.above = strip.above;
-        const std::uint16_t* codes = m_in.codes + v * m_in.codeStrides.v + k * m_in.codeStrides.w;
         const std::ptrdiff_t field = v * m_in.fieldStrides.v + k * m_in.fieldStrides.w;
         const double raysPerVoxel = 1 / slice.rays.scale;
         m_near.ready = m_far.ready = false;
@@ -167,7 +167,7 @@ public:
             if ((opaqueHere & lanes) == 0) continue;
 
             // Which voxels count?
-            block.codes = codes + block.u;
+            m_lines.codesAt(block.u, v, k, block.codes);
             block.listed = 0;
             const int end = smaller(kWide, extent.u1 + 1 - block.u);
             const unsigned kept = m_lines.clips() ? m_lines.keptVoxels(block.u, v, k) : ~0u;
@@ -303,7 +303,7 @@ private:
     struct OwnPlane {
         double w;
         LinePlane lines;
-        typename Lines<kInvalid>::Rows rows;
+        typename Lines<kCodes>::Rows rows;
         bool insideV;
         const std::uint8_t* opaque; ///< row of blocks there
     };
@@ -400,10 +400,10 @@ private:
         const Samples to{toInt(before + part * (own - before) + 0.5f), from.share + part * (1.0f - from.share)};
         if (!p.insideV || !m_lines.insideU(p.lines.u(block.u), p.lines.u(block.u + kWide - 1)))
             path *= m_lines.insideShare(p.lines, m_lines.voxelLines(block.k, block.k), block.u, block.v);
-        typename Lines<kInvalid>::Kept kept;
+        typename Lines<kCodes>::Kept kept;
         // The voxels that count are kept themselves: what is cut away lies before them.
         if (m_lines.clips() && m_lines.clip(p.lines, m_lines.voxelLines(block.k, block.k), p.w, block.k, block.u,
-                                            block.v, kept) == Lines<kInvalid>::Clipped::Part) {
+                                            block.v, kept) == Lines<kCodes>::Clipped::Part) {
             const Vec8 enter = kept.enter < part ? kept.enter : part;
             path *= part > zero ? (part - enter) / part : zero;
             from.entry = toInt(before + enter * (own - before) + 0.5f);
@@ -466,13 +466,13 @@ private:
     Vec8 clippedShare(const VoxelBlock& block, const OwnPlane& p0, const OwnPlane& p1, Vec8 reach, Samples& from,
                       Samples& to) const {
         const Vec8 zero = {}, one = zero + 1.0f;
-        typename Lines<kInvalid>::Kept kept;
+        typename Lines<kCodes>::Kept kept;
         switch (m_lines.clip(p0.lines, p1.lines, p0.w, p1.w, block.u, block.v, kept)) {
-        case Lines<kInvalid>::Clipped::Nothing:
+        case Lines<kCodes>::Clipped::Nothing:
             return one;
-        case Lines<kInvalid>::Clipped::All:
+        case Lines<kCodes>::Clipped::All:
             return zero;
-        case Lines<kInvalid>::Clipped::Part:
+        case Lines<kCodes>::Clipped::Part:
             break;
         }
         const Vec8 part = reach / static_cast<float>(p1.w > p0.w ? p1.w - p0.w : 1);
@@ -483,7 +483,7 @@ private:
     }
 
     const SweepInput& m_in;
-    const Lines<kInvalid> m_lines;
+    const Lines<kCodes> m_lines;
     Accounts<kMode>& m_accounts;
     const DepthScale m_scale;
     OwnLines m_near; ///< from where the rays are to the voxels of a row

@@ -37,7 +37,7 @@ std::optional<Folding> foldInto(const Int3& dims, int longest) {
 ResidentVolume::ResidentVolume(const IntensityGrid& grid, double bytes, int longestTexture)
     : m_grid(grid), m_hasInvalid(!grid.valid.empty()), m_bytes(bytes), m_longest(longestTexture) {}
 
-void ResidentVolume::setWeights(const std::uint32_t* weights, std::uint64_t key) {
+void ResidentVolume::setWeights(const WeightFields* weights, std::uint64_t key) {
     m_weightData = weights;
     m_weightKey = key;
 }
@@ -56,12 +56,12 @@ void ResidentVolume::require(const Planes& planes) {
         m_first = Int3(0);
         m_first[a] =
             std::clamp(planes.forward ? planes.first : planes.end - m_room[a], 0, m_grid.codes.dims()[a] - m_room[a]);
-        uploadBox(m_codes, m_grid.codes.data(), false);
+        uploadBox(m_codes, nullptr);
         m_codesResident = true;
         m_weightsResident = false;
     }
     if (m_weightData == nullptr || (m_weightsResident && m_residentKey == m_weightKey)) return;
-    uploadBox(m_weights, m_weightData, true);
+    uploadBox(m_weights, m_weightData);
     m_weightsResident = true;
     m_residentKey = m_weightKey;
 }
@@ -70,7 +70,7 @@ void ResidentVolume::require(const Planes& planes) {
 void ResidentVolume::makeRoom(const Planes& planes) {
     const Int3 dims = m_grid.codes.dims();
     const int a = planes.axis, needed = planes.end - planes.first;
-    const double voxelBytes = (m_hasInvalid ? 4 : 2) + (m_weightData != nullptr ? 4 : 0);
+    const double voxelBytes = (m_hasInvalid ? 4 : m_grid.codes.isNarrow() ? 1 : 2) + (m_weightData != nullptr ? 4 : 0);
     const double planeBytes = voxelBytes * static_cast<double>(voxelCount(dims)) / dims[a];
     m_codesResident = m_weightsResident = false;
     int count = static_cast<int>(std::clamp(m_bytes / planeBytes, 0.0, static_cast<double>(dims[a])));
@@ -85,7 +85,7 @@ void ResidentVolume::makeRoom(const Planes& planes) {
             if (m_codes.size != size) {
                 m_weights = {}; // before the new ones, so that both never need room at once
                 m_codes = {};
-                m_codes = makeTexture3d(size, m_hasInvalid ? GL_RG16 : GL_R16, GL_LINEAR, "the volume");
+                m_codes = makeTexture3d(size, codeFormat(m_grid), GL_LINEAR, "the volume");
             }
             if (m_weightData != nullptr && m_weights.size != size) {
                 m_weights = {};
@@ -105,7 +105,7 @@ void ResidentVolume::makeRoom(const Planes& planes) {
                       "OpenGL", "", Remedy::OtherEngine);
 }
 
-void ResidentVolume::uploadBox(Texture3d& texture, const void* data, bool weights) const {
+void ResidentVolume::uploadBox(Texture3d& texture, const WeightFields* weights) const {
     for (int k = 0; k < m_folding.bricks.z; ++k)
         for (int j = 0; j < m_folding.bricks.y; ++j)
             for (int i = 0; i < m_folding.bricks.x; ++i) {
@@ -116,8 +116,7 @@ void ResidentVolume::uploadBox(Texture3d& texture, const void* data, bool weight
                 const Int3 size = glm::min(m_folding.tile, m_size - start);
                 if (size.x <= 0 || size.y <= 0 || size.z <= 0) continue;
                 if (weights)
-                    uploadWeights(texture, static_cast<const std::uint32_t*>(data), m_grid.codes.dims(),
-                                  m_first + start, size, slot * m_folding.tile);
+                    uploadWeights(texture, *weights, m_first + start, size, slot * m_folding.tile);
                 else
                     uploadCodes(texture, m_grid, m_first + start, size, slot * m_folding.tile);
             }

@@ -40,7 +40,7 @@ public:
     bool hasInvalid() const noexcept { return m_hasInvalid; }
     /// From now on require() keeps these in the device's memory too; uploaded only when `key` or the planes change.
     /// Null: no weights. The numbers must stay where they are until the next call.
-    void setWeights(const std::uint32_t* weights, std::uint64_t key);
+    void setWeights(const WeightFields* weights, std::uint64_t key);
     /// Makes sure that at least these planes are there. Throws OutOfMemory where there is not even room for them.
     void require(const Planes& planes);
 
@@ -52,13 +52,13 @@ public:
 
 private:
     void makeRoom(const Planes& planes);
-    void uploadBox(Texture3d& texture, const void* data, bool weights) const;
+    void uploadBox(Texture3d& texture, const WeightFields* weights) const; ///< null: codes
 
     const IntensityGrid& m_grid;
     bool m_hasInvalid;
     double m_bytes;
     int m_longest;
-    const std::uint32_t* m_weightData = nullptr;
+    const WeightFields* m_weightData = nullptr;
     std::uint64_t m_weightKey = 0, m_residentKey = 0;
     bool m_weightsResident = false, m_codesResident = false;
     Int3 m_first{0, 0, 0}, m_size{0, 0, 0}, m_room{0, 0, 0};

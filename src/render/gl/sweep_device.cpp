@@ -245,7 +245,7 @@ void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slot
             {s.axis, s.sign > 0 ? front : s.dims.z - end, s.sign > 0 ? end : s.dims.z - front, s.sign > 0});
 
         const Programs& programs = programsFor(candidates, slots);
-        programs.setTables(request.tables, m_grid.maxCode);
+        programs.setTables(request.tables, textureMaxCode(m_grid));
         programs.setSweep(s, ring);
         programs.setVolume(s, m_volume, request.eyeInVoxels);
         if (slots > 0) programs.setWeighted(request.weights != nullptr);

@@ -21,9 +21,9 @@ struct SweepRequest {
     DepthTables tables; ///< 1, 4 or 8 candidates
     // For sums:
     int features = 0;
-    std::vector<std::uint16_t> slotOfCode;  ///< index of the feature; `features` for "in none"
-    const std::uint32_t* weights = nullptr; ///< as WeightFields has them; null: no weighted sums
-    std::uint64_t weightsKey = 0;           ///< tells weights apart
+    std::vector<std::uint16_t> slotOfCode; ///< index of the feature; `features` for "in none"
+    const WeightFields* weights = nullptr; ///< null: no weighted sums
+    std::uint64_t weightsKey = 0;          ///< tells weights apart
 };
 
 /// The visibilities of some planes of one sweep.

@@ -38,8 +38,8 @@ public:
     std::string name() const override { return "gl"; }
     const Volume& volume() const override { return *m_volume; }
 
-    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
-                                  const WeightFields* weights, const JobControl& job) override;
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights,
+                                  const JobControl& job) override;
     /// The device has no derivative sweep: the cpu engine answers, on the same volume.
     SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
@@ -62,9 +62,10 @@ private:
 };
 
 std::vector<std::uint16_t> GlEngine::slotsOfCodes(const std::vector<Feature>& features) const {
-    std::vector<std::uint16_t> slots(static_cast<std::size_t>(m_grid.maxCode) + 1);
+    const int maxCode = gl::textureMaxCode(m_grid);
+    std::vector<std::uint16_t> slots(static_cast<std::size_t>(maxCode) + 1);
     for (std::size_t code = 0; code < slots.size(); ++code) {
-        const int f = featureAt(features, static_cast<double>(code) / m_grid.maxCode);
+        const int f = featureAt(features, static_cast<double>(code) / maxCode);
         slots[code] = static_cast<std::uint16_t>(f < 0 ? static_cast<int>(features.size()) : f);
     }
     return slots;
@@ -85,8 +86,12 @@ std::vector<FeatureSums> GlEngine::sums(const View& view, std::span<const Transf
     request.slotOfCode = slotsOfCodes(features);
     request.features = static_cast<int>(features.size());
     if (weights != nullptr) {
-        request.weights = weights->data();
-        request.weightsKey = keyOf(weights->data(), weights->size());
+        request.weights = weights;
+        request.weightsKey =
+            weights->isCompact()
+                ? keyOf(reinterpret_cast<const std::uint32_t*>(weights->compactData()), // in whole words
+                        (weights->size() + 3) / 4)
+                : keyOf(weights->data(), weights->size());
     }
     int atOnce = 0;
     m_device.run([&](gl::SweepDevice& device) { atOnce = device.candidatesAtOnce(request); });

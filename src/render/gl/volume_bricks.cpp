@@ -19,7 +19,7 @@ constexpr int kShortest = 2 * kMargin + 8; ///< texture, voxels: shorter ones wo
 
 BrickedVolume::BrickedVolume(const Volume& volume, int longest)
     : m_geometry(volume.geometry()), m_grid(sharedIntensityGrid(volume)), m_hasInvalid(!m_grid->valid.empty()),
-      m_maxCode(m_grid->maxCode) {
+      m_maxCode(textureMaxCode(*m_grid)) {
     longest = std::min(longest, glInteger(GL_MAX_3D_TEXTURE_SIZE));
     PELLUCID_CHECK(longest >= kShortest);
     cut(Int3(longest));
@@ -37,8 +37,7 @@ BrickedVolume::BrickedVolume(const Volume& volume, int longest)
             Int3 most(0);
             for (const VolumeBrick& brick : m_bricks) most = glm::max(most, brick.size);
             m_textures.clear();
-            m_textures.push_back(
-                makeTexture3d(most, m_hasInvalid ? GL_RG16 : GL_R16, GL_LINEAR, "a brick of the volume"));
+            m_textures.push_back(makeTexture3d(most, codeFormat(*m_grid), GL_LINEAR, "a brick of the volume"));
             return;
         } catch (const OutOfMemory&) {
             if (smallest) throw;
@@ -74,7 +73,7 @@ void BrickedVolume::cut(const Int3& longest) {
 bool BrickedVolume::uploadAll() {
     try {
         for (const VolumeBrick& brick : m_bricks) {
-            m_textures.push_back(makeTexture3d(brick.size, m_hasInvalid ? GL_RG16 : GL_R16, GL_LINEAR, "the volume"));
+            m_textures.push_back(makeTexture3d(brick.size, codeFormat(*m_grid), GL_LINEAR, "the volume"));
             uploadCodes(m_textures.back(), *m_grid, brick.first, brick.size, Int3(0));
         }
         return true;

@@ -29,7 +29,7 @@ public:
 
     std::size_t count() const noexcept { return m_bricks.size(); }
     bool hasInvalid() const noexcept { return m_hasInvalid; }
-    int maxCode() const noexcept { return m_maxCode; }
+    int maxCode() const noexcept { return m_maxCode; } ///< textureMaxCode()
     std::vector<std::string> defines() const {
         return m_hasInvalid ? std::vector<std::string>{"HAS_INVALID"} : std::vector<std::string>{};
     }

@@ -35,12 +35,24 @@ void copyBox(const T* data, const Int3& dims, const Int3& first, const Int3& siz
 
 } // namespace
 
+GLenum codeFormat(const IntensityGrid& grid) {
+    if (grid.codes.isNarrow()) return GL_R8;
+    return grid.valid.empty() ? GL_R16 : GL_RG16;
+}
+
+int textureMaxCode(const IntensityGrid& grid) {
+    constexpr int kWideOfNarrow = 65535 / 255;
+    return grid.codes.isNarrow() ? kWideOfNarrow * grid.maxCode : grid.maxCode;
+}
+
 void uploadCodes(const Texture3d& texture, const IntensityGrid& grid, const Int3& first, const Int3& size,
                  const Int3& to) {
     const Int3 dims = grid.codes.dims();
     glBindTexture(GL_TEXTURE_3D, texture.name.id());
-    if (grid.valid.empty()) {
-        copyBox(grid.codes.data(), dims, first, size, to, GL_RED, GL_UNSIGNED_SHORT, 1);
+    if (grid.codes.isNarrow()) {
+        copyBox(grid.codes.narrow(), dims, first, size, to, GL_RED, GL_UNSIGNED_BYTE, 1);
+    } else if (grid.valid.empty()) {
+        copyBox(grid.codes.wide(), dims, first, size, to, GL_RED, GL_UNSIGNED_SHORT, 1);
     } else {
         const Int3 layer(size.x, size.y, 1);
         std::vector<std::uint16_t> pairs(2 * voxelCount(layer));
@@ -60,10 +72,27 @@ void uploadCodes(const Texture3d& texture, const IntensityGrid& grid, const Int3
     throwOnGlError("uploading the volume");
 }
 
-void uploadWeights(const Texture3d& texture, const std::uint32_t* weights, const Int3& dims, const Int3& first,
-                   const Int3& size, const Int3& to) {
+void uploadWeights(const Texture3d& texture, const WeightFields& weights, const Int3& first, const Int3& size,
+                   const Int3& to) {
+    const Int3 dims = weights.dims();
     glBindTexture(GL_TEXTURE_3D, texture.name.id());
-    copyBox(weights, dims, first, size, to, GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+    if (!weights.isCompact()) {
+        copyBox(weights.data(), dims, first, size, to, GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+    } else {
+        const Int3 layer(size.x, size.y, 1);
+        std::vector<std::uint32_t> units(voxelCount(layer));
+        const auto nx = static_cast<std::size_t>(dims.x), ny = static_cast<std::size_t>(dims.y);
+        for (int k = 0; k < size.z; ++k) {
+            auto next = units.begin();
+            for (int j = 0; j < size.y; ++j) {
+                const std::size_t row =
+                    static_cast<std::size_t>(first.x) +
+                    nx * (static_cast<std::size_t>(first.y + j) + ny * static_cast<std::size_t>(first.z + k));
+                for (int i = 0; i < size.x; ++i) *next++ = weights.units(row + static_cast<std::size_t>(i));
+            }
+            copyBox(units.data(), layer, Int3(0), layer, to + Int3(0, 0, k), GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+        }
+    }
     glBindTexture(GL_TEXTURE_3D, 0);
     throwOnGlError("uploading the saliency");
 }

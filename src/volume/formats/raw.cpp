@@ -1,60 +1,32 @@
 // Headerless data: the layout comes from the command line or the import dialog.
-#include <algorithm>
-#include <bit>
 #include <cmath>
-#include <fstream>
 
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
-#include "volume/memory_use.h"
+#include "volume/formats/samples.h"
 
 namespace pellucid {
 
 namespace {
 
-template <class T>
-void swapBytes(std::vector<T>& values) {
-    for (T& value : values) {
-        auto* bytes = reinterpret_cast<unsigned char*>(&value);
-        std::reverse(bytes, bytes + sizeof(T));
-    }
-}
-
-template <class T>
-Samples readSamples(const std::string& path, const RawLayout& layout, std::size_t count, const JobControl& job) {
-    std::ifstream in(path, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(layout.skipBytes));
-    std::vector<T> values(count);
-    constexpr std::size_t kPiece = (16u << 20) / sizeof(T);
-    for (std::size_t done = 0; done < count; done += kPiece) {
-        job.throwIfStopped();
-        const std::size_t piece = std::min(kPiece, count - done);
-        in.read(reinterpret_cast<char*>(values.data() + done), static_cast<std::streamsize>(piece * sizeof(T)));
-        if (!in) throw FileError("the file ended or failed while it was read", path, "check the disk");
-        job.report(0.9 * static_cast<double>(done + piece) / static_cast<double>(count));
-    }
-    if (sizeof(T) > 1 && layout.bigEndian != (std::endian::native == std::endian::big)) swapBytes(values);
-    return values;
-}
-
-Samples readSamples(const std::string& path, const RawLayout& layout, std::size_t count, const JobControl& job) {
-    switch (layout.type) {
+ValueType valueType(SampleType type) {
+    switch (type) {
     case SampleType::U8:
-        return readSamples<std::uint8_t>(path, layout, count, job);
+        return ValueType::U8;
     case SampleType::I8:
-        return readSamples<std::int8_t>(path, layout, count, job);
+        return ValueType::I8;
     case SampleType::U16:
-        return readSamples<std::uint16_t>(path, layout, count, job);
+        return ValueType::U16;
     case SampleType::I16:
-        return readSamples<std::int16_t>(path, layout, count, job);
+        return ValueType::I16;
     case SampleType::U32:
-        return readSamples<std::uint32_t>(path, layout, count, job);
+        return ValueType::U32;
     case SampleType::I32:
-        return readSamples<std::int32_t>(path, layout, count, job);
+        return ValueType::I32;
     case SampleType::F32:
-        return readSamples<float>(path, layout, count, job);
+        return ValueType::F32;
     case SampleType::F64:
-        return readSamples<double>(path, layout, count, job);
+        return ValueType::F64;
     }
     PELLUCID_CHECK(false);
 }
@@ -84,9 +56,14 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
         throw FileError("the file has " + std::to_string(fileBytes) + " bytes, but " + claim, path,
                         "correct its layout", Remedy::CorrectRawLayout);
     }
-    requireMemory(source.then, path, layout.dims, bytes, bytes);
-    const Geometry geometry{layout.dims, layout.spacing, {0, 0, 0}};
-    return Volume(geometry, readSamples(path, layout, static_cast<std::size_t>(values), job), source.missing);
+    FileLayout file;
+    file.dataPath = path;
+    file.start = layout.skipBytes;
+    file.type = valueType(layout.type);
+    file.bigEndian = layout.bigEndian;
+    for (const std::int64_t size : sizes) file.axes.push_back({size, false});
+    file.spacing = layout.spacing;
+    return readSamples(source, file, job);
 }
 
 } // namespace pellucid

@@ -15,8 +15,8 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "volume/excerpt.h"
 #include "volume/formats/byte_source.h"
-#include "volume/memory_use.h"
 
 namespace pellucid {
 
@@ -56,6 +56,11 @@ using KeptType = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, dou
 /// Scaled integers are no integers.
 template <class T>
 using ScaledType = std::conditional_t<sizeof(T) == 8, double, float>;
+
+template <class T>
+SampleType sampleTypeOf() {
+    return static_cast<SampleType>(Samples(SampleArray<T>()).index());
+}
 
 /// Which values of the file make the volume: place of voxel (i,j,k) is first + i·stride.x + j·stride.y + k·stride.z,
 /// which grows with the voxel's index.
@@ -187,66 +192,167 @@ private:
     std::uint64_t m_done = 0;
 };
 
-/// Voxels that follow each other at one stride, as many as the axes allow; `ny` times `nz` such lines.
-struct Lines {
-    std::uint64_t length, ny, nz;
+/// Hands out the values of voxels that follow each other at one stride, in the order of the file.
+template <class T>
+class VoxelReader {
+public:
+    VoxelReader(Values& values, std::uint64_t stride)
+        // Voxels lie close together: read what is between them, too. Far apart: pass over it.
+        : m_values(values), m_stride(stride),
+          m_pieceVoxels(stride <= 4096 ? std::max<std::uint64_t>(1, kPieceBytes / (stride * sizeof(T))) : 1) {}
+
+    /// Calls body(values, voxels) for pieces of the `length` voxels from the file's value `start` on; values of voxels
+    /// are a stride apart.
+    template <class Body>
+    void readLine(std::uint64_t start, std::uint64_t length, const Body& body) {
+        for (std::uint64_t i = 0; i < length;) {
+            m_values.skip(start + i * m_stride - m_at);
+            const std::uint64_t voxels = std::min(m_pieceVoxels, length - i);
+            const std::uint64_t span = (voxels - 1) * m_stride + 1;
+            m_piece.resize(static_cast<std::size_t>(span));
+            m_values.read(reinterpret_cast<char*>(m_piece.data()), m_piece.size());
+            body(m_piece.data(), voxels);
+            m_at = start + i * m_stride + span;
+            i += voxels;
+        }
+    }
+
+private:
+    static constexpr std::uint64_t kPieceBytes = 4u << 20;
+    Values& m_values;
+    std::uint64_t m_stride, m_pieceVoxels;
+    std::vector<T> m_piece;
+    std::uint64_t m_at = 0; ///< the next value of the file
 };
 
-Lines linesOf(const Selection& s) {
-    const auto size = [&](int a) { return static_cast<std::uint64_t>(s.dims[a]); };
-    Lines lines{size(0), size(1), size(2)};
-    if (s.stride[1] == size(0) * s.stride[0]) {
-        lines.length *= std::exchange(lines.ny, 1);
-        if (s.stride[2] == size(1) * s.stride[1]) lines.length *= std::exchange(lines.nz, 1);
+/// Says from time to time how far reading has come.
+class ReadProgress {
+public:
+    ReadProgress(const JobControl& job, std::size_t all) : m_job(job), m_all(all) {}
+    void add(std::size_t voxels) {
+        m_done += voxels;
+        if (m_done < m_nextReport) return;
+        m_job.throwIfStopped();
+        m_job.report(0.1 + 0.8 * static_cast<double>(m_done) / static_cast<double>(m_all));
+        m_nextReport = m_done + (1u << 20);
     }
-    return lines;
-}
+
+private:
+    const JobControl& m_job;
+    std::size_t m_all, m_done = 0, m_nextReport = 0;
+};
+
+/// What readSamples() makes a volume of.
+struct Collected {
+    Samples samples;
+    ValueRange range; ///< of the voxels that were read, where the volume has others; lo > hi where it has not
+};
 
 /// convert(T) of each voxel's value.
 template <class T, class Kept, class Convert>
-std::vector<Kept> collect(Values& values, const Selection& selection, const JobControl& job, const Convert& convert) {
-    constexpr std::uint64_t kPieceBytes = 4u << 20;
-    const Lines lines = linesOf(selection);
-    const std::uint64_t stride = selection.stride[0];
+Collected collect(Values& values, const Selection& selection, const JobControl& job, const Convert& convert) {
+    const auto size = [&](int a) { return static_cast<std::uint64_t>(selection.dims[a]); };
+    // Voxels follow each other at one stride for as many axes as the file allows.
+    std::uint64_t length = size(0), ny = size(1), nz = size(2);
+    if (selection.stride[1] == size(0) * selection.stride[0]) {
+        length *= std::exchange(ny, 1);
+        if (selection.stride[2] == size(1) * selection.stride[1]) length *= std::exchange(nz, 1);
+    }
     std::vector<Kept> kept(voxelCount(selection.dims));
-    // Voxels lie close together: read what is between them, too. Far apart: pass over it.
-    const std::uint64_t pieceVoxels = stride <= 4096 ? kPieceBytes / (stride * sizeof(T)) : 1;
-    std::vector<T> piece;
-    std::uint64_t at = 0; // the next value of the file
-    std::size_t done = 0, nextReport = 0;
-    const auto readLine = [&](std::uint64_t start) {
-        for (std::uint64_t i = 0; i < lines.length;) {
-            values.skip(start + i * stride - at);
-            const std::uint64_t voxels = std::min(pieceVoxels, lines.length - i);
-            const std::uint64_t span = (voxels - 1) * stride + 1;
-            piece.resize(static_cast<std::size_t>(span));
-            values.read(reinterpret_cast<char*>(piece.data()), piece.size());
-            for (std::uint64_t v = 0; v < voxels; ++v)
-                kept[done++] = convert(piece[static_cast<std::size_t>(v * stride)]);
-            at = start + i * stride + span;
-            i += voxels;
-            if (done < nextReport) continue;
-            job.throwIfStopped();
-            job.report(0.1 + 0.8 * static_cast<double>(done) / static_cast<double>(kept.size()));
-            nextReport = done + (1u << 20);
-        }
+    std::size_t done = 0;
+    VoxelReader<T> reader(values, selection.stride[0]);
+    ReadProgress progress(job, kept.size());
+    for (std::uint64_t k = 0; k < nz; ++k)
+        for (std::uint64_t j = 0; j < ny; ++j)
+            reader.readLine(selection.first + j * selection.stride[1] + k * selection.stride[2], length,
+                            [&](const T* piece, std::uint64_t voxels) {
+                                for (std::uint64_t v = 0; v < voxels; ++v)
+                                    kept[done++] = convert(piece[v * selection.stride[0]]);
+                                progress.add(static_cast<std::size_t>(voxels));
+                            });
+    return {std::move(kept), {0, -1}};
+}
+
+/// The same for an excerpt: one layer of it is in the making while the file goes by.
+template <class T, class Kept, class Convert>
+Collected collectExcerpt(Values& values, const Selection& selection, const ExcerptPlan& plan,
+                         std::optional<double> missing, const JobControl& job, const Convert& convert) {
+    const Int3 lo = plan.region.lo, size = plan.region.hi - lo;
+    std::vector<Kept> kept(voxelCount(plan.dims)), row(static_cast<std::size_t>(size.x));
+    const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
+    LayerMeans<Kept> means({size.x, size.y}, plan.factors, missing);
+    VoxelReader<T> reader(values, selection.stride[0]);
+    ReadProgress progress(job, voxelCount(size));
+    const auto start = [&](int j, int k) {
+        return selection.first + static_cast<std::uint64_t>(lo.x) * selection.stride[0] +
+               static_cast<std::uint64_t>(lo.y + j) * selection.stride[1] +
+               static_cast<std::uint64_t>(lo.z + k) * selection.stride[2];
     };
-    for (std::uint64_t k = 0; k < lines.nz; ++k)
-        for (std::uint64_t j = 0; j < lines.ny; ++j)
-            readLine(selection.first + j * selection.stride[1] + k * selection.stride[2]);
-    return kept;
+    for (int k = 0; k < size.z; ++k) {
+        for (int j = 0; j < size.y; ++j) {
+            auto to = row.begin();
+            reader.readLine(start(j, k), row.size(), [&](const T* piece, std::uint64_t voxels) {
+                for (std::uint64_t v = 0; v < voxels; ++v) *to++ = convert(piece[v * selection.stride[0]]);
+            });
+            means.add(row.data(), j);
+            progress.add(row.size());
+        }
+        if (k % plan.factors.z == plan.factors.z - 1 || k == size.z - 1)
+            means.takeTo(kept.data() + layer * static_cast<std::size_t>(k / plan.factors.z));
+    }
+    return {std::move(kept), plan.factors == Int3(1) ? ValueRange{0, -1} : means.range()};
+}
+
+/// Where the samples can be used as they lie in the file: raw, in this machine's byte order, one after the other.
+bool isAsInMemory(const FileLayout& layout, const Selection& selection) {
+    const auto bytes = bytesPerValue(layout.type);
+    const bool native = bytes == 1 || layout.bigEndian == (std::endian::native == std::endian::big);
+    const auto nx = static_cast<std::uint64_t>(selection.dims.x), ny = static_cast<std::uint64_t>(selection.dims.y);
+    return layout.encoding == Encoding::Raw && native && !layout.scaling && selection.stride[0] == 1 &&
+           selection.stride[1] == nx && selection.stride[2] == nx * ny &&
+           (layout.start + selection.first * bytes) % bytes == 0;
+}
+
+/// The samples as they lie in a large file; empty where that cannot be.
+template <class T>
+std::optional<Samples> mapped(const FileLayout& layout, const Selection& selection, const JobControl& job) {
+    const std::uint64_t bytes = voxelCount(selection.dims) * sizeof(T);
+    if (bytes < kMapBytes || !isAsInMemory(layout, selection)) return {};
+    auto file = MappedFile::map(layout.dataPath, layout.start + selection.first * sizeof(T), bytes);
+    if (!file) return {};
+    // Looked at once from end to end, so that a slow disk can be waited for, or not.
+    constexpr std::size_t kPage = 4096;
+    ReadProgress progress(job, file->size());
+    volatile unsigned char looked = 0;
+    for (std::size_t i = 0; i < file->size(); i += kPage) {
+        looked = file->data()[i];
+        progress.add(kPage);
+    }
+    static_cast<void>(looked);
+    return SampleArray<T>(std::move(file));
 }
 
 template <class T, class Kept>
-Samples readAs(const FileLayout& layout, const Selection& selection, const JobControl& job) {
+Collected readAs(const FileLayout& layout, const Selection& selection, const ExcerptPlan& plan,
+                 const VolumeSource& source, const JobControl& job) {
+    if constexpr (std::is_same_v<T, Kept>)
+        if (plan.isWhole())
+            if (auto samples = mapped<T>(layout, selection, job)) return {std::move(*samples), {0, -1}};
+    if (plan.isWhole()) { // it was not planned for memory where it was to be mapped
+        const std::uint64_t bytes = voxelCount(plan.dims) * sizeof(Kept);
+        requireMemory(source.then, source.path, plan.dims, sampleTypeOf<Kept>(), bytes, bytes);
+    }
     std::unique_ptr<Values> values;
     if (layout.encoding == Encoding::Text)
         values = std::make_unique<TextValues<T>>(layout, job);
     else
         values = std::make_unique<BinaryValues<T>>(layout, job);
-    if (!layout.scaling)
-        return collect<T, Kept>(*values, selection, job, [](T value) { return static_cast<Kept>(value); });
-    return collect<T, Kept>(*values, selection, job, [scaling = *layout.scaling](T value) {
+    const auto read = [&](const auto& convert) {
+        return plan.isWhole() ? collect<T, Kept>(*values, selection, job, convert)
+                              : collectExcerpt<T, Kept>(*values, selection, plan, source.missing, job, convert);
+    };
+    if (!layout.scaling) return read([](T value) { return static_cast<Kept>(value); });
+    return read([scaling = *layout.scaling](T value) {
         return static_cast<Kept>(scaling.slope * static_cast<double>(value) + scaling.intercept);
     });
 }
@@ -298,23 +404,31 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
 
     job.report(0.1);
     job.throwIfStopped();
-    Samples samples;
+    Collected read;
+    ExcerptPlan plan;
     withType(layout.type, [&](auto zero) {
         using T = decltype(zero);
-        const auto read = [&](auto keptZero) {
+        const auto readTo = [&](auto keptZero) {
             using Kept = decltype(keptZero);
-            const std::uint64_t bytes = voxelCount(selection.dims) * sizeof(Kept);
-            requireMemory(source.then, path, selection.dims, bytes, bytes);
-            samples = readAs<T, Kept>(layout, selection, job);
+            const bool inFile = std::is_same_v<T, Kept> && isAsInMemory(layout, selection) &&
+                                voxelCount(selection.dims) * sizeof(Kept) >= kMapBytes;
+            plan = planExcerpt(source, selection.dims, sampleTypeOf<Kept>(), inFile);
+            read = readAs<T, Kept>(layout, selection, plan, source, job);
         };
         if (std::is_integral_v<T> && sizeof(T) == 8) notices.emplace_back("64-bit integers are kept as 64-bit floats");
         if (layout.scaling)
-            read(ScaledType<T>{});
+            readTo(ScaledType<T>{});
         else
-            read(KeptType<T>{});
+            readTo(KeptType<T>{});
     });
     job.report(0.9);
-    Volume volume(geometry, std::move(samples), source.missing);
+    Volume volume(plan.geometryOf(geometry), std::move(read.samples), source.missing);
+    if (!plan.isWhole()) {
+        volume = throughWindowOf(std::move(volume), read.range);
+        volume.excerpt = plan.excerpt;
+        const auto more = plan.notices();
+        notices.insert(notices.begin(), more.begin(), more.end());
+    }
     volume.notices = std::move(notices);
     return volume;
 }

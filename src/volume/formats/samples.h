@@ -52,6 +52,10 @@ Vec3 cleanDirection(const Vec3& direction);
 /// Number of values along all axes together, which fits into 2^63 bytes. Throws FileError at `path`.
 std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
 
+/// Samples of so many bytes and more are not read but mapped (MappedFile), where the file has them as memory would:
+/// raw, in this machine's byte order, unscaled. Smaller files are read, so that they may change while they are in use.
+inline constexpr std::uint64_t kMapBytes = 16u << 20;
+
 /// Reads the first time step, component source.component. The caller has seen to it that the data are long enough
 /// (file_check.h); whatever is wrong nonetheless is a FileError. Throws UsageError for a component that is not there.
 Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job);
