@@ -58,7 +58,7 @@ private:
         Vec8 u;
         Vec8 entry, fraction; ///< place in the table, and in its cell
         Int8 cell, integral;  ///< integral up to the cell, and its bit
-        Vec8 within;          ///< and what the cell adds up to `entry`
+        Vec8 opacity, within; ///< of the cell; and what it adds up to `entry`
         Vec8 share;
     };
 
@@ -71,8 +71,8 @@ private:
         m.cell = toInt(m.entry);
         m.fraction = m.entry - toFloat(m.cell);
         m.integral = gathered(m_s.integral, m.cell);
-        m.within = Vec8{};
-        if (whole) m.within = m.fraction * opacityOf(m);
+        m.opacity = whole ? opacityOf(m) : Vec8{};
+        m.within = m.fraction * m.opacity;
         return m;
     }
     /// Of the cell, in units of the integral.
@@ -90,25 +90,28 @@ private:
             take(next, last, (next.share == 0) & (last.share > 0));
         }
         if (none((next.integral ^ last.integral) | (next.integral & 1))) return false;
-        const Vec8 opacity = opacityOf(next);
-        next.within = next.fraction * opacity;
+        finish(next);
         if constexpr (kInvalid) {
-            last.within = last.fraction * opacityOf(last);
-            m_last.within = m_last.fraction * opacityOf(m_last);
+            finish(last);
+            finish(m_last);
         } else {
+            m_last.opacity = next.opacity;
             m_last.within = next.within;
         }
         Vec8 met = toFloat((next.integral >> 1) - (last.integral >> 1)) + (next.within - last.within);
         const Vec8 way = next.entry - last.entry;
         const Int8 resting = positive(way) < 0.01f; // as good as in one place
-        const Vec8 mean = most(Vec8{}, resting ? opacity : met / way);
+        const Vec8 mean = most(Vec8{}, resting ? next.opacity : met / way);
         Vec8 depth = mean * (next.u - last.u) * (m_s.depthUnit * m_s.stepInD0);
         if constexpr (kInvalid) depth *= 0.5f * (last.share + next.share);
         const Int8 some = depth > 0;
         if (none(some)) return false;
 
         Vec8 gradient[3], position[3];
-        const Vec8 place = 0.5f * (last.u + next.u);
+        // Where it is lit: about the middle of what is absorbed, were the opacity linear.
+        const Vec8 ends = last.opacity + next.opacity;
+        const Vec8 part = ends > 0 ? (last.opacity + 2.0f * next.opacity) / (3.0f * ends) : all(0.5f);
+        const Vec8 place = last.u + part * (next.u - last.u);
         const bool early = kLight && m_s.light.gradientOpacity > 0;
         if (early) {
             positionAt(m_rays, place, position);
@@ -124,7 +127,7 @@ private:
         // Colours: the running integral of τ·rgb, of one ray after the other.
         Int8 from = last.cell;
         Vec8 fromFraction = last.fraction, toFraction = next.fraction;
-        met = resting ? opacity : met;
+        met = resting ? next.opacity : met;
         from = resting ? next.cell : from;
         fromFraction = resting ? Vec8{} : fromFraction;
         toFraction = resting ? all(1) : toFraction;
@@ -149,13 +152,16 @@ private:
         return true;
     }
 
+    void finish(Met& m) const {
+        m.opacity = opacityOf(m);
+        m.within = m.fraction * m.opacity;
+    }
     static void take(Met& to, const Met& from, Int8 where) {
         if (none(where)) return;
         to.entry = where ? from.entry : to.entry;
         to.fraction = where ? from.fraction : to.fraction;
         to.cell = where ? from.cell : to.cell;
         to.integral = where ? from.integral : to.integral;
-        to.within = where ? from.within : to.within;
     }
     static Int4 colorAt(const std::int32_t* p) { return *reinterpret_cast<const Int4InMemory*>(p); }
     static Vec4 floats(Int4 v) { return __builtin_convertvector(v, Vec4); }
