@@ -19,6 +19,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import vtk_raycast
@@ -49,23 +50,25 @@ def orbit(views, elevation):
 
 
 def vtk_times(picture, views):
-    """Seconds per picture of the orbit, after two that prepare tables."""
-    times = []
+    """Seconds per picture of the orbit, and those of all processors, after two pictures that prepare tables."""
+    times, cpu = [], []
     for n, view in enumerate([views[-2], views[-1], *views]):
         picture.look(*view)
+        start = time.process_time()
         picture.window.Render()
         if n >= 2:
             times.append(picture.mapper.GetTimeToDraw())
-    return times
+            cpu.append(time.process_time() - start)
+    return times, cpu
 
 
 def pellucid_times(options, file, peak, lit):
     shade = ["--shading"] if lit else []
     rows = pellucid(options.cli, "bench", file, "--tf", f"tents:3:{peak:g}", "--only", "render", "--threads",
                     str(options.threads), "--view", f"0,{options.elevation:g}", "--engine", "cpu", "--repeat", "1",
-                    "--orbit", str(options.views), "--size", f"{options.image_size}x{options.image_size}", "--step", "1",
+                    "--orbit", str(options.views), "--image-size", f"{options.image_size}x{options.image_size}", "--step", "1",
                     *shade)["rows"]
-    return rows[0]["frames"]
+    return rows[0]["frames"], rows[0]["cpu_frames"]
 
 
 def similarity(options, file, picture, peak, lit, view, folder):
@@ -88,6 +91,24 @@ def volume_file(options, name, folder):
     subprocess.run([options.cli, "generate", sample, *(["--size", size] if size else []), "--out", file], check=True,
                    stdout=subprocess.DEVNULL)
     return file
+
+
+def compare(options, file, picture, peak, lit, views, folder):
+    """Both programs in turn; prints a line and returns its figures."""
+    ours, theirs = ([], []), ([], [])
+    for _ in range(options.rounds):
+        for all_times, times in ((theirs, vtk_times(picture, views)), (ours, pellucid_times(options, file, peak, lit))):
+            all_times[0].extend(times[0])
+            all_times[1].extend(times[1])
+    medians = {"pellucid_ms": ours[0], "vtk_ms": theirs[0], "pellucid_cpu_ms": ours[1], "vtk_cpu_ms": theirs[1]}
+    figures = {"lit": lit, "peak": peak} | {key: 1e3 * statistics.median(values) for key, values in medians.items()}
+    figures["ratio"] = figures["pellucid_ms"] / figures["vtk_ms"]
+    figures["cpu_ratio"] = figures["pellucid_cpu_ms"] / figures["vtk_cpu_ms"]
+    figures["ssim"] = min(similarity(options, file, picture, peak, lit, views[i], folder) for i in (0, len(views) // 3))
+    print(f"  {'on ' if lit else 'off'}   {peak:6g}   {figures['pellucid_ms']:8.1f} {figures['vtk_ms']:8.1f}   "
+          f"{figures['ratio']:5.2f}   {figures['pellucid_cpu_ms']:8.1f} {figures['vtk_cpu_ms']:8.1f}   "
+          f"{figures['cpu_ratio']:5.2f}   {figures['ssim']:.3f}", flush=True)
+    return figures
 
 
 def main():
@@ -121,22 +142,14 @@ def main():
             nz, ny, nx = voxels.shape
             print(f"VTK {vtk_raycast.vtk.vtkVersion.GetVTKVersion()}, {Path(file).name} {nx} x {ny} x {nz}, "
                   f"{options.image_size}² pixels, {picture.mapper.GetNumberOfThreads()} threads, medians of "
-                  f"{options.rounds} orbits of {options.views}\n  light   peak   Pellucid [ms]   VTK [ms]   ratio   SSIM")
+                  f"{options.rounds} orbits of {options.views}\n"
+                  "  light   peak   Pellucid      VTK   ratio   Pellucid      VTK   ratio   SSIM\n"
+                  "                 time [ms]                   CPU time [ms]")
             for lit in lights:
                 light(picture, lit)
                 for peak in (float(p) for p in options.peaks.split(",")):
                     picture.show(*tents(3, peak, low, high))
-                    ours, theirs = [], []
-                    for _ in range(options.rounds):
-                        theirs += vtk_times(picture, views)
-                        ours += pellucid_times(options, file, peak, lit)
-                    ours, theirs = 1e3 * statistics.median(ours), 1e3 * statistics.median(theirs)
-                    alike = min(similarity(options, file, picture, peak, lit, views[i], folder)
-                                for i in (0, len(views) // 3))
-                    print(f"  {'on ' if lit else 'off'}   {peak:6g}   {ours:13.1f}   {theirs:8.1f}   {ours / theirs:5.2f}"
-                          f"   {alike:.3f}", flush=True)
-                    figures.append({"volume": name, "lit": lit, "peak": peak, "pellucid_ms": ours, "vtk_ms": theirs,
-                                    "ratio": ours / theirs, "ssim": alike})
+                    figures.append(compare(options, file, picture, peak, lit, views, folder) | {"volume": name})
     if options.json:
         Path(options.json).write_text(json.dumps(figures, indent=1) + "\n")
 

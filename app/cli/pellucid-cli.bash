@@ -40,7 +40,7 @@ _pellucid_cli() {
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --view | --step | \
             --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
-            --max-iterations | --repeat | --fix | --target | --tolerance)
+            --max-iterations | --repeat | --orbit | --image-size | --fix | --target | --tolerance)
             return
             ;;
     esac
