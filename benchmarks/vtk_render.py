@@ -72,14 +72,19 @@ def pellucid_times(options, file, peak, lit):
 
 
 def similarity(options, file, picture, peak, lit, view, folder):
-    """Of one picture by both, as 8-bit colours."""
+    """Of one picture by both, as 8-bit colours; and of ours to VTK's with samples eight times as close, which has
+    less of the grain that samples between two values leave under steep transfer functions."""
     label = f"{Path(file).stem}_{peak:g}{'_lit' if lit else ''}"
     ours, theirs = folder / f"pellucid_{label}.png", folder / f"vtk_{label}.png"
-    picture.write(theirs, view)
+    fine = folder / f"vtk_fine_{label}.png"
+    for file_name, distance in ((fine, picture.d0 / 8), (theirs, picture.d0)):
+        picture.mapper.SetSampleDistance(distance)
+        picture.write(file_name, view)
     subprocess.run([options.cli, "render", file, "--tf", f"tents:3:{peak:g}", "--view", f"{view[0]:g},{view[1]:g}",
                     "--engine", "cpu", "--size", f"{options.image_size}x{options.image_size}", "--step", "1",
                     *(["--shading"] if lit else []), "--out", str(ours)], check=True, stdout=subprocess.DEVNULL)
-    return structural_similarity(imread(ours)[..., :3], imread(theirs)[..., :3], channel_axis=-1)
+    return [structural_similarity(imread(ours)[..., :3], imread(other)[..., :3], channel_axis=-1)
+            for other in (theirs, fine)]
 
 
 def volume_file(options, name, folder):
@@ -104,10 +109,11 @@ def compare(options, file, picture, peak, lit, views, folder):
     figures = {"lit": lit, "peak": peak} | {key: 1e3 * statistics.median(values) for key, values in medians.items()}
     figures["ratio"] = figures["pellucid_ms"] / figures["vtk_ms"]
     figures["cpu_ratio"] = figures["pellucid_cpu_ms"] / figures["vtk_cpu_ms"]
-    figures["ssim"] = min(similarity(options, file, picture, peak, lit, views[i], folder) for i in (0, len(views) // 3))
+    alike = [similarity(options, file, picture, peak, lit, views[i], folder) for i in (0, len(views) // 3)]
+    figures["ssim"], figures["ssim_fine"] = (min(values) for values in zip(*alike))
     print(f"  {'on ' if lit else 'off'}   {peak:6g}   {figures['pellucid_ms']:8.1f} {figures['vtk_ms']:8.1f}   "
           f"{figures['ratio']:5.2f}   {figures['pellucid_cpu_ms']:8.1f} {figures['vtk_cpu_ms']:8.1f}   "
-          f"{figures['cpu_ratio']:5.2f}   {figures['ssim']:.3f}", flush=True)
+          f"{figures['cpu_ratio']:5.2f}   {figures['ssim']:.3f}   {figures['ssim_fine']:.3f}", flush=True)
     return figures
 
 
@@ -143,7 +149,7 @@ def main():
             print(f"VTK {vtk_raycast.vtk.vtkVersion.GetVTKVersion()}, {Path(file).name} {nx} x {ny} x {nz}, "
                   f"{options.image_size}² pixels, {picture.mapper.GetNumberOfThreads()} threads, medians of "
                   f"{options.rounds} orbits of {options.views}\n"
-                  "  light   peak   Pellucid      VTK   ratio   Pellucid      VTK   ratio   SSIM\n"
+                  "  light   peak   Pellucid      VTK   ratio   Pellucid      VTK   ratio   SSIM   to VTK at d0/8\n"
                   "                 time [ms]                   CPU time [ms]")
             for lit in lights:
                 light(picture, lit)

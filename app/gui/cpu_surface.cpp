@@ -19,7 +19,7 @@ constexpr double kFrameSeconds = 0.045; ///< that a picture may take while the s
 constexpr int kRest = 120;              ///< milliseconds without a change, before the full picture is begun
 constexpr int kGrowEvery = 40;          ///< milliseconds between looks at what has grown
 /// Rays one pixel apart, samples one voxel apart: what lies between two samples counts in full, by running integrals.
-constexpr double kFullStep = 1, kCoarsestStep = 2;
+constexpr double kFullStep = 1, kCoarsestStep = 3;
 constexpr double kCoarsest = 0.5, kLastResort = 0.2; ///< rays per pixel along each axis
 
 /// Opaque pixels of a part of `from` into the same place of `to`.
