@@ -42,6 +42,11 @@ def light(picture, on):
     properties.SetDiffuse(DIFFUSE)
     properties.SetSpecular(SPECULAR)
     properties.SetSpecularPower(SHININESS)
+    from_eye = vtk_raycast.vtk.vtkLight()
+    from_eye.SetLightTypeToHeadlight()
+    from_eye.SetAmbientColor(1, 1, 1)  # VTK's own has none, and then ambient light does nothing
+    picture.renderer.RemoveAllLights()
+    picture.renderer.AddLight(from_eye)
 
 
 def orbit(views, elevation):
