@@ -36,17 +36,18 @@ NUMPY_TYPES = {"uint8": "u1", "int16": "<i2", "uint16": "<u2", "float": "<f4"}
 
 
 def read_nrrd(path):
-    """Voxels as an array [z][y][x], and the spacing. Only what `pellucid-cli generate` writes: gzip, little endian."""
+    """Voxels as an array [z][y][x], and the spacing. Axis-aligned files in one piece: raw or gzip, little endian."""
     data = Path(path).read_bytes()
     head, body = data.split(b"\n\n", 1)
     fields = dict(line.split(": ", 1) for line in head.decode().splitlines() if ": " in line)
-    if fields["encoding"] != "gzip" or fields.get("endian", "little") != "little":
-        sys.exit(f"{path}: expected gzip, little endian")
+    if fields["encoding"] not in ("raw", "gzip", "gz") or fields.get("endian", "little") != "little":
+        sys.exit(f"{path}: expected raw or gzip, little endian")
     nx, ny, nz = (int(n) for n in fields["sizes"].split())
-    rows = fields["space directions"].replace("(", "").replace(")", "").split()
-    spacing = [float(row.split(",")[axis]) for axis, row in enumerate(rows)]
-    voxels = np.frombuffer(zlib.decompress(body, wbits=31), NUMPY_TYPES[fields["type"]])
-    return voxels.reshape(nz, ny, nx), spacing, fields["type"]
+    rows = [[float(v) for v in row.split(",")] for row in fields["space directions"].strip("() ").split(") (")]
+    type_name = {"short": "int16", "ushort": "uint16", "uchar": "uint8"}.get(fields["type"], fields["type"])
+    values = body if fields["encoding"] == "raw" else zlib.decompress(body, wbits=31)
+    voxels = np.frombuffer(values, NUMPY_TYPES[type_name])
+    return voxels.reshape(nz, ny, nx), [math.hypot(*row) for row in rows], type_name
 
 
 def tents(count, peak, low, high):

@@ -40,7 +40,8 @@ _pellucid_cli() {
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --view | --step | --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
-            --saliency-background | --step-down | --max-iterations | --repeat | --fix | --target | --tolerance)
+            --saliency-background | --step-down | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
+            --tolerance)
             return
             ;;
     esac

@@ -70,7 +70,17 @@ Json measureRows(const RowsOptions& o) {
     options.threads = benchThreads();
     if (o.once) options.repeat = 1;
     options.engine = o.engine;
-    if (!o.once) options.pictures = {{512, 512}, {512, 512, true}, {1920, 1080}, {1920, 1080, true}};
+    if (!o.once) {
+        options.pictures.clear();
+        for (const auto& [width, height] : {std::pair{512, 512}, {1920, 1080}})
+            for (const bool lit : {false, true}) {
+                RenderSettings picture;
+                picture.width = width;
+                picture.height = height;
+                picture.light.on = lit;
+                options.pictures.push_back(picture);
+            }
+    }
     const std::size_t slash = o.volumes.find('/');
     const std::vector<BenchCase> cases =
         o.volumes.starts_with("cubes") ? cubes(o) : knee(o.volumes.substr(slash + 1), o);

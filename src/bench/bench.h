@@ -14,6 +14,7 @@
 #include "base/job.h"
 #include "engines/engines.h"
 #include "render/camera.h"
+#include "render/render_settings.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
@@ -74,17 +75,13 @@ TransferFunction sparseTf(const Volume& volume);
 /// engine can make larger ones slower.
 std::shared_ptr<const Volume> tiled(const Volume& block, int n);
 
-struct BenchPicture {
-    int width = 512, height = 512; ///< pixels
-    bool lit = false;
-};
-
 struct BenchOptions {
     std::vector<int> threads;  ///< ascending
     std::optional<int> repeat; ///< runs of each row after a warm-up; else as many as tell enough, 3 at least
     EngineChoice engine = EngineChoice::Auto;
     Quality quality = Quality::Normal;
-    std::vector<BenchPicture> pictures{{}}; ///< a row `render` of each
+    std::vector<RenderSettings> pictures{{}}; ///< a row `render` of each
+    int orbit = 1; ///< those rows draw so many views from all around (axis: z), and tell the time of each
 };
 
 struct BenchResults {
