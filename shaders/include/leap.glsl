@@ -7,7 +7,7 @@ layout(location = 11) uniform ivec3 u_lastBlock;
 // How many whole steps the ray can go from u before it comes to such a block.
 float stepsToLeap(PictureRay ray, float u) {
     vec3 at = ray.point + u * ray.step;
-    ivec3 block = ivec3(clamp(at, vec3(0.0), u_lastVoxel)) >> BLOCK_SHIFT;
+    ivec3 block = min(ivec3(clamp(at, vec3(0.0), u_lastVoxel)) >> BLOCK_SHIFT, u_lastBlock);
     int distance = int(texelFetch(u_distances, block, 0).r);
     ivec3 below = block - distance + 1, beyond = block + distance;
     vec3 low = mix(vec3(below << BLOCK_SHIFT), vec3(-1e6), lessThanEqual(below, ivec3(0)));

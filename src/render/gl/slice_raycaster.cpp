@@ -15,6 +15,8 @@
 
 #include "base/error.h"
 #include "render/box_in_image.h"
+#include "render/cpu/ray_blocks.h"
+#include "render/cpu/ray_packets.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/picture_rays.h"
 #include "render/gl/shader_program.h"
@@ -147,6 +149,13 @@ struct CodeInterval {
     double low, high;
 };
 
+/// A feature that mode Surface draws.
+struct Surface {
+    CodeInterval codes;
+    double opacity;
+    Rgb color;
+};
+
 CodeInterval codesOf(const Feature& feature, int maxCode) {
     // A hair lower, so that rounding in the texture unit leaves voxels that lie on a border on their side of it.
     constexpr double kHair = 0.01;
@@ -180,14 +189,17 @@ struct SliceRaycaster::Impl {
 
     std::shared_ptr<const Volume> volume;
     std::unique_ptr<BrickedVolume> bricks;
-    Texture3d distances;
+    std::unique_ptr<RayBlocks> blocks;
+    Texture3d distances;                     ///< of the blocks, to the next that is drawn
+    std::optional<bool> distancesToSurfaces; ///< what they were made for: surfaces or opacity; empty: out of date
     std::optional<TransferFunction> tf;
     TableTexture table, surfaces;
-    int surfaceCount = 0;
+    std::vector<int> opaqueBefore; ///< number of opaque entries of the table before each
+    std::vector<Surface> drawn; ///< in `surfaces`: by their intervals
     std::optional<int> tableFeature; ///< onlyFeature that the tables were made for; empty: they are out of date
 
     const RaycastProgram& program(const RenderSettings& settings) {
-        std::vector<std::string> defines{"MODE " + std::to_string(static_cast<int>(settings.mode)), "BLOCK_SHIFT 16"};
+        std::vector<std::string> defines{"MODE " + std::to_string(static_cast<int>(settings.mode)), "BLOCK_SHIFT " + std::to_string(kRayBlockShift)};
         if (bricks->hasInvalid()) defines.emplace_back("HAS_INVALID");
         if (bricks->count() > 1) defines.emplace_back("BRICKS");
         const bool colored = settings.mode == RenderMode::Composite || settings.mode == RenderMode::Surface;
@@ -200,35 +212,45 @@ struct SliceRaycaster::Impl {
     }
 
     void fillTables(const RenderSettings& settings);
+    void fillTable(const RenderSettings& settings);
     void fillSurfaces(const Feature* only);
+    void fillDistances(bool toSurfaces);
     void resize(glm::ivec2 size);
     void setUniforms(const RaycastProgram& p, const Camera& camera, const RenderSettings& settings, const Tile& tile);
     void cast(const Camera& camera, const RenderSettings& settings, const Tile& tile, const JobControl& job);
     void drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile);
 };
 
+void SliceRaycaster::Impl::fillTables(const RenderSettings& settings) {
+    if (tableFeature != settings.onlyFeature) fillTable(settings);
+    if (settings.mode == RenderMode::Composite || settings.mode == RenderMode::Surface)
+        fillDistances(settings.mode == RenderMode::Surface);
+}
+
 /// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); a feature alone leaves the other
 /// intensities transparent.
-void SliceRaycaster::Impl::fillTables(const RenderSettings& settings) {
-    if (tableFeature == settings.onlyFeature) return;
+void SliceRaycaster::Impl::fillTable(const RenderSettings& settings) {
     const Feature* const only = settings.featureAlone(*tf);
     const TfTable made = makeTfTable(*tf, kTableSize);
     std::vector<float> values(static_cast<std::size_t>(8 * kTableSize));
     glm::dvec4 integral(0), before(0);
+    opaqueBefore.assign(static_cast<std::size_t>(kTableSize + 1), 0);
     for (std::size_t i = 0; i < made.rgba.size(); ++i) {
         const double s = static_cast<double>(i) / (kTableSize - 1);
-        const bool drawn = only == nullptr || only->contains(s);
-        const double tau = drawn ? static_cast<double>(made.opticalDepth[i]) : 0.0;
+        const bool isDrawn = only == nullptr || only->contains(s);
+        const double tau = isDrawn ? static_cast<double>(made.opticalDepth[i]) : 0.0;
         const auto& c = made.rgba[i];
         const glm::dvec4 entry(tau * Vec3(c[0], c[1], c[2]), tau);
         if (i > 0) integral += 0.5 * (before + entry);
         before = entry;
+        opaqueBefore[i + 1] = opaqueBefore[i] + (tau > 0 ? 1 : 0);
         for (int k = 0; k < 4; ++k) {
             values[4 * i + static_cast<std::size_t>(k)] = static_cast<float>(entry[k]);
             values[4 * (kTableSize + i) + static_cast<std::size_t>(k)] = static_cast<float>(integral[k]);
         }
     }
     tableFeature.reset();
+    distancesToSurfaces.reset();
     table.fill(values, 4);
     fillSurfaces(only);
     tableFeature = settings.onlyFeature;
@@ -236,12 +258,7 @@ void SliceRaycaster::Impl::fillTables(const RenderSettings& settings) {
 
 /// The features that mode Surface draws, by their intervals.
 void SliceRaycaster::Impl::fillSurfaces(const Feature* only) {
-    struct Surface {
-        CodeInterval codes;
-        double opacity;
-        Rgb color;
-    };
-    std::vector<Surface> drawn;
+    drawn.clear();
     const std::vector<double> opacities = featureOpacities(*tf);
     for (std::size_t f = 0; f < tf->features.size(); ++f) {
         const Feature& feature = tf->features[f];
@@ -250,15 +267,43 @@ void SliceRaycaster::Impl::fillSurfaces(const Feature* only) {
     }
     std::sort(drawn.begin(), drawn.end(),
               [](const Surface& a, const Surface& b) { return a.codes.low < b.codes.low; });
-    std::vector<float> values{0, 0, 0, 0};
-    values.reserve(8 * drawn.size() + 4);
-    values.clear();
+    std::vector<float> values;
     for (const Surface& s : drawn)
         for (const double v : {s.codes.low, s.codes.high, s.opacity, 0.0, s.color.r, s.color.g, s.color.b, 0.0})
             values.push_back(static_cast<float>(v));
-    surfaceCount = static_cast<int>(drawn.size());
-    if (drawn.empty()) values.resize(8);
+    if (drawn.empty()) values.resize(4); // no texture is empty
     surfaces.fill(values, 4);
+}
+
+/// Blocks that rays leap over.
+void SliceRaycaster::Impl::fillDistances(bool toSurfaces) {
+    if (distancesToSurfaces == toSurfaces) return;
+    distancesToSurfaces.reset();
+    const double entriesPerCode = static_cast<double>(kTableSize - 1) / bricks->maxCode();
+    const auto isOpaque = [&](int low, int high) {
+        // An entry more on both sides: the device rounds in its own way.
+        const int first = std::max(0, static_cast<int>(low * entriesPerCode) - 1),
+                  end = std::min(kTableSize, static_cast<int>(high * entriesPerCode) + 3);
+        return opaqueBefore[static_cast<std::size_t>(end)] != opaqueBefore[static_cast<std::size_t>(first)];
+    };
+    const auto isSurface = [&](int low, int high) {
+        return std::any_of(drawn.begin(), drawn.end(), [&](const Surface& s) {
+            return (high + 1) / 65535.0 >= s.codes.low && (low - 1) / 65535.0 < s.codes.high;
+        });
+    };
+    const std::vector<std::uint8_t> blockDistances =
+        toSurfaces ? blocks->distances(isSurface) : blocks->distances(isOpaque);
+    const Int3 size = blocks->dims();
+    if (distances.size != size)
+        distances = makeTexture3d(size, GL_R8UI, GL_NEAREST, "the map of empty space");
+    glBindTexture(GL_TEXTURE_3D, distances.name.id());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, size.x, size.y, size.z, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
+                    blockDistances.data());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glBindTexture(GL_TEXTURE_3D, 0);
+    throwOnGlError("uploading the map of empty space");
+    distancesToSurfaces = toSurfaces;
 }
 
 void SliceRaycaster::Impl::resize(glm::ivec2 size) {
@@ -288,13 +333,13 @@ void SliceRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& ca
     const Vec3 dims(g.dims);
     p.setRegion(settings.clipping.lo * dims - 0.5, settings.clipping.hi * dims - 0.5, planesInVoxels(oblique, g));
     p.setJitter(settings.jitter ? picture : glm::vec2(0));
-    p.setBlocks(g.dims - 1, distances.size - 1);
+    p.setBlocks(g.dims - 1, blocks->dims() - 1);
 
     const double codes = 65535.0 / bricks->maxCode(); // intensity of code/65535 = 1
     if (settings.mode == RenderMode::Composite) {
         p.setTable(codes * (kTableSize - 1), kTableSize);
     } else if (settings.mode == RenderMode::Surface) {
-        p.setFeatureCount(surfaceCount);
+        p.setFeatureCount(static_cast<int>(drawn.size()));
     } else {
         const Feature* const only = settings.featureAlone(*tf);
         const CodeInterval shown = only != nullptr ? codesOf(*only, bricks->maxCode()) : CodeInterval{-1, 2};
@@ -311,8 +356,8 @@ void SliceRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& ca
 void SliceRaycaster::Impl::cast(const Camera& camera, const RenderSettings& settings, const Tile& tile,
                                 const JobControl& job) {
     const bool bricked = bricks->count() > 1, surface = settings.mode == RenderMode::Surface;
-    if (surface && static_cast<std::size_t>(surfaceCount) > kMostSurfaces)
-        throw Error("surfaces of " + std::to_string(surfaceCount) + " features are too many", "transfer function",
+    if (surface && drawn.size() > kMostSurfaces)
+        throw Error("surfaces of " + std::to_string(drawn.size()) + " features are too many", "transfer function",
                     "the gl renderer draws " + std::to_string(kMostSurfaces), Remedy::OtherEngine);
     const glm::ivec2 size = accumulated.color.size;
     const RaycastProgram& p = program(settings);
@@ -401,14 +446,11 @@ SliceRaycaster::SliceRaycaster(SliceRaycaster&&) noexcept = default;
 SliceRaycaster& SliceRaycaster::operator=(SliceRaycaster&&) noexcept = default;
 
 void SliceRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longestTexture) {
+    auto blocks = std::make_unique<RayBlocks>(*sharedIntensityGrid(*volume));
     m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture);
+    m_impl->blocks = std::move(blocks);
     m_impl->volume = std::move(volume);
     m_impl->tableFeature.reset(); // in the former volume's codes
-    m_impl->distances = makeTexture3d({1, 1, 1}, GL_R8UI, GL_NEAREST, "the map of empty space");
-    const unsigned char zero = 0;
-    glBindTexture(GL_TEXTURE_3D, m_impl->distances.name.id());
-    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, 1, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_BYTE, &zero);
-    glBindTexture(GL_TEXTURE_3D, 0);
 }
 
 void SliceRaycaster::setTransferFunction(const TransferFunction& tf) {
