@@ -18,6 +18,8 @@ struct Options {
     std::set<BenchRow> only{kBenchRows.begin(), kBenchRows.end()};
     std::optional<int> repeat;
     bool full = false;
+    RenderSettings picture;
+    int orbit = 1;
 
     bool onBuiltIn() const { return !scene.volume.path && !scene.session.file; }
 };
@@ -94,6 +96,8 @@ public:
         m_bench.repeat = options.repeat;
         m_bench.engine = m_inputs.session.measure->engine;
         m_bench.quality = m_inputs.session.measure->quality;
+        m_bench.picture = options.picture;
+        m_bench.orbit = options.orbit;
     }
 
     void memory() {
@@ -335,6 +339,27 @@ Command addBench(CLI::App& program) {
         },
         "runs of each row after a first one that does not count; the median is told (default: 3, and more of rows that "
         "take less than 0.2 s)");
+    addValue(
+        *app, "--image-size", "WxH",
+        [o](const std::string& text, const std::string& option) {
+            const ImageSize size = parseImageSize(text, option);
+            o->picture.width = size.width;
+            o->picture.height = size.height;
+        },
+        "pixels of the row render (default 512x512)");
+    addValue(
+        *app, "--step", "D",
+        [o](const std::string& text, const std::string& option) {
+            o->picture.stepInD0 = parseRealAbove(text, option, 0, 16);
+        },
+        "largest distance of samples in the row render, in reference lengths (default 0.5)");
+    app->add_flag("--shading", o->picture.light.on, "light from the eye in the row render");
+    addValue(
+        *app, "--orbit", "N",
+        [o](const std::string& text, const std::string& option) {
+            o->orbit = static_cast<int>(parseInteger(text, option, 1, 1000));
+        },
+        "views from all around that the row render draws; --json lists the time of each (default 1)");
     app->add_flag("--full", o->full, "a cube of 512 voxels along each side too: some minutes, 2 GiB of memory");
     return {app, [o, app](Progress& progress) { return run(*o, app->get_option("--threads")->count() > 0, progress); }};
 }

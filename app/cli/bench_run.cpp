@@ -6,6 +6,7 @@
 #include <ctime>
 #include <deque>
 #include <functional>
+#include <numbers>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -61,6 +62,15 @@ std::vector<TransferFunction> searchCandidates(const TransferFunction& tf, const
         candidates.push_back(withFeatureOpacities(tf, x));
     }
     return candidates;
+}
+
+/// Around an axis along z through what it looks at; radians.
+Camera turned(Camera camera, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto turn = [&](const Vec3& v) { return Vec3(c * v.x - s * v.y, s * v.x + c * v.y, v.z); };
+    camera.eye = camera.center + turn(camera.eye - camera.center);
+    camera.up = turn(camera.up);
+    return camera;
 }
 
 double bytesPerVoxel(const WeightFields& weights) {
@@ -207,12 +217,24 @@ private:
 
     void addRender() {
         const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_case.volume);
-        const RenderSettings settings;
+        const RenderSettings& settings = m_options.picture;
         BenchResult r = row(BenchRow::Render, renderer->name());
         r.extra = {{"size", {settings.width, settings.height}}};
-        add(r, voxels() * kBytesPerCode, [this, renderer, settings](BenchResult&, const JobControl& j) {
-            renderer->render(m_case.camera, m_case.tf, settings, j);
-        });
+        if (m_options.orbit > 1) r.extra.update({{"frames", Json::array()}, {"cpu_frames", Json::array()}});
+        add(
+            r, voxels() * kBytesPerCode,
+            [this, renderer, settings](BenchResult& result, const JobControl& j) {
+                for (int i = 0; i < m_options.orbit; ++i) {
+                    const double angle = 2 * std::numbers::pi * i / m_options.orbit;
+                    const Stopwatch watch;
+                    const double cpuStart = cpuSeconds();
+                    renderer->render(turned(m_case.camera, angle), m_case.tf, settings, j);
+                    if (m_options.orbit == 1) continue;
+                    result.extra["frames"].push_back(watch.seconds());
+                    result.extra["cpu_frames"].push_back(cpuSeconds() - cpuStart);
+                }
+            },
+            m_options.orbit);
     }
 
     const BenchCase& m_case;
@@ -232,8 +254,12 @@ void measure(Measurement& m, double least, bool counts, const JobControl& job, s
         try {
             const Stopwatch watch;
             const double cpuStart = cpuSeconds();
+            const Json before = counts ? Json() : m.result.extra;
             m.work(m.result, job);
-            if (!counts) return;
+            if (!counts) { // nor does what it tells
+                m.result.extra = before;
+                return;
+            }
             m.seconds.push_back(watch.seconds() / m.times);
             m.cpuSeconds.push_back((cpuSeconds() - cpuStart) / m.times);
         } catch (const Error& e) {

@@ -14,6 +14,7 @@
 #include "output.h"
 #include "progress.h"
 #include "render/camera.h"
+#include "render/render_settings.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
@@ -69,6 +70,8 @@ struct BenchOptions {
     std::optional<int> repeat; ///< runs of each row after a warm-up; else as many as tell enough, 3 at least
     EngineChoice engine = EngineChoice::Auto;
     Quality quality = Quality::Normal;
+    RenderSettings picture; ///< of the row `render`
+    int orbit = 1;          ///< that row draws so many views from all around (axis: z), and tells the time of each
 };
 
 struct BenchResults {

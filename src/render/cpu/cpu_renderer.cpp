@@ -1,65 +1,56 @@
-// A ray per pixel: the emission-absorption integral (docs/method.md, "The picture") over segments on which the
-// intensity goes linearly from one end to the other. What a segment absorbs and emits then is exact, by running
-// integrals over the transfer function, so that thin tents and steps leave no bands.
+// The renderer on the CPU: prepares what packets of rays need (see ray_packets.h) and shares the picture's tiles among
+// threads (docs/method.md, "The picture").
+#include "render/cpu/cpu_renderer.h"
+
+#include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <utility>
 
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
-#include <glm/vec4.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "base/parallel.h"
-#include "render/image_renderer.h"
-#include "render/ray_box.h"
-#include "render/trilinear.h"
-#include "tf/tf_table.h"
-#include "volume/intensity_grid.h"
+#include "render/ambient_occlusion.h"
+#include "render/cpu/ray_blocks.h"
+#include "render/cpu/ray_packets.h"
+#include "render/cpu/ray_table.h"
 
 namespace pellucid {
 
 namespace {
 
-constexpr int kTableSize = 4096;
-constexpr double kDark = 1e-4; ///< transmittance below which a ray ends: a fortieth of an 8-bit level
+constexpr int kTile = 32; ///< pixels
 
-// Light from the eye; the same numbers stand in shaders/include/shading.glsl.
-constexpr double kAmbient = 0.35, kDiffuse = 0.65, kSpecular = 0.25, kShininess = 24;
+void copy(const Vec3& from, float (&to)[3]) {
+    for (int a = 0; a < 3; ++a) to[a] = static_cast<float>(from[a]);
+}
+Vec3 vector(const Rgb& c) { return {c.r, c.g, c.b}; }
 
-/// Means over an interval of intensity: optical depth per d0, and colour weighted by it.
-class SegmentTable {
-public:
-    SegmentTable(const TransferFunction& tf, const Feature* only) : m_entries(kTableSize), m_integrals(kTableSize) {
-        const TfTable table = makeTfTable(tf, kTableSize);
-        for (std::size_t i = 0; i < m_entries.size(); ++i) {
-            const bool drawn = !only || only->contains(static_cast<double>(i) / (kTableSize - 1));
-            const double tau = drawn ? static_cast<double>(table.opticalDepth[i]) : 0.0;
-            const auto& c = table.rgba[i];
-            m_entries[i] = glm::dvec4(tau * Vec3(c[0], c[1], c[2]), tau);
-            if (i > 0) m_integrals[i] = m_integrals[i - 1] + 0.5 * (m_entries[i - 1] + m_entries[i]);
-        }
+PacketMode packetMode(RenderMode mode) {
+    switch (mode) {
+    case RenderMode::Mip:
+        return PacketMode::Mip;
+    case RenderMode::MinIp:
+        return PacketMode::MinIp;
+    case RenderMode::Average:
+        return PacketMode::Average;
+    case RenderMode::Surface:
+        return PacketMode::Surface;
+    case RenderMode::Composite:
+        break;
     }
-
-    /// Mean of (τ·rgb, τ) while the intensity goes linearly from `s0` to `s1`, each in [0,1].
-    glm::dvec4 mean(double s0, double s1) const {
-        const double low = std::min(s0, s1) * (kTableSize - 1), high = std::max(s0, s1) * (kTableSize - 1);
-        if (high - low < 1e-3) return m_entries[static_cast<std::size_t>((low + high) / 2 + 0.5)];
-        return (integralTo(high) - integralTo(low)) / (high - low);
-    }
-
-private:
-    glm::dvec4 integralTo(double entry) const {
-        const auto i = std::min(static_cast<std::size_t>(entry), m_entries.size() - 2);
-        const double f = entry - static_cast<double>(i);
-        return m_integrals[i] + f * (m_entries[i] + 0.5 * f * (m_entries[i + 1] - m_entries[i]));
-    }
-    std::vector<glm::dvec4> m_entries, m_integrals; ///< (τ·rgb, τ); integrals from entry 0
-};
+    return PacketMode::Composite;
+}
 
 class CpuRenderer final : public ImageRenderer {
 public:
-    explicit CpuRenderer(std::shared_ptr<const Volume> volume)
-        : m_volume(std::move(volume)), m_shared(sharedIntensityGrid(*m_volume)), m_grid(*m_shared) {}
+    CpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options)
+        : m_volume(std::move(volume)), m_options(options), m_grid(sharedIntensityGrid(*m_volume)), m_blocks(*m_grid) {
+        if (m_volume->dims().x == 1) { // pairs along x are read
+            m_padded.assign(m_grid->codes.begin(), m_grid->codes.end());
+            m_padded.push_back(0);
+        }
+    }
 
     std::string name() const override { return "cpu"; }
 
@@ -67,101 +58,220 @@ public:
                  const JobControl& job) override {
         settings.validate();
         camera.validate(m_volume->geometry(), "camera");
-        const SegmentTable table(tf, settings.featureAlone(tf));
+        prepare(tf, settings);
 
         Image image(settings.width, settings.height);
+        PacketScene scene;
+        fillVolume(scene);
+        fillCamera(camera, settings, scene);
+        fillRegion(settings, scene);
+        fillMode(tf, settings, scene);
+        fillLight(camera, settings, scene);
+        scene.width = settings.width;
+        scene.height = settings.height;
+        scene.rgba = image.rgba.data();
+        scene.leap = m_options.leap;
+        const PacketKernel kernel = packetKernels()[static_cast<std::size_t>(m_options.kernel)];
+
+        const int columns = (settings.width + kTile - 1) / kTile, rows = (settings.height + kTile - 1) / kTile;
+        const int tiles = columns * rows;
         std::atomic<int> done = 0;
-        parallelFor(static_cast<std::size_t>(settings.height), [&](std::size_t row) {
+        parallelFor(static_cast<std::size_t>(tiles), [&](std::size_t i) {
             job.throwIfStopped();
-            const int y = static_cast<int>(row);
-            for (int x = 0; x < settings.width; ++x) {
-                const Ray ray = pixelRay(camera, x + 0.5, y + 0.5, settings.width, settings.height);
-                store(image.pixel(x, y), trace(ray, camera, table, settings), settings);
-            }
-            job.report(static_cast<double>(++done) / settings.height);
+            const int x = static_cast<int>(i) % columns * kTile, y = static_cast<int>(i) / columns * kTile;
+            kernel(scene, {x, y, std::min(x + kTile, settings.width), std::min(y + kTile, settings.height)});
+            job.report(static_cast<double>(++done) / tiles);
         });
         return image;
     }
 
 private:
-    struct Light {
-        Vec3 rgb{0, 0, 0}; ///< premultiplied
-        double transmittance = 1;
+    /// Tables and blocks of the transfer function, where it is not the last one.
+    void prepare(const TransferFunction& tf, const RenderSettings& settings) {
+        const Feature* only = settings.featureAlone(tf);
+        const Prepared wanted{tf, settings.onlyFeature, settings.mode == RenderMode::Surface};
+        if (m_table && m_prepared == wanted) return;
+        m_table.reset();
+        m_features.clear();
+        m_openness.reset();
+        if (wanted.surfaces) {
+            prepareFeatures(tf, only);
+            m_table.emplace(
+                [&](double s) {
+                    const float code = static_cast<float>(s * m_grid->maxCode);
+                    return std::any_of(m_features.begin(), m_features.end(),
+                                       [&](const auto& f) { return code >= f.low && code < f.high; });
+                },
+                *m_grid);
+        } else {
+            m_table.emplace(tf, only, *m_grid);
+        }
+        m_distances = m_blocks.distances([&](int low, int high) { return m_table->isOpaque(low, high); });
+        m_prepared = wanted;
+    }
+
+    /// Those that mode Surface draws.
+    void prepareFeatures(const TransferFunction& tf, const Feature* only) {
+        const std::vector<double> peaks = featureOpacities(tf);
+        for (std::size_t f = 0; f < peaks.size(); ++f) {
+            const Feature& feature = tf.features[f];
+            if (peaks[f] <= 0 || (only && only != &feature)) continue;
+            PacketScene::Feature to{lowestCode(feature), endCode(feature), {}, static_cast<float>(peaks[f])};
+            copy(vector(feature.color), to.rgb);
+            m_features.push_back(to);
+        }
+        if (m_features.size() > kMostSurfaces)
+            throw Error(std::to_string(m_features.size()) + " features have an opacity", "surfaces",
+                        "draw at most " + std::to_string(kMostSurfaces));
+    }
+    float lowestCode(const Feature& f) const { return static_cast<float>(f.a * m_grid->maxCode); }
+    float endCode(const Feature& f) const { ///< 1 belongs to a feature that ends there
+        return f.b >= 1 ? 65536.0f : static_cast<float>(f.b * m_grid->maxCode);
+    }
+
+    void fillVolume(PacketScene& s) const {
+        const Int3 n = m_volume->dims();
+        s.codes = m_padded.empty() ? m_grid->codes.data() : m_padded.data();
+        s.valid = m_grid->valid.empty() ? nullptr : m_grid->valid.data();
+        for (int a = 0; a < 3; ++a) {
+            s.dims[a] = n[a];
+            s.blockDims[a] = m_blocks.dims()[a];
+        }
+        s.middleSlice = n.z / 2;
+        s.middleVoxel = static_cast<std::int64_t>(s.middleSlice) * n.x * n.y;
+        s.blockDistance = m_distances.data();
+        s.blockRange = m_blocks.ranges().data();
+        s.cellOfCode = m_table->cellOfCode();
+        s.intensityOfCode = 1.0f / static_cast<float>(m_grid->maxCode);
+        s.integral = m_table->integral();
+        s.colors = m_table->colors();
+        s.depthUnit = m_table->depthUnit();
+    }
+
+    void fillCamera(const Camera& camera, const RenderSettings& settings, PacketScene& s) const {
+        const Geometry& g = m_volume->geometry();
+        const bool perspective = camera.projection == Projection::Perspective;
+        const Vec3 ahead = camera.forward(), right = camera.right(), down = -camera.trueUp();
+        const double half = perspective ? std::tan(glm::radians(camera.fovY) / 2) : camera.height / 2;
+        const double perPixel = 2 * half / settings.height;
+        const double middle = glm::dot(g.boxCenter() - camera.eye, ahead); // depth of the box
+        PacketCamera& c = s.camera;
+        c.middle[0] = static_cast<float>(settings.width / 2.0);
+        c.middle[1] = static_cast<float>(settings.height / 2.0);
+        copy(g.voxelFromWorld(camera.eye + middle * ahead), c.point);
+        copy(inVoxels(ahead), c.direction);
+        for (int i = 0; i < 2; ++i) {
+            const Vec3 side = inVoxels(perPixel * (i == 0 ? right : down));
+            copy(perspective ? middle * side : side, c.pointBy[i]);
+            copy(perspective ? side : Vec3(0), c.directionBy[i]);
+            c.slope[i] = perspective ? static_cast<float>(perPixel) : 0;
+        }
+        c.nearest = perspective ? static_cast<float>(-middle) : -1e30f;
+        s.step = static_cast<float>(settings.stepInD0 * g.d0());
+        s.stepInD0 = static_cast<float>(settings.stepInD0);
+    }
+
+    void fillRegion(const RenderSettings& settings, PacketScene& s) const {
+        const auto add = [&](const Vec3& normal, double offset) {
+            PacketPlane& plane = s.planes[s.planeCount++];
+            copy(normal, plane.normal);
+            plane.offset = static_cast<float>(offset);
+        };
+        const Geometry& g = m_volume->geometry();
+        for (int a = 0; a < 3; ++a) {
+            Vec3 normal(0);
+            normal[a] = 1;
+            add(-normal, -g.voxelBoxMin()[a]);
+            add(normal, g.voxelBoxMax()[a]);
+        }
+        for (const VoxelPlane& plane : planesInVoxels(settings.clipping, g)) add(plane.normal, plane.offset);
+    }
+
+    void fillMode(const TransferFunction& tf, const RenderSettings& settings, PacketScene& s) const {
+        s.mode = packetMode(settings.mode);
+        s.jitter = settings.jitter;
+        s.features = m_features.data();
+        s.featureCount = static_cast<int>(m_features.size());
+        if (const Feature* only = settings.featureAlone(tf)) {
+            s.lowestShown = lowestCode(*only);
+            s.highestShown = endCode(*only);
+        }
+        if (!settings.background) return;
+        s.hasBackground = true;
+        copy(vector(*settings.background), s.background);
+        copy(vector(settings.backgroundTop.value_or(*settings.background)), s.backgroundTop);
+    }
+
+    void fillLight(const Camera& camera, const RenderSettings& settings, PacketScene& s) {
+        const Light& from = settings.light;
+        PacketLight& l = s.light;
+        l.shaded = from.on;
+        l.any = from.on || from.gradientOpacity > 0 || from.occlusion > 0 || from.depthCue > 0 || from.silhouettes > 0;
+        if (!l.any) return;
+        l.ambient = static_cast<float>(from.ambient);
+        l.diffuse = static_cast<float>(from.diffuse);
+        copy(glm::normalize(from.direction), l.toward);
+        m_specular.resize(kSpecularEntries + 1);
+        for (int i = 0; i <= kSpecularEntries; ++i)
+            m_specular[static_cast<std::size_t>(i)] = static_cast<float>(
+                from.specular * std::pow(static_cast<double>(i) / kSpecularEntries, from.shininess));
+        l.specular = m_specular.data();
+        const Geometry& g = m_volume->geometry();
+        const double scale = g.d0() / m_grid->maxCode;
+        copy(scale * inVoxels(camera.right()), l.cameraFromGradient[0]);
+        copy(scale * inVoxels(camera.trueUp()), l.cameraFromGradient[1]);
+        copy(-scale * inVoxels(camera.forward()), l.cameraFromGradient[2]);
+        l.gradientOpacity = static_cast<float>(from.gradientOpacity);
+        l.silhouettes = static_cast<float>(from.silhouettes);
+        l.occlusion = static_cast<float>(from.occlusion);
+        l.depthCue = static_cast<float>(from.depthCue);
+        l.cueFrom = static_cast<float>(-g.radius()); // depths count from the middle of the box
+        l.cuePerDepth = static_cast<float>(1 / (2 * g.radius()));
+        if (settings.background) copy(vector(*settings.background), l.cueColor);
+        if (from.occlusion > 0) fillOcclusion(settings, l);
+    }
+
+    void fillOcclusion(const RenderSettings& settings, PacketLight& l) {
+        if (!m_openness)
+            m_openness = makeAmbientOcclusion(*m_grid, m_volume->geometry(), m_prepared.tf,
+                                              settings.featureAlone(m_prepared.tf));
+        l.openness = m_openness->open.data();
+        for (int a = 0; a < 3; ++a) l.opennessDims[a] = m_openness->open.dims()[a];
+        l.cellOfVoxel = 1.0f / AmbientOcclusion::kCell;
+        l.cellOfVoxelOffset = 0.5f / AmbientOcclusion::kCell - 0.5f;
+    }
+
+    /// A world direction in voxels; the world's gradient is along e what that in voxels is along inVoxels(e).
+    Vec3 inVoxels(const Vec3& direction) const { return m_volume->geometry().indexFromWorld() * direction; }
+
+    /// What tables and distances follow from.
+    struct Prepared {
+        TransferFunction tf;
+        int onlyFeature = -1;
+        bool surfaces = false;
+        bool operator==(const Prepared&) const = default;
     };
 
-    Light trace(const Ray& ray, const Camera& camera, const SegmentTable& table, const RenderSettings& settings) const {
-        const Geometry& g = m_volume->geometry();
-        const Ray voxelRay = inVoxels(ray, g);
-        RayInterval t = intersectBox(voxelRay, g);
-        cut(t, voxelRay, planesInVoxels(settings.clipping, g));
-        if (camera.projection == Projection::Perspective) t.enter = std::max(t.enter, 0.0);
-        Light light;
-        if (t.empty()) return light;
-        const int steps = std::max(1, static_cast<int>(std::ceil((t.exit - t.enter) / (settings.stepInD0 * g.d0()))));
-        const double step = (t.exit - t.enter) / steps;
-        const double stepInD0 = step / g.d0();
-        const auto voxelAt = [&](double n) {
-            return voxelRay.origin + voxelRay.direction * (t.enter + n * step);
-        };
-        Interpolated from = interpolate(m_grid.codes, m_grid.valid, voxelAt(0));
-        for (int n = 1; n <= steps && light.transmittance > kDark; ++n) {
-            const Interpolated to = interpolate(m_grid.codes, m_grid.valid, voxelAt(n));
-            const Interpolated last = std::exchange(from, to);
-            const double share = 0.5 * (last.validShare + to.validShare);
-            if (share == 0) continue;
-            const double s0 = (last.validShare > 0 ? last : to).value / m_grid.maxCode,
-                         s1 = (to.validShare > 0 ? to : last).value / m_grid.maxCode;
-            const glm::dvec4 mean = table.mean(s0, s1);
-            if (mean.w <= 0) continue;
-            const double alpha = -std::expm1(-mean.w * share * stepInD0);
-            Vec3 color = Vec3(mean) / mean.w;
-            if (settings.light.on) color = shaded(color, voxelAt(n - 0.5), ray.direction);
-            light.rgb += light.transmittance * alpha * color;
-            light.transmittance *= 1 - alpha;
-        }
-        return light;
-    }
-
-    Vec3 shaded(const Vec3& color, const Vec3& at, const Vec3& view) const {
-        Vec3 gradient(0);
-        for (int a = 0; a < 3; ++a) {
-            Vec3 step(0);
-            step[a] = 1;
-            const Interpolated ahead = interpolate(m_grid.codes, m_grid.valid, at + step),
-                               behind = interpolate(m_grid.codes, m_grid.valid, at - step);
-            gradient[a] = (ahead.value - behind.value) / 2;
-        }
-        gradient = glm::transpose(m_volume->geometry().indexFromWorld()) * gradient;
-        const double length = glm::length(gradient);
-        if (length * m_volume->geometry().d0() < 1e-6 * m_grid.maxCode)
-            return color; // inside a homogeneous region there is no surface to light
-        const double cosine = std::abs(glm::dot(gradient / length, view));
-        const Vec3 lit = color * (kAmbient + kDiffuse * cosine) + Vec3(kSpecular * std::pow(cosine, kShininess));
-        return glm::min(lit, Vec3(1));
-    }
-
-    static void store(float* pixel, const Light& light, const RenderSettings& settings) {
-        double alpha = 1 - light.transmittance;
-        Vec3 rgb = light.rgb;
-        if (settings.background) {
-            rgb += light.transmittance * Vec3(settings.background->r, settings.background->g, settings.background->b);
-            alpha = 1;
-        } else if (alpha > 0) {
-            rgb /= alpha;
-        }
-        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(rgb[c]);
-        pixel[3] = static_cast<float>(alpha);
-    }
-
     std::shared_ptr<const Volume> m_volume;
-    std::shared_ptr<const IntensityGrid> m_shared;
-    const IntensityGrid& m_grid;
+    CpuRenderOptions m_options;
+    std::shared_ptr<const IntensityGrid> m_grid;
+    std::vector<std::uint16_t> m_padded; ///< empty: the grid's own codes do
+    RayBlocks m_blocks;
+    Prepared m_prepared; ///< of what follows
+    std::optional<RayTable> m_table;
+    std::vector<std::uint8_t> m_distances;
+    std::vector<PacketScene::Feature> m_features;
+    std::optional<AmbientOcclusion> m_openness;
+    std::vector<float> m_specular;
 };
 
 } // namespace
 
+std::unique_ptr<ImageRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options) {
+    return std::make_unique<CpuRenderer>(std::move(volume), options);
+}
 std::unique_ptr<ImageRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume) {
-    return std::make_unique<CpuRenderer>(std::move(volume));
+    return makeCpuRenderer(std::move(volume), {});
 }
 
 } // namespace pellucid

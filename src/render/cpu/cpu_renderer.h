@@ -1,0 +1,16 @@
+// The renderer on the CPU, with what tests vary.
+#pragma once
+
+#include "render/image_renderer.h"
+
+namespace pellucid {
+
+/// Ways to the same picture.
+struct CpuRenderOptions {
+    int kernel = 0;   ///< index into packetKernels()
+    bool leap = true; ///< over what is transparent
+};
+
+std::unique_ptr<ImageRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options);
+
+} // namespace pellucid

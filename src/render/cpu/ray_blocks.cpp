@@ -1,0 +1,128 @@
+#include "render/cpu/ray_blocks.h"
+
+#include <algorithm>
+
+#include <glm/common.hpp>
+
+#include "base/parallel.h"
+#include "render/cpu/ray_packets.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kNothing = 65535; ///< a range without codes: lowest 65535, highest 0
+
+std::size_t asSize(int n) { return static_cast<std::size_t>(n); }
+int lowOf(std::int32_t range) { return range & 0xffff; }
+int highOf(std::int32_t range) { return static_cast<int>(static_cast<std::uint32_t>(range) >> 16); }
+std::int32_t rangeOf(int low, int high) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16);
+}
+
+/// The least of each element and its neighbours on both sides, `stride` apart, in each of the lines of `count`.
+void leastAlong(const std::uint8_t* from, std::uint8_t* to, std::size_t size, std::size_t stride, std::size_t count) {
+    const std::size_t line = stride * count;
+    for (std::size_t at = 0; at < size; at += line) {
+        const std::uint8_t* f = from + at;
+        std::uint8_t* t = to + at;
+        std::copy(f, f + line, t);
+        for (std::size_t i = 0; i + stride < line; ++i) t[i] = std::min(t[i], f[i + stride]);
+        for (std::size_t i = stride; i < line; ++i) t[i] = std::min(t[i], f[i - stride]);
+    }
+}
+
+} // namespace
+
+RayBlocks::RayBlocks(const IntensityGrid& grid) {
+    const Int3 n = grid.codes.dims();
+    for (int a = 0; a < 3; ++a) m_dims[a] = std::max(1, (n[a] - 1 + kRayBlock - 1) / kRayBlock);
+    m_ranges.assign(voxelCount(m_dims), rangeOf(kNothing, 0));
+    parallelFor(asSize(m_dims.z), [&](std::size_t layer) {
+        const int bz = static_cast<int>(layer);
+        std::vector<std::uint16_t> low(asSize(m_dims.x * m_dims.y), kNothing), high(low.size(), 0);
+        for (int k = bz * kRayBlock; k <= std::min(n.z - 1, (bz + 1) * kRayBlock); ++k)
+            for (int j = 0; j < n.y; ++j) {
+                const std::uint16_t* row = grid.codes.data() + grid.codes.index(0, j, k);
+                const std::uint8_t* valid = grid.valid.empty() ? nullptr : &grid.valid[grid.codes.index(0, j, k)];
+                for (int bx = 0; bx < m_dims.x; ++bx) {
+                    std::uint16_t l = kNothing, h = 0;
+                    for (int i = bx * kRayBlock; i <= std::min(n.x - 1, (bx + 1) * kRayBlock); ++i) {
+                        if (valid && !valid[i]) continue;
+                        l = std::min(l, row[i]);
+                        h = std::max(h, row[i]);
+                    }
+                    // A row between two blocks belongs to both.
+                    for (int by = (j - 1 + kRayBlock) / kRayBlock - 1; by <= j / kRayBlock; ++by) {
+                        if (by < 0 || by >= m_dims.y) continue;
+                        const std::size_t b = asSize(bx + m_dims.x * by);
+                        low[b] = std::min(low[b], l);
+                        high[b] = std::max(high[b], h);
+                    }
+                }
+            }
+        for (std::size_t b = 0; b < low.size(); ++b) m_ranges[layer * low.size() + b] = rangeOf(low[b], high[b]);
+    });
+    if (!grid.valid.empty()) joinAcrossInvalid(grid);
+}
+
+// From one block into the next the intensity goes over what both have in common, unless all of that is invalid. So
+// where voxels are invalid a block's range takes in those of its neighbours, and a way between transparent blocks meets
+// nothing opaque here either.
+void RayBlocks::joinAcrossInvalid(const IntensityGrid& grid) {
+    const Int3 n = grid.codes.dims();
+    std::vector<std::uint8_t> touched(m_ranges.size(), 0);
+    for (int k = 0; k < n.z; ++k)
+        for (int j = 0; j < n.y; ++j)
+            for (int i = 0; i < n.x; ++i)
+                if (!grid.valid[grid.codes.index(i, j, k)]) {
+                    const Int3 b = glm::min(Int3(i, j, k) / kRayBlock, m_dims - 1);
+                    touched[asSize(b.x) + asSize(m_dims.x) * (asSize(b.y) + asSize(m_dims.y) * asSize(b.z))] = 1;
+                }
+    const std::vector<std::int32_t> before = m_ranges;
+    const auto at = [&](int x, int y, int z) {
+        return asSize(x) + asSize(m_dims.x) * (asSize(y) + asSize(m_dims.y) * asSize(z));
+    };
+    for (int z = 0; z < m_dims.z; ++z)
+        for (int y = 0; y < m_dims.y; ++y)
+            for (int x = 0; x < m_dims.x; ++x) {
+                int low = kNothing, high = 0;
+                bool near = false;
+                for (int c = std::max(0, z - 1); c <= std::min(m_dims.z - 1, z + 1); ++c)
+                    for (int b = std::max(0, y - 1); b <= std::min(m_dims.y - 1, y + 1); ++b)
+                        for (int a = std::max(0, x - 1); a <= std::min(m_dims.x - 1, x + 1); ++a) {
+                            low = std::min(low, lowOf(before[at(a, b, c)]));
+                            high = std::max(high, highOf(before[at(a, b, c)]));
+                            near = near || touched[at(a, b, c)];
+                        }
+                if (near) m_ranges[at(x, y, z)] = rangeOf(low, high);
+            }
+}
+
+std::vector<std::uint8_t> RayBlocks::distances(const std::function<bool(int, int)>& isOpaque) const {
+    constexpr std::size_t kPad = 3;
+    const std::size_t size = m_ranges.size(), layer = asSize(m_dims.x) * asSize(m_dims.y);
+    std::vector<std::uint8_t> distance(size + kPad, 0);
+    parallelFor(asSize(m_dims.z), [&](std::size_t z) {
+        for (std::size_t i = z * layer; i < (z + 1) * layer; ++i) {
+            const int low = lowOf(m_ranges[i]), high = highOf(m_ranges[i]);
+            distance[i] = low <= high && isOpaque(low, high) ? 0 : kMostBlockDistance;
+        }
+    });
+    // Each round carries distances one block further, along x, y and z. (A slab of its own per thread, with as many
+    // layers around it as there are rounds, would do more work than it spreads.)
+    std::vector<std::uint8_t> a(size), b(size);
+    const std::size_t nx = asSize(m_dims.x), ny = asSize(m_dims.y), nz = asSize(m_dims.z);
+    for (int round = 1; round < kMostBlockDistance; ++round) {
+        leastAlong(distance.data(), a.data(), size, 1, nx);
+        leastAlong(a.data(), b.data(), size, nx, ny);
+        leastAlong(b.data(), a.data(), size, layer, nz);
+        for (std::size_t i = 0; i < size; ++i) {
+            const auto further = static_cast<std::uint8_t>(a[i] + 1);
+            distance[i] = std::min(distance[i], further);
+        }
+    }
+    return distance;
+}
+
+} // namespace pellucid

@@ -1,0 +1,246 @@
+// A picture's rays, eight at a time (see ray_packets.h). Included by one .cpp per instruction set. In reading order:
+//   sweep_vectors.inl        vectors of eight and the functions on them
+//   ray_packets_samples.inl  where rays run and what they meet
+//   ray_packets_light.inl    gradients, and what light makes of colours
+//   ray_packets_modes.inl    the modes that do not composite
+// docs/method.md, "The picture", says what is computed.
+#include "render/cpu/ray_packets_modes.inl"
+
+namespace pellucid {
+namespace {
+
+/// Samples between two looks at the blocks, where rays are in one that is not passed over.
+constexpr int kRun = 4;
+/// What a ray has gathered up to this opacity is lit as one: half an 8-bit level.
+constexpr float kLitAtOnce = 1.0f / 512;
+
+/// Emission and absorption along eight rays. Between two samples the intensity goes linearly, and what it meets there
+/// comes from running integrals over the transfer function, so that thin tents and steps count in full.
+template <bool kLight, bool kInvalid>
+class Compositing {
+public:
+    Compositing(const PacketScene& s, const Samples& samples, const Rays& rays)
+        : m_s(s), m_samples(samples), m_lighting(s, samples), m_rays(rays) {}
+
+    Gathered run() {
+        float end = endOf(m_rays);
+        if (!(highest(m_rays.count) > 0)) return {m_color, m_clear};
+        bool known = false; // the sample n
+        for (float n = 0; n < end;) {
+            Vec8 u = placeOf(m_rays, n);
+            Vec8 position[3];
+            positionAt(m_rays, u, position);
+            const Cells cells = m_samples.cellsAt(position);
+            if (m_s.leap) {
+                const int leap = stepsToLeap(m_s, m_rays, position, cells, u);
+                if (leap > 0) {
+                    n += static_cast<float>(leap);
+                    known = false;
+                    continue;
+                }
+            }
+            if (!known) m_last = meet(u, cells, true);
+            known = true;
+            for (int i = 0; i < kRun && n < end; ++i) {
+                n += 1;
+                u = placeOf(m_rays, n);
+                positionAt(m_rays, u, position);
+                if (absorb(meet(u, m_samples.cellsAt(position), false))) end = endOf(m_rays);
+            }
+        }
+        if constexpr (kLight) light(m_pending > 0, m_lastPlace);
+        return {m_color, m_clear};
+    }
+
+private:
+    /// A sample, and where the transfer function's running integral stands there.
+    struct Met {
+        Vec8 u;
+        Vec8 entry, fraction; ///< place in the table, and in its cell
+        Int8 cell, integral;  ///< integral up to the cell, and its bit
+        Vec8 within;          ///< and what the cell adds up to `entry`
+        Vec8 share;
+    };
+
+    Met meet(Vec8 u, const Cells& cells, bool whole) const {
+        const Intensity intensity = m_samples.intensityIn<kInvalid>(cells);
+        Met m;
+        m.u = u;
+        m.entry = intensity.code * m_s.cellOfCode + 0.5f;
+        m.share = intensity.share;
+        m.cell = toInt(m.entry);
+        m.fraction = m.entry - toFloat(m.cell);
+        m.integral = gathered(m_s.integral, m.cell);
+        m.within = Vec8{};
+        if (whole) m.within = m.fraction * opacityOf(m);
+        return m;
+    }
+    /// Of the cell, in units of the integral.
+    Vec8 opacityOf(const Met& m) const {
+        if (none(m.integral & 1)) return Vec8{};
+        return toFloat((gathered(m_s.integral + 1, m.cell) >> 1) - (m.integral >> 1));
+    }
+
+    /// Takes the rays on from the last sample to `next`. True where one has ended.
+    bool absorb(Met next) {
+        Met last = m_last;
+        m_last = next;
+        if constexpr (kInvalid) { // where nothing is known the other end stands for both
+            take(last, next, (last.share == 0) & (next.share > 0));
+            take(next, last, (next.share == 0) & (last.share > 0));
+        }
+        if (none((next.integral ^ last.integral) | (next.integral & 1))) return false;
+        const Vec8 opacity = opacityOf(next);
+        next.within = next.fraction * opacity;
+        if constexpr (kInvalid) {
+            last.within = last.fraction * opacityOf(last);
+            m_last.within = m_last.fraction * opacityOf(m_last);
+        } else {
+            m_last.within = next.within;
+        }
+        Vec8 met = toFloat((next.integral >> 1) - (last.integral >> 1)) + (next.within - last.within);
+        const Vec8 way = next.entry - last.entry;
+        const Int8 resting = positive(way) < 0.01f; // as good as in one place
+        const Vec8 mean = most(Vec8{}, resting ? opacity : met / way);
+        Vec8 depth = mean * (next.u - last.u) * (m_s.depthUnit * m_s.stepInD0);
+        if constexpr (kInvalid) depth *= 0.5f * (last.share + next.share);
+        const Int8 some = depth > 0;
+        if (none(some)) return false;
+
+        Vec8 gradient[3], position[3];
+        const Vec8 place = 0.5f * (last.u + next.u);
+        const bool early = kLight && m_s.light.gradientOpacity > 0;
+        if (early) {
+            positionAt(m_rays, place, position);
+            for (auto& g : gradient) g = Vec8{};
+            m_lighting.gradientsAt(position, bitsOf(some), gradient);
+            Vec8 inCamera[3];
+            m_lighting.toCamera(gradient, inCamera);
+            depth *= m_lighting.depthShare(Lighting::lengthOf(inCamera));
+        }
+        const Vec8 left = m_clear * expMinus(depth), weight = m_clear - left;
+        m_clear = left;
+
+        // Colours: the running integral of τ·rgb, of one ray after the other.
+        Int8 from = last.cell;
+        Vec8 fromFraction = last.fraction, toFraction = next.fraction;
+        met = resting ? opacity : met;
+        from = resting ? next.cell : from;
+        fromFraction = resting ? Vec8{} : fromFraction;
+        toFraction = resting ? all(1) : toFraction;
+        const Vec8 per = weight / met;
+        unsigned bits = bitsOf(weight > 0);
+        for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
+            const int n = __builtin_ctz(lanes);
+            const std::int32_t *a = m_s.colors + 4 * static_cast<std::int64_t>(from[n]),
+                               *b = m_s.colors + 4 * static_cast<std::int64_t>(next.cell[n]);
+            const Int4 a0 = colorAt(a), a1 = colorAt(a + 4), b0 = colorAt(b), b1 = colorAt(b + 4);
+            const Vec4 rgb = floats(b0 - a0) + toFraction[n] * floats(b1 - b0) - fromFraction[n] * floats(a1 - a0);
+            unlit()[n] += per[n] * rgb;
+        }
+        if constexpr (kLight) {
+            m_pending += weight;
+            m_lastPlace = weight > 0 ? place : m_lastPlace;
+            light(m_pending > kLitAtOnce, place);
+        }
+        const Int8 ended = (m_clear < kDark) & (m_rays.count > 0);
+        if (none(ended)) return false;
+        m_rays.count = ended ? least(m_rays.count, most(next.u, Vec8{})) : m_rays.count;
+        return true;
+    }
+
+    static void take(Met& to, const Met& from, Int8 where) {
+        if (none(where)) return;
+        to.entry = where ? from.entry : to.entry;
+        to.fraction = where ? from.fraction : to.fraction;
+        to.cell = where ? from.cell : to.cell;
+        to.integral = where ? from.integral : to.integral;
+        to.within = where ? from.within : to.within;
+    }
+    static Int4 colorAt(const std::int32_t* p) { return *reinterpret_cast<const Int4InMemory*>(p); }
+    static Vec4 floats(Int4 v) { return __builtin_convertvector(v, Vec4); }
+    Vec4* unlit() {
+        if constexpr (kLight)
+            return m_unlit;
+        else
+            return m_color.rgb;
+    }
+
+    /// Lights what is pending of the rays in `which` by the gradient at `place`.
+    void light(Int8 which, Vec8 place) {
+        const unsigned bits = bitsOf(which);
+        if (bits == 0) return;
+        Vec8 position[3], gradient[3], inCamera[3];
+        positionAt(m_rays, place, position);
+        for (auto& g : gradient) g = Vec8{};
+        m_lighting.gradientsAt(position, bits, gradient);
+        m_lighting.toCamera(gradient, inCamera);
+        const Shade shade =
+            m_lighting.shadeOf(m_rays, inCamera, position, m_rays.depth + place * m_rays.depthPerStep, bits);
+        for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
+            const int n = __builtin_ctz(lanes);
+            m_color.rgb[n] += m_lighting.lit(m_unlit[n], m_pending[n], shade, n);
+            m_unlit[n] = Vec4{};
+        }
+        m_pending = which ? Vec8{} : m_pending;
+    }
+
+    const PacketScene& m_s;
+    const Samples& m_samples;
+    Lighting m_lighting;
+    Rays m_rays;
+    Met m_last{};
+    Vec8 m_clear = all(1); ///< transmittance
+    Colors m_color{};
+    Vec4 m_unlit[kWide]{};
+    Vec8 m_pending = Vec8{}, m_lastPlace = Vec8{};
+};
+
+/// Straight colours and alpha of a packet into the picture.
+void store(const PacketScene& s, const PacketTile& tile, int x, int y, const Gathered& g) {
+    for (int n = 0; n < kWide; ++n) {
+        const int px = x + (n & 3), py = y + (n >> 2);
+        if (px >= tile.x1 || py >= tile.y1) continue;
+        float* pixel = s.rgba + 4 * (static_cast<std::int64_t>(py) * s.width + px);
+        const float clear = g.clear[n];
+        Vec4 rgb = g.color.rgb[n];
+        float alpha = 1 - clear;
+        if (s.hasBackground) {
+            const float up = 1 - (static_cast<float>(py) + 0.5f) / static_cast<float>(s.height);
+            for (int c = 0; c < 3; ++c)
+                rgb[c] += clear * (s.background[c] + up * (s.backgroundTop[c] - s.background[c]));
+            alpha = 1;
+        } else if (alpha > 0) {
+            rgb /= alpha;
+        }
+        for (int c = 0; c < 3; ++c) pixel[c] = rgb[c];
+        pixel[3] = alpha;
+    }
+}
+
+template <bool kInvalid>
+Gathered gather(const PacketScene& s, const Samples& samples, const Rays& rays) {
+    switch (s.mode) {
+    case PacketMode::Composite:
+        break;
+    case PacketMode::Surface:
+        return FirstHits<kInvalid>(s, samples, rays).run();
+    default:
+        return Grey<kInvalid>(s, samples, rays).run();
+    }
+    if (s.light.any) return Compositing<true, kInvalid>(s, samples, rays).run();
+    return Compositing<false, kInvalid>(s, samples, rays).run();
+}
+
+void renderTile(const PacketScene& s, const PacketTile& tile) {
+    const Samples samples(s);
+    const Int8 right{0, 1, 2, 3, 0, 1, 2, 3}, down{0, 0, 0, 0, 1, 1, 1, 1};
+    for (int y = tile.y0; y < tile.y1; y += 2)
+        for (int x = tile.x0; x < tile.x1; x += 4) {
+            const Rays rays = raysOf(s, x + right, y + down);
+            store(s, tile, x, y, s.valid ? gather<true>(s, samples, rays) : gather<false>(s, samples, rays));
+        }
+}
+
+} // namespace
+} // namespace pellucid
