@@ -3,8 +3,8 @@
 //   LIGHT       colours are lit or otherwise changed (include/light.glsl)
 //   GRADIENT_OPACITY, OCCLUSION   with LIGHT: these parts of it
 //   BRICKS      one of several: goes on from what the bricks in front have left in the images
-//   out  u_state   composite, surfaces: premultiplied sRGB and opacity; largest, smallest: the intensity three times, 1;
-//                  mean: its sum along the way, the way
+//   out  u_state   composite, surfaces: premultiplied sRGB and opacity; else: the intensity, for its mean the length of
+//                  the way, 0, 1
 // Loops are nested so that work which few rays need comes once per turn of the outer loop: devices without branches,
 // among them rasterizers in software, skip code only between turns of a loop.
 #include "include/opacity.glsl"
@@ -207,7 +207,7 @@ vec4 traced(PictureRay ray, vec4 sum, inout uvec4 seen) {
 layout(location = 18) uniform vec2 u_shown;           // codes that count: [x, y)
 layout(location = 19) uniform float u_intensityPerCode; // intensity of code/65535 = 1
 
-// best: the intensity and 1; mean: sum and way
+// sum: the intensity and 1; for the mean the sum along the way, and the way
 void add(vec2 code, float way, inout vec2 sum) {
     if (!(code.y > 0.0 && code.x >= u_shown.x && code.x < u_shown.y)) return;
     float intensity = code.x * u_intensityPerCode;
@@ -221,7 +221,11 @@ void add(vec2 code, float way, inout vec2 sum) {
 }
 
 vec4 traced(PictureRay ray, vec4 before) {
+#if MODE == 3
+    vec2 sum = vec2(before.x * before.y, before.y);
+#else
     vec2 sum = before.xw;
+#endif
     float n = ray.first, last = placeOf(ray, n);
     vec2 code = codeInBrick(ray.point + last * ray.step);
     do {
@@ -236,7 +240,12 @@ vec4 traced(PictureRay ray, vec4 before) {
         }
         last = next;
     } while (n < ray.end);
-    return sum.xxxy;
+    if (sum.y == 0.0) return vec4(0.0);
+#if MODE == 3
+    return vec4(sum.x / sum.y, sum.y, 0.0, 1.0);
+#else
+    return vec4(sum.x, 0.0, 0.0, 1.0);
+#endif
 }
 #endif
 

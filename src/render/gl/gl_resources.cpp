@@ -35,6 +35,7 @@ void throwIfTooMuch(double bytes, const std::string& what) {
 
 double bytesPerTexel(GLenum format) {
     switch (format) {
+    case GL_R8:
     case GL_R8UI:
         return 1;
     case GL_R16:

@@ -14,6 +14,7 @@
 #include <glm/vec4.hpp>
 
 #include "base/error.h"
+#include "render/ambient_occlusion.h"
 #include "render/box_in_image.h"
 #include "render/cpu/ray_blocks.h"
 #include "render/cpu/ray_packets.h"
@@ -96,6 +97,10 @@ public:
         const glm::vec4 strengths(light.gradientOpacity, light.silhouettes, light.occlusion, light.depthCue);
         glProgramUniform4fv(m_id, 25, 1, value_ptr(strengths));
     }
+    void setOpenness(const Vec3& textureFromVoxel, const Vec3& offset) const {
+        setVector(28, textureFromVoxel);
+        setVector(29, offset);
+    }
     void setDepthCue(const Rgb& color, double perDepth, double offset) const {
         setVector(26, {color.r, color.g, color.b});
         glProgramUniform2f(m_id, 27, static_cast<float>(perDepth), static_cast<float>(offset));
@@ -125,7 +130,7 @@ public:
     }
     void setTextureFromFragment(const glm::vec4& v) const { glProgramUniform4fv(m_id, 1, 1, value_ptr(v)); }
     void setHeightFromFragment(const glm::vec2& v) const { glProgramUniform2fv(m_id, 4, 1, value_ptr(v)); }
-    void setIsMean(bool mean) const { glProgramUniform1i(m_id, 2, mean ? 1 : 0); }
+    void setIsGrey(bool grey) const { glProgramUniform1i(m_id, 2, grey ? 1 : 0); }
 
 private:
     ProgramName m_program;
@@ -171,6 +176,20 @@ double longestStepInBricks(const Geometry& g) {
     return kBrickStep / (most * g.d0());
 }
 
+/// A byte per texel, x fastest.
+void uploadBytes(const Texture3d& texture, const std::uint8_t* bytes, GLenum format) {
+    glBindTexture(GL_TEXTURE_3D, texture.name.id());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, texture.size.x, texture.size.y, texture.size.z, format, GL_UNSIGNED_BYTE,
+                    bytes);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glBindTexture(GL_TEXTURE_3D, 0);
+    throwOnGlError("uploading a map of the volume");
+}
+
+/// By the transfer function; else the modes are grey.
+bool isColored(RenderMode mode) { return mode == RenderMode::Composite || mode == RenderMode::Surface; }
+
 /// Whether light changes anything that is drawn.
 bool changesColors(const Light& light) {
     return light.on || light.gradientOpacity > 0 || light.occlusion > 0 || light.depthCue > 0 || light.silhouettes > 0;
@@ -196,16 +215,18 @@ struct SliceRaycaster::Impl {
     TableTexture table, surfaces;
     std::vector<int> opaqueBefore; ///< number of opaque entries of the table before each
     std::vector<Surface> drawn; ///< in `surfaces`: by their intervals
+    Texture3d openness;            ///< of AmbientOcclusion
+    bool opennessIsMade = false;   ///< for the tables' transfer function
     std::optional<int> tableFeature; ///< onlyFeature that the tables were made for; empty: they are out of date
 
     const RaycastProgram& program(const RenderSettings& settings) {
         std::vector<std::string> defines{"MODE " + std::to_string(static_cast<int>(settings.mode)), "BLOCK_SHIFT " + std::to_string(kRayBlockShift)};
         if (bricks->hasInvalid()) defines.emplace_back("HAS_INVALID");
         if (bricks->count() > 1) defines.emplace_back("BRICKS");
-        const bool colored = settings.mode == RenderMode::Composite || settings.mode == RenderMode::Surface;
-        if (colored && changesColors(settings.light)) {
+        if (isColored(settings.mode) && changesColors(settings.light)) {
             defines.emplace_back("LIGHT");
             if (settings.light.gradientOpacity > 0) defines.emplace_back("GRADIENT_OPACITY");
+            if (settings.light.occlusion > 0) defines.emplace_back("OCCLUSION");
         }
         const auto found = programs.find(defines);
         return found != programs.end() ? found->second : programs.emplace(defines, RaycastProgram(defines)).first->second;
@@ -215,6 +236,7 @@ struct SliceRaycaster::Impl {
     void fillTable(const RenderSettings& settings);
     void fillSurfaces(const Feature* only);
     void fillDistances(bool toSurfaces);
+    void fillOpenness(const RenderSettings& settings);
     void resize(glm::ivec2 size);
     void setUniforms(const RaycastProgram& p, const Camera& camera, const RenderSettings& settings, const Tile& tile);
     void cast(const Camera& camera, const RenderSettings& settings, const Tile& tile, const JobControl& job);
@@ -223,8 +245,8 @@ struct SliceRaycaster::Impl {
 
 void SliceRaycaster::Impl::fillTables(const RenderSettings& settings) {
     if (tableFeature != settings.onlyFeature) fillTable(settings);
-    if (settings.mode == RenderMode::Composite || settings.mode == RenderMode::Surface)
-        fillDistances(settings.mode == RenderMode::Surface);
+    if (isColored(settings.mode)) fillDistances(settings.mode == RenderMode::Surface);
+    if (settings.light.occlusion > 0 && !opennessIsMade) fillOpenness(settings);
 }
 
 /// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); a feature alone leaves the other
@@ -251,6 +273,7 @@ void SliceRaycaster::Impl::fillTable(const RenderSettings& settings) {
     }
     tableFeature.reset();
     distancesToSurfaces.reset();
+    opennessIsMade = false;
     table.fill(values, 4);
     fillSurfaces(only);
     tableFeature = settings.onlyFeature;
@@ -296,14 +319,17 @@ void SliceRaycaster::Impl::fillDistances(bool toSurfaces) {
     const Int3 size = blocks->dims();
     if (distances.size != size)
         distances = makeTexture3d(size, GL_R8UI, GL_NEAREST, "the map of empty space");
-    glBindTexture(GL_TEXTURE_3D, distances.name.id());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, size.x, size.y, size.z, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
-                    blockDistances.data());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glBindTexture(GL_TEXTURE_3D, 0);
-    throwOnGlError("uploading the map of empty space");
+    uploadBytes(distances, blockDistances.data(), GL_RED_INTEGER);
     distancesToSurfaces = toSurfaces;
+}
+
+void SliceRaycaster::Impl::fillOpenness(const RenderSettings& settings) {
+    const AmbientOcclusion occlusion =
+        makeAmbientOcclusion(*sharedIntensityGrid(*volume), volume->geometry(), *tf, settings.featureAlone(*tf));
+    const Int3 size = occlusion.open.dims();
+    if (openness.size != size) openness = makeTexture3d(size, GL_R8, GL_LINEAR, "ambient occlusion");
+    uploadBytes(openness, occlusion.open.data(), GL_RED);
+    opennessIsMade = true;
 }
 
 void SliceRaycaster::Impl::resize(glm::ivec2 size) {
@@ -350,6 +376,11 @@ void SliceRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& ca
     // Central differences over two voxels; the world's gradient is A⁻ᵀ times that along the grid.
     const Mat3 cameraFromWorld = glm::transpose(Mat3(camera.right(), camera.trueUp(), -camera.forward()));
     p.setLight(settings.light, cameraFromWorld * glm::transpose(g.indexFromWorld()) * (0.5 * codes * g.d0()));
+    if (settings.light.occlusion > 0) {
+        constexpr double kCell = AmbientOcclusion::kCell;
+        const Vec3 cells(openness.size);
+        p.setOpenness(1.0 / (kCell * cells), (0.5 - 0.5 * (kCell - 1) / kCell) / cells);
+    }
     p.setDepthCue(settings.background.value_or(Rgb{}), 0.5 / g.radius(), 0.5);
 }
 
@@ -398,6 +429,7 @@ void SliceRaycaster::Impl::cast(const Camera& camera, const RenderSettings& sett
             const JobControl part = job.part(i, order.size());
             p.setBrick(bricks->use(order[i]), bricked);
             bindTexture(4, GL_TEXTURE_2D, surfaces.name());
+            if (openness.name) bindTexture(3, GL_TEXTURE_3D, openness.name);
             bindTexture(2, GL_TEXTURE_3D, distances.name);
             bindTexture(1, GL_TEXTURE_2D, table.name());
             for (int row = bottom; row < top; row += rows) {
@@ -426,7 +458,7 @@ void SliceRaycaster::Impl::drawComposite(const RenderSettings& settings, const D
     const Rgb bottom = settings.background.value_or(Rgb{});
     const Rgb top = settings.background ? settings.backgroundTop.value_or(bottom) : bottom;
     composite.setBackground({vec3Of(bottom), settings.background ? 1.0f : 0.0f}, vec3Of(top));
-    composite.setIsMean(settings.mode == RenderMode::Average);
+    composite.setIsGrey(!isColored(settings.mode));
     const glm::vec2 scale = 1.0f / glm::vec2(tile.width, tile.height);
     composite.setTextureFromFragment({scale, -glm::vec2(target.x, target.y) * scale});
     const float rowsBelow = static_cast<float>(settings.height - tile.y - tile.height - target.y);
