@@ -149,27 +149,24 @@ vec4 traced(PictureRay ray, vec4 sum, inout uvec4 seen) {
             if (leap > 0.0) known = false;
         } while (leap > 0.0 && n < ray.end);
 
-        Met from, to;
-        bool maybe;
+        Met from = last, to = last;
+        bool maybe = false;
         int run = 0;
         do {
-            if (known) n += 1.0;
-            to = meet(ray, placeOf(ray, n));
-            from = known ? last : to;
-            last = to;
-            maybe = (known || n == 0.0) && isOwn(ray, from.place, to.place);
-            known = true;
+            if (!maybe) { // some rasterizers in software let rays go on that have left a loop others are in
+                if (known) n += 1.0;
+                to = meet(ray, placeOf(ray, n));
+                from = known ? last : to;
+                last = to;
+                maybe = (known || n == 0.0) && isOwn(ray, from.place, to.place);
+                known = true;
 #ifdef HAS_INVALID
-            maybe = maybe && from.share + to.share > 0.0;
-            float place = from.place;
-            if (from.share == 0.0) from = to;
-            from.place = place;
-            if (to.share == 0.0) {
-                to.code = from.code;
-                to.kind = from.kind;
-            }
+                maybe = maybe && from.share + to.share > 0.0;
+                if (from.share == 0.0) from = Met(from.place, to.code, to.share, to.kind);
+                if (to.share == 0.0) to = Met(to.place, from.code, from.share, from.kind);
 #endif
-            maybe = maybe && (from.kind != to.kind || isUnseen(seen, from.kind));
+                maybe = maybe && (from.kind != to.kind || isUnseen(seen, from.kind));
+            }
             ++run;
         } while (!maybe && n < ray.end && run < kRun);
 
