@@ -1,4 +1,4 @@
-// The picture drawn by the CPU renderer on threads: for machines without OpenGL 4.3.
+// The picture drawn by the CPU renderer on threads: for machines without a GPU.
 #pragma once
 
 #include <memory>
@@ -12,6 +12,8 @@
 
 namespace pellucid::gui {
 
+/// While the scene changes: as fine as a frame's time allows, by what the last frame took. At rest the full picture
+/// grows from where the mouse points. Nothing is computed while nothing changes.
 class CpuSurface : public QWidget, public ViewSurface {
     Q_OBJECT
 public:
@@ -28,29 +30,40 @@ protected:
     void resizeEvent(QResizeEvent* event) override;
 
 private:
-    struct Renderer; // shared with threads that have been cancelled but have not noticed yet
+    struct Shared; // with threads that have been cancelled but have not noticed yet
+    struct Growing;
+    /// How finely a picture is drawn.
+    struct Plan {
+        double scale = 1;    ///< rays per pixel along each axis
+        double stepInD0 = 1; ///< between samples of a ray
+    };
     struct Task {
         PictureInput input;
         QSize pixels; ///< of the widget
-        double scale = 1;
-        bool full = false;
+        Plan plan;
+        QPoint focus;                     ///< pixel from which a full picture grows
+        std::shared_ptr<Growing> growing; ///< where it does; null: a quick picture
     };
     struct Picture {
-        QImage image;
+        QImage image; ///< null: what has grown is it
         double seconds = 0;
     };
+    static Picture drawn(Shared& shared, const Task& task, const JobControl& job);
+    static Plan planFor(double samples);
     void restart();
     void draw(bool full);
     void show(const Task& task, const Picture& picture);
+    void takeGrown();
 
     PictureInput m_scene;
-    std::shared_ptr<Renderer> m_renderer;
-    QImage m_picture;
+    std::shared_ptr<Shared> m_renderer;
+    std::shared_ptr<Growing> m_growing; ///< the full picture under way, null: none
+    QImage m_picture;                   ///< shown over m_target, device pixels
+    QSizeF m_target;
     FrameInfo m_frame;
-    double m_quickScale = 0.2; ///< adapted to the time that pictures take
-    bool m_again = false;      ///< the scene changed while a coarse picture was being drawn
-    bool m_drawingQuick = false;
-    QTimer m_idle;
+    double m_samples = 0.25; ///< that a quick picture can afford, of those of a full one; follows the time it takes
+    bool m_again = false;    ///< the scene changed while a coarse picture was being drawn
+    QTimer m_idle, m_grow;
     Job<Task, Picture> m_job; // last: its threads end before the rest goes
 };
 

@@ -62,8 +62,8 @@ std::vector<Direction> directions(const Geometry& geometry) {
                 const int parts = std::abs(x) + std::abs(y) + std::abs(z);
                 if (parts != 1 && parts != 3) continue; // faces and corners
                 const Vec3 world = geometry.worldFromIndex() * Vec3(x, y, z);
-                all.push_back({{x, y, z},
-                               static_cast<float>(glm::length(world) * AmbientOcclusion::kCell / geometry.d0())});
+                all.push_back(
+                    {{x, y, z}, static_cast<float>(glm::length(world) * AmbientOcclusion::kCell / geometry.d0())});
             }
     return all;
 }

@@ -2,6 +2,7 @@
 // integral (docs/method.md, "The picture").
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -21,7 +22,27 @@ public:
                          const JobControl& job = {}) = 0;
 };
 
-/// A ray per pixel on threads; needs no GL.
-std::unique_ptr<ImageRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume);
+/// Pixels [x0, x1) × [y0, y1) of a picture.
+struct ImagePart {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// A renderer whose pictures come in pieces: for windows that cannot wait for the whole.
+class TileRenderer : public ImageRenderer {
+public:
+    /// The picture with `scale` rays per pixel along each axis, (0, 1]: an image of ⌈width·scale⌉ × ⌈height·scale⌉
+    /// whose pixels are 1/scale pixels of the picture wide, so that its right and lower edge may reach beyond that.
+    virtual Image preview(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
+                          double scale, const JobControl& job = {}) = 0;
+    /// Draws the picture into `image`, which has its size, outward from the pixel (x, y); the pixels are those of
+    /// render(). `done` is called after each part, from any thread, by one at a time. Where it is stopped (Cancelled),
+    /// the parts that were done stay.
+    virtual void refine(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, Image& image,
+                        int x, int y, const std::function<void(const ImagePart&)>& done,
+                        const JobControl& job = {}) = 0;
+};
+
+/// Rays on threads; needs no GL.
+std::unique_ptr<TileRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume);
 
 } // namespace pellucid

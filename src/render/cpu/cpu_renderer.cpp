@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -42,7 +43,7 @@ PacketMode packetMode(RenderMode mode) {
     return PacketMode::Composite;
 }
 
-class CpuRenderer final : public ImageRenderer {
+class CpuRenderer final : public TileRenderer {
 public:
     CpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options)
         : m_volume(std::move(volume)), m_options(options), m_grid(sharedIntensityGrid(*m_volume)), m_blocks(*m_grid) {
@@ -56,36 +57,72 @@ public:
 
     Image render(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings,
                  const JobControl& job) override {
+        return preview(camera, tf, settings, 1, job);
+    }
+
+    Image preview(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
+                  const JobControl& job) override {
+        PELLUCID_CHECK(scale > 0 && scale <= 1);
         settings.validate();
-        camera.validate(m_volume->geometry(), "camera");
-        prepare(tf, settings);
-
-        Image image(settings.width, settings.height);
-        PacketScene scene;
-        fillVolume(scene);
-        fillCamera(camera, settings, scene);
-        fillRegion(settings, scene);
-        fillMode(tf, settings, scene);
-        fillLight(camera, settings, scene);
-        scene.width = settings.width;
-        scene.height = settings.height;
-        scene.rgba = image.rgba.data();
-        scene.leap = m_options.leap;
-        const PacketKernel kernel = packetKernels()[static_cast<std::size_t>(m_options.kernel)];
-
-        const int columns = (settings.width + kTile - 1) / kTile, rows = (settings.height + kTile - 1) / kTile;
-        const int tiles = columns * rows;
-        std::atomic<int> done = 0;
-        parallelFor(static_cast<std::size_t>(tiles), [&](std::size_t i) {
-            job.throwIfStopped();
-            const int x = static_cast<int>(i) % columns * kTile, y = static_cast<int>(i) / columns * kTile;
-            kernel(scene, {x, y, std::min(x + kTile, settings.width), std::min(y + kTile, settings.height)});
-            job.report(static_cast<double>(++done) / tiles);
-        });
+        const auto scaled = [scale](int pixels) { return static_cast<int>(std::ceil(pixels * scale - 1e-9)); };
+        Image image(scaled(settings.width), scaled(settings.height));
+        draw(camera, tf, settings, scale, image, tilesOf(image), {}, job);
         return image;
     }
 
+    void refine(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, Image& image, int x,
+                int y, const std::function<void(const ImagePart&)>& done, const JobControl& job) override {
+        settings.validate();
+        PELLUCID_CHECK(image.width == settings.width && image.height == settings.height);
+        std::vector<ImagePart> tiles = tilesOf(image);
+        const auto distance = [&](const ImagePart& t) {
+            const std::int64_t dx = t.x0 + kTile / 2 - x, dy = t.y0 + kTile / 2 - y;
+            return dx * dx + dy * dy;
+        };
+        std::stable_sort(tiles.begin(), tiles.end(),
+                         [&](const ImagePart& a, const ImagePart& b) { return distance(a) < distance(b); });
+        draw(camera, tf, settings, 1, image, tiles, done, job);
+    }
+
 private:
+    static std::vector<ImagePart> tilesOf(const Image& image) {
+        std::vector<ImagePart> tiles;
+        for (int y = 0; y < image.height; y += kTile)
+            for (int x = 0; x < image.width; x += kTile)
+                tiles.push_back({x, y, std::min(x + kTile, image.width), std::min(y + kTile, image.height)});
+        return tiles;
+    }
+
+    void draw(const Camera& camera, const TransferFunction& tf, const RenderSettings& settings, double scale,
+              Image& image, const std::vector<ImagePart>& tiles, const std::function<void(const ImagePart&)>& done,
+              const JobControl& job) {
+        camera.validate(m_volume->geometry(), "camera");
+        prepare(tf, settings);
+        PacketScene scene;
+        fillVolume(scene);
+        fillCamera(camera, settings, scale, scene);
+        fillRegion(settings, scene);
+        fillMode(tf, settings, scene);
+        fillLight(camera, settings, scene);
+        scene.width = image.width;
+        scene.height = image.height;
+        scene.rgba = image.rgba.data();
+        scene.leap = m_options.leap;
+        const PacketKernel kernel = packetKernels()[static_cast<std::size_t>(m_options.kernel)];
+        std::mutex mutex;
+        std::atomic<std::size_t> count = 0;
+        parallelFor(tiles.size(), [&](std::size_t i) {
+            job.throwIfStopped();
+            const ImagePart& tile = tiles[i];
+            kernel(scene, {tile.x0, tile.y0, tile.x1, tile.y1});
+            if (done) {
+                const std::lock_guard lock(mutex);
+                done(tile);
+            }
+            job.report(static_cast<double>(++count) / static_cast<double>(tiles.size()));
+        });
+    }
+
     /// Tables and blocks of the transfer function, where it is not the last one.
     void prepare(const TransferFunction& tf, const RenderSettings& settings) {
         const Feature* only = settings.featureAlone(tf);
@@ -148,16 +185,16 @@ private:
         s.depthUnit = m_table->depthUnit();
     }
 
-    void fillCamera(const Camera& camera, const RenderSettings& settings, PacketScene& s) const {
+    void fillCamera(const Camera& camera, const RenderSettings& settings, double scale, PacketScene& s) const {
         const Geometry& g = m_volume->geometry();
         const bool perspective = camera.projection == Projection::Perspective;
         const Vec3 ahead = camera.forward(), right = camera.right(), down = -camera.trueUp();
         const double half = perspective ? std::tan(glm::radians(camera.fovY) / 2) : camera.height / 2;
-        const double perPixel = 2 * half / settings.height;
+        const double perPixel = 2 * half / (settings.height * scale);
         const double middle = glm::dot(g.boxCenter() - camera.eye, ahead); // depth of the box
         PacketCamera& c = s.camera;
-        c.middle[0] = static_cast<float>(settings.width / 2.0);
-        c.middle[1] = static_cast<float>(settings.height / 2.0);
+        c.middle[0] = static_cast<float>(settings.width * scale / 2);
+        c.middle[1] = static_cast<float>(settings.height * scale / 2);
         copy(g.voxelFromWorld(camera.eye + middle * ahead), c.point);
         copy(inVoxels(ahead), c.direction);
         for (int i = 0; i < 2; ++i) {
@@ -213,8 +250,8 @@ private:
         copy(glm::normalize(from.direction), l.toward);
         m_specular.resize(kSpecularEntries + 1);
         for (int i = 0; i <= kSpecularEntries; ++i)
-            m_specular[static_cast<std::size_t>(i)] = static_cast<float>(
-                from.specular * std::pow(static_cast<double>(i) / kSpecularEntries, from.shininess));
+            m_specular[static_cast<std::size_t>(i)] =
+                static_cast<float>(from.specular * std::pow(static_cast<double>(i) / kSpecularEntries, from.shininess));
         l.specular = m_specular.data();
         const Geometry& g = m_volume->geometry();
         const double scale = g.d0() / m_grid->maxCode;
@@ -267,10 +304,10 @@ private:
 
 } // namespace
 
-std::unique_ptr<ImageRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options) {
+std::unique_ptr<TileRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options) {
     return std::make_unique<CpuRenderer>(std::move(volume), options);
 }
-std::unique_ptr<ImageRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume) {
+std::unique_ptr<TileRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume) {
     return makeCpuRenderer(std::move(volume), {});
 }
 

@@ -11,6 +11,6 @@ struct CpuRenderOptions {
     bool leap = true; ///< over what is transparent
 };
 
-std::unique_ptr<ImageRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options);
+std::unique_ptr<TileRenderer> makeCpuRenderer(std::shared_ptr<const Volume> volume, const CpuRenderOptions& options);
 
 } // namespace pellucid

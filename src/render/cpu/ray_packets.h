@@ -26,13 +26,13 @@ struct PacketPlane {
 /// Ray of pixel (x, y): points p + t·d, affine in the pixel. t is the depth along the view, world units, 0 in a plane
 /// through the middle of the box, so that single precision does wherever the eye is.
 struct PacketCamera {
-    float middle[2];       ///< pixels: where `point` and `direction` hold
-    float point[3];        ///< voxels, at t = 0
-    float pointBy[2][3];   ///< voxels per pixel to the right, downward
-    float direction[3];    ///< voxels per world unit of depth
+    float middle[2];     ///< pixels: where `point` and `direction` hold
+    float point[3];      ///< voxels, at t = 0
+    float pointBy[2][3]; ///< voxels per pixel to the right, downward
+    float direction[3];  ///< voxels per world unit of depth
     float directionBy[2][3];
-    float slope[2];        ///< world: a ray goes that far to the right and downward per depth and pixel
-    float nearest;         ///< t of the eye; −1e30 for parallel rays
+    float slope[2]; ///< world: a ray goes that far to the right and downward per depth and pixel
+    float nearest;  ///< t of the eye; −1e30 for parallel rays
 };
 
 /// Light in camera coordinates: right, up, toward the viewer.
@@ -77,11 +77,12 @@ struct PacketScene {
     bool jitter = false;
 
     // Of the transfer function: cells of equal width, with constant τ and colour in each.
-    float cellOfCode = 0;                   ///< position in the table is ½ + code·this
+    float cellOfCode = 0; ///< position in the table is ½ + code·this
     float intensityOfCode = 0;
-    const std::int32_t* integral = nullptr; ///< [cells + 1]: 2·(running integral in `depthUnit`) + (this cell is opaque)
-    const std::int32_t* colors = nullptr;   ///< [cells + 1] × 4: the same of τ·rgb, in the same units, without the bit
-    float depthUnit = 0;                    ///< optical depth of one unit on a path of d0
+    const std::int32_t* integral =
+        nullptr;                          ///< [cells + 1]: 2·(running integral in `depthUnit`) + (this cell is opaque)
+    const std::int32_t* colors = nullptr; ///< [cells + 1] × 4: the same of τ·rgb, in the same units, without the bit
+    float depthUnit = 0;                  ///< optical depth of one unit on a path of d0
 
     // Mode Surface: the features that can be hit, in codes.
     struct Feature {

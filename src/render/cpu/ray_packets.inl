@@ -25,7 +25,8 @@ public:
     Gathered run() {
         float end = endOf(m_rays);
         if (!(highest(m_rays.count) > 0)) return {m_color, m_clear};
-        bool known = false; // the sample n
+        bool known = false; // the sample n, in *last
+        Met met[2], *last = &met[0], *next = &met[1];
         for (float n = 0; n < end;) {
             Vec8 u = placeOf(m_rays, n);
             Vec8 position[3];
@@ -39,13 +40,20 @@ public:
                     continue;
                 }
             }
-            if (!known) m_last = meet(u, cells, true);
+            if (!known) {
+                meet(u, cells, *last);
+                finish(*last);
+            }
             known = true;
             for (int i = 0; i < kRun && n < end; ++i) {
                 n += 1;
                 u = placeOf(m_rays, n);
                 positionAt(m_rays, u, position);
-                if (absorb(meet(u, m_samples.cellsAt(position), false))) end = endOf(m_rays);
+                meet(u, m_samples.cellsAt(position), *next);
+                if (absorb(*last, *next)) end = endOf(m_rays);
+                Met* const old = last;
+                last = next;
+                next = old;
             }
         }
         if constexpr (kLight) light(m_pending > 0, m_lastPlace);
@@ -58,22 +66,20 @@ private:
         Vec8 u;
         Vec8 entry, fraction; ///< place in the table, and in its cell
         Int8 cell, integral;  ///< integral up to the cell, and its bit
-        Vec8 within;          ///< and what the cell adds up to `entry`
+        Vec8 opacity, within; ///< of the cell; and what it adds up to `entry`
         Vec8 share;
     };
 
-    Met meet(Vec8 u, const Cells& cells, bool whole) const {
+    void meet(Vec8 u, const Cells& cells, Met& m) const {
         const Intensity intensity = m_samples.intensityIn<kInvalid>(cells);
-        Met m;
         m.u = u;
         m.entry = intensity.code * m_s.cellOfCode + 0.5f;
-        m.share = intensity.share;
+        if constexpr (kInvalid) m.share = intensity.share;
         m.cell = toInt(m.entry);
         m.fraction = m.entry - toFloat(m.cell);
         m.integral = gathered(m_s.integral, m.cell);
+        m.opacity = Vec8{};
         m.within = Vec8{};
-        if (whole) m.within = m.fraction * opacityOf(m);
-        return m;
     }
     /// Of the cell, in units of the integral.
     Vec8 opacityOf(const Met& m) const {
@@ -81,34 +87,37 @@ private:
         return toFloat((gathered(m_s.integral + 1, m.cell) >> 1) - (m.integral >> 1));
     }
 
-    /// Takes the rays on from the last sample to `next`. True where one has ended.
-    bool absorb(Met next) {
-        Met last = m_last;
-        m_last = next;
-        if constexpr (kInvalid) { // where nothing is known the other end stands for both
-            take(last, next, (last.share == 0) & (next.share > 0));
-            take(next, last, (next.share == 0) & (last.share > 0));
-        }
-        if (none((next.integral ^ last.integral) | (next.integral & 1))) return false;
-        const Vec8 opacity = opacityOf(next);
-        next.within = next.fraction * opacity;
+    /// Takes the rays on from one sample to the next, which is finished where it matters. True where one has ended.
+    bool absorb(const Met& last, Met& next) {
         if constexpr (kInvalid) {
-            last.within = last.fraction * opacityOf(last);
-            m_last.within = m_last.fraction * opacityOf(m_last);
+            // Where nothing is known the other end stands for both.
+            finish(next);
+            Met from = last, to = next;
+            take(from, next, (last.share == 0) & (next.share > 0));
+            take(to, last, (next.share == 0) & (last.share > 0));
+            return absorbBetween(from, to);
         } else {
-            m_last.within = next.within;
+            if (none((next.integral ^ last.integral) | (next.integral & 1))) return false;
+            finish(next);
+            return absorbBetween(last, next);
         }
+    }
+    bool absorbBetween(const Met& last, const Met& next) {
+        if (none((next.integral ^ last.integral) | (next.integral & 1))) return false;
         Vec8 met = toFloat((next.integral >> 1) - (last.integral >> 1)) + (next.within - last.within);
         const Vec8 way = next.entry - last.entry;
         const Int8 resting = positive(way) < 0.01f; // as good as in one place
-        const Vec8 mean = most(Vec8{}, resting ? opacity : met / way);
+        const Vec8 mean = most(Vec8{}, resting ? next.opacity : met / way);
         Vec8 depth = mean * (next.u - last.u) * (m_s.depthUnit * m_s.stepInD0);
         if constexpr (kInvalid) depth *= 0.5f * (last.share + next.share);
         const Int8 some = depth > 0;
         if (none(some)) return false;
 
         Vec8 gradient[3], position[3];
-        const Vec8 place = 0.5f * (last.u + next.u);
+        // Where it is lit: about the middle of what is absorbed, were the opacity linear.
+        const Vec8 ends = last.opacity + next.opacity;
+        const Vec8 part = ends > 0 ? (last.opacity + 2.0f * next.opacity) / (3.0f * ends) : all(0.5f);
+        const Vec8 place = last.u + part * (next.u - last.u);
         const bool early = kLight && m_s.light.gradientOpacity > 0;
         if (early) {
             positionAt(m_rays, place, position);
@@ -124,7 +133,7 @@ private:
         // Colours: the running integral of τ·rgb, of one ray after the other.
         Int8 from = last.cell;
         Vec8 fromFraction = last.fraction, toFraction = next.fraction;
-        met = resting ? opacity : met;
+        met = resting ? next.opacity : met;
         from = resting ? next.cell : from;
         fromFraction = resting ? Vec8{} : fromFraction;
         toFraction = resting ? all(1) : toFraction;
@@ -149,12 +158,17 @@ private:
         return true;
     }
 
+    void finish(Met& m) const {
+        m.opacity = opacityOf(m);
+        m.within = m.fraction * m.opacity;
+    }
     static void take(Met& to, const Met& from, Int8 where) {
         if (none(where)) return;
         to.entry = where ? from.entry : to.entry;
         to.fraction = where ? from.fraction : to.fraction;
         to.cell = where ? from.cell : to.cell;
         to.integral = where ? from.integral : to.integral;
+        to.opacity = where ? from.opacity : to.opacity;
         to.within = where ? from.within : to.within;
     }
     static Int4 colorAt(const std::int32_t* p) { return *reinterpret_cast<const Int4InMemory*>(p); }
@@ -189,7 +203,6 @@ private:
     const Samples& m_samples;
     Lighting m_lighting;
     Rays m_rays;
-    Met m_last{};
     Vec8 m_clear = all(1); ///< transmittance
     Colors m_color{};
     Vec4 m_unlit[kWide]{};

@@ -41,12 +41,11 @@ public:
     static Vec8 lengthOf(const Vec8 (&v)[3]) { return squareRoot(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
     /// What is left of optical depth where the gradient has the length g.
-    Vec8 depthShare(Vec8 g) const {
-        return 1.0f - m_s.light.gradientOpacity * (1.0f - least(all(1), g * (1 / 0.05f)));
-    }
+    Vec8 depthShare(Vec8 g) const { return 1.0f - m_s.light.gradientOpacity * (1.0f - least(all(1), g * (1 / 0.05f))); }
 
     /// `gradient` in camera coordinates, `position` in voxels, `depth` along the view.
-    Shade shadeOf(const Rays& r, const Vec8 (&gradient)[3], const Vec8 (&position)[3], Vec8 depth, unsigned bits) const {
+    Shade shadeOf(const Rays& r, const Vec8 (&gradient)[3], const Vec8 (&position)[3], Vec8 depth,
+                  unsigned bits) const {
         const PacketLight& l = m_s.light;
         Shade shade{all(1), Vec8{}, all(1), Vec8{}};
         const Vec8 g = lengthOf(gradient);
@@ -85,8 +84,7 @@ public:
             shade.dim = surface ? 1.0f - dark : all(1);
         }
         if (l.openness) shade.dim *= 1.0f - l.occlusion * (1.0f - opennessAt(position, bits));
-        if (l.depthCue > 0)
-            shade.cue = l.depthCue * least(all(1), most(Vec8{}, (depth - l.cueFrom) * l.cuePerDepth));
+        if (l.depthCue > 0) shade.cue = l.depthCue * least(all(1), most(Vec8{}, (depth - l.cueFrom) * l.cuePerDepth));
         return shade;
     }
 
@@ -151,10 +149,11 @@ private:
             for (int corner = 0; corner < 8; ++corner) {
                 const int i = corner & 1 ? next[0] : at[0], j = corner & 2 ? next[1] : at[1],
                           k = corner & 4 ? next[2] : at[2];
-                const float w = (corner & 1 ? f[0] : 1 - f[0]) * (corner & 2 ? f[1] : 1 - f[1]) *
-                                (corner & 4 ? f[2] : 1 - f[2]);
-                sum += w * static_cast<float>(
-                               l.openness[(static_cast<std::int64_t>(k) * l.opennessDims[1] + j) * l.opennessDims[0] + i]);
+                const float w =
+                    (corner & 1 ? f[0] : 1 - f[0]) * (corner & 2 ? f[1] : 1 - f[1]) * (corner & 4 ? f[2] : 1 - f[2]);
+                sum +=
+                    w * static_cast<float>(
+                            l.openness[(static_cast<std::int64_t>(k) * l.opennessDims[1] + j) * l.opennessDims[0] + i]);
             }
             result[n] = sum * (1 / 255.0f);
         }

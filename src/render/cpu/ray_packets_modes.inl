@@ -1,5 +1,5 @@
-// The modes that do not composite along the ray: the greatest, smallest and mean intensity, and surfaces (docs/method.md,
-// "The picture").
+// The modes that do not composite along the ray: the greatest, smallest and mean intensity, and surfaces
+// (docs/method.md, "The picture").
 #pragma once
 
 #include "render/cpu/ray_packets_light.inl"
@@ -39,9 +39,9 @@ public:
             positionAt(m_rays, u, position);
             const Cells cells = m_samples.cellsAt(position);
             if (m_s.leap && m_s.mode != PacketMode::Average) {
-                const int leap = stepsThrough(m_s, m_rays, position, cells, u, [&](Int8 block) {
-                    return nothingNew(gathered(m_s.blockRange, block)) ? Int8{} + 1
-                                                                                                     : Int8{};
+                const Int8 done = placeOf(m_rays, n - 1) >= m_rays.count; // its last sample has been taken
+                const int leap = stepsThrough(m_s, m_rays, position, cells, u, done, [&](Int8 block) {
+                    return unchanged(gathered(m_s.blockRange, block)) & 1;
                 });
                 if (leap > 1) { // this sample is passed over, and the next ones
                     n += static_cast<float>(leap - 1);
@@ -56,11 +56,11 @@ public:
 private:
     /// Whether codes of a range, low and high in 16 bits each, change nothing; by element.
     Int8 unchanged(Int8 range) const {
-        const Vec8 low = toFloat(range & 0xffff), high = toFloat(reinterpret_cast<Int8>(reinterpret_cast<UInt8>(range) >> 16));
+        const Vec8 low = toFloat(range & 0xffff),
+                   high = toFloat(reinterpret_cast<Int8>(reinterpret_cast<UInt8>(range) >> 16));
         const Int8 hidden = (high < m_s.lowestShown) | (low >= m_s.highestShown);
         return hidden | (m_s.mode == PacketMode::Mip ? high <= m_best : low >= m_best);
     }
-    bool nothingNew(Int8 range) const { return none(~(unchanged(range) | (m_rays.count <= 0))); }
 
     void add(const Intensity& i, Vec8 weight) {
         const Int8 counts = (i.code >= m_s.lowestShown) & (i.code < m_s.highestShown) & (i.share > 0);
@@ -161,7 +161,8 @@ private:
         unsigned bits = bitsOf(some & m_shown & (m_rays.count > 0) & (m_clear >= kDark));
         for (; bits != 0; bits &= bits - 1) {
             const int n = __builtin_ctz(bits);
-            while (hit(n, last.code[n], next.code[n], last.u[n], next.u[n])) {}
+            while (hit(n, last.code[n], next.code[n], last.u[n], next.u[n])) {
+            }
         }
     }
     /// The next feature that ray n meets for the first time while the code goes from `a` to `b`; false: none.

@@ -55,8 +55,9 @@ inline Int8 pairsOfCodes(const std::uint16_t* from, Int8 x) {
 /// The byte at from + x for each x; three more may be read behind it.
 inline Int8 bytesAt(const std::uint8_t* from, Int8 x) {
 #ifdef __AVX2__
-    return reinterpret_cast<Int8>(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from),
-                                                         reinterpret_cast<__m256i>(x), 1)) & 255;
+    return reinterpret_cast<Int8>(
+               _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), reinterpret_cast<__m256i>(x), 1)) &
+           255;
 #else
     Int8 bytes;
     for (int n = 0; n < kWide; ++n) bytes[n] = from[x[n]];
@@ -137,7 +138,8 @@ struct Cells {
 
 class Samples {
 public:
-    explicit Samples(const PacketScene& s) : m_s(s), m_codes(s.codes + s.middleVoxel), m_valid(s.valid ? s.valid + s.middleVoxel : nullptr) {
+    explicit Samples(const PacketScene& s)
+        : m_s(s), m_codes(s.codes + s.middleVoxel), m_valid(s.valid ? s.valid + s.middleVoxel : nullptr) {
         for (int a = 0; a < 3; ++a) {
             // A hair below the last centre, so that the cell is never one too many.
             const float last = static_cast<float>(s.dims[a] - 1);
@@ -195,8 +197,8 @@ public:
             const std::int64_t i = index + (corner & 1 && m_s.dims[0] > 1 ? 1 : 0) + (corner & 2 ? m_alongY : 0) +
                                    (corner & 4 ? m_alongZ : 0);
             if (m_valid && !m_valid[i]) continue;
-            const float w = (corner & 1 ? f[0] : 1 - f[0]) * (corner & 2 ? f[1] : 1 - f[1]) *
-                            (corner & 4 ? f[2] : 1 - f[2]);
+            const float w =
+                (corner & 1 ? f[0] : 1 - f[0]) * (corner & 2 ? f[1] : 1 - f[1]) * (corner & 4 ? f[2] : 1 - f[2]);
             sum += w * static_cast<float>(m_codes[i]);
             share += w;
         }
@@ -206,7 +208,8 @@ public:
 private:
     static Vec8 mix(Vec8 a, Vec8 b, Vec8 f) { return a + f * (b - a); }
     static Vec8 alongX(Int8 pair, Vec8 f) {
-        const Vec8 low = toFloat(pair & 0xffff), high = toFloat(reinterpret_cast<Int8>(reinterpret_cast<UInt8>(pair) >> 16));
+        const Vec8 low = toFloat(pair & 0xffff),
+                   high = toFloat(reinterpret_cast<Int8>(reinterpret_cast<UInt8>(pair) >> 16));
         return mix(low, high, f);
     }
 
@@ -216,11 +219,10 @@ private:
             const float fx = c.fraction[0][n], fy = c.fraction[1][n], fz = c.fraction[2][n];
             float sum = 0, share = 0;
             for (int corner = 0; corner < 8; ++corner) {
-                const std::int64_t i = index[n] + (corner & 1 && m_s.dims[0] > 1 ? 1 : 0) + (corner & 2 ? m_alongY : 0) +
-                                       (corner & 4 ? m_alongZ : 0);
+                const std::int64_t i = index[n] + (corner & 1 && m_s.dims[0] > 1 ? 1 : 0) +
+                                       (corner & 2 ? m_alongY : 0) + (corner & 4 ? m_alongZ : 0);
                 if (!m_valid[i]) continue;
-                const float w =
-                    (corner & 1 ? fx : 1 - fx) * (corner & 2 ? fy : 1 - fy) * (corner & 4 ? fz : 1 - fz);
+                const float w = (corner & 1 ? fx : 1 - fx) * (corner & 2 ? fy : 1 - fy) * (corner & 4 ? fz : 1 - fz);
                 sum += w * static_cast<float>(m_codes[i]);
                 share += w;
             }
@@ -239,14 +241,13 @@ private:
 
 /// How many whole steps rays at `position`, in the cells `c`, can go before any leaves what may be passed over around
 /// it; 0 where one is in a block that may not. `distanceOf(block)`, by the blocks' indices, is how many blocks off the
-/// next one is that may not. Rays that have ended do not ask.
+/// next one is that may not. Rays that are `done` do not ask.
 template <class Distance>
-int stepsThrough(const PacketScene& s, const Rays& r, const Vec8 (&position)[3], const Cells& c, Vec8 u,
+int stepsThrough(const PacketScene& s, const Rays& r, const Vec8 (&position)[3], const Cells& c, Vec8 u, Int8 done,
                  const Distance& distanceOf) {
     Int8 block[3];
     for (int a = 0; a < 3; ++a) block[a] = c.at[a] >> kRayBlockShift;
     const Int8 distance = distanceOf((block[2] * s.blockDims[1] + block[1]) * s.blockDims[0] + block[0]);
-    const Int8 done = u >= r.count;
     if (!none(~done & (distance == 0))) return 0;
     Vec8 room = all(kNever);
     for (int a = 0; a < 3; ++a) {
@@ -258,7 +259,8 @@ int stepsThrough(const PacketScene& s, const Rays& r, const Vec8 (&position)[3],
     return static_cast<int>(lowest(room) - 0.01f);           // rounding leaves it inside
 }
 inline int stepsToLeap(const PacketScene& s, const Rays& r, const Vec8 (&position)[3], const Cells& c, Vec8 u) {
-    return stepsThrough(s, r, position, c, u, [&](Int8 block) { return bytesAt(s.blockDistance, block); });
+    return stepsThrough(s, r, position, c, u, u >= r.count,
+                        [&](Int8 block) { return bytesAt(s.blockDistance, block); });
 }
 
 } // namespace
