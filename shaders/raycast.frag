@@ -27,7 +27,7 @@ const int kRun = 8;                       // samples between two looks at the bl
 #if MODE == 0
 #include "include/tf_segment.glsl"
 
-const float kLitAtOnce = 1.0 / 512.0; // what has been gathered up to this opacity is lit as one
+const float kLitAtOnce = 1.0 / 64.0; // what has been gathered up to this opacity is lit as one, in its middle
 
 struct Met {
     float place, share;
@@ -64,7 +64,7 @@ vec4 traced(PictureRay ray, vec4 sum) {
         } while (leap > 0.0 && n < ray.end);
 
         vec4 pending = vec4(0.0); // premultiplied by what is still seen of it
-        float place = 0.0;        // where the last of it is
+        float places = 0.0;       // where it is, weighted by alpha
 #ifdef GRADIENT_OPACITY
         vec3 gradient = vec3(0.0);
 #endif
@@ -77,13 +77,14 @@ vec4 traced(PictureRay ray, vec4 sum) {
             vec4 mean = segment(last, next);
             float depth = mean.a * (next.place - last.place) * u_step.y;
             if (depth > 0.0 && isOwn(ray, last.place, next.place)) {
-                place = 0.5 * (last.place + next.place);
+                float place = 0.5 * (last.place + next.place);
 #ifdef GRADIENT_OPACITY
                 gradient = gradientAt(ray.point + place * ray.step);
                 depth *= depthShare(gradient);
 #endif
                 float alpha = opacityOfDepth(depth) * (1.0 - sum.a);
-                pending += vec4(mean.rgb / mean.a, 1.0) * alpha;
+                pending += vec4(mean.rgb * (alpha / mean.a), alpha);
+                places += place * alpha;
                 sum.a += alpha;
             }
             last = next;
@@ -91,6 +92,7 @@ vec4 traced(PictureRay ray, vec4 sum) {
 #ifdef LIGHT
         } while (n < ray.end && run < kRun && sum.a < kOpaque && pending.a <= kLitAtOnce);
         if (pending.a > 0.0) {
+            float place = places / pending.a;
             vec3 voxel = ray.point + place * ray.step;
 #ifndef GRADIENT_OPACITY
             vec3 gradient = gradientAt(voxel);

@@ -24,5 +24,5 @@ vec4 tfMean(TfPlace a, TfPlace b) {
     int way = b.entry - a.entry;
     // The integrals of neighbours differ by less than floats can tell.
     if (abs(way) < 16) return tfTexel((a.entry + b.entry) / 2);
-    return (b.integral - a.integral) / float(way);
+    return (b.integral - a.integral) * (1.0 / float(way));
 }

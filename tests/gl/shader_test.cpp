@@ -44,12 +44,11 @@ TEST_CASE("every permutation of every shader compiles", "[gl]") {
                     casts.push_back(defines);
                 }
             }
-    const std::vector<Program> programs{
-        {{"composite.vert", "raycast.frag"}, casts},
-        {{"composite.vert", "composite.frag"}, {{}}},
-        {{"visibility_march.comp"}, marches},
-        {{"visibility_gather.comp"}, gathers},
-        {{"visibility_reduce.comp"}, {{}}}};
+    const std::vector<Program> programs{{{"composite.vert", "raycast.frag"}, casts},
+                                        {{"composite.vert", "composite.frag"}, {{}}},
+                                        {{"visibility_march.comp"}, marches},
+                                        {{"visibility_gather.comp"}, gathers},
+                                        {{"visibility_reduce.comp"}, {{}}}};
     std::set<std::string> stages;
     gl::HeadlessContext context;
     for (const Program& program : programs) {

@@ -169,7 +169,8 @@ TEST_CASE("rays of the picture are the camera's", "[picture]") {
                 const auto at = [&](double t) {
                     return g.worldFromVoxel(rays.origin * picture + t * (rays.direction * picture));
                 };
-                for (const double t : {-2.0, 0.0, 3.0}) { // points of the camera's ray, t deep from the middle of the box
+                for (const double t :
+                     {-2.0, 0.0, 3.0}) { // points of the camera's ray, t deep from the middle of the box
                     const Vec3 off = at(t) - ray.origin;
                     CHECK(glm::length(off - ray.direction * glm::dot(off, ray.direction)) < 1e-8);
                     CHECK(glm::dot(at(t) - g.boxCenter(), camera.forward()) == Approx(t).margin(1e-9));

@@ -8,9 +8,9 @@
 
 namespace pellucid::gl {
 
-/// The ray of picture point (x, y), [−1,1]² over the whole image, y up: voxel(t) = origin·(x,y,1) + t·direction·(x,y,1),
-/// t the depth along the view in world units, 0 in the plane through the middle of the box: so that single precision
-/// does wherever the eye is.
+/// The ray of picture point (x, y), [−1,1]² over the whole image, y up: voxel(t) = origin·(x,y,1) +
+/// t·direction·(x,y,1), t the depth along the view in world units, 0 in the plane through the middle of the box: so
+/// that single precision does wherever the eye is.
 struct PictureRays {
     glm::dmat3 origin, direction;
     glm::dvec2 tangents; ///< perspective: of the half angles; orthographic: 0

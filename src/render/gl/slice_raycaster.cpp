@@ -213,14 +213,15 @@ struct SliceRaycaster::Impl {
     std::optional<bool> distancesToSurfaces; ///< what they were made for: surfaces or opacity; empty: out of date
     std::optional<TransferFunction> tf;
     TableTexture table, surfaces;
-    std::vector<int> opaqueBefore; ///< number of opaque entries of the table before each
-    std::vector<Surface> drawn; ///< in `surfaces`: by their intervals
-    Texture3d openness;            ///< of AmbientOcclusion
-    bool opennessIsMade = false;   ///< for the tables' transfer function
+    std::vector<int> opaqueBefore;   ///< number of opaque entries of the table before each
+    std::vector<Surface> drawn;      ///< in `surfaces`: by their intervals
+    Texture3d openness;              ///< of AmbientOcclusion
+    bool opennessIsMade = false;     ///< for the tables' transfer function
     std::optional<int> tableFeature; ///< onlyFeature that the tables were made for; empty: they are out of date
 
     const RaycastProgram& program(const RenderSettings& settings) {
-        std::vector<std::string> defines{"MODE " + std::to_string(static_cast<int>(settings.mode)), "BLOCK_SHIFT " + std::to_string(kRayBlockShift)};
+        std::vector<std::string> defines{"MODE " + std::to_string(static_cast<int>(settings.mode)),
+                                         "BLOCK_SHIFT " + std::to_string(kRayBlockShift)};
         if (bricks->hasInvalid()) defines.emplace_back("HAS_INVALID");
         if (bricks->count() > 1) defines.emplace_back("BRICKS");
         if (isColored(settings.mode) && changesColors(settings.light)) {
@@ -229,7 +230,8 @@ struct SliceRaycaster::Impl {
             if (settings.light.occlusion > 0) defines.emplace_back("OCCLUSION");
         }
         const auto found = programs.find(defines);
-        return found != programs.end() ? found->second : programs.emplace(defines, RaycastProgram(defines)).first->second;
+        return found != programs.end() ? found->second
+                                       : programs.emplace(defines, RaycastProgram(defines)).first->second;
     }
 
     void fillTables(const RenderSettings& settings);
@@ -249,8 +251,8 @@ void SliceRaycaster::Impl::fillTables(const RenderSettings& settings) {
     if (settings.light.occlusion > 0 && !opennessIsMade) fillOpenness(settings);
 }
 
-/// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); a feature alone leaves the other
-/// intensities transparent.
+/// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); a feature alone leaves the
+/// other intensities transparent.
 void SliceRaycaster::Impl::fillTable(const RenderSettings& settings) {
     const Feature* const only = settings.featureAlone(*tf);
     const TfTable made = makeTfTable(*tf, kTableSize);
@@ -288,8 +290,7 @@ void SliceRaycaster::Impl::fillSurfaces(const Feature* only) {
         if (opacities[f] > 0 && feature.a < feature.b && (only == nullptr || only == &feature))
             drawn.push_back({codesOf(feature, bricks->maxCode()), opacities[f], feature.color});
     }
-    std::sort(drawn.begin(), drawn.end(),
-              [](const Surface& a, const Surface& b) { return a.codes.low < b.codes.low; });
+    std::sort(drawn.begin(), drawn.end(), [](const Surface& a, const Surface& b) { return a.codes.low < b.codes.low; });
     std::vector<float> values;
     for (const Surface& s : drawn)
         for (const double v : {s.codes.low, s.codes.high, s.opacity, 0.0, s.color.r, s.color.g, s.color.b, 0.0})
@@ -317,8 +318,7 @@ void SliceRaycaster::Impl::fillDistances(bool toSurfaces) {
     const std::vector<std::uint8_t> blockDistances =
         toSurfaces ? blocks->distances(isSurface) : blocks->distances(isOpaque);
     const Int3 size = blocks->dims();
-    if (distances.size != size)
-        distances = makeTexture3d(size, GL_R8UI, GL_NEAREST, "the map of empty space");
+    if (distances.size != size) distances = makeTexture3d(size, GL_R8UI, GL_NEAREST, "the map of empty space");
     uploadBytes(distances, blockDistances.data(), GL_RED_INTEGER);
     distancesToSurfaces = toSurfaces;
 }
@@ -518,8 +518,7 @@ void SliceRaycaster::draw(const Camera& camera, const RenderSettings& settings, 
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         glBindVertexArray(0);
         glUseProgram(0);
-        for (const GLuint unit : {0u, 1u})
-            glBindImageTexture(unit, 0, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+        for (const GLuint unit : {0u, 1u}) glBindImageTexture(unit, 0, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
         for (const GLenum unit : {4u, 3u, 2u, 1u, 0u}) {
             glActiveTexture(GL_TEXTURE0 + unit);
             glBindTexture(GL_TEXTURE_2D, 0);

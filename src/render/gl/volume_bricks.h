@@ -14,9 +14,9 @@ namespace pellucid::gl {
 inline constexpr double kBrickStep = 4.0;
 
 struct VolumeBrick {
-    Int3 index{0, 0, 0};                ///< in the grid of bricks
-    Int3 first{0, 0, 0}, size{0, 0, 0}; ///< the voxels of its texture, its neighbours' included
-    Vec3 lo, hi; ///< what it stands for, voxels; the outermost ones reach beyond the box
+    Int3 index{0, 0, 0};                  ///< in the grid of bricks
+    Int3 first{0, 0, 0}, size{0, 0, 0};   ///< the voxels of its texture, its neighbours' included
+    Vec3 lo, hi;                          ///< what it stands for, voxels; the outermost ones reach beyond the box
     Vec3 textureFromVoxel, textureOffset; ///< t of the texture = voxel · textureFromVoxel + textureOffset
     Vec3 textureEnd;                      ///< centre of the last voxel, t of the texture
 };
