@@ -1,4 +1,4 @@
-// composite.vert: one triangle over the whole viewport, nearer than every slice
+// composite.vert: one triangle over the whole viewport
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, -1.0, 1.0);
 }

@@ -8,11 +8,21 @@ vec4 tfTexel(int index) {
     return texelFetch(u_tfTable, ivec2(index & 255, index >> 8), 0);
 }
 
-// Mean of (tau * rgb, tau) while the code goes linearly from one value to another.
-vec4 tfMean(float code0, float code1) {
-    int low = int(min(code0, code1) * u_entriesPerCode + 0.5);
-    int high = int(max(code0, code1) * u_entriesPerCode + 0.5);
+// Where a code stands in the tables.
+struct TfPlace {
+    int entry;
+    vec4 integral;
+};
+
+TfPlace tfPlace(float code) {
+    int entry = int(code * u_entriesPerCode + 0.5);
+    return TfPlace(entry, tfTexel(u_integralStart + entry));
+}
+
+// Mean of (tau * rgb, tau) while the code goes linearly from one place to another.
+vec4 tfMean(TfPlace a, TfPlace b) {
+    int way = b.entry - a.entry;
     // The integrals of neighbours differ by less than floats can tell.
-    if (high - low < 16) return tfTexel((low + high) / 2);
-    return (tfTexel(u_integralStart + high) - tfTexel(u_integralStart + low)) / float(high - low);
+    if (abs(way) < 16) return tfTexel((a.entry + b.entry) / 2);
+    return (b.integral - a.integral) * (1.0 / float(way));
 }

@@ -74,6 +74,35 @@ TEST_CASE("a homogeneous block has the opacity of its length along every ray", "
     }
 }
 
+TEST_CASE("a slab has the opacity of its thickness, however its voxels lie", "[gl]") {
+    if (!haveGl()) return;
+    // Voxels of 1 × 0.8 × 1.5, so that d0 = 0.8. Seen along z the sixteen layers are 24 thick or, with k leaning 15°
+    // toward x, 24 cos 15°: the middle ray moves by 24 sin 15° = 6.2 of 28 along i and leaves by the last layer.
+    Geometry straight{{28, 24, 16}, {1, 0.8, 1.5}, {3, -2, 1}}, leaning = straight;
+    const double tilt = 15 * std::acos(-1.0) / 180;
+    leaning.directions[2] = {std::sin(tilt), 0, std::cos(tilt)};
+    for (const auto& [geometry, thickness] : {std::pair(straight, 24.0), std::pair(leaning, 24 * std::cos(tilt))}) {
+        const Volume values(geometry, Samples(std::vector<std::uint8_t>(voxelCount(geometry.dims), 200)));
+        const auto renderer = makeGlRenderer(std::make_shared<const Volume>(values.withRange({0, 255})));
+        RenderSettings settings = smallSettings();
+        settings.width = settings.height = 33;
+        settings.background = {};
+        for (const double step : {1.0, 0.5, 0.25}) {
+            CAPTURE(thickness, step);
+            settings.stepInD0 = step;
+            const Image image =
+                renderer->render(orthographic(geometry, {0, 0, 1}, 40), constantOpacity(0.05), settings);
+            const double found = static_cast<double>(image.pixel(16, 16)[3]);
+            CHECK(found == Approx(1 - std::pow(0.95, thickness / 0.8)).margin(0.004));
+            settings.clipping.planes = {{{0, 0, 1}, geometry.boxCenter().z}}; // half of it
+            const Image half = renderer->render(orthographic(geometry, {0, 0, 1}, 40), constantOpacity(0.05), settings);
+            CHECK(static_cast<double>(half.pixel(16, 16)[3]) ==
+                  Approx(1 - std::pow(0.95, thickness / 1.6)).margin(0.004));
+            settings.clipping.planes.clear();
+        }
+    }
+}
+
 TEST_CASE("gl and cpu draw the same picture", "[gl]") {
     if (!haveGl()) return;
     const auto volume = waves({28, 24, 16}, {1, 0.8, 1.5});
@@ -128,7 +157,115 @@ TEST_CASE("gl and cpu draw the same picture", "[gl]") {
         }
 }
 
-TEST_CASE("pixels that become opaque early look as if all slices had been drawn", "[gl]") {
+TEST_CASE("gl and cpu draw the same in every mode, under every light, in every frame", "[gl]") {
+    if (!haveGl()) return;
+    struct Case {
+        std::string name;
+        void (*change)(RenderSettings&);
+        double largest = 0.03, mean = 0.001;
+    };
+    // Both take the same samples. Light falls on what a ray has gathered over a few of them, not the same few on both.
+    const std::vector<Case> cases{{"mip", [](RenderSettings& s) { s.mode = RenderMode::Mip; }},
+                                  {"minip", [](RenderSettings& s) { s.mode = RenderMode::MinIp; }},
+                                  {"average", [](RenderSettings& s) { s.mode = RenderMode::Average; }},
+                                  {"mip of a feature",
+                                   [](RenderSettings& s) {
+                                       s.mode = RenderMode::Mip;
+                                       s.onlyFeature = 1;
+                                   }},
+                                  {"average of a feature",
+                                   [](RenderSettings& s) {
+                                       s.mode = RenderMode::Average;
+                                       s.onlyFeature = 1;
+                                   }},
+                                  // Where a ray just touches a feature, rounding decides whether it sees it.
+                                  {"surface", [](RenderSettings& s) { s.mode = RenderMode::Surface; }, 0.3},
+                                  {"surface of a feature",
+                                   [](RenderSettings& s) {
+                                       s.mode = RenderMode::Surface;
+                                       s.onlyFeature = 2;
+                                   },
+                                   0.3},
+                                  {"lit surface",
+                                   [](RenderSettings& s) {
+                                       s.mode = RenderMode::Surface;
+                                       s.light.on = true;
+                                       s.light.silhouettes = 0.8;
+                                   },
+                                   0.3},
+                                  {"light from the side",
+                                   [](RenderSettings& s) {
+                                       s.light.on = true;
+                                       s.light.ambient = 0.2;
+                                       s.light.diffuse = 0.9;
+                                       s.light.specular = 0.6;
+                                       s.light.shininess = 8;
+                                       s.light.direction = {-2, 1, 0.5};
+                                   },
+                                   0.15},
+                                  {"gradient opacity", [](RenderSettings& s) { s.light.gradientOpacity = 0.8; }},
+                                  {"occlusion", [](RenderSettings& s) { s.light.occlusion = 0.9; }},
+                                  {"depth cue", [](RenderSettings& s) { s.light.depthCue = 0.7; }},
+                                  {"silhouettes", [](RenderSettings& s) { s.light.silhouettes = 1; }, 0.1},
+                                  {"all of it, transparent",
+                                   [](RenderSettings& s) {
+                                       s.background = {};
+                                       s.light.on = true;
+                                       s.light.gradientOpacity = 0.5;
+                                       s.light.occlusion = 0.5;
+                                       s.light.depthCue = 0.5;
+                                       s.light.silhouettes = 0.5;
+                                   },
+                                   0.1},
+                                  {"gradient behind it",
+                                   [](RenderSettings& s) {
+                                       s.background = Rgb{0.9, 0.1, 0.3};
+                                       s.backgroundTop = Rgb{0.1, 0.8, 0.4};
+                                       s.light.depthCue = 0.5;
+                                   }},
+                                  {"jitter", [](RenderSettings& s) { s.jitter = true; }}};
+    Geometry plain{{28, 24, 16}, {1, 0.8, 1.5}, {3, -2, 1}};
+    Geometry turned = plain, mirrored = plain, sheared = plain;
+    const double angle = 0.6, tilt = std::tan(15 * std::acos(-1.0) / 180);
+    turned.directions = {Vec3(std::cos(angle), std::sin(angle), 0), Vec3(-std::sin(angle), std::cos(angle), 0),
+                         Vec3(0, 0, 1)};
+    mirrored.directions = {Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 1, 0)};
+    sheared.directions[2] = glm::normalize(Vec3(tilt, 0, 1));
+    const auto [values, spacing] = std::pair(waves(plain.dims, plain.spacing)->samples(), plain.spacing);
+    const TransferFunction tf = tents(3, 0.25);
+    for (const auto& [frame, geometry] : {std::pair("plain", plain), std::pair("turned", turned),
+                                          std::pair("mirrored", mirrored), std::pair("sheared", sheared)}) {
+        const auto volume = std::make_shared<const Volume>(Volume(geometry, Samples(values)).withRange({0, 255}));
+        const auto gl = makeGlRenderer(volume);
+        const auto cpu = makeCpuRenderer(volume);
+        for (const bool cut : {false, true})
+            for (const Camera& camera :
+                 {perspective(geometry, {40, -60, 20}), orthographic(geometry, {1, -0.7, 0.4}, 40)})
+                for (const Case& c : cases) {
+                    CAPTURE(frame, cut, c.name, camera.projection == Projection::Perspective);
+                    RenderSettings settings = smallSettings();
+                    settings.stepInD0 = 0.5;
+                    if (cut) {
+                        // 10 degrees off an axis, and a corner.
+                        const Vec3 normal(std::sin(0.1745), std::cos(0.1745), 0), center = geometry.boxCenter();
+                        settings.clipping.planes = {{normal, glm::dot(normal, center) + 2},
+                                                    {{-1, 2, 3}, glm::dot(Vec3(-1, 2, 3), center) + 12}};
+                        settings.clipping.lo = {0.1, 0, 0.2};
+                    }
+                    c.change(settings);
+                    Image a = gl->render(camera, tf, settings), b = cpu->render(camera, tf, settings);
+                    if (!settings.background) {
+                        a = premultiplied(a);
+                        b = premultiplied(b);
+                    }
+                    const Difference d = difference(a, b);
+                    CHECK(d.mean < c.mean);
+                    CHECK(d.largest < c.largest);
+                }
+    }
+}
+
+TEST_CASE("pixels that become opaque early look as if all had been drawn", "[gl]") {
     if (!haveGl()) return;
     // A thick wall of one colour, opaque after a few voxels (0.3^8 < 1e-4), hides one of another; the left half of the
     // front wall is missing.
@@ -293,9 +430,10 @@ TEST_CASE("a volume drawn in bricks is the same picture", "[gl]") {
                         worst = std::max(worst, e);
                     }
                     CAPTURE(shading, other == &cut, camera.eye.x);
-                    CHECK(mean < 1e-5);
+                    // Light falls on what a ray gathers between two looks at the blocks, and a brick's end is another.
+                    CHECK(mean < (shading ? 1.0 / 255 : 1e-5));
                     // Rounding may carry a segment over an entry of the table, or a gradient over the smallest length.
-                    CHECK(worst < (shading ? 1e-2 : 1e-3));
+                    CHECK(worst < (shading ? 3e-2 : 1e-3));
                 }
             }
     });

@@ -30,13 +30,25 @@ TEST_CASE("every permutation of every shader compiles", "[gl]") {
                 gathers.push_back(defines);
                 gathers.back().push_back("FIELD");
             }
-    const std::vector<Program> programs{
-        {{"slice.vert", "slice_raycast.frag"}, {{}, {"SHADING"}, {"HAS_INVALID"}, {"SHADING", "HAS_INVALID"}}},
-        {{"composite.vert", "composite.frag"}, {{}}},
-        {{"composite.vert", "opaque_mask.frag"}, {{}}},
-        {{"visibility_march.comp"}, marches},
-        {{"visibility_gather.comp"}, gathers},
-        {{"visibility_reduce.comp"}, {{}}}};
+    std::vector<std::vector<std::string>> casts;
+    for (int mode = 0; mode < 5; ++mode)
+        for (const bool invalid : {false, true})
+            for (const bool bricks : {false, true}) {
+                std::vector<std::string> defines{"MODE " + std::to_string(mode), "BLOCK_SHIFT 2"};
+                if (invalid) defines.push_back("HAS_INVALID");
+                if (bricks) defines.push_back("BRICKS");
+                casts.push_back(defines);
+                if (mode != 0 && mode != 4) continue;
+                for (const char* part : {"LIGHT", "OCCLUSION", "GRADIENT_OPACITY"}) { // one more each time
+                    defines.push_back(part);
+                    casts.push_back(defines);
+                }
+            }
+    const std::vector<Program> programs{{{"composite.vert", "raycast.frag"}, casts},
+                                        {{"composite.vert", "composite.frag"}, {{}}},
+                                        {{"visibility_march.comp"}, marches},
+                                        {{"visibility_gather.comp"}, gathers},
+                                        {{"visibility_reduce.comp"}, {{}}}};
     std::set<std::string> stages;
     gl::HeadlessContext context;
     for (const Program& program : programs) {

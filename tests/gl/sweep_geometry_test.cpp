@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "render/gl/depth_tables.h"
+#include "render/gl/picture_rays.h"
 #include "render/gl/resident_volume.h"
-#include "render/gl/slice_geometry.h"
 #include "render/gl/sweep_geometry.h"
 
 using namespace pellucid;
@@ -16,10 +16,6 @@ using namespace pellucid::testing;
 namespace {
 
 const Geometry kBox{{12, 9, 7}, {1, 0.5, 2}, {4, 5, 6}};
-
-double areaOf(const SlabVertex& p, const SlabVertex& q, const SlabVertex& r) {
-    return 0.5 * std::abs(static_cast<double>((q.x - p.x) * (r.y - p.y) - (r.x - p.x) * (q.y - p.y)));
-}
 
 } // namespace
 
@@ -161,49 +157,28 @@ TEST_CASE("boxes longer than a texture are folded into one", "[tables]") {
     CHECK_FALSE(foldInto({5, 1, 1}, 1));
 }
 
-TEST_CASE("the slabs of a view along an axis are the box's face, one behind the other", "[slices]") {
-    RenderSettings settings;
-    settings.width = 200;
-    settings.height = 100;
-    settings.stepInD0 = 1.0; // d0 = 0.5
-    const Camera camera = orthographic(kBox, {0, 1, 0}, 20);
-    const SliceView view(camera, kBox, settings);
-    const auto vertices = slabTriangles(view, kBox, settings);
-    // Along y the box is 9 · 0.5 = 4.5 deep: 9 slabs of 0.5, two triangles each.
-    REQUIRE(vertices.size() == 9 * 2 * 3);
-    // 12 × 14 world units in a picture of 40 × 20: 168/800 of the square [−1,1]² of area 4.
-    for (std::size_t i = 0; i < vertices.size(); i += 6) {
-        CHECK(areaOf(vertices[i], vertices[i + 1], vertices[i + 2]) +
-                  areaOf(vertices[i + 3], vertices[i + 4], vertices[i + 5]) ==
-              Approx(4 * 168.0 / 800));
-        CHECK(static_cast<double>(vertices[i].nearDepth) ==
-              Approx(-2.25 + 0.5 * static_cast<double>(i / 6)).margin(1e-6));
-    }
-}
-
-TEST_CASE("rays of the picture are the camera's", "[slices]") {
-    RenderSettings settings;
-    settings.width = 31;
-    settings.height = 17;
-    for (const Camera& camera : {perspective(kBox, {10, -20, 15}), orthographic(kBox, {0.3, 1, -0.4}, 20)}) {
-        const SliceView view(camera, kBox, settings);
-        for (const auto& [x, y] : {std::pair(0.5, 0.5), std::pair(20.25, 3.0)}) {
-            const Vec3 picture(2 * x / settings.width - 1, 1 - 2 * y / settings.height, 1);
-            const Ray ray = pixelRay(camera, x, y, settings.width, settings.height);
-            const Vec3 size = kBox.boundsMax() - kBox.boundsMin();
-            const Vec3 direction = glm::normalize(view.rayDirection(kBox) * picture * size);
-            const Vec3 point = kBox.boundsMin() + view.rayOrigin(kBox) * picture * size;
-            CHECK(glm::length(direction - ray.direction) < 1e-9);
-            // The point lies on the camera's ray.
-            const Vec3 off = point - ray.origin;
-            CHECK(glm::length(off - ray.direction * glm::dot(off, ray.direction)) < 1e-8);
+TEST_CASE("rays of the picture are the camera's", "[picture]") {
+    Geometry sheared = kBox;
+    sheared.directions = {Vec3(0, -1, 0), glm::normalize(Vec3(0.3, 0, 1)), Vec3(1, 0, 0)};
+    for (const Geometry& g : {kBox, sheared})
+        for (const Camera& camera : {perspective(g, {10, -20, 15}), orthographic(g, {0.3, 1, -0.4}, 20)}) {
+            const PictureRays rays(camera, g, 31.0 / 17);
+            for (const auto& [x, y] : {std::pair(0.5, 0.5), std::pair(20.25, 3.0)}) {
+                const Vec3 picture(2 * x / 31 - 1, 1 - 2 * y / 17, 1);
+                const Ray ray = pixelRay(camera, x, y, 31, 17);
+                const auto at = [&](double t) {
+                    return g.worldFromVoxel(rays.origin * picture + t * (rays.direction * picture));
+                };
+                for (const double t :
+                     {-2.0, 0.0, 3.0}) { // points of the camera's ray, t deep from the middle of the box
+                    const Vec3 off = at(t) - ray.origin;
+                    CHECK(glm::length(off - ray.direction * glm::dot(off, ray.direction)) < 1e-8);
+                    CHECK(glm::dot(at(t) - g.boxCenter(), camera.forward()) == Approx(t).margin(1e-9));
+                }
+                const double length = glm::length(Vec3(rays.tangents.x * picture.x, rays.tangents.y * picture.y, 1));
+                CHECK(glm::length(at(1) - at(0)) == Approx(length));
+                if (camera.projection == Projection::Perspective)
+                    CHECK(glm::length(at(rays.nearest) - camera.eye) < 1e-9);
+            }
         }
-    }
-}
-
-TEST_CASE("a step that would need millions of slices is refused", "[slices]") {
-    RenderSettings settings;
-    settings.stepInD0 = 1e-6;
-    const Camera camera = orthographic(kBox, {0, 1, 0}, 20);
-    CHECK_THROWS_AS(slabTriangles(SliceView(camera, kBox, settings), kBox, settings), Error);
 }

@@ -35,9 +35,13 @@ void throwIfTooMuch(double bytes, const std::string& what) {
 
 double bytesPerTexel(GLenum format) {
     switch (format) {
+    case GL_R8:
+    case GL_R8UI:
+        return 1;
     case GL_R16:
         return 2;
     case GL_RGBA32F:
+    case GL_RGBA32UI:
         return 16;
     default:
         return 4;

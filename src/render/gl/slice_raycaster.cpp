@@ -1,17 +1,26 @@
 #include "render/gl/slice_raycaster.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
 #include "base/error.h"
+#include "render/ambient_occlusion.h"
+#include "render/box_in_image.h"
+#include "render/cpu/ray_blocks.h"
+#include "render/cpu/ray_packets.h"
 #include "render/gl/gl_resources.h"
+#include "render/gl/picture_rays.h"
 #include "render/gl/shader_program.h"
-#include "render/gl/slice_geometry.h"
 #include "render/gl/volume_bricks.h"
 #include "render/gl/volume_texture.h"
 #include "tf/tf_table.h"
@@ -21,50 +30,91 @@ namespace pellucid::gl {
 namespace {
 
 constexpr int kTableSize = 16384;
-/// Fragments drawn between two looks at JobControl: well under a second even where the CPU does the drawing.
-constexpr double kFragmentsPerBatch = 8e6;
-/// How often, while the slices are drawn, pixels that have become opaque are taken out of the work: each time costs a
-/// pass over the picture.
-constexpr std::size_t kMaskings = 10;
+/// Samples drawn at a time, at most: well under a second even where the CPU does the drawing, between two looks at
+/// JobControl, and before a GPU's watchdog.
+constexpr double kSamplesAtOnce = 8e6;
+constexpr double kMostSteps = 1e6; ///< along one ray
+constexpr std::size_t kMostSurfaces = 128;
 
 using glm::value_ptr;
 
-/// slice.vert and slice_raycast.frag, one permutation; locations are those written there.
-class SliceProgram {
+/// composite.vert and raycast.frag, one permutation; locations are those written there.
+class RaycastProgram {
 public:
-    explicit SliceProgram(const std::vector<std::string>& defines)
-        : m_program(makeProgram({"slice.vert", "slice_raycast.frag"}, defines)), m_id(m_program.id()) {}
+    explicit RaycastProgram(const std::vector<std::string>& defines)
+        : m_program(makeProgram({"composite.vert", "raycast.frag"}, defines)), m_id(m_program.id()) {}
 
     void use() const { glUseProgram(m_id); }
-    void setEntriesPerCode(float v) const { glProgramUniform1f(m_id, 0, v); }
-    void setIntegralStart(int v) const { glProgramUniform1i(m_id, 12, v); }
     void setPictureFromFragment(const glm::vec4& v) const { glProgramUniform4fv(m_id, 1, 1, value_ptr(v)); }
-    void setRays(const glm::mat3& origin, const glm::mat3& direction) const {
-        glProgramUniformMatrix3fv(m_id, 2, 1, GL_FALSE, value_ptr(origin));
-        glProgramUniformMatrix3fv(m_id, 3, 1, GL_FALSE, value_ptr(direction));
+    void setRays(const PictureRays& rays) const {
+        setMatrix(2, rays.origin);
+        setMatrix(3, rays.direction);
+        const glm::vec2 tangents(rays.tangents);
+        glProgramUniform2fv(m_id, 4, 1, value_ptr(tangents));
+        glProgramUniform1f(m_id, 8, static_cast<float>(rays.nearest));
     }
-    void setTangents(const glm::vec2& v) const { glProgramUniform2fv(m_id, 4, 1, value_ptr(v)); }
-    void setPerD0(float v) const { glProgramUniform1f(m_id, 5, v); }
-    void setClip(const glm::vec3& lo, const glm::vec3& hi) const {
-        glProgramUniform3fv(m_id, 6, 1, value_ptr(lo));
-        glProgramUniform3fv(m_id, 7, 1, value_ptr(hi));
+    void setStep(double inD0, double d0) const {
+        glProgramUniform2f(m_id, 5, static_cast<float>(inD0 * d0), static_cast<float>(inD0));
     }
-    void setShading(const glm::vec3& voxel, const glm::vec3& spacing, const glm::vec3& box, float perCode) const {
-        glProgramUniform3fv(m_id, 8, 1, value_ptr(voxel));
-        glProgramUniform3fv(m_id, 9, 1, value_ptr(spacing));
-        glProgramUniform3fv(m_id, 10, 1, value_ptr(box));
-        glProgramUniform1f(m_id, 11, perCode);
+    void setRegion(const Vec3& lo, const Vec3& hi, const std::vector<VoxelPlane>& planes) const {
+        setVector(6, lo);
+        setVector(7, hi);
+        glProgramUniform1i(m_id, 9, static_cast<int>(planes.size()));
+        std::vector<glm::vec4> packed;
+        for (const VoxelPlane& plane : planes) packed.emplace_back(plane.normal, plane.offset);
+        if (!packed.empty())
+            glProgramUniform4fv(m_id, 30, static_cast<GLsizei>(packed.size()), value_ptr(packed.front()));
     }
-    void setBrick(const VolumeBrick& b) const {
-        glProgramUniform3fv(m_id, 13, 1, value_ptr(glm::vec3(b.lo)));
-        glProgramUniform3fv(m_id, 14, 1, value_ptr(glm::vec3(b.hi)));
-        glProgramUniform3fv(m_id, 15, 1, value_ptr(glm::vec3(b.textureFromBox)));
-        glProgramUniform3fv(m_id, 16, 1, value_ptr(glm::vec3(b.textureOffset)));
-        glProgramUniform3fv(m_id, 17, 1, value_ptr(glm::vec3(b.textureEnd)));
+    /// Size of the picture, pixels; 0: no jitter.
+    void setJitter(const glm::vec2& size) const { glProgramUniform2fv(m_id, 10, 1, value_ptr(size)); }
+    void setBrick(const VolumeBrick& b, bool oneOfSeveral) const {
+        setVector(15, b.textureFromVoxel);
+        setVector(16, b.textureOffset);
+        if (!oneOfSeveral) return;
+        setVector(13, b.lo);
+        setVector(14, b.hi);
+        setVector(17, b.textureEnd);
     }
-    void setTileFromPicture(const glm::vec4& v) const { glProgramUniform4fv(m_id, 20, 1, value_ptr(v)); }
+    void setBlocks(const Int3& lastVoxel, const Int3& lastBlock) const {
+        setVector(21, Vec3(lastVoxel));
+        glProgramUniform3i(m_id, 11, lastBlock.x, lastBlock.y, lastBlock.z);
+    }
+    void setTable(double entriesPerCode, int integralStart) const {
+        glProgramUniform1f(m_id, 0, static_cast<float>(entriesPerCode));
+        glProgramUniform1i(m_id, 12, integralStart);
+    }
+    void setFeatureCount(int count) const { glProgramUniform1i(m_id, 18, count); }
+    void setShown(double low, double high, double intensityPerCode) const {
+        glProgramUniform2f(m_id, 18, static_cast<float>(low), static_cast<float>(high));
+        glProgramUniform1f(m_id, 19, static_cast<float>(intensityPerCode));
+    }
+    void setLight(const Light& light, const Mat3& cameraFromGradient) const {
+        setMatrix(22, cameraFromGradient);
+        const glm::vec4 none(1, 0, 0, 1);
+        const glm::vec4 parts(light.ambient, light.diffuse, light.specular, light.shininess);
+        glProgramUniform4fv(m_id, 23, 1, value_ptr(light.on ? parts : none));
+        setVector(24, glm::normalize(light.direction));
+        const glm::vec4 strengths(light.gradientOpacity, light.silhouettes, light.occlusion, light.depthCue);
+        glProgramUniform4fv(m_id, 25, 1, value_ptr(strengths));
+    }
+    void setOpenness(const Vec3& textureFromVoxel, const Vec3& offset) const {
+        setVector(28, textureFromVoxel);
+        setVector(29, offset);
+    }
+    void setDepthCue(const Rgb& color, double perDepth, double offset) const {
+        setVector(26, {color.r, color.g, color.b});
+        glProgramUniform2f(m_id, 27, static_cast<float>(perDepth), static_cast<float>(offset));
+    }
 
 private:
+    void setVector(GLint location, const Vec3& v) const {
+        const glm::vec3 single(v);
+        glProgramUniform3fv(m_id, location, 1, value_ptr(single));
+    }
+    void setMatrix(GLint location, const Mat3& m) const {
+        const glm::mat3 single(m);
+        glProgramUniformMatrix3fv(m_id, location, 1, GL_FALSE, value_ptr(single));
+    }
     ProgramName m_program;
     GLuint m_id;
 };
@@ -74,8 +124,13 @@ class CompositeProgram {
 public:
     CompositeProgram() : m_program(makeProgram({"composite.vert", "composite.frag"})), m_id(m_program.id()) {}
     void use() const { glUseProgram(m_id); }
-    void setBackground(const glm::vec4& v) const { glProgramUniform4fv(m_id, 0, 1, value_ptr(v)); }
+    void setBackground(const glm::vec4& bottom, const glm::vec3& top) const {
+        glProgramUniform4fv(m_id, 0, 1, value_ptr(bottom));
+        glProgramUniform3fv(m_id, 3, 1, value_ptr(top));
+    }
     void setTextureFromFragment(const glm::vec4& v) const { glProgramUniform4fv(m_id, 1, 1, value_ptr(v)); }
+    void setHeightFromFragment(const glm::vec2& v) const { glProgramUniform2fv(m_id, 4, 1, value_ptr(v)); }
+    void setIsGrey(bool grey) const { glProgramUniform1i(m_id, 2, grey ? 1 : 0); }
 
 private:
     ProgramName m_program;
@@ -94,203 +149,320 @@ Tile tileOf(const RenderSettings& settings, const DrawTarget& target) {
     return tile;
 }
 
+/// An interval of intensities [low, high) as codes/65535, as texels give them.
+struct CodeInterval {
+    double low, high;
+};
+
+/// A feature that mode Surface draws.
+struct Surface {
+    CodeInterval codes;
+    double opacity;
+    Rgb color;
+};
+
+CodeInterval codesOf(const Feature& feature, int maxCode) {
+    // A hair lower, so that rounding in the texture unit leaves voxels that lie on a border on their side of it.
+    constexpr double kHair = 0.01;
+    const auto code = [&](double s) { return (s * maxCode - kHair) / 65535; };
+    return {code(feature.a), feature.b >= 1 ? 2.0 : code(feature.b)};
+}
+
+/// In d0, so that the ends of a step lie in the texture of the brick that holds its middle.
+double longestStepInBricks(const Geometry& g) {
+    const Mat3 indexFromWorld = glm::transpose(g.indexFromWorld()); // its columns: voxels per world unit along an axis
+    double most = 0;
+    for (int a = 0; a < 3; ++a) most = std::max(most, glm::length(indexFromWorld[a]));
+    return kBrickStep / (most * g.d0());
+}
+
+/// A byte per texel, x fastest.
+void uploadBytes(const Texture3d& texture, const std::uint8_t* bytes, GLenum format) {
+    glBindTexture(GL_TEXTURE_3D, texture.name.id());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, texture.size.x, texture.size.y, texture.size.z, format, GL_UNSIGNED_BYTE,
+                    bytes);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glBindTexture(GL_TEXTURE_3D, 0);
+    throwOnGlError("uploading a map of the volume");
+}
+
+/// By the transfer function; else the modes are grey.
+bool isColored(RenderMode mode) { return mode == RenderMode::Composite || mode == RenderMode::Surface; }
+
+/// Whether light changes anything that is drawn.
+bool changesColors(const Light& light) {
+    return light.on || light.gradientOpacity > 0 || light.occlusion > 0 || light.depthCue > 0 || light.silhouettes > 0;
+}
+
+glm::vec3 vec3Of(const Rgb& c) { return {c.r, c.g, c.b}; }
+
 } // namespace
 
 struct SliceRaycaster::Impl {
     CompositeProgram composite;
-    std::array<std::optional<SliceProgram>, 4> slices; ///< compiled when first needed; index: 2·shading + invalid
-    VertexArrayName sliceArray = VertexArrayName::make();
+    std::map<std::vector<std::string>, RaycastProgram> programs; ///< by their defines; compiled when first needed
     VertexArrayName emptyArray = VertexArrayName::make();
-    BufferName vertexBuffer = BufferName::make();
-    ColorTarget accumulated;
-    ProgramName maskProgram = makeProgram({"composite.vert", "opaque_mask.frag"});
-    Texture2d depth;                 ///< of `accumulated`: 1 where the picture is open, 0 where it is opaque
-    FramebufferName maskFramebuffer; ///< depth alone, since a texture must not be read and drawn at once
+    ColorTarget accumulated; ///< what raycast.frag calls u_state
+    Texture2d seen;          ///< u_seen; of the same size, made only for surfaces in bricks
 
     std::shared_ptr<const Volume> volume;
     std::unique_ptr<BrickedVolume> bricks;
+    std::unique_ptr<RayBlocks> blocks;
+    Texture3d distances;                     ///< of the blocks, to the next that is drawn
+    std::optional<bool> distancesToSurfaces; ///< what they were made for: surfaces or opacity; empty: out of date
     std::optional<TransferFunction> tf;
-    TableTexture table;
-    std::optional<int> tableFeature; ///< onlyFeature that the table was made for; empty: it is out of date
+    TableTexture table, surfaces;
+    std::vector<int> opaqueBefore;   ///< number of opaque entries of the table before each
+    std::vector<Surface> drawn;      ///< in `surfaces`: by their intervals
+    Texture3d openness;              ///< of AmbientOcclusion
+    bool opennessIsMade = false;     ///< for the tables' transfer function
+    std::optional<int> tableFeature; ///< onlyFeature that the tables were made for; empty: they are out of date
 
-    Impl() {
-        glBindVertexArray(sliceArray.id());
-        glBindBuffer(GL_ARRAY_BUFFER, vertexBuffer.id());
-        // NOLINTNEXTLINE(performance-no-int-to-ptr): GL takes offsets into buffers as pointers
-        const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
-        glEnableVertexAttribArray(0);
-        glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, sizeof(SlabVertex), offset(0));
-        glEnableVertexAttribArray(1);
-        glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(SlabVertex), offset(2 * sizeof(float)));
-        glBindVertexArray(0);
-        glBindBuffer(GL_ARRAY_BUFFER, 0);
-        throwOnGlError("preparing to draw");
-    }
-
-    const SliceProgram& program(bool shading) {
-        auto& slot = slices[(shading ? 2u : 0u) + (bricks->hasInvalid() ? 1u : 0u)];
-        if (!slot) {
-            auto defines = bricks->defines();
-            if (shading) defines.push_back("SHADING");
-            slot.emplace(defines);
+    const RaycastProgram& program(const RenderSettings& settings) {
+        std::vector<std::string> defines{"MODE " + std::to_string(static_cast<int>(settings.mode)),
+                                         "BLOCK_SHIFT " + std::to_string(kRayBlockShift)};
+        if (bricks->hasInvalid()) defines.emplace_back("HAS_INVALID");
+        if (bricks->count() > 1) defines.emplace_back("BRICKS");
+        if (isColored(settings.mode) && changesColors(settings.light)) {
+            defines.emplace_back("LIGHT");
+            if (settings.light.gradientOpacity > 0) defines.emplace_back("GRADIENT_OPACITY");
+            if (settings.light.occlusion > 0) defines.emplace_back("OCCLUSION");
         }
-        return *slot;
+        const auto found = programs.find(defines);
+        return found != programs.end() ? found->second
+                                       : programs.emplace(defines, RaycastProgram(defines)).first->second;
     }
 
-    /// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); a feature alone
-    /// leaves the other intensities transparent.
-    void fillTable(const RenderSettings& settings) {
-        if (tableFeature == settings.onlyFeature) return;
-        const Feature* const only = settings.featureAlone(*tf);
-        const TfTable made = makeTfTable(*tf, kTableSize);
-        std::vector<float> values(static_cast<std::size_t>(8 * kTableSize));
-        glm::dvec4 integral(0), before(0);
-        for (std::size_t i = 0; i < made.rgba.size(); ++i) {
-            const double s = static_cast<double>(i) / (kTableSize - 1);
-            const bool drawn = only == nullptr || only->contains(s);
-            const double tau = drawn ? static_cast<double>(made.opticalDepth[i]) : 0.0;
-            const auto& c = made.rgba[i];
-            const glm::dvec4 entry(tau * Vec3(c[0], c[1], c[2]), tau);
-            if (i > 0) integral += 0.5 * (before + entry);
-            before = entry;
-            for (int k = 0; k < 4; ++k) {
-                values[4 * i + static_cast<std::size_t>(k)] = static_cast<float>(entry[k]);
-                values[4 * (kTableSize + i) + static_cast<std::size_t>(k)] = static_cast<float>(integral[k]);
-            }
-        }
-        tableFeature.reset();
-        table.fill(values, 4);
-        tableFeature = settings.onlyFeature;
-    }
-
+    void fillTables(const RenderSettings& settings);
+    void fillTable(const RenderSettings& settings);
+    void fillSurfaces(const Feature* only);
+    void fillDistances(bool toSurfaces);
+    void fillOpenness(const RenderSettings& settings);
     void resize(glm::ivec2 size);
-    void maskOpaque();
-    void drawSlabs(const SliceProgram& p, const std::vector<SlabVertex>& vertices, const JobControl& job);
-    void accumulate(const Camera& camera, const RenderSettings& settings, const Tile& tile, const JobControl& job);
+    void setUniforms(const RaycastProgram& p, const Camera& camera, const RenderSettings& settings, const Tile& tile);
+    void cast(const Camera& camera, const RenderSettings& settings, const Tile& tile, const JobControl& job);
     void drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile);
 };
 
+void SliceRaycaster::Impl::fillTables(const RenderSettings& settings) {
+    if (tableFeature != settings.onlyFeature) fillTable(settings);
+    if (isColored(settings.mode)) fillDistances(settings.mode == RenderMode::Surface);
+    if (settings.light.occlusion > 0 && !opennessIsMade) fillOpenness(settings);
+}
+
+/// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); a feature alone leaves the
+/// other intensities transparent.
+void SliceRaycaster::Impl::fillTable(const RenderSettings& settings) {
+    const Feature* const only = settings.featureAlone(*tf);
+    const TfTable made = makeTfTable(*tf, kTableSize);
+    std::vector<float> values(static_cast<std::size_t>(8 * kTableSize));
+    glm::dvec4 integral(0), before(0);
+    opaqueBefore.assign(static_cast<std::size_t>(kTableSize + 1), 0);
+    for (std::size_t i = 0; i < made.rgba.size(); ++i) {
+        const double s = static_cast<double>(i) / (kTableSize - 1);
+        const bool isDrawn = only == nullptr || only->contains(s);
+        const double tau = isDrawn ? static_cast<double>(made.opticalDepth[i]) : 0.0;
+        const auto& c = made.rgba[i];
+        const glm::dvec4 entry(tau * Vec3(c[0], c[1], c[2]), tau);
+        if (i > 0) integral += 0.5 * (before + entry);
+        before = entry;
+        opaqueBefore[i + 1] = opaqueBefore[i] + (tau > 0 ? 1 : 0);
+        for (int k = 0; k < 4; ++k) {
+            values[4 * i + static_cast<std::size_t>(k)] = static_cast<float>(entry[k]);
+            values[4 * (kTableSize + i) + static_cast<std::size_t>(k)] = static_cast<float>(integral[k]);
+        }
+    }
+    tableFeature.reset();
+    distancesToSurfaces.reset();
+    opennessIsMade = false;
+    table.fill(values, 4);
+    fillSurfaces(only);
+    tableFeature = settings.onlyFeature;
+}
+
+/// The features that mode Surface draws, by their intervals.
+void SliceRaycaster::Impl::fillSurfaces(const Feature* only) {
+    drawn.clear();
+    const std::vector<double> opacities = featureOpacities(*tf);
+    for (std::size_t f = 0; f < tf->features.size(); ++f) {
+        const Feature& feature = tf->features[f];
+        if (opacities[f] > 0 && feature.a < feature.b && (only == nullptr || only == &feature))
+            drawn.push_back({codesOf(feature, bricks->maxCode()), opacities[f], feature.color});
+    }
+    std::sort(drawn.begin(), drawn.end(), [](const Surface& a, const Surface& b) { return a.codes.low < b.codes.low; });
+    std::vector<float> values;
+    for (const Surface& s : drawn)
+        for (const double v : {s.codes.low, s.codes.high, s.opacity, 0.0, s.color.r, s.color.g, s.color.b, 0.0})
+            values.push_back(static_cast<float>(v));
+    if (drawn.empty()) values.resize(4); // no texture is empty
+    surfaces.fill(values, 4);
+}
+
+/// Blocks that rays leap over.
+void SliceRaycaster::Impl::fillDistances(bool toSurfaces) {
+    if (distancesToSurfaces == toSurfaces) return;
+    distancesToSurfaces.reset();
+    const double entriesPerCode = static_cast<double>(kTableSize - 1) / bricks->maxCode();
+    const auto isOpaque = [&](int low, int high) {
+        // An entry more on both sides: the device rounds in its own way.
+        const int first = std::max(0, static_cast<int>(low * entriesPerCode) - 1),
+                  end = std::min(kTableSize, static_cast<int>(high * entriesPerCode) + 3);
+        return opaqueBefore[static_cast<std::size_t>(end)] != opaqueBefore[static_cast<std::size_t>(first)];
+    };
+    const auto isSurface = [&](int low, int high) {
+        return std::any_of(drawn.begin(), drawn.end(), [&](const Surface& s) {
+            return (high + 1) / 65535.0 >= s.codes.low && (low - 1) / 65535.0 < s.codes.high;
+        });
+    };
+    const std::vector<std::uint8_t> blockDistances =
+        toSurfaces ? blocks->distances(isSurface) : blocks->distances(isOpaque);
+    const Int3 size = blocks->dims();
+    if (distances.size != size) distances = makeTexture3d(size, GL_R8UI, GL_NEAREST, "the map of empty space");
+    uploadBytes(distances, blockDistances.data(), GL_RED_INTEGER);
+    distancesToSurfaces = toSurfaces;
+}
+
+void SliceRaycaster::Impl::fillOpenness(const RenderSettings& settings) {
+    const AmbientOcclusion occlusion =
+        makeAmbientOcclusion(*sharedIntensityGrid(*volume), volume->geometry(), *tf, settings.featureAlone(*tf));
+    const Int3 size = occlusion.open.dims();
+    if (openness.size != size) openness = makeTexture3d(size, GL_R8, GL_LINEAR, "ambient occlusion");
+    uploadBytes(openness, occlusion.open.data(), GL_RED);
+    opennessIsMade = true;
+}
+
 void SliceRaycaster::Impl::resize(glm::ivec2 size) {
-    if (accumulated.color.size == size && depth.size == size) return;
+    if (accumulated.color.size == size) return;
+    seen = {};
     accumulated = makeColorTarget(size, GL_RGBA32F, GL_LINEAR, "the picture");
-    depth = makeTexture2d(size, GL_DEPTH_COMPONENT24, GL_NEAREST, "the picture's mask");
-    maskFramebuffer = FramebufferName::make();
-    glBindFramebuffer(GL_FRAMEBUFFER, maskFramebuffer.id());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name.id(), 0);
-    glDrawBuffer(GL_NONE);
-    glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name.id(), 0);
-    throwOnGlError("preparing the picture");
 }
 
-/// Later slices fail the depth test where the picture is opaque already. Leaves everything ready for them.
-void SliceRaycaster::Impl::maskOpaque() {
-    glBindFramebuffer(GL_FRAMEBUFFER, maskFramebuffer.id());
-    glUseProgram(maskProgram.id());
-    glBindVertexArray(emptyArray.id());
-    bindTexture(0, GL_TEXTURE_2D, accumulated.color.name);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_ALWAYS);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDepthFunc(GL_LESS);
-    glDepthMask(GL_FALSE);
-    glBindTexture(GL_TEXTURE_2D, 0);
-    glBindVertexArray(sliceArray.id());
-    glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
-}
-
-void SliceRaycaster::Impl::accumulate(const Camera& camera, const RenderSettings& settings, const Tile& tile,
-                                      const JobControl& job) {
+void SliceRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& camera, const RenderSettings& settings,
+                                       const Tile& tile) {
     const Geometry& g = volume->geometry();
-    const SliceView view(camera, g, settings);
-
-    const glm::vec2 size(accumulated.color.size);
-    const glm::vec2 picture(settings.width, settings.height);
+    const glm::vec2 size(accumulated.color.size), picture(settings.width, settings.height);
     // The tile in picture coordinates: [−1,1]² over the whole picture, y up.
     const glm::vec2 tileSize = 2.0f * glm::vec2(tile.width, tile.height) / picture;
     const glm::vec2 tileLow(2.0f * static_cast<float>(tile.x) / picture.x - 1.0f,
                             1.0f - 2.0f * static_cast<float>(tile.y + tile.height) / picture.y);
-
-    const SliceProgram& p = program(settings.light.on);
-    p.use();
-    p.setEntriesPerCode(static_cast<float>(65535.0 / bricks->maxCode() * (kTableSize - 1)));
-    p.setIntegralStart(kTableSize);
     p.setPictureFromFragment({tileSize / size, tileLow});
-    p.setTileFromPicture({2.0f / tileSize, -2.0f * tileLow / tileSize - 1.0f});
-    p.setRays(glm::mat3(view.rayOrigin(g)), glm::mat3(view.rayDirection(g)));
-    p.setTangents(view.perspective ? glm::vec2(view.halfExtent) : glm::vec2(0));
-    p.setPerD0(static_cast<float>(1 / g.d0()));
-    p.setClip(glm::vec3(settings.clipping.lo), glm::vec3(settings.clipping.hi));
-    if (settings.light.on)
-        p.setShading(glm::vec3(1.0 / Vec3(g.dims)), glm::vec3(g.spacing), glm::vec3(g.boundsMax() - g.boundsMin()),
-                     65535.0f / static_cast<float>(bricks->maxCode()));
-    bindTexture(1, GL_TEXTURE_2D, table.name());
+    p.setRays(PictureRays(camera, g, static_cast<double>(settings.width) / settings.height));
 
-    glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
-    glViewport(0, 0, accumulated.color.size.x, accumulated.color.size.y);
-    const std::array<float, 4> nothing{};
-    const float open = 1.0f;
-    glDepthMask(GL_TRUE);
-    glClearBufferfv(GL_COLOR, 0, nothing.data());
-    glClearBufferfv(GL_DEPTH, 0, &open);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_LESS);
-    glEnable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    // Under: what comes later lies behind what is there.
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+    double step = settings.stepInD0;
+    if (bricks->count() > 1) step = std::min(step, longestStepInBricks(g));
+    if (!(2 * g.radius() / (step * g.d0()) <= kMostSteps))
+        throw Error("the picture needs over a million samples along a ray", "step", "make the step longer");
+    p.setStep(step, g.d0());
+    Clipping oblique;
+    oblique.planes = settings.clipping.planes;
+    const Vec3 dims(g.dims);
+    p.setRegion(settings.clipping.lo * dims - 0.5, settings.clipping.hi * dims - 0.5, planesInVoxels(oblique, g));
+    p.setJitter(settings.jitter ? picture : glm::vec2(0));
+    p.setBlocks(g.dims - 1, blocks->dims() - 1);
 
-    glBindVertexArray(sliceArray.id());
-    RenderSettings sampled = settings;
-    // Both ends of a segment must lie in its brick's texture.
-    if (bricks->count() > 1) sampled.stepInD0 = std::min(settings.stepInD0, kBrickStep);
-    const auto order = bricks->frontToBack(camera);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const VolumeBrick& brick = bricks->use(order[i]);
-        p.setBrick(brick);
-        drawSlabs(p, slabTriangles(view, g, sampled, glm::max(brick.lo, Vec3(0)), glm::min(brick.hi, Vec3(1))),
-                  job.part(i, order.size()));
+    const double codes = 65535.0 / bricks->maxCode(); // intensity of code/65535 = 1
+    if (settings.mode == RenderMode::Composite) {
+        p.setTable(codes * (kTableSize - 1), kTableSize);
+    } else if (settings.mode == RenderMode::Surface) {
+        p.setFeatureCount(static_cast<int>(drawn.size()));
+    } else {
+        const Feature* const only = settings.featureAlone(*tf);
+        const CodeInterval shown = only != nullptr ? codesOf(*only, bricks->maxCode()) : CodeInterval{-1, 2};
+        p.setShown(shown.low, shown.high, codes);
+        return;
     }
-    glBindBuffer(GL_ARRAY_BUFFER, 0);
-    glDisable(GL_BLEND);
-    glDisable(GL_DEPTH_TEST);
-    throwOnGlError("drawing the slices");
+    if (!changesColors(settings.light)) return;
+    // Central differences over two voxels; the world's gradient is A⁻ᵀ times that along the grid.
+    const Mat3 cameraFromWorld = glm::transpose(Mat3(camera.right(), camera.trueUp(), -camera.forward()));
+    p.setLight(settings.light, cameraFromWorld * glm::transpose(g.indexFromWorld()) * (0.5 * codes * g.d0()));
+    if (settings.light.occlusion > 0) {
+        constexpr double kCell = AmbientOcclusion::kCell;
+        const Vec3 cells(openness.size);
+        p.setOpenness(1.0 / (kCell * cells), (0.5 - 0.5 * (kCell - 1) / kCell) / cells);
+    }
+    p.setDepthCue(settings.background.value_or(Rgb{}), 0.5 / g.radius(), 0.5);
 }
 
-/// Front to back over what is accumulated already.
-void SliceRaycaster::Impl::drawSlabs(const SliceProgram& p, const std::vector<SlabVertex>& vertices,
-                                     const JobControl& job) {
-    glBindBuffer(GL_ARRAY_BUFFER, vertexBuffer.id());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(SlabVertex)), vertices.data(),
-                 GL_STREAM_DRAW);
-    // Whole slabs only would be prettier, but any cut is right: triangles of one slab do not overlap.
-    const glm::dvec2 size(accumulated.color.size);
-    const double slabsPerBatch = kFragmentsPerBatch / (size.x * size.y);
-    const std::size_t perBatch =
-        3 * std::min(static_cast<std::size_t>(std::max(1.0, 4 * slabsPerBatch)), vertices.size() / 3 / kMaskings + 1);
-    for (std::size_t first = 0; first < vertices.size(); first += perBatch) {
-        job.throwIfStopped();
-        if (first > 0) maskOpaque();
+void SliceRaycaster::Impl::cast(const Camera& camera, const RenderSettings& settings, const Tile& tile,
+                                const JobControl& job) {
+    const bool bricked = bricks->count() > 1, surface = settings.mode == RenderMode::Surface;
+    if (surface && drawn.size() > kMostSurfaces)
+        throw Error("surfaces of " + std::to_string(drawn.size()) + " features are too many", "transfer function",
+                    "the gl renderer draws " + std::to_string(kMostSurfaces), Remedy::OtherEngine);
+    const glm::ivec2 size = accumulated.color.size;
+    const RaycastProgram& p = program(settings);
+    setUniforms(p, camera, settings, tile);
+
+    glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
+    glViewport(0, 0, size.x, size.y);
+    const std::array<float, 4> nothing{};
+    glClearBufferfv(GL_COLOR, 0, nothing.data());
+    if (surface && bricked) {
+        if (seen.size != size) seen = makeTexture2d(size, GL_RGBA32UI, GL_NEAREST, "the surfaces that were met");
+        const std::vector<std::uint32_t> none(4 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+        glBindTexture(GL_TEXTURE_2D, seen.name.id());
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, GL_RGBA_INTEGER, GL_UNSIGNED_INT, none.data());
+        glBindTexture(GL_TEXTURE_2D, 0);
+        glBindImageTexture(1, seen.name.id(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32UI);
+    }
+    glBindImageTexture(0, accumulated.color.name.id(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE); // the shader writes into the image itself
+
+    // Only where the box is, and rows of a bounded number of samples at a time.
+    const Geometry& g = volume->geometry();
+    const BoxInImage box = boxInImage(camera, g, settings.width, settings.height);
+    const glm::dvec2 scale = glm::dvec2(size) / glm::dvec2(tile.width, tile.height);
+    const auto within = [](double v, int limit) { return static_cast<int>(std::clamp<double>(v, 0, limit)); };
+    const int left = within(std::floor((box.x - tile.x) * scale.x), size.x),
+              right = within(std::ceil((box.x + box.width - tile.x) * scale.x), size.x),
+              bottom = within(std::floor((tile.y + tile.height - box.y - box.height) * scale.y), size.y),
+              top = within(std::ceil((tile.y + tile.height - box.y) * scale.y), size.y);
+    if (right > left && top > bottom) {
+        glEnable(GL_SCISSOR_TEST);
+        glBindVertexArray(emptyArray.id());
         p.use();
-        const std::size_t count = std::min(perBatch, vertices.size() - first);
-        glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
-        // Without waiting the driver would queue everything, and nobody could cancel.
-        if (job.stop.stop_possible() || job.progress) {
-            glFinish();
-            job.report(static_cast<double>(first + count) / static_cast<double>(vertices.size()));
+        const double samplesPerRow = (right - left) * std::max(1.0, box.depthInD0 / settings.stepInD0);
+        const int rows = std::clamp(static_cast<int>(kSamplesAtOnce / samplesPerRow), 1, top - bottom);
+        const auto order = bricks->frontToBack(camera);
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            const JobControl part = job.part(i, order.size());
+            p.setBrick(bricks->use(order[i]), bricked);
+            bindTexture(4, GL_TEXTURE_2D, surfaces.name());
+            if (openness.name) bindTexture(3, GL_TEXTURE_3D, openness.name);
+            bindTexture(2, GL_TEXTURE_3D, distances.name);
+            bindTexture(1, GL_TEXTURE_2D, table.name());
+            for (int row = bottom; row < top; row += rows) {
+                job.throwIfStopped();
+                glScissor(left, row, right - left, std::min(rows, top - row));
+                glDrawArrays(GL_TRIANGLES, 0, 3);
+                // Without waiting the driver would queue everything, and nobody could cancel.
+                if (job.stop.stop_possible() || job.progress) {
+                    glFinish();
+                    part.report(static_cast<double>(std::min(row + rows, top) - bottom) / (top - bottom));
+                }
+            }
+            glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT); // the next brick goes on from there
         }
     }
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+    throwOnGlError("casting the rays");
 }
 
 void SliceRaycaster::Impl::drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile) {
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     glViewport(target.x, target.y, tile.width, tile.height);
     composite.use();
-    const Rgb background = settings.background.value_or(Rgb{});
-    composite.setBackground({background.r, background.g, background.b, settings.background ? 1.0 : 0.0});
+    const Rgb bottom = settings.background.value_or(Rgb{});
+    const Rgb top = settings.background ? settings.backgroundTop.value_or(bottom) : bottom;
+    composite.setBackground({vec3Of(bottom), settings.background ? 1.0f : 0.0f}, vec3Of(top));
+    composite.setIsGrey(!isColored(settings.mode));
     const glm::vec2 scale = 1.0f / glm::vec2(tile.width, tile.height);
     composite.setTextureFromFragment({scale, -glm::vec2(target.x, target.y) * scale});
+    const float rowsBelow = static_cast<float>(settings.height - tile.y - tile.height - target.y);
+    composite.setHeightFromFragment(glm::vec2(1, rowsBelow) / static_cast<float>(settings.height));
     bindTexture(0, GL_TEXTURE_2D, accumulated.color.name);
     glBindVertexArray(emptyArray.id());
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -306,8 +478,11 @@ SliceRaycaster::SliceRaycaster(SliceRaycaster&&) noexcept = default;
 SliceRaycaster& SliceRaycaster::operator=(SliceRaycaster&&) noexcept = default;
 
 void SliceRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longestTexture) {
+    auto blocks = std::make_unique<RayBlocks>(*sharedIntensityGrid(*volume));
     m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture);
+    m_impl->blocks = std::move(blocks);
     m_impl->volume = std::move(volume);
+    m_impl->tableFeature.reset(); // in the former volume's codes
 }
 
 void SliceRaycaster::setTransferFunction(const TransferFunction& tf) {
@@ -324,7 +499,7 @@ void SliceRaycaster::draw(const Camera& camera, const RenderSettings& settings, 
     camera.validate(m_impl->volume->geometry(), "camera");
     const Tile tile = tileOf(settings, target);
     throwOnGlError("preparing to draw");
-    m_impl->fillTable(settings);
+    m_impl->fillTables(settings);
 
     const auto scaled = [&](int pixels) {
         return std::max(1, static_cast<int>(std::ceil(pixels * target.resolutionScale)));
@@ -339,21 +514,20 @@ void SliceRaycaster::draw(const Camera& camera, const RenderSettings& settings, 
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDisable(GL_BLEND);
     const auto leaveTidy = [&] {
-        glDisable(GL_BLEND);
-        glDisable(GL_DEPTH_TEST);
-        glDepthMask(GL_TRUE);
-        glDepthFunc(GL_LESS);
+        glDisable(GL_SCISSOR_TEST);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         glBindVertexArray(0);
         glUseProgram(0);
-        glActiveTexture(GL_TEXTURE1);
-        glBindTexture(GL_TEXTURE_2D, 0);
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, 0);
-        glBindTexture(GL_TEXTURE_3D, 0);
+        for (const GLuint unit : {0u, 1u}) glBindImageTexture(unit, 0, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+        for (const GLenum unit : {4u, 3u, 2u, 1u, 0u}) {
+            glActiveTexture(GL_TEXTURE0 + unit);
+            glBindTexture(GL_TEXTURE_2D, 0);
+            glBindTexture(GL_TEXTURE_3D, 0);
+        }
         glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     };
     try {
-        m_impl->accumulate(camera, settings, tile, job);
+        m_impl->cast(camera, settings, tile, job);
         m_impl->drawComposite(settings, target, tile);
     } catch (...) {
         leaveTidy();

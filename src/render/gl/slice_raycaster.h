@@ -1,5 +1,5 @@
-// Draws the volume with view-aligned slices, front to back, into any framebuffer of the current OpenGL context: the one
-// renderer of the window and of the command line. Includes no GL header, so that the window can use it beside Qt's own.
+// Draws the volume, a ray per pixel, into any framebuffer of the current OpenGL context: the one renderer of the window
+// and of the command line. Includes no GL header, so that the window can use it beside Qt's own.
 #pragma once
 
 #include <memory>
@@ -23,8 +23,7 @@ struct DrawTarget {
     double resolutionScale = 1.0;
 };
 
-/// Emission and absorption along every pixel's ray (docs/method.md, "The picture"): slices parallel to the image plane,
-/// each fragment weighted by the true length of its ray within its slice and the box.
+/// What every pixel's ray meets (docs/method.md, "The picture"), followed by a fragment shader from front to back.
 ///
 /// Every member function, the constructor and the destructor need the same OpenGL context, 4.3 core or later, to be
 /// current. GL state afterwards: no program, vertex array or texture bound; blending, depth, stencil and scissor test

@@ -61,8 +61,8 @@ void BrickedVolume::cut(const Int3& longest) {
                 for (int a = 0; a < 3; ++a) {
                     const int first = brick.index[a] * m_cells[a], end = std::min(first + m_cells[a], dims[a]);
                     const bool isFirst = first == 0, isLast = end == dims[a];
-                    brick.lo[a] = isFirst ? -1.0 : static_cast<double>(first) / dims[a];
-                    brick.hi[a] = isLast ? 2.0 : static_cast<double>(end) / dims[a];
+                    brick.lo[a] = isFirst ? -1.0 : first - 0.5;
+                    brick.hi[a] = isLast ? dims[a] : end - 0.5;
                     brick.first[a] = std::max(0, first - kMargin);
                     brick.size[a] = std::min(end + kMargin, dims[a]) - brick.first[a];
                 }
@@ -86,7 +86,7 @@ bool BrickedVolume::uploadAll() {
 std::vector<std::size_t> BrickedVolume::frontToBack(const Camera& camera) const {
     // From brick to brick along a ray, this number of faces crossed since the eye's own brick only grows.
     const Vec3 eye = glm::floor((m_geometry.voxelFromWorld(camera.eye) + 0.5) / Vec3(m_cells));
-    const Vec3 forward = camera.forward();
+    const Vec3 forward = m_geometry.indexFromWorld() * camera.forward();
     const auto faces = [&](std::size_t brick) {
         double sum = 0;
         for (int a = 0; a < 3; ++a) {
@@ -106,9 +106,9 @@ const VolumeBrick& BrickedVolume::use(std::size_t index) {
     const bool shared = m_textures.size() < m_bricks.size();
     Texture3d& texture = m_textures[shared ? 0 : index];
     if (shared) uploadCodes(texture, *m_grid, brick.first, brick.size, Int3(0));
-    const Vec3 dims(m_geometry.dims), size(texture.size);
-    brick.textureFromBox = dims / size;
-    brick.textureOffset = -Vec3(brick.first) / size;
+    const Vec3 size(texture.size);
+    brick.textureFromVoxel = 1.0 / size;
+    brick.textureOffset = (0.5 - Vec3(brick.first)) / size;
     brick.textureEnd = (Vec3(brick.size) - 0.5) / size;
     bindTexture(0, GL_TEXTURE_3D, texture.name);
     return brick;

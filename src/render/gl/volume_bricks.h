@@ -2,7 +2,6 @@
 // from.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "render/camera.h"
@@ -10,16 +9,16 @@
 
 namespace pellucid::gl {
 
-/// Longest step of samples along a ray, in d0, whose two ends lie in the texture of the brick that holds its middle.
+/// Longest step of samples along a ray, in voxels along any axis, whose two ends lie in the texture of the brick that
+/// holds its middle.
 inline constexpr double kBrickStep = 4.0;
 
-/// Coordinates t: [0,1] over the volume's box.
 struct VolumeBrick {
-    Int3 index{0, 0, 0};                ///< in the grid of bricks
-    Int3 first{0, 0, 0}, size{0, 0, 0}; ///< the voxels of its texture, its neighbours' included
-    Vec3 lo, hi;                        ///< what it stands for; the outermost ones reach beyond the box
-    Vec3 textureFromBox, textureOffset; ///< t of the texture = t · textureFromBox + textureOffset
-    Vec3 textureEnd;                    ///< centre of the last voxel, t of the texture
+    Int3 index{0, 0, 0};                  ///< in the grid of bricks
+    Int3 first{0, 0, 0}, size{0, 0, 0};   ///< the voxels of its texture, its neighbours' included
+    Vec3 lo, hi;                          ///< what it stands for, voxels; the outermost ones reach beyond the box
+    Vec3 textureFromVoxel, textureOffset; ///< t of the texture = voxel · textureFromVoxel + textureOffset
+    Vec3 textureEnd;                      ///< centre of the last voxel, t of the texture
 };
 
 class BrickedVolume {
@@ -30,9 +29,6 @@ public:
     std::size_t count() const noexcept { return m_bricks.size(); }
     bool hasInvalid() const noexcept { return m_hasInvalid; }
     int maxCode() const noexcept { return m_maxCode; } ///< textureMaxCode()
-    std::vector<std::string> defines() const {
-        return m_hasInvalid ? std::vector<std::string>{"HAS_INVALID"} : std::vector<std::string>{};
-    }
     /// Indices of bricks such that none hides an earlier one.
     std::vector<std::size_t> frontToBack(const Camera& camera) const;
     /// Binds the brick's texture to unit 0, uploading it first where not all have room.
