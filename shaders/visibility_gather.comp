@@ -1,7 +1,7 @@
 // visibility_gather.comp: v = T * alpha of every voxel of some planes (docs/method.md, "Visibility"), or its sums per
 //   feature
 //   in   light per ray and plane, as visibility_march.comp leaves it
-//   out  FIELD: v per voxel, a fastest, then b, then c - u_planes.x; 0 for voxels of other sweeps
+//   out  FIELD: v per voxel, a fastest, then b, then c - u_planes.x; 0 for voxels of other sweeps, and clipped ones
 //        else: per work group, feature and item the sum over its voxels; items are v of each candidate, then v times
 //        the weight of brightness, then of saturation, in the 16-bit units of the weights
 // T is taken d0/2 in front of the voxel's centre. The last u_own.x voxel planes in front of it are followed along the
@@ -101,6 +101,9 @@ void lightAt(ivec3 q, out LANE light[PACKS]) {
 bool visibilityOf(ivec3 q, out ivec3 texel, out int code, out LANE visibility[PACKS]) {
     for (int p = 0; p < PACKS; ++p) visibility[p] = LANE(0.0);
     if (any(greaterThanEqual(q.xy, u_dims.xy)) || q.z >= u_planes.y) return false;
+#ifdef CLIPPED
+    if (!isKept(q)) return false;
+#endif
     ivec3 voxel = voxelAt(q);
     if (!inPyramid(voxel)) return false;
     texel = voxel + texelShift(voxel);

@@ -62,13 +62,18 @@ public:
                                static_cast<float>(s.eye.z), s.perspective ? 1.0f : 0.0f);
             glProgramUniform2fv(p, 2, 1, value_ptr(glm::vec2(s.shear)));
             glProgramUniform1f(p, 3, static_cast<float>(s.reference));
-            glProgramUniform3fv(p, 4, 1, value_ptr(glm::vec3(s.spacing)));
+            glProgramUniformMatrix3fv(p, 4, 1, GL_FALSE, value_ptr(glm::mat3(s.worldFromQ)));
             glProgramUniform3iv(p, 5, 1, value_ptr(s.dims));
             glProgramUniform3fv(p, 6, 1, value_ptr(glm::vec3(s.grid, s.raysPerVoxel)));
             glProgramUniform2iv(p, 7, 1, value_ptr(s.rays));
             glProgramUniform1f(p, 8, static_cast<float>(s.front));
             glProgramUniform1f(p, 9, static_cast<float>(s.pieces));
             glProgramUniform1i(p, 21, ring);
+            if (s.planes.empty()) continue;
+            glProgramUniform1i(p, 28, static_cast<GLint>(s.planes.size()));
+            for (std::size_t i = 0; i < s.planes.size(); ++i)
+                glProgramUniform4fv(p, 29 + static_cast<GLint>(i), 1,
+                                    value_ptr(glm::vec4(glm::vec3(s.planes[i].normal), s.planes[i].offset)));
         }
         glProgramUniform2iv(m_gather.id(), 23, 1, value_ptr(s.ownPlanes));
         glProgramUniform1f(m_gather.id(), 24, static_cast<float>(s.tolerance));
@@ -168,10 +173,11 @@ int SweepDevice::candidatesAtOnce(const SweepRequest& request) const {
                 "OpenGL", "", Remedy::OtherEngine);
 }
 
-const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots) {
+const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots, bool clipped) {
     std::vector<std::string> defines{"CANDIDATES " + std::to_string(candidates)};
     if (m_volume.hasInvalid()) defines.push_back("HAS_INVALID");
     if (m_volume.folding().folded()) defines.push_back("FOLDED");
+    if (clipped) defines.push_back("CLIPPED");
     if (slots == 0) {
         defines.push_back("FIELD");
     } else {
@@ -236,15 +242,16 @@ void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slot
     const int ring = atOnce + ringExtra(s);
 
     int marched = s.firstPlane; // the rays have come so far
-    for (int plane = s.firstPlane; plane < s.dims.z; plane += atOnce) {
+    const int lastEnd = s.last.z + 1;
+    for (int plane = s.firstPlane; plane < lastEnd; plane += atOnce) {
         job.throwIfStopped();
-        job.report(static_cast<double>(plane - s.firstPlane) / (s.dims.z - s.firstPlane));
-        const int end = std::min(plane + atOnce, s.dims.z);
+        job.report(static_cast<double>(plane - s.firstPlane) / (lastEnd - s.firstPlane));
+        const int end = std::min(plane + atOnce, lastEnd);
         const int front = std::max(0, plane - s.ownPlanes.y - 1);
         m_volume.require(
             {s.axis, s.sign > 0 ? front : s.dims.z - end, s.sign > 0 ? end : s.dims.z - front, s.sign > 0});
 
-        const Programs& programs = programsFor(candidates, slots);
+        const Programs& programs = programsFor(candidates, slots, !s.planes.empty());
         programs.setTables(request.tables, m_grid.maxCode);
         programs.setSweep(s, ring);
         programs.setVolume(s, m_volume, request.eyeInVoxels);

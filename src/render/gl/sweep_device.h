@@ -61,7 +61,7 @@ private:
     /// Makes room for the steps of a sweep, the volume included, and says how many planes one can take.
     int prepare(const Sweep& sweep, int candidates, int slots);
     void uploadTables(const DepthTables& tables);
-    const Programs& programsFor(int candidates, int slots);
+    const Programs& programsFor(int candidates, int slots, bool clipped);
     int slotsFor(int features) const;
     int segmentsFor(int candidates, int slots) const;
     double bufferLimit() const;

@@ -74,13 +74,14 @@ std::vector<FeatureSums> GlEngine::sums(const View& view, std::span<const Transf
                                         const WeightFields* weights, const JobControl& job) {
     const Camera& camera = view.camera;
     camera.validate(m_volume->geometry(), "camera");
+    view.clipping.validate();
     if (tfs.empty()) return {};
     const std::vector<Feature>& features = tfs.front().features;
     for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features == features);
     if (weights != nullptr) PELLUCID_CHECK(weights->dims() == m_volume->dims());
 
     gl::SweepRequest request;
-    request.sweeps = gl::makeSweeps(camera, m_volume->geometry(), m_quality);
+    request.sweeps = gl::makeSweeps(view, m_volume->geometry(), m_quality);
     request.eyeInVoxels = m_volume->geometry().voxelFromWorld(camera.eye);
     request.slotOfCode = slotsOfCodes(features);
     request.features = static_cast<int>(features.size());
@@ -129,8 +130,9 @@ std::vector<FeatureSums> GlEngine::sums(const View& view, std::span<const Transf
 VisibilityField GlEngine::field(const View& view, const TransferFunction& tf, const JobControl& job) {
     const Camera& camera = view.camera;
     camera.validate(m_volume->geometry(), "camera");
+    view.clipping.validate();
     gl::SweepRequest request;
-    request.sweeps = gl::makeSweeps(camera, m_volume->geometry(), m_quality);
+    request.sweeps = gl::makeSweeps(view, m_volume->geometry(), m_quality);
     request.eyeInVoxels = m_volume->geometry().voxelFromWorld(camera.eye);
     request.tables = gl::makeDepthTables({&tf, 1}, 1, m_cells);
     VisibilityField result{Grid<float>(m_volume->dims())};
