@@ -106,6 +106,7 @@ glm::dvec2 extentOnReference(const Sweep& s, int lateral) {
 
 /// Fills in rays and samples; false where no voxel can belong to the sweep.
 bool layOut(Sweep& s, const Sampling& sampling) {
+    if (!s.planes.empty()) s.front = std::max(s.front, s.first.z - 1.0);
     if (s.perspective) {
         s.front = std::max(s.front, s.eye.z);
         // As doubles: the eye may be farther off than integers reach.
