@@ -80,11 +80,13 @@ void checkInvalidVoxels(const MakeEngine& makeEngine) {
 template <class MakeEngine>
 void checkVariant(const MakeEngine& makeEngine, const Variant& variant, std::uint32_t cases,
                   const Tolerances& allowed) {
+    // In so few voxels steps of d0/16 leave the reference off by 0.007 of FV (case 8: shells, opacity 1, 3.4 : 1).
+    const int referenceSteps = allowed.figure < kNormalTolerances.figure ? 64 : 16;
     for (std::uint32_t n = 0; n < cases; ++n) {
         const RandomCase c = randomCase(n, 0.65, variant); // at most 31 voxels per axis
         const WeightFields weights = saliencyFields(*c.volume, c.tf);
         const Disagreement d =
-            compare(*makeReferenceEngine(c.volume), *makeEngine(c.volume), c.view(), c.tf, weights);
+            compare(*makeReferenceEngine(c.volume, referenceSteps), *makeEngine(c.volume), c.view(), c.tf, weights);
         INFO(c.describe());
         CHECK(d.visibilityRms <= allowed.visibilityRms);
         CHECK(d.visibility <= allowed.figure);
