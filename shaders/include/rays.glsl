@@ -26,8 +26,8 @@ Ray rayOfPixel(ivec2 pixel) {
     return rayAt(u_grid.xy + vec2(pixel) / u_grid.z);
 }
 
-vec2 lateral(Ray ray, float c) {
-    return ray.at + ray.slope * (c - u_reference);
+vec3 pointAt(Ray ray, float c) {
+    return vec3(ray.at + ray.slope * (c - u_reference), c);
 }
 
 // Length of the ray per unit of c, in units of d0.

@@ -179,8 +179,8 @@ void checkOrientations(const MakeEngine& makeEngine, double margin) {
         Geometry geometry = geometryOf(Int3(36));
         geometry.directions = directions;
         geometry.origin = -(directions * Vec3(17.5)); // the middle of the box is the world's
-        const auto volume = volumeFrom(
-            geometry, [&](int i, int j, int k) { return anatomy(geometry.worldFromVoxel(Vec3(i, j, k))); });
+        const auto volume =
+            volumeFrom(geometry, [&](int i, int j, int k) { return anatomy(geometry.worldFromVoxel(Vec3(i, j, k))); });
         const auto engine = makeEngine(volume);
         const WeightFields weights = saliencyFields(*volume, tf);
         std::vector<std::vector<FeatureMeasures>> measures;

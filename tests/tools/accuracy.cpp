@@ -1,8 +1,8 @@
 // accuracy FIRST LAST [affine] [clipped] [ENGINE …]: the random cases FIRST … LAST − 1, in a variant or as they are,
 // measured by engines against the reference, one line per case and engine, then maxima and medians. "seen" is
 // Σv / max v: about how many voxels make up the figures.
-// ENGINE: cpu, cpu-high, gl, gl-high; default cpu cpu-high. The reference's fields are kept in the folder for temporary
-// files, so that a second run takes seconds.
+// ENGINE: cpu, cpu-high, gl, gl-high, slices, slices-high; default cpu cpu-high. The reference's fields are kept in the
+// folder for temporary files, so that a second run takes seconds.
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -79,9 +79,10 @@ Grid<float> referenceField(const RandomCase& c) {
 
 std::unique_ptr<VisibilityEngine> makeNamed(const std::string& name, const std::shared_ptr<const Volume>& volume) {
     const Quality quality = name.ends_with("-high") ? Quality::High : Quality::Normal;
+    if (name.starts_with("slices")) return makeSlicesEngine(volume, quality);
     if (name.starts_with("gl")) return makeGlEngine(volume, quality);
     if (name.starts_with("cpu")) return makeCpuEngine(volume, quality);
-    throw UsageError("there is no engine '" + name + "'", "accuracy", "name cpu, cpu-high, gl or gl-high");
+    throw UsageError("there is no engine '" + name + "'", "accuracy", "name cpu, gl or slices, and -high");
 }
 
 void summary(const char* what, const std::vector<double>& values, double most, double median) {
@@ -96,8 +97,7 @@ void summary(const char* what, const std::vector<double>& values, double most, d
     std::printf("\n");
 }
 
-int run(std::uint32_t first, std::uint32_t last, const std::vector<std::string>& engines,
-        const Variant& variant) {
+int run(std::uint32_t first, std::uint32_t last, const std::vector<std::string>& engines, const Variant& variant) {
     struct Figures {
         std::vector<double> rms, fv, w;
     };
@@ -141,7 +141,8 @@ int run(std::uint32_t first, std::uint32_t last, const std::vector<std::string>&
 
 int main(int argc, char** argv) try {
     if (argc < 3) {
-        std::fprintf(stderr, "usage: accuracy FIRST LAST [affine] [clipped] [cpu|cpu-high|gl|gl-high …]\n");
+        std::fprintf(stderr,
+                     "usage: accuracy FIRST LAST [affine] [clipped] [cpu|cpu-high|gl|gl-high|slices|slices-high …]\n");
         return 2;
     }
     std::vector<std::string> engines(argv + 3, argv + argc);

@@ -12,8 +12,8 @@ std::vector<Vec3> keptCorners(const Geometry& geometry, std::span<const VoxelPla
     std::vector<Vec3> corners;
     if (planes.empty()) {
         for (int n = 0; n < 8; ++n)
-            corners.push_back(glm::mix(geometry.voxelBoxMin(), geometry.voxelBoxMax(),
-                                       Vec3(n & 1, n >> 1 & 1, n >> 2 & 1)));
+            corners.push_back(
+                glm::mix(geometry.voxelBoxMin(), geometry.voxelBoxMax(), Vec3(n & 1, n >> 1 & 1, n >> 2 & 1)));
         return corners;
     }
     std::vector<VoxelPlane> all;

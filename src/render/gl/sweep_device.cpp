@@ -32,8 +32,7 @@ public:
           m_gather(makeProgram({"visibility_gather.comp"}, defines)) {}
 
     void setTables(const DepthTables& tables, int maxCode) const {
-        for (const GLuint p : {m_march.id(), m_gather.id()})
-            TableBuffers::describe(p, tables, maxCode);
+        for (const GLuint p : {m_march.id(), m_gather.id()}) TableBuffers::describe(p, tables, maxCode);
     }
     void setSweep(const Sweep& s, int ring) const {
         for (const GLuint p : {m_march.id(), m_gather.id()}) {
@@ -165,7 +164,8 @@ int SweepDevice::prepare(const Sweep& s, int candidates, int slots) {
             m_volume.require(
                 {s.axis, s.sign > 0 ? 0 : s.dims.z - resident, s.sign > 0 ? resident : s.dims.z, s.sign > 0});
             ensureStorage(m_light, layer * (planes + ringExtra(s)), "the rays' light");
-            ensureStorage(m_output, outputBytes * groups(planes, outputPlanes), slots == 0 ? "the visibility" : "the sums");
+            ensureStorage(m_output, outputBytes * groups(planes, outputPlanes),
+                          slots == 0 ? "the visibility" : "the sums");
             return planes;
         } catch (const OutOfMemory&) { // fewer planes may do
             if (planes == 1) throw;

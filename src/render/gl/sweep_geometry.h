@@ -24,10 +24,10 @@ struct Sweep {
     /// Only the voxels whose direction from the eye lies nearest this axis and sign belong to the sweep; else all.
     bool pyramid = false;
 
-    Int3 dims{0, 0, 0};             ///< of a, b, c
+    Int3 dims{0, 0, 0};                 ///< of a, b, c
     Int3 first{0, 0, 0}, last{0, 0, 0}; ///< the voxels that clipping leaves lie between these, both included
-    std::vector<VoxelPlane> planes; ///< what is kept, in q; none where nothing is clipped
-    Mat3 worldFromQ{1};             ///< of differences, in units of d0: |worldFromQ·Δq| is the length of a path
+    std::vector<VoxelPlane> planes;     ///< what is kept, in q; none where nothing is clipped
+    Mat3 worldFromQ{1};                 ///< of differences, in units of d0: |worldFromQ·Δq| is the length of a path
     bool perspective = true;
     Vec3 eye{0, 0, 0};      ///< in q (perspective)
     glm::dvec2 shear{0, 0}; ///< change of (a, b) per unit of c (orthographic)

@@ -1,8 +1,8 @@
 // makeGlEngine: the VisibilityEngine on OpenGL; sweep_device.h does the work in the context.
+#include "render/gl/visibility_gl.h"
 #include "render/gl/gl_engines.h"
 #include "render/gl/headless_context.h"
 #include "render/gl/sweep_device.h"
-#include "render/gl/visibility_gl.h"
 
 namespace pellucid {
 
@@ -19,8 +19,8 @@ public:
     std::string name() const override { return "gl"; }
     const Volume& volume() const override { return *m_volume; }
 
-    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
-                                  const WeightFields* weights, const JobControl& job) override;
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights,
+                                  const JobControl& job) override;
     /// The device has no derivative sweep: the cpu engine answers, on the same volume.
     SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
                           const JobControl& job) override {
