@@ -34,8 +34,8 @@ struct Sampling {
     float tolerance;      ///< of T between neighbouring rays, beyond which it is followed further
 };
 Sampling samplingOf(Quality quality) {
-    if (quality == Quality::High) return {2, {4, 16}, 0.02f};
-    return {2, {1, 8}, 0.1f};
+    if (quality == Quality::High) return {3, {4, 24}, 0.01f};
+    return {3, {1, 16}, 0.04f};
 }
 
 /// The voxels of some planes along z.
