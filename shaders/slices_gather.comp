@@ -1,5 +1,5 @@
-// slices_gather.comp: v = T * alpha of the voxels between some of the slices (docs/method.md, "Visibility"), or its sums
-//   per feature
+// slices_gather.comp: v = T * alpha of the voxels between some of the slices (docs/method.md, "Visibility"), or its
+//   sums per feature
 //   in   optical depth in front of every slice, as slices_depth.frag leaves it, a layer each
 //   out  FIELD: v per voxel, x fastest, then y, then z - u_planes.x; 0 for all other voxels
 //        else: per work group, feature and item the sum over its voxels; items are v, then v times the weight of
@@ -55,6 +55,10 @@ vec2 pixelOf(vec3 local) {
     return (local.xy / (1.0 + local.z * u_inverseDistance) - u_picture.xy) * u_picture.zw;
 }
 
+float depthAt(ivec2 pixel, int layer) {
+    return texelFetch(u_layers, ivec3(pixel, layer), 0).r;
+}
+
 float interpolateLight(Ray ray, int c, LANE near[PACKS], out LANE light[PACKS]) {
     vec2 position = pixelOf(u_localFromVoxel * (pointAt(ray, float(c)) - u_origin));
     // Pixels are hit exactly where the view is along an axis; rounding must not move off them.
@@ -66,8 +70,8 @@ float interpolateLight(Ray ray, int c, LANE near[PACKS], out LANE light[PACKS]) 
     if (w.x == 0.0) p1.x = p0.x;
     if (w.y == 0.0) p1.y = p0.y;
     int layer = c % u_ring;
-    vec4 t = exp(-vec4(texelFetch(u_layers, ivec3(p0, layer), 0).r, texelFetch(u_layers, ivec3(p1.x, p0.y, layer), 0).r,
-                       texelFetch(u_layers, ivec3(p0.x, p1.y, layer), 0).r, texelFetch(u_layers, ivec3(p1, layer), 0).r));
+    vec4 t = exp(-vec4(depthAt(p0, layer), depthAt(ivec2(p1.x, p0.y), layer), depthAt(ivec2(p0.x, p1.y), layer),
+                       depthAt(p1, layer)));
     light[0] = near[0] * mix(mix(t.x, t.y, w.x), mix(t.z, t.w, w.x), w.y);
     return near[0] * (largest(t) - smallest(t));
 }

@@ -39,7 +39,7 @@ float lengthPerC(Ray ray) {
 const int kMostPlanes = 12;
 const float kClipTie = 1e-3; // C++: src/render/clipping.h
 layout(location = 28) uniform int u_planeCount;
-layout(location = 29) uniform vec4 u_clip[kMostPlanes]; // dot(xyz, q) - w is how far q lies beyond, in d0; kept where <= 0
+layout(location = 29) uniform vec4 u_clip[kMostPlanes]; // dot(xyz, q) - w is how far q lies beyond, in d0
 
 // Whether the centre of a voxel is kept.
 bool isKept(ivec3 q) {
