@@ -66,10 +66,11 @@ bool isDark(LANE depth[PACKS]) {
 // afterwards the one at `to`.
 void follow(Ray ray, float from, float to, inout Sample last, inout LANE depth[PACKS]) {
     float perC = lengthPerC(ray), away = sign(to - from);
-    float next = away * floor(away * from * u_pieces + 1e-3); // in pieces
+    float onward = away * pieceSign(ray); // pieces may be counted against c
+    float next = onward * floor(onward * pieceAt(ray, from) + 1e-3);
     while ((to - from) * away > 1e-5 && !isDark(depth)) {
-        next += away;
-        float end = away > 0.0 ? min(next / u_pieces, to) : max(next / u_pieces, to);
+        next += onward;
+        float end = away > 0.0 ? min(endOfPiece(ray, next), to) : max(endOfPiece(ray, next), to);
         Sample now = sampleAt(ray, end);
         addPiece(depth, last, now, abs(end - from) * perC);
         last = now;

@@ -30,6 +30,17 @@ vec3 pointAt(Ray ray, float c) {
     return vec3(ray.at + ray.slope * (c - u_reference), c);
 }
 
+// Samples lie where pieces, so many from c = 0, end.
+float pieceSign(Ray ray) {
+    return 1.0;
+}
+float pieceAt(Ray ray, float c) {
+    return c * u_pieces;
+}
+float endOfPiece(Ray ray, float piece) {
+    return piece / u_pieces;
+}
+
 // Length of the ray per unit of c, in units of d0.
 float lengthPerC(Ray ray) {
     return length(u_worldFromQ * vec3(ray.slope, 1.0));

@@ -7,7 +7,7 @@ layout(location = 2) uniform vec3 u_origin;           // of local coordinates, i
 layout(location = 3) uniform float u_inverseDistance; // 1 / distance of the eye from there; 0: parallel rays
 layout(location = 4) uniform vec4 u_picture;          // local (x, y) of pixel (0, 0) at local z = 0; pixels per d0
 layout(location = 5) uniform vec3 u_slices;           // front, step, number of the last one
-layout(location = 9) uniform float u_pieces;          // samples per unit of c
+layout(location = 9) uniform float u_pieces; // samples per voxel plane across the axis that a ray runs along
 const int kMostSides = 18;
 layout(location = 28) uniform int u_sideCount;
 layout(location = 29) uniform vec4 u_sides[kMostSides]; // dot(xyz, voxel) - w is how far a point lies beyond, in d0
@@ -16,6 +16,7 @@ struct Ray {
     vec3 at;      // at c = 0
     vec3 slope;   // change of the point per unit of c
     float length; // of that, in units of d0
+    vec2 pieces;  // at c = 0, and change per unit of c
 };
 
 // pixel: centres at whole numbers
@@ -23,7 +24,22 @@ Ray rayOfPixel(vec2 pixel) {
     vec2 aside = u_picture.xy + pixel / u_picture.zw;
     vec3 at = vec3(aside * (1.0 + u_slices.x * u_inverseDistance), u_slices.x);
     vec3 slope = vec3(aside * u_inverseDistance, 1.0) * u_slices.y;
-    return Ray(u_voxelFromLocal * at + u_origin, u_voxelFromLocal * slope, length(slope));
+    Ray ray = Ray(u_voxelFromLocal * at + u_origin, u_voxelFromLocal * slope, length(slope), vec2(0.0));
+    vec3 steps = abs(ray.slope);
+    int axis = steps.x >= steps.y && steps.x >= steps.z ? 0 : (steps.y >= steps.z ? 1 : 2);
+    ray.pieces = u_pieces * vec2(ray.at[axis], ray.slope[axis]);
+    return ray;
+}
+
+// Samples lie on voxel planes, where trilinear interpolation has its kinks, and evenly between them.
+float pieceSign(Ray ray) {
+    return ray.pieces.y < 0.0 ? -1.0 : 1.0;
+}
+float pieceAt(Ray ray, float c) {
+    return ray.pieces.x + ray.pieces.y * c;
+}
+float endOfPiece(Ray ray, float piece) {
+    return (piece - ray.pieces.x) / ray.pieces.y;
 }
 
 vec3 pointAt(Ray ray, float c) {

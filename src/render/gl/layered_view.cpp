@@ -140,6 +140,12 @@ private:
         view.voxelFromLocal = glm::inverse(view.localFromVoxel);
         view.origin = m_geometry.voxelFromWorld(onAxis + axes.forward * (farthest * m_d0));
         if (eye) view.inverseDistance = 1 / farthest;
+        for (const Vec3& corner : corners) {
+            const Vec3 along =
+                glm::abs(eye ? corner - m_geometry.voxelFromWorld(*eye) : view.voxelFromLocal * Vec3(0, 0, 1));
+            const double most = std::max(along.x, std::max(along.y, along.z));
+            if (most > 0) view.crossed = std::max(view.crossed, (along.x + along.y + along.z) / most - 1);
+        }
 
         // Slices on the voxel planes where the view is along an axis and voxels are cubes.
         view.step = 1.0 / m_perD0;

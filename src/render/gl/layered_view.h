@@ -22,8 +22,9 @@ struct LayeredView {
     glm::ivec2 size{0, 0};        ///< pixels
     glm::dvec2 firstPixel{0, 0};  ///< local (x, y) of the first pixel's centre at local z = 0
     glm::dvec2 pixelsPerD0{1, 1}; ///< at local z = 0
-    double front = 0, step = 1;   ///< local z of layer 0; distance of the layers
-    int slabs = 0;                ///< between the layers 0 … slabs
+    double crossed = 0; ///< voxels sideways per voxel plane across the axis that a ray runs along, at most: [0, 2]
+    double front = 0, step = 1; ///< local z of layer 0; distance of the layers
+    int slabs = 0;              ///< between the layers 0 … slabs
     /// The pixels that may see something of a slab, first and one past the last.
     struct Rectangle {
         glm::ivec2 first{0, 0}, end{0, 0};

@@ -29,13 +29,13 @@ namespace {
 using glm::value_ptr;
 
 struct Sampling {
-    float piecesPerSlab;  ///< samples of a ray in it
-    glm::ivec2 ownLayers; ///< in front of a voxel that its own line is followed through: at least, at most
-    float tolerance;      ///< of T between neighbouring rays, beyond which it is followed further
+    double piecesPerVoxel; ///< samples per voxel that a ray crosses sideways, besides those on voxel planes
+    glm::ivec2 ownLayers;  ///< in front of a voxel that its own line is followed through: at least, at most
+    float tolerance;       ///< of T between neighbouring rays, beyond which it is followed further
 };
 Sampling samplingOf(Quality quality) {
-    if (quality == Quality::High) return {3, {4, 24}, 0.01f};
-    return {3, {1, 16}, 0.04f};
+    if (quality == Quality::High) return {2.5, {4, 24}, 0.01f};
+    return {1.5, {1, 16}, 0.04f};
 }
 
 /// The voxels of some planes along z.
@@ -134,7 +134,8 @@ private:
             glProgramUniform1f(p, 3, static_cast<float>(view.inverseDistance));
             glProgramUniform4fv(p, 4, 1, value_ptr(glm::vec4(view.firstPixel, view.pixelsPerD0)));
             glProgramUniform3fv(p, 5, 1, value_ptr(glm::vec3(view.front, view.step, view.slabs)));
-            glProgramUniform1f(p, 9, m_sampling.piecesPerSlab);
+            glProgramUniform1f(p, 9,
+                               static_cast<float>(std::ceil(1 + m_sampling.piecesPerVoxel * view.crossed - 1e-6)));
             glProgramUniform1i(p, 28, static_cast<GLint>(view.sides.size()));
             for (std::size_t i = 0; i < view.sides.size(); ++i)
                 glProgramUniform4fv(p, 29 + static_cast<GLint>(i), 1,
