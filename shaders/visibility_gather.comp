@@ -1,27 +1,24 @@
 // visibility_gather.comp: v = T * alpha of every voxel of some planes (docs/method.md, "Visibility"), or its sums per
 //   feature
 //   in   light per ray and plane, as visibility_march.comp leaves it
-//   out  FIELD: v per voxel, a fastest, then b, then c - u_planes.x; 0 for voxels of other sweeps
+//   out  FIELD: v per voxel, a fastest, then b, then c - u_planes.x; 0 for voxels of other sweeps, and clipped ones
 //        else: per work group, feature and item the sum over its voxels; items are v of each candidate, then v times
 //        the weight of brightness, then of saturation, in the 16-bit units of the weights
-// T is taken d0/2 in front of the voxel's centre. The last u_own.x voxel planes in front of it are followed along the
-// voxel's own line; the light that arrives there is interpolated between the four rays around. Where these disagree
-// (edges of what is opaque) the line is followed further, twice as far each time, for at most u_own.y planes.
+// T is taken d0/2 in front of the voxel's centre.
 #include "include/candidates.glsl"
 #include "include/opacity.glsl"
 #include "include/volume.glsl"
 #include "include/rays.glsl"
 #include "include/resident.glsl"
 #include "include/ray_depth.glsl"
+#include "include/voxel_light.glsl"
 
 const int kSide = 8, kGroup = kSide * kSide;
-const int kPlanesPerGroup = 8; // C++: the same in visibility_gl.cpp
+const int kPlanesPerGroup = 8; // C++: the same in measure_buffers.h
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, std430) readonly buffer Light { LANE i_light[]; };
 layout(location = 20) uniform ivec2 u_planes;  // first c, one past the last
 layout(location = 21) uniform int u_ring;      // layers of i_light
-layout(location = 23) uniform ivec2 u_own;
-layout(location = 24) uniform float u_tolerance; // of T, between neighbouring rays
 layout(location = 25) uniform ivec4 u_pyramid; // x: volume's axis of this sweep's pyramid, y: its sign; x = -1: all voxels
 layout(location = 26) uniform vec3 u_eyeInBox; // in voxels of the resident box
 
@@ -40,8 +37,6 @@ bool inPyramid(ivec3 voxel) {
     return axis == u_pyramid.x && (d[axis] > 0.0 ? 1 : -1) == u_pyramid.y;
 }
 
-// What arrives along `ray` at the plane c, dimmed by `near` on its way on; returns how far the rays around disagree
-// about it.
 float interpolateLight(Ray ray, int c, LANE near[PACKS], out LANE light[PACKS]) {
     vec2 position = (ray.at - u_grid.xy) * u_grid.z;
     // Lattice points are hit exactly where the view is along an axis; rounding must not move off them.
@@ -65,62 +60,21 @@ float interpolateLight(Ray ray, int c, LANE near[PACKS], out LANE light[PACKS]) 
     return disagreement;
 }
 
-// The light that comes through to d0/2 in front of the voxel q.
-void lightAt(ivec3 q, out LANE light[PACKS]) {
-    vec2 slope = u_eye.w > 0.5 ? (vec2(q.xy) - u_eye.xy) / (float(q.z) - u_eye.z) : u_shear;
-    Ray ray = Ray(vec2(q.xy) + slope * (u_reference - float(q.z)), slope);
-    float enter = passageOf(ray, 2.0).enter;
-    float c = float(q.z) - 0.5 / lengthPerC(ray);
-    LANE depth[PACKS], near[PACKS], interpolated[PACKS];
-    for (int p = 0; p < PACKS; ++p) {
-        depth[p] = LANE(0.0);
-        light[p] = LANE(c > enter ? 0.0 : 1.0);
-    }
-    if (c <= enter) return;
-    Sample last = sampleAt(ray, c);
-    // Share of the answer that is left to what lies further on: it falls steadily with the disagreement, so that results
-    // do not hang on the last bits.
-    float left = 1.0;
-    for (int planes = u_own.x; left > 0.0; planes = min(2 * planes, u_own.y)) {
-        int plane = q.z - planes;
-        float to = max(enter, float(plane));
-        follow(ray, c, to, last, depth);
-        c = to;
-        for (int p = 0; p < PACKS; ++p) interpolated[p] = near[p] = exp(-depth[p]);
-        float share = left;
-        left = 0.0;
-        if (enter < float(plane) && !isDark(depth)) {
-            float disagreement = interpolateLight(ray, plane, near, interpolated);
-            if (planes < u_own.y) left = share * smoothstep(0.5 * u_tolerance, u_tolerance, disagreement);
-        }
-        for (int p = 0; p < PACKS; ++p) light[p] += (share - left) * interpolated[p];
-    }
-}
-
 // v of one voxel; false where it is 0.
 bool visibilityOf(ivec3 q, out ivec3 texel, out int code, out LANE visibility[PACKS]) {
     for (int p = 0; p < PACKS; ++p) visibility[p] = LANE(0.0);
     if (any(greaterThanEqual(q.xy, u_dims.xy)) || q.z >= u_planes.y) return false;
+#ifdef CLIPPED
+    if (!isKept(q)) return false;
+#endif
     ivec3 voxel = voxelAt(q);
     if (!inPyramid(voxel)) return false;
-    texel = voxel + texelShift(voxel);
-    vec2 content = texelFetch(u_volume, texel, 0).rg;
-#ifdef HAS_INVALID
-    if (content.g < 0.5) return false;
-#endif
-    code = int(content.r * 65535.0 + 0.5);
-    float entry = content.r * u_entriesPerCode;
-    if (i_opaqueBefore[cellOf(entry)] == i_opaqueBefore[cellOf(entry) + 1]) return false;
-    LANE own[PACKS];
-    float most = 0.0;
-    for (int p = 0; p < PACKS; ++p) {
-        own[p] = tauAt(entry, p);
-        most = max(most, largest(own[p]));
-    }
-    if (most <= 0.0) return false;
-    LANE light[PACKS];
-    lightAt(q, light);
-    for (int p = 0; p < PACKS; ++p) visibility[p] = light[p] * opacityOfDepth(own[p]);
+    LANE tau[PACKS], light[PACKS];
+    if (!contentOf(voxel, texel, code, tau)) return false;
+    vec2 slope = u_eye.w > 0.5 ? (vec2(q.xy) - u_eye.xy) / (float(q.z) - u_eye.z) : u_shear;
+    Ray ray = Ray(vec2(q.xy) + slope * (u_reference - float(q.z)), slope);
+    lightAt(ray, float(q.z) - 0.5 / lengthPerC(ray), q.z, light);
+    for (int p = 0; p < PACKS; ++p) visibility[p] = light[p] * opacityOfDepth(tau[p]);
     return true;
 }
 

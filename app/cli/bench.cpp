@@ -15,13 +15,21 @@ namespace {
 
 struct Options {
     SceneOptions scene;
-    std::set<BenchRow> only{kBenchRows.begin(), kBenchRows.end()};
+    std::optional<std::set<BenchRow>> only;
     std::optional<int> repeat;
     bool full = false;
     RenderSettings picture;
     int orbit = 1;
 
     bool onBuiltIn() const { return !scene.volume.path && !scene.session.file; }
+    /// All where none are named; but slices only with a GPU at work, since a software rasterizer takes minutes.
+    std::set<BenchRow> rows() const {
+        if (only) return *only;
+        std::set<BenchRow> all(kBenchRows.begin(), kBenchRows.end());
+        if (scene.engine.choice == EngineChoice::Cpu || scene.engine.choice == EngineChoice::Reference || !haveGpu())
+            all.erase(BenchRow::Slices);
+        return all;
+    }
 };
 
 constexpr int kCubeSize = 128; ///< of the smallest
@@ -57,7 +65,7 @@ std::set<BenchRow> both(const std::set<BenchRow>& a, const std::set<BenchRow>& b
 class Run {
 public:
     Run(const Options& options, std::vector<int> threads, Progress& progress)
-        : m_options(options), m_progress(progress) {
+        : m_options(options), m_rows(options.rows()), m_progress(progress) {
         SceneOptions scene = options.scene;
         if (options.onBuiltIn()) {
             scene.volume.path = "sample:knee";
@@ -86,7 +94,7 @@ public:
     }
     void builtInVolumes() {
         measureMain(openScene(m_inputs, m_progress.phase("loading")));
-        const std::set<BenchRow> rows = both(m_options.only, {BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian});
+        const std::set<BenchRow> rows = both(m_rows, {BenchRow::Sweep, BenchRow::Saliency, BenchRow::Jacobian});
         if (rows.empty()) return;
         SceneOptions blockOptions = m_options.scene;
         blockOptions.volume.path = "sample:shells";
@@ -117,12 +125,11 @@ private:
         const auto caseOf = [&](const std::string& tfName, TransferFunction tf, std::set<BenchRow> rows) {
             return BenchCase{scene.volume, m_mainVolume, scene.camera, tfName, std::move(tf), std::move(rows)};
         };
-        BenchCase main = caseOf(m_mainTf, scene.tf, m_options.only);
+        BenchCase main = caseOf(m_mainTf, scene.tf, m_rows);
         main.nineFeatures = true;
         std::vector<BenchCase> cases{std::move(main)};
         if (!m_options.scene.tf.spec) {
-            const std::set<BenchRow> rows =
-                both(m_options.only, {BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize});
+            const std::set<BenchRow> rows = both(m_rows, {BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize});
             cases.push_back(dense(caseOf(kDense, scene.tf, rows)));
             cases.push_back(caseOf(kSparse, sparseTf(*scene.volume), rows));
         }
@@ -242,6 +249,7 @@ private:
     }
 
     const Options& m_options;
+    std::set<BenchRow> m_rows;
     Progress& m_progress;
     SceneInputs m_inputs; ///< of the first volume
     BenchOptions m_bench;
@@ -281,7 +289,8 @@ Command addBench(CLI::App& program) {
     addValue(
         *app, "--only", "ROW,...",
         [o](const std::string& text, const std::string& option) { o->only = parseRows(text, option); },
-        "only these rows of the table: setup, saliency, saliency-direct, sweep, jacobian, optimize, refine, render");
+        "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, refine, "
+        "render");
     addValue(
         *app, "--repeat", "N",
         [o](const std::string& text, const std::string& option) {

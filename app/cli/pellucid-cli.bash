@@ -21,13 +21,13 @@ _pellucid_cli() {
     local command=${words[1]}
 
     case $previous in
-        --engine) choices="auto gl cpu reference" ;;
+        --engine) choices="auto gl cpu slices reference" ;;
         --quality) choices="normal high" ;;
         --kernel) choices="thesis narrow" ;;
         --method) choices="fixed line parallel" ;;
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
-        --only) choices="setup saliency saliency-direct sweep jacobian optimize refine render" ;;
+        --only) choices="setup saliency saliency-direct sweep slices jacobian optimize refine render" ;;
         --background) choices="transparent" ;;
         --tf)
             COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))

@@ -1,6 +1,6 @@
 // The optical depth of a part of a ray, per candidate. Between two samples the intensity is linear, so that the integral
 // of tau over the path is that over intensities, read from a table of running integrals: exact for any transfer function.
-// Needs candidates.glsl, rays.glsl, resident.glsl.
+// Needs candidates.glsl, rays.glsl or view_rays.glsl, resident.glsl.
 layout(binding = 1, std430) readonly buffer Integral { UINT_LANE i_integral[]; }; // up to an entry; unit u_integralUnit
 layout(binding = 2, std430) readonly buffer Tau { LANE i_tau[]; };                // optical depth of d0 at an entry
 layout(binding = 3, std430) readonly buffer Opaque { uint i_opaqueBefore[]; };    // number of cells with any tau
@@ -15,7 +15,7 @@ struct Sample {
 };
 
 Sample sampleAt(Ray ray, float c) {
-    vec2 sampled = codeAndWeightAt(vec3(lateral(ray, c), c));
+    vec2 sampled = codeAndWeightAt(pointAt(ray, c));
     return Sample(sampled.x * u_entriesPerCode, sampled.y);
 }
 
@@ -66,10 +66,11 @@ bool isDark(LANE depth[PACKS]) {
 // afterwards the one at `to`.
 void follow(Ray ray, float from, float to, inout Sample last, inout LANE depth[PACKS]) {
     float perC = lengthPerC(ray), away = sign(to - from);
-    float next = away * floor(away * from * u_pieces + 1e-3); // in pieces
+    float onward = away * pieceSign(ray); // pieces may be counted against c
+    float next = onward * floor(onward * pieceAt(ray, from) + 1e-3);
     while ((to - from) * away > 1e-5 && !isDark(depth)) {
-        next += away;
-        float end = away > 0.0 ? min(next / u_pieces, to) : max(next / u_pieces, to);
+        next += onward;
+        float end = away > 0.0 ? min(endOfPiece(ray, next), to) : max(endOfPiece(ray, next), to);
         Sample now = sampleAt(ray, end);
         addPiece(depth, last, now, abs(end - from) * perC);
         last = now;

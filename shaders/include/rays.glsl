@@ -2,10 +2,11 @@
 //   q = (a, b, c)   voxel coordinates with the sweep axis last, c growing away from the eye; the box reaches from -0.5
 //                   to dims - 0.5
 //   ray             fixed by the point (a, b) where it meets the reference plane c = u_reference
+//   CLIPPED         planes cut the volume
 layout(location = 1) uniform vec4 u_eye;        // xyz: the eye in q (perspective); w: 1 perspective, 0 orthographic
 layout(location = 2) uniform vec2 u_shear;      // orthographic: change of (a, b) per unit of c
 layout(location = 3) uniform float u_reference; // c of the reference plane
-layout(location = 4) uniform vec3 u_spacing;    // of a, b, c in units of d0
+layout(location = 4) uniform mat3 u_worldFromQ; // of differences, in units of d0
 layout(location = 5) uniform ivec3 u_dims;      // of a, b, c
 layout(location = 6) uniform vec3 u_grid;       // (a, b) of ray (0, 0); rays per voxel
 layout(location = 7) uniform ivec2 u_rays;      // number of rays along a, b
@@ -25,18 +26,43 @@ Ray rayOfPixel(ivec2 pixel) {
     return rayAt(u_grid.xy + vec2(pixel) / u_grid.z);
 }
 
-vec2 lateral(Ray ray, float c) {
-    return ray.at + ray.slope * (c - u_reference);
+vec3 pointAt(Ray ray, float c) {
+    return vec3(ray.at + ray.slope * (c - u_reference), c);
+}
+
+// Samples lie where pieces, so many from c = 0, end.
+float pieceSign(Ray ray) {
+    return 1.0;
+}
+float pieceAt(Ray ray, float c) {
+    return c * u_pieces;
+}
+float endOfPiece(Ray ray, float piece) {
+    return piece / u_pieces;
 }
 
 // Length of the ray per unit of c, in units of d0.
 float lengthPerC(Ray ray) {
-    return length(vec3(ray.slope, 1.0) * u_spacing);
+    return length(u_worldFromQ * vec3(ray.slope, 1.0));
 }
 
-// How a ray passes through the box: c where it enters, c where it leaves. The sides by which it leaves are moved outward
-// by `margin` voxels: just outside the box a ray goes on as the volume's edge, so that interpolating between rays meets
-// no jump there.
+#ifdef CLIPPED
+const int kMostPlanes = 12;
+const float kClipTie = 1e-3; // C++: src/render/clipping.h
+layout(location = 28) uniform int u_planeCount;
+layout(location = 29) uniform vec4 u_clip[kMostPlanes]; // dot(xyz, q) - w is how far q lies beyond, in d0
+
+// Whether the centre of a voxel is kept.
+bool isKept(ivec3 q) {
+    for (int i = 0; i < u_planeCount; ++i)
+        if (dot(u_clip[i].xyz, vec3(q)) - u_clip[i].w > kClipTie) return false;
+    return true;
+}
+#endif
+
+// How a ray passes through the box, and through what clipping leaves of it: c where it enters, c where it leaves. The
+// sides by which it leaves are moved outward by `margin` voxels: just outside the box a ray goes on as the volume's
+// edge, and behind a clip plane through what is clipped, so that interpolating between rays meets no jump there.
 struct Passage {
     float enter, leave;
 };
@@ -55,5 +81,21 @@ Passage passageOf(Ray ray, float margin) {
         p.enter = max(p.enter, enter);
         p.leave = min(p.leave, leave);
     }
+#ifdef CLIPPED
+    for (int i = 0; i < u_planeCount; ++i) {
+        vec3 normal = u_clip[i].xyz;
+        float beyond = dot(normal, vec3(ray.at, u_reference)) - u_clip[i].w, rate = dot(normal, vec3(ray.slope, 1.0));
+        // Voxels on a plane that rays run along are kept: their rays must be, too.
+        if (abs(rate) < 1e-2) beyond -= kClipTie;
+        float outward = margin * (abs(normal.x) + abs(normal.y));
+        if (abs(rate) < 1e-7) {
+            if (beyond > outward) p.leave = -1e9;
+        } else if (rate < 0.0) {
+            p.enter = max(p.enter, u_reference - beyond / rate);
+        } else {
+            p.leave = min(p.leave, u_reference - (beyond - outward) / rate);
+        }
+    }
+#endif
     return p;
 }

@@ -1,6 +1,6 @@
 // Where the voxels of a sweep lie on the device: a box of them, folded into bricks where the texture would be too long.
 //   FOLDED   bricks of u_brick cells, one more voxel than cells, side by side in one texture
-// Needs rays.glsl and volume.glsl.
+// Needs volume.glsl.
 layout(location = 10) uniform mat3 u_voxelFromQ; // voxel of the resident box = u_voxelFromQ * q + u_voxelOffset
 layout(location = 11) uniform vec3 u_voxelOffset;
 layout(location = 14) uniform ivec3 u_lastVoxel; // of the resident box

@@ -93,13 +93,15 @@ public:
     CaseBench(const BenchCase& of, const BenchOptions& options, const JobControl& job)
         : m_case(of), m_options(options) {
         const auto wanted = [&](BenchRow row) { return of.rows.count(row) > 0; };
-        const bool weighted = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize);
-        if (weighted || wanted(BenchRow::Setup)) m_engine = makeEngine(options.engine, of.volume, options.quality);
+        const bool measured = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize);
+        const bool weighted = measured || wanted(BenchRow::Slices);
+        if (measured || wanted(BenchRow::Setup)) m_engine = makeEngine(options.engine, of.volume, options.quality);
         if (wanted(BenchRow::Setup)) addSetup();
         if (wanted(BenchRow::Saliency)) addSaliency(BenchRow::Saliency, updateSaliencyFields);
         if (wanted(BenchRow::SaliencyDirect)) addSaliency(BenchRow::SaliencyDirect, updateSaliencyFieldsDirect);
         if (weighted) m_weights = saliencyFields(*of.volume, of.tf, {}, job);
         if (wanted(BenchRow::Sweep)) addSweeps(job);
+        if (wanted(BenchRow::Slices)) addSlices();
         if (wanted(BenchRow::Jacobian)) addJacobians(job);
         if (wanted(BenchRow::Optimize)) addOptimize();
         if (wanted(BenchRow::Refine)) addRefine();
@@ -120,7 +122,7 @@ private:
     void add(const BenchResult& result, double bytes, const std::function<void(BenchResult&, const JobControl&)>& work,
              int times = 1) {
         for (const int threads : m_options.threads) {
-            if (result.engine == "gl" && threads != m_options.threads.back()) continue;
+            if ((result.engine == "gl" || result.engine == "slices") && threads != m_options.threads.back()) continue;
             Measurement m{result, work, times, {}, {}, false};
             m.result.threads = threads;
             m.result.bytes = bytes;
@@ -177,6 +179,15 @@ private:
             singles);
         add(row(BenchRow::Sweep, m_engine->name(), 8), sweepBytes(),
             [this](BenchResult&, const JobControl& j) { m_engine->sums(m_case.camera, m_candidates, &m_weights, j); });
+    }
+
+    /// A sweep by the thesis's own method. Where there is no OpenGL the row is left out, not the others.
+    void addSlices() {
+        add(row(BenchRow::Slices, name(EngineChoice::Slices), 1), sweepBytes(),
+            [this](BenchResult&, const JobControl& j) {
+                if (!m_slices) m_slices = makeEngine(EngineChoice::Slices, m_case.volume, m_options.quality);
+                m_slices->sums(m_case.camera, {&m_case.tf, 1}, &m_weights, j);
+            });
     }
 
     void addJacobians(const JobControl& job) {
@@ -243,6 +254,7 @@ private:
     const BenchCase& m_case;
     const BenchOptions& m_options;
     std::unique_ptr<VisibilityEngine> m_engine; ///< null where no row needs one
+    std::unique_ptr<VisibilityEngine> m_slices; ///< made when first needed
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;
     std::vector<TransferFunction> m_candidates; ///< the eight of a search
@@ -286,6 +298,8 @@ const char* name(BenchRow row) {
         return "saliency-direct";
     case BenchRow::Sweep:
         return "sweep";
+    case BenchRow::Slices:
+        return "slices";
     case BenchRow::Jacobian:
         return "jacobian";
     case BenchRow::Optimize:

@@ -5,16 +5,16 @@
 
 namespace pellucid {
 
-namespace {
-
 bool haveGpu() {
-    // Asked once: drivers do not come and go, and a context takes a while.
+    // Drivers do not come and go, and a context takes a while.
     static const bool gpu = [] {
         const auto info = probeGl();
         return info && !info->software;
     }();
     return gpu;
 }
+
+namespace {
 
 /// Who leaves the choice to us gets an answer even where the volume is too large for the GPU.
 template <class T, class MakeGl, class MakeCpu>
@@ -38,6 +38,8 @@ std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_pt
     switch (choice) {
     case EngineChoice::Gl:
         return makeGlEngine(std::move(volume), quality);
+    case EngineChoice::Slices:
+        return makeSlicesEngine(std::move(volume), quality);
     case EngineChoice::Reference:
         return makeReferenceEngine(std::move(volume));
     default:
@@ -49,7 +51,7 @@ std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr
     if (choice == EngineChoice::Auto)
         return gpuElseCpu<ImageRenderer>([&] { return makeGlRenderer(volume); },
                                          [&] { return makeCpuRenderer(volume); });
-    if (choice == EngineChoice::Gl) return makeGlRenderer(std::move(volume));
+    if (choice == EngineChoice::Gl || choice == EngineChoice::Slices) return makeGlRenderer(std::move(volume));
     return makeCpuRenderer(std::move(volume));
 }
 

@@ -8,10 +8,13 @@
 
 namespace pellucid {
 
+/// Whether OpenGL finds a real GPU here, not a software rasterizer. Asked once.
+bool haveGpu();
+
 /// Auto: gl on a real GPU, cpu on a software rasterizer, without GL, or where the volume is too large for the GPU.
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality = Quality::Normal);
-/// The reference choice draws with the cpu renderer, since no other image is defined.
+/// The reference choice draws with the cpu renderer, since no other image is defined; slices are what gl draws.
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);
 
 } // namespace pellucid

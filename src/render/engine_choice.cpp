@@ -12,6 +12,8 @@ const char* name(EngineChoice choice) {
         return "gl";
     case EngineChoice::Cpu:
         return "cpu";
+    case EngineChoice::Slices:
+        return "slices";
     case EngineChoice::Reference:
         return "reference";
     }
@@ -19,9 +21,10 @@ const char* name(EngineChoice choice) {
 }
 
 EngineChoice engineChoiceFromName(const std::string& text) {
-    for (const EngineChoice c : {EngineChoice::Auto, EngineChoice::Gl, EngineChoice::Cpu, EngineChoice::Reference})
+    for (const EngineChoice c :
+         {EngineChoice::Auto, EngineChoice::Gl, EngineChoice::Cpu, EngineChoice::Slices, EngineChoice::Reference})
         if (text == name(c)) return c;
-    throw UsageError("unknown engine \"" + text + "\"", "engine", "use auto, gl, cpu or reference");
+    throw UsageError("unknown engine \"" + text + "\"", "engine", "use auto, gl, cpu, slices or reference");
 }
 
 const char* name(Quality quality) { return quality == Quality::High ? "high" : "normal"; }

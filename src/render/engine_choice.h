@@ -7,9 +7,9 @@
 
 namespace pellucid {
 
-enum class EngineChoice { Auto, Gl, Cpu, Reference };
+enum class EngineChoice { Auto, Gl, Cpu, Slices, Reference };
 
-const char* name(EngineChoice choice);                      ///< "auto", "gl", "cpu", "reference"
+const char* name(EngineChoice choice);                      ///< "auto", "gl", "cpu", "slices", "reference"
 EngineChoice engineChoiceFromName(const std::string& name); ///< throws UsageError
 
 const char* name(Quality quality);                ///< "normal", "high"

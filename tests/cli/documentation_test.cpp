@@ -104,11 +104,11 @@ TEST_CASE("bash completes commands, options, values and samples", "[cli][documen
     CHECK(completions("pellucid-cli me") == std::set<std::string>{"measure"});
     CHECK(completions("pellucid-cli optimize sample:shells --req") == std::set<std::string>{"--require-converged"});
     CHECK(completions("pellucid-cli measure x.nrrd --engine ") ==
-          std::set<std::string>{"auto", "cpu", "gl", "reference"});
+          std::set<std::string>{"auto", "cpu", "gl", "reference", "slices"});
     CHECK(completions("pellucid-cli generate sh") == std::set<std::string>{"shells"});
     // Bash takes the word after the colon for the one to complete.
     CHECK(completions("pellucid-cli info sample:sh") == std::set<std::string>{"shells"});
     CHECK(completions("pellucid-cli refine sample:shells --view").empty());
     CHECK(completions("pellucid-cli bench --only s") ==
-          std::set<std::string>{"saliency", "saliency-direct", "setup", "sweep"});
+          std::set<std::string>{"saliency", "saliency-direct", "setup", "slices", "sweep"});
 }

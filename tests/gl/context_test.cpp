@@ -75,6 +75,7 @@ TEST_CASE("engines are chosen by name", "[gl]") {
     CHECK(engineChoiceFromName("auto") == EngineChoice::Auto);
     CHECK(engineChoiceFromName("gl") == EngineChoice::Gl);
     CHECK(engineChoiceFromName("cpu") == EngineChoice::Cpu);
+    CHECK(engineChoiceFromName("slices") == EngineChoice::Slices);
     CHECK(engineChoiceFromName("reference") == EngineChoice::Reference);
     CHECK_THROWS_AS(engineChoiceFromName("opengl"), UsageError);
 
@@ -89,4 +90,6 @@ TEST_CASE("engines are chosen by name", "[gl]") {
     if (!haveGl()) return;
     CHECK(makeEngine(EngineChoice::Gl, volume)->name() == "gl");
     CHECK(makeRenderer(EngineChoice::Gl, volume)->name() == "gl");
+    CHECK(makeEngine(EngineChoice::Slices, volume)->name() == "slices");
+    CHECK(makeRenderer(EngineChoice::Slices, volume)->name() == "gl");
 }

@@ -16,7 +16,7 @@ TEST_CASE("every permutation of every shader compiles", "[gl]") {
         std::vector<std::string> files;
         std::vector<std::vector<std::string>> permutations;
     };
-    std::vector<std::vector<std::string>> marches, gathers;
+    std::vector<std::vector<std::string>> marches, gathers, slabs, layers;
     for (const char* candidates : {"CANDIDATES 1", "CANDIDATES 4", "CANDIDATES 8"})
         for (const bool invalid : {false, true})
             for (const bool folded : {false, true}) {
@@ -29,7 +29,13 @@ TEST_CASE("every permutation of every shader compiles", "[gl]") {
                 if (candidates != std::string("CANDIDATES 1")) continue;
                 gathers.push_back(defines);
                 gathers.back().push_back("FIELD");
+                slabs.push_back(defines);
+                layers.push_back(gathers.back());
+                layers.push_back(defines);
+                layers.back().insert(layers.back().end(), {"SLOTS 4", "SEGMENTS 2", "CLIPPED"});
             }
+    marches.push_back({"CANDIDATES 1", "CLIPPED"});
+    gathers.push_back({"CANDIDATES 1", "CLIPPED", "FIELD"});
     std::vector<std::vector<std::string>> casts;
     for (int mode = 0; mode < 5; ++mode)
         for (const bool invalid : {false, true})
@@ -46,6 +52,8 @@ TEST_CASE("every permutation of every shader compiles", "[gl]") {
             }
     const std::vector<Program> programs{{{"composite.vert", "raycast.frag"}, casts},
                                         {{"composite.vert", "composite.frag"}, {{}}},
+                                        {{"composite.vert", "slices_depth.frag"}, slabs},
+                                        {{"slices_gather.comp"}, layers},
                                         {{"visibility_march.comp"}, marches},
                                         {{"visibility_gather.comp"}, gathers},
                                         {{"visibility_reduce.comp"}, {{}}}};

@@ -6,6 +6,7 @@
 #include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/visibility_gl.h"
+#include "support/engine_checks.h"
 #include "support/field_sums.h"
 
 using namespace pellucid;
@@ -127,6 +128,25 @@ TEST_CASE("gl agrees with the reference within the tolerances, whatever the view
     }
     std::sort(shares.begin(), shares.end());
     CHECK(shares[shares.size() / 2] < 0.003);
+}
+
+TEST_CASE("gl measures grids that are turned, mirrored and sheared", "[gl][affine]") {
+    if (!haveGl()) return;
+    test::checkAffine([](auto volume) { return makeGlEngine(volume); }, 30);
+    test::checkAffine([](auto volume) { return makeGlEngine(volume, Quality::High); }, 10, test::kHighTolerances);
+}
+
+TEST_CASE("gl measures what clipping leaves", "[gl][clip]") {
+    if (!haveGl()) return;
+    const auto make = [](auto volume) { return makeGlEngine(volume); };
+    test::checkClippedBlock(make);
+    test::checkClipping(make, 30);
+    test::checkClipping([](auto volume) { return makeGlEngine(volume, Quality::High); }, 10, test::kHighTolerances);
+}
+
+TEST_CASE("gl measures one anatomy in eight orientations alike", "[gl][affine]") {
+    if (!haveGl()) return;
+    test::checkOrientations([](auto volume) { return makeGlEngine(volume); }, 0.01);
 }
 
 TEST_CASE("invalid voxels are transparent and shade nothing", "[gl]") {

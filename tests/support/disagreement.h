@@ -55,5 +55,6 @@ struct Tolerances {
 };
 inline constexpr Tolerances kNormalTolerances{0.015, 0.01, 0.003};
 inline constexpr Tolerances kHighTolerances{0.008, 0.005, 0.0015};
+inline constexpr Tolerances kSlicesTolerances{0.025, 0.02, 0.004}; ///< of the slices engine, normal quality
 
 } // namespace pellucid::test

@@ -400,9 +400,43 @@ Camera randomCamera(const std::string& kind, Random& random, const Geometry& g) 
     return camera;
 }
 
+/// The columns of a random rotation, some of them mirrored, up to two of them leaning toward another one.
+Mat3 randomDirections(Random& random) {
+    const Vec3 x = randomDirection(random), z = glm::normalize(glm::cross(x, randomDirection(random)));
+    Mat3 directions(x, glm::cross(z, x), z);
+    for (int a = 0; a < 3; ++a) directions[a] *= random.sign();
+    for (int shears = random.below(3); shears > 0; --shears) {
+        const int leaning = random.below(3), toward = (leaning + 1 + random.below(2)) % 3;
+        const double angle = random.between(5, 20) * kTwoPi / 360;
+        directions[leaning] =
+            glm::normalize(std::cos(angle) * directions[leaning] + std::sin(angle) * directions[toward]);
+    }
+    return directions;
+}
+
+/// Keeps the middle of the box, and half of it or more along each axis, less what one to three planes cut off.
+Clipping randomClipping(Random& random, const Geometry& g) {
+    Clipping clipping;
+    for (int a = 0; a < 3; ++a) {
+        if (random.chance(0.5)) clipping.lo[a] = random.between(0, 0.35);
+        if (random.chance(0.5)) clipping.hi[a] = random.between(0.65, 1);
+    }
+    for (int planes = 1 + random.below(3); planes > 0; --planes) {
+        ClipPlane plane;
+        plane.normal = randomDirection(random) * random.between(0.5, 2); // of any length
+        plane.offset =
+            glm::dot(plane.normal, g.boxCenter()) + glm::length(plane.normal) * g.radius() * random.between(0.05, 0.5);
+        clipping.planes.push_back(plane);
+    }
+    clipping.validate();
+    return clipping;
+}
+
 } // namespace
 
-RandomCase randomCase(std::uint32_t number, double size) {
+RandomCase randomCase(std::uint32_t number, double size) { return randomCase(number, size, {}); }
+
+RandomCase randomCase(std::uint32_t number, double size, const Variant& variant) {
     RandomCase c;
     c.number = number;
     c.volumeKind = kVolumeKinds[kindOf(number, kVolumeKinds.size(), 1)];
@@ -410,6 +444,17 @@ RandomCase randomCase(std::uint32_t number, double size) {
     c.tfKind = kTfKinds[kindOf(number, kTfKinds.size(), 3)];
     Random random(77777u + number);
     c.volume = randomVolume(c.volumeKind, random, size);
+    Random more(555555u + number); // a stream of its own: what has no variant stays what it was
+    if (variant.affine) {
+        Geometry geometry = c.volume->geometry();
+        geometry.directions = randomDirections(more);
+        c.volume = std::make_shared<const Volume>(geometry, c.volume->samples(), c.volume->missing());
+        c.volumeKind += " affine";
+    }
+    if (variant.clipped) {
+        c.clipping = randomClipping(more, c.volume->geometry());
+        c.volumeKind += " clipped";
+    }
     c.camera = randomCamera(c.cameraKind, random, c.volume->geometry());
     c.tf = randomTf(c.tfKind, random, *c.volume);
     c.tf.validate();
@@ -419,7 +464,7 @@ RandomCase randomCase(std::uint32_t number, double size) {
 std::string RandomCase::describe() const {
     const Geometry& g = volume->geometry();
     std::ostringstream text;
-    text << std::setw(4) << number << "  " << std::left << std::setw(23) << volumeKind << std::setw(18) << cameraKind
+    text << std::setw(4) << number << "  " << std::left << std::setw(38) << volumeKind << std::setw(18) << cameraKind
          << std::setw(15) << tfKind << std::setprecision(3) << g.dims.x << 'x' << g.dims.y << 'x' << g.dims.z << " ("
          << g.spacing.x << ' ' << g.spacing.y << ' ' << g.spacing.z << ')';
     return text.str();

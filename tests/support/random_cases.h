@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "render/camera.h"
+#include "render/view.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
@@ -35,7 +35,9 @@ struct RandomCase {
     std::shared_ptr<const Volume> volume;       ///< 12 to 48 voxels per axis
     Camera camera;                              ///< outside the box, valid for the volume
     TransferFunction tf;                        ///< 1 to 5 features, at least one opacity above 0
+    Clipping clipping;                          ///< none, unless asked for
 
+    View view() const { return {camera, clipping}; }
     std::string describe() const; ///< one line: number, kinds, dims, spacing
 };
 
@@ -43,5 +45,12 @@ struct RandomCase {
 /// transfer function comes equally often in a run of consecutive numbers, in independent orders. `size` scales the
 /// number of voxels along each axis, for tests that measure one case many times.
 RandomCase randomCase(std::uint32_t number, double size = 1);
+
+/// What a case may have besides; the rest of it stays as it is.
+struct Variant {
+    bool affine = false;  ///< the grid turned at random, mirrored or not, sheared by 5 to 20 degrees or not
+    bool clipped = false; ///< a part of the box and one to three oblique planes
+};
+RandomCase randomCase(std::uint32_t number, double size, const Variant& variant);
 
 } // namespace pellucid::test

@@ -130,8 +130,8 @@ MeasureSettings randomMeasure(Random& random) {
     m.vws.u1 = oddNumber(random, 0, 1);
     m.vws.u2 = 1 - m.vws.u1;
     m.quality = random.chance(0.5) ? Quality::Normal : Quality::High;
-    m.engine =
-        oneOf(random, std::array{EngineChoice::Auto, EngineChoice::Gl, EngineChoice::Cpu, EngineChoice::Reference});
+    m.engine = oneOf(random, std::array{EngineChoice::Auto, EngineChoice::Gl, EngineChoice::Cpu, EngineChoice::Slices,
+                                        EngineChoice::Reference});
     return m;
 }
 

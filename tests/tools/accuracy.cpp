@@ -1,7 +1,8 @@
-// accuracy FIRST LAST [ENGINE …]: the random cases FIRST … LAST − 1 measured by engines against the reference, one line
-// per case and engine, then maxima and medians. "seen" is Σv / max v: about how many voxels make up the figures.
-// ENGINE: cpu, cpu-high, gl, gl-high; default cpu cpu-high. The reference's fields are kept in the folder for temporary
-// files, so that a second run takes seconds.
+// accuracy FIRST LAST [affine] [clipped] [ENGINE …]: the random cases FIRST … LAST − 1, in a variant or as they are,
+// measured by engines against the reference, one line per case and engine, then maxima and medians. "seen" is
+// Σv / max v: about how many voxels make up the figures.
+// ENGINE: cpu, cpu-high, gl, gl-high, slices, slices-high; default cpu cpu-high. The reference's fields are kept in the
+// folder for temporary files, so that a second run takes seconds.
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -44,10 +45,17 @@ std::uint64_t fingerprintOf(const RandomCase& c) {
     print.add(Vec3(g.dims));
     print.add(g.spacing);
     print.add(g.origin);
+    for (int a = 0; a < 3; ++a) print.add(g.directions[a]);
     for (std::size_t i = 0; i < c.volume->size(); ++i) print.add(c.volume->intensity(i));
     print.add(static_cast<double>(c.camera.projection));
     print.add(c.camera.eye);
     print.add(c.camera.center);
+    print.add(c.clipping.lo);
+    print.add(c.clipping.hi);
+    for (const ClipPlane& plane : c.clipping.planes) {
+        print.add(plane.normal);
+        print.add(plane.offset);
+    }
     for (const ControlPoint& p : c.tf.points) {
         print.add(p.x);
         print.add(p.opacity);
@@ -64,16 +72,17 @@ Grid<float> referenceField(const RandomCase& c) {
     const auto bytes = static_cast<std::streamsize>(values.size() * sizeof(float));
     if (std::ifstream file(path, std::ios::binary); file.read(reinterpret_cast<char*>(values.data()), bytes))
         return {c.volume->dims(), std::move(values)};
-    Grid<float> field = makeReferenceEngine(c.volume)->field(c.camera, c.tf).values;
+    Grid<float> field = makeReferenceEngine(c.volume)->field(c.view(), c.tf).values;
     std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(field.data()), bytes);
     return field;
 }
 
 std::unique_ptr<VisibilityEngine> makeNamed(const std::string& name, const std::shared_ptr<const Volume>& volume) {
     const Quality quality = name.ends_with("-high") ? Quality::High : Quality::Normal;
+    if (name.starts_with("slices")) return makeSlicesEngine(volume, quality);
     if (name.starts_with("gl")) return makeGlEngine(volume, quality);
     if (name.starts_with("cpu")) return makeCpuEngine(volume, quality);
-    throw UsageError("there is no engine '" + name + "'", "accuracy", "name cpu, cpu-high, gl or gl-high");
+    throw UsageError("there is no engine '" + name + "'", "accuracy", "name cpu, gl or slices, and -high");
 }
 
 void summary(const char* what, const std::vector<double>& values, double most, double median) {
@@ -88,15 +97,15 @@ void summary(const char* what, const std::vector<double>& values, double most, d
     std::printf("\n");
 }
 
-int run(std::uint32_t first, std::uint32_t last, const std::vector<std::string>& engines) {
+int run(std::uint32_t first, std::uint32_t last, const std::vector<std::string>& engines, const Variant& variant) {
     struct Figures {
         std::vector<double> rms, fv, w;
     };
     std::map<std::string, Figures> all;
     double referenceSeconds = 0;
-    std::printf("%-9s %-90s %9s %8s %8s %8s\n", "engine", "case", "seen", "RMS", "dFV", "dW");
+    std::printf("%-9s %-105s %9s %8s %8s %8s\n", "engine", "case", "seen", "RMS", "dFV", "dW");
     for (std::uint32_t n = first; n < last; ++n) {
-        const RandomCase c = randomCase(n);
+        const RandomCase c = randomCase(n, 1, variant);
         const auto start = std::chrono::steady_clock::now();
         const Grid<float> expected = referenceField(c);
         referenceSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -106,10 +115,10 @@ int run(std::uint32_t first, std::uint32_t last, const std::vector<std::string>&
         const double seen = largest > 0 ? sum / largest : 0.0;
         for (const std::string& name : engines) {
             const Tolerances& allowed = name.ends_with("-high") ? kHighTolerances : kNormalTolerances;
-            const Disagreement d = compareWithField(expected, *makeNamed(name, c.volume), c.camera, c.tf, weights);
+            const Disagreement d = compareWithField(expected, *makeNamed(name, c.volume), c.view(), c.tf, weights);
             const bool beyond =
                 d.visibilityRms > allowed.visibilityRms || std::max(d.visibility, d.vws) > allowed.figure;
-            std::printf("%-9s %-90s %9.1f %8.5f %8.5f %8.5f%s\n", name.c_str(), c.describe().c_str(), seen,
+            std::printf("%-9s %-105s %9.1f %8.5f %8.5f %8.5f%s\n", name.c_str(), c.describe().c_str(), seen,
                         d.visibilityRms, d.visibility, d.vws, beyond ? "  <<<" : "");
             std::fflush(stdout);
             all[name].rms.push_back(d.visibilityRms);
@@ -132,14 +141,16 @@ int run(std::uint32_t first, std::uint32_t last, const std::vector<std::string>&
 
 int main(int argc, char** argv) try {
     if (argc < 3) {
-        std::fprintf(stderr, "usage: accuracy FIRST LAST [cpu|cpu-high|gl|gl-high …]\n");
+        std::fprintf(stderr,
+                     "usage: accuracy FIRST LAST [affine] [clipped] [cpu|cpu-high|gl|gl-high|slices|slices-high …]\n");
         return 2;
     }
     std::vector<std::string> engines(argv + 3, argv + argc);
+    const Variant variant{std::erase(engines, "affine") > 0, std::erase(engines, "clipped") > 0};
     if (engines.empty()) engines = {"cpu", "cpu-high"};
     const auto first = static_cast<std::uint32_t>(std::stoul(argv[1]));
     const auto last = static_cast<std::uint32_t>(std::stoul(argv[2]));
-    return first < last ? run(first, last, engines) : 2;
+    return first < last ? run(first, last, engines, variant) : 2;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "accuracy: %s\n", error.what());
     return 1;

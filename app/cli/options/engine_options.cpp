@@ -7,11 +7,12 @@ namespace pellucid::cli {
 void EngineOptions::add(CLI::App& app, const std::string& qualityHelp) {
     const char* const group = "Engine";
     addValue(
-        app, "--engine", "auto|gl|cpu|reference",
+        app, "--engine", "auto|gl|cpu|slices|reference",
         [this](const std::string& text, const std::string& option) {
             choice = atOption(option, [&] { return engineChoiceFromName(text); });
         },
-        "what computes; auto (default): gl on a real GPU, else cpu", group);
+        "what computes; auto (default): gl on a real GPU, else cpu; slices is the thesis's own method, on OpenGL",
+        group);
     addValue(
         app, "--quality", "normal|high",
         [this](const std::string& text, const std::string& option) {

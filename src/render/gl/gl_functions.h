@@ -7,10 +7,10 @@
     X(glActiveTexture) X(glAttachShader) X(glBindBuffer) X(glBindBufferBase) X(glBindFramebuffer) X(glBindTexture)    \
     X(glBindVertexArray) X(glBlendEquation) X(glBlendFunc) X(glBufferData) X(glBufferSubData)                         \
     X(glCheckFramebufferStatus) X(glClear) X(glClearBufferfv) X(glClearColor) X(glColorMask) X(glCompileShader)       \
-    X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers) X(glDeleteFramebuffers) X(glDeleteProgram)                \
-    X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthFunc) X(glDepthMask) X(glDisable)          \
-    X(glDispatchCompute) X(glDrawArrays) X(glDrawBuffer) X(glEnable) X(glEnableVertexAttribArray) X(glFinish)         \
-    X(glFramebufferTexture2D) X(glGenBuffers) X(glGenFramebuffers) X(glGenTextures) X(glGenVertexArrays)              \
+    X(glCopyTexSubImage3D) X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers) X(glDeleteFramebuffers)            \
+    X(glDeleteProgram) X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthFunc) X(glDepthMask)    \
+    X(glDisable) X(glDispatchCompute) X(glDrawArrays) X(glDrawBuffer) X(glEnable) X(glEnableVertexAttribArray)        \
+    X(glFinish) X(glFramebufferTexture2D) X(glGenBuffers) X(glGenFramebuffers) X(glGenTextures) X(glGenVertexArrays)  \
     X(glGetBufferSubData) X(glGetError) X(glGetIntegerv) X(glGetProgramInfoLog) X(glGetProgramiv)                     \
     X(glGetShaderInfoLog) X(glGetShaderiv) X(glGetString) X(glIsEnabled) X(glIsShader) X(glLinkProgram)               \
     X(glMapBufferRange) X(glMemoryBarrier) X(glPixelStorei) X(glProgramUniform1f) X(glProgramUniform1i)               \

@@ -12,11 +12,6 @@ namespace pellucid::gl {
 
 namespace {
 
-constexpr int kSide = 8;           ///< local_size of march and gather, both axes
-constexpr int kPlanesPerGroup = 8; ///< of visibility_gather.comp
-constexpr int kReduceColumns = 16; ///< local_size_x of visibility_reduce.comp
-constexpr int kMostSlots = 2048; ///< features and one; with one candidate they fit into 32 KiB, which every device has
-
 using glm::value_ptr;
 
 int longestTexture3d() {
@@ -26,19 +21,6 @@ int longestTexture3d() {
 
 /// Planes whose light is kept besides those that a step adds.
 int ringExtra(const Sweep& s) { return s.ownPlanes.y - s.ownPlanes.x + 1; }
-
-GLuint groups(int count, int size) { return static_cast<GLuint>((count + size - 1) / size); }
-
-/// Overwrites the beginning of a buffer that is large enough.
-void write(const Buffer& buffer, const void* data, std::size_t bytes) {
-    PELLUCID_CHECK(bytes <= buffer.bytes);
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.name.id());
-    glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
-}
-
-void bindStorage(GLuint binding, const Buffer& buffer) {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.name.id());
-}
 
 } // namespace
 
@@ -50,11 +32,7 @@ public:
           m_gather(makeProgram({"visibility_gather.comp"}, defines)) {}
 
     void setTables(const DepthTables& tables, int maxCode) const {
-        for (const GLuint p : {m_march.id(), m_gather.id()}) {
-            glProgramUniform1f(p, 0, static_cast<float>(65535.0 / maxCode * tables.cells));
-            glProgramUniform1f(p, 12, static_cast<float>(tables.unit));
-            glProgramUniform1i(p, 13, tables.cells - 1);
-        }
+        for (const GLuint p : {m_march.id(), m_gather.id()}) TableBuffers::describe(p, tables, maxCode);
     }
     void setSweep(const Sweep& s, int ring) const {
         for (const GLuint p : {m_march.id(), m_gather.id()}) {
@@ -62,13 +40,18 @@ public:
                                static_cast<float>(s.eye.z), s.perspective ? 1.0f : 0.0f);
             glProgramUniform2fv(p, 2, 1, value_ptr(glm::vec2(s.shear)));
             glProgramUniform1f(p, 3, static_cast<float>(s.reference));
-            glProgramUniform3fv(p, 4, 1, value_ptr(glm::vec3(s.spacing)));
+            glProgramUniformMatrix3fv(p, 4, 1, GL_FALSE, value_ptr(glm::mat3(s.worldFromQ)));
             glProgramUniform3iv(p, 5, 1, value_ptr(s.dims));
             glProgramUniform3fv(p, 6, 1, value_ptr(glm::vec3(s.grid, s.raysPerVoxel)));
             glProgramUniform2iv(p, 7, 1, value_ptr(s.rays));
             glProgramUniform1f(p, 8, static_cast<float>(s.front));
             glProgramUniform1f(p, 9, static_cast<float>(s.pieces));
             glProgramUniform1i(p, 21, ring);
+            if (s.planes.empty()) continue;
+            glProgramUniform1i(p, 28, static_cast<GLint>(s.planes.size()));
+            for (std::size_t i = 0; i < s.planes.size(); ++i)
+                glProgramUniform4fv(p, 29 + static_cast<GLint>(i), 1,
+                                    value_ptr(glm::vec4(glm::vec3(s.planes[i].normal), s.planes[i].offset)));
         }
         glProgramUniform2iv(m_gather.id(), 23, 1, value_ptr(s.ownPlanes));
         glProgramUniform1f(m_gather.id(), 24, static_cast<float>(s.tolerance));
@@ -96,13 +79,13 @@ public:
         glProgramUniform2i(m_march.id(), 20, firstPlane, endPlane);
         glProgramUniform1i(m_march.id(), 22, firstPlane == s.firstPlane ? 1 : 0);
         glUseProgram(m_march.id());
-        glDispatchCompute(groups(s.rays.x, kSide), groups(s.rays.y, kSide), 1);
+        glDispatchCompute(groups(s.rays.x, kGroupSide), groups(s.rays.y, kGroupSide), 1);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     }
     void gather(const Sweep& s, int firstPlane, int endPlane) const {
         glProgramUniform2i(m_gather.id(), 20, firstPlane, endPlane);
         glUseProgram(m_gather.id());
-        glDispatchCompute(groups(s.dims.x, kSide), groups(s.dims.y, kSide),
+        glDispatchCompute(groups(s.dims.x, kGroupSide), groups(s.dims.y, kGroupSide),
                           groups(endPlane - firstPlane, kPlanesPerGroup));
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                         GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
@@ -115,7 +98,6 @@ private:
 SweepDevice::SweepDevice(const IntensityGrid& grid, const VisibilityBudget& budget)
     : m_grid(grid), m_budget(budget),
       m_volume(grid, budget.volumeBytes, std::min(budget.textureSize, longestTexture3d())) {
-    m_reduce = makeProgram({"visibility_reduce.comp"});
     // Better now than later: who asked for the best engine takes another one where the volume is too large.
     m_volume.require({2, 0, std::min(grid.codes.dims().z, 20), true});
 }
@@ -124,28 +106,6 @@ SweepDevice::~SweepDevice() = default;
 
 double SweepDevice::bufferLimit() const {
     return std::min(m_budget.bufferBytes, static_cast<double>(glInteger(GL_MAX_SHADER_STORAGE_BLOCK_SIZE)));
-}
-
-void SweepDevice::ensure(Buffer& buffer, double bytes, const std::string& what) {
-    const auto size = static_cast<std::size_t>(std::max(bytes, 16.0));
-    if (buffer.bytes >= size) return;
-    buffer = {}; // before the new one, so that both never need room at once
-    buffer = makeBuffer(GL_SHADER_STORAGE_BUFFER, size, nullptr, GL_DYNAMIC_COPY, what);
-}
-
-/// Slots come in powers of two, so that a feature more rarely means another program.
-int SweepDevice::slotsFor(int features) const {
-    int slots = 4;
-    while (slots < features + 1) slots *= 2;
-    return slots;
-}
-
-/// As many invocations per item as a work group has, where shared memory has room for their accumulators; 0: no room.
-int SweepDevice::segmentsFor(int candidates, int slots) const {
-    const int group = kSide * kSide;
-    const int staged = group * 4 * (1 + candidates + 3) + 4;
-    const int room = (glInteger(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE) - staged) / (slots * 3 * candidates * 4);
-    return std::min(room, group / (3 * candidates));
 }
 
 int SweepDevice::candidatesAtOnce(const SweepRequest& request) const {
@@ -159,19 +119,18 @@ int SweepDevice::candidatesAtOnce(const SweepRequest& request) const {
         if (segmentsFor(candidates, slotsFor(request.features)) > 0 &&
             4.0 * candidates * rays * planes <= bufferLimit())
             return candidates;
-    if (request.features + 1 > kMostSlots)
-        throw Error("at most " + std::to_string(kMostSlots - 1) + " features can be measured", "transfer function",
-                    "join some");
+    refuseTooManyFeatures(request.features);
     throw Error("the light of " + std::to_string(static_cast<long long>(rays)) + " rays at " + std::to_string(planes) +
                     " planes does not fit into the device's buffers of " +
                     std::to_string(static_cast<long long>(bufferLimit())) + " bytes",
                 "OpenGL", "", Remedy::OtherEngine);
 }
 
-const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots) {
+const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots, bool clipped) {
     std::vector<std::string> defines{"CANDIDATES " + std::to_string(candidates)};
     if (m_volume.hasInvalid()) defines.push_back("HAS_INVALID");
     if (m_volume.folding().folded()) defines.push_back("FOLDED");
+    if (clipped) defines.push_back("CLIPPED");
     if (slots == 0) {
         defines.push_back("FIELD");
     } else {
@@ -183,25 +142,9 @@ const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots)
     return *programs;
 }
 
-void SweepDevice::uploadTables(const DepthTables& tables) {
-    const std::size_t bytes = tables.tau.size() * sizeof(float),
-                      counts = tables.opaqueBefore.size() * sizeof(std::uint32_t);
-    const std::string what = "the transfer functions' tables";
-    ensure(m_integral, static_cast<double>(bytes), what);
-    ensure(m_tau, static_cast<double>(bytes), what);
-    ensure(m_opaque, static_cast<double>(counts), what);
-    write(m_integral, tables.integral.data(), bytes);
-    write(m_tau, tables.tau.data(), bytes);
-    write(m_opaque, tables.opaqueBefore.data(), counts);
-    bindStorage(1, m_integral);
-    bindStorage(2, m_tau);
-    bindStorage(3, m_opaque);
-    throwOnGlError("uploading the transfer functions");
-}
-
 int SweepDevice::prepare(const Sweep& s, int candidates, int slots) {
     const double layer = 4.0 * candidates * s.rays.x * s.rays.y, area = static_cast<double>(s.dims.x) * s.dims.y;
-    const double groupsPerLayer = static_cast<double>(groups(s.dims.x, kSide)) * groups(s.dims.y, kSide);
+    const double groupsPerLayer = static_cast<double>(groups(s.dims.x, kGroupSide)) * groups(s.dims.y, kGroupSide);
     // What each so many planes leave.
     const int outputPlanes = slots == 0 ? 1 : kPlanesPerGroup;
     const double outputBytes = slots == 0 ? 4 * area : groupsPerLayer * slots * 3 * candidates * 4;
@@ -220,8 +163,9 @@ int SweepDevice::prepare(const Sweep& s, int candidates, int slots) {
             const int resident = std::min(s.dims.z, planes + s.ownPlanes.y + 1);
             m_volume.require(
                 {s.axis, s.sign > 0 ? 0 : s.dims.z - resident, s.sign > 0 ? resident : s.dims.z, s.sign > 0});
-            ensure(m_light, layer * (planes + ringExtra(s)), "the rays' light");
-            ensure(m_output, outputBytes * groups(planes, outputPlanes), slots == 0 ? "the visibility" : "the sums");
+            ensureStorage(m_light, layer * (planes + ringExtra(s)), "the rays' light");
+            ensureStorage(m_output, outputBytes * groups(planes, outputPlanes),
+                          slots == 0 ? "the visibility" : "the sums");
             return planes;
         } catch (const OutOfMemory&) { // fewer planes may do
             if (planes == 1) throw;
@@ -236,15 +180,16 @@ void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slot
     const int ring = atOnce + ringExtra(s);
 
     int marched = s.firstPlane; // the rays have come so far
-    for (int plane = s.firstPlane; plane < s.dims.z; plane += atOnce) {
+    const int lastEnd = s.last.z + 1;
+    for (int plane = s.firstPlane; plane < lastEnd; plane += atOnce) {
         job.throwIfStopped();
-        job.report(static_cast<double>(plane - s.firstPlane) / (s.dims.z - s.firstPlane));
-        const int end = std::min(plane + atOnce, s.dims.z);
+        job.report(static_cast<double>(plane - s.firstPlane) / (lastEnd - s.firstPlane));
+        const int end = std::min(plane + atOnce, lastEnd);
         const int front = std::max(0, plane - s.ownPlanes.y - 1);
         m_volume.require(
             {s.axis, s.sign > 0 ? front : s.dims.z - end, s.sign > 0 ? end : s.dims.z - front, s.sign > 0});
 
-        const Programs& programs = programsFor(candidates, slots);
+        const Programs& programs = programsFor(candidates, slots, !s.planes.empty());
         programs.setTables(request.tables, textureMaxCode(m_grid));
         programs.setSweep(s, ring);
         programs.setVolume(s, m_volume, request.eyeInVoxels);
@@ -266,7 +211,7 @@ void SweepDevice::runSweep(const SweepRequest& request, const Sweep& s, int slot
 
 void SweepDevice::runSweeps(const SweepRequest& request, int slots, const JobControl& job, const AfterPlanes& after) {
     m_volume.setWeights(request.weights, request.weightsKey);
-    uploadTables(request.tables);
+    m_tables.upload(request.tables);
     for (std::size_t i = 0; i < request.sweeps.size(); ++i)
         runSweep(request, request.sweeps[i], slots, job.part(i, request.sweeps.size()), after);
     glUseProgram(0);
@@ -274,38 +219,13 @@ void SweepDevice::runSweeps(const SweepRequest& request, int slots, const JobCon
 }
 
 std::vector<double> SweepDevice::sums(const SweepRequest& request, const JobControl& job) {
-    const int slots = slotsFor(request.features), candidates = request.tables.candidates;
-    if (m_uploadedSlots != request.slotOfCode) {
-        std::vector<std::uint16_t> padded = request.slotOfCode;
-        padded.resize(2 * ((padded.size() + 1) / 2));
-        ensure(m_slotOfCode, static_cast<double>(padded.size() * sizeof(std::uint16_t)), "the features");
-        write(m_slotOfCode, padded.data(), padded.size() * sizeof(std::uint16_t));
-        m_uploadedSlots = request.slotOfCode;
-    }
-    bindStorage(4, m_slotOfCode);
-
-    const int entries = slots * 3 * candidates;
-    ensure(m_totals, 8.0 * entries, "the sums");
-    bindStorage(6, m_totals);
-    bool first = true;
+    const int slots = slotsFor(request.features);
+    m_totals.begin(request.slotOfCode, slots * 3 * request.tables.candidates);
     runSweeps(request, slots, job, [&](const Sweep& s, int plane, int end) {
-        const GLuint count = groups(s.dims.x, kSide) * groups(s.dims.y, kSide) * groups(end - plane, kPlanesPerGroup);
-        glProgramUniform1i(m_reduce.id(), 0, entries);
-        glProgramUniform1i(m_reduce.id(), 1, static_cast<GLint>(count));
-        glProgramUniform1i(m_reduce.id(), 2, first ? 1 : 0);
-        glUseProgram(m_reduce.id());
-        glDispatchCompute(groups(entries, kReduceColumns), 1, 1);
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-        first = false;
+        m_totals.add(groups(s.dims.x, kGroupSide) * groups(s.dims.y, kGroupSide) *
+                     groups(end - plane, kPlanesPerGroup));
     });
-
-    std::vector<double> totals(static_cast<std::size_t>(entries), 0.0);
-    if (first) return totals; // no sweep has any voxel
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, m_totals.name.id());
-    glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(totals.size() * sizeof(double)),
-                       totals.data());
-    throwOnGlError("reading the sums");
-    return totals;
+    return m_totals.read();
 }
 
 void SweepDevice::field(const SweepRequest& request, const JobControl& job,

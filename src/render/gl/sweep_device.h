@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "render/gl/depth_tables.h"
+#include "render/gl/measure_buffers.h"
 #include "render/gl/resident_volume.h"
 #include "render/gl/sweep_geometry.h"
 #include "render/gl/visibility_gl.h"
@@ -60,20 +60,16 @@ private:
                   const AfterPlanes& after);
     /// Makes room for the steps of a sweep, the volume included, and says how many planes one can take.
     int prepare(const Sweep& sweep, int candidates, int slots);
-    void uploadTables(const DepthTables& tables);
-    const Programs& programsFor(int candidates, int slots);
-    int slotsFor(int features) const;
-    int segmentsFor(int candidates, int slots) const;
+    const Programs& programsFor(int candidates, int slots, bool clipped);
     double bufferLimit() const;
-    void ensure(Buffer& buffer, double bytes, const std::string& what);
 
     const IntensityGrid& m_grid;
     VisibilityBudget m_budget;
     ResidentVolume m_volume;
     std::map<std::vector<std::string>, std::unique_ptr<Programs>> m_programs;
-    ProgramName m_reduce;
-    Buffer m_light, m_integral, m_tau, m_opaque, m_slotOfCode, m_output, m_totals;
-    std::vector<std::uint16_t> m_uploadedSlots;
+    TableBuffers m_tables;
+    FeatureTotals m_totals;
+    Buffer m_light, m_output;
 };
 
 } // namespace pellucid::gl

@@ -5,7 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "render/gl/kept_region.h"
 
 namespace pellucid::gl {
 
@@ -33,14 +37,31 @@ Sampling samplingOf(Quality quality) {
 /// The two other axes, in order.
 std::array<int, 2> lateralAxes(int axis) { return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2}; }
 
-Sweep alongAxis(const Geometry& g, int axis, int sign) {
+/// The volume as all sweeps see it.
+struct Swept {
+    const Geometry& geometry;
+    std::vector<VoxelPlane> planes;
+    KeptVoxels kept;
+};
+
+Sweep alongAxis(const Swept& swept, int axis, int sign) {
+    const Geometry& g = swept.geometry;
+    const auto [first, last] = swept.kept;
     Sweep sweep;
     sweep.axis = axis;
     sweep.sign = sign;
     const auto [a, b] = lateralAxes(axis);
     sweep.dims = {g.dims[a], g.dims[b], g.dims[axis]};
-    sweep.spacing = Vec3(g.spacing[a], g.spacing[b], g.spacing[axis]) / g.d0();
-    sweep.reference = sweep.dims.z - 1;
+    const int farthest = g.dims[axis] - 1;
+    sweep.first = {first[a], first[b], sign > 0 ? first[axis] : farthest - last[axis]};
+    sweep.last = {last[a], last[b], sign > 0 ? last[axis] : farthest - first[axis]};
+    const Mat3 fromQ = sweep.voxelFromQ();
+    sweep.worldFromQ = g.worldFromIndex() * fromQ / g.d0();
+    for (const VoxelPlane& plane : swept.planes)
+        sweep.planes.push_back(
+            {glm::transpose(fromQ) * plane.normal, plane.offset - glm::dot(plane.normal, sweep.voxelOffset())});
+    sweep.reference = sweep.last.z;
+    sweep.firstPlane = sweep.first.z;
     return sweep;
 }
 
@@ -50,12 +71,21 @@ Vec3 qFromVoxel(const Sweep& sweep, const Vec3& voxel) {
     return {voxel[a], voxel[b], sweep.sign > 0 ? c : sweep.dims.z - 1 - c};
 }
 
+/// Without what rounding leaves of components that are 0: a view along an axis of a turned grid is one along an axis.
+Vec3 withoutRounding(Vec3 direction) {
+    const Vec3 size = glm::abs(direction);
+    const double least = 1e-14 * std::max(size.x, std::max(size.y, size.z));
+    for (int a = 0; a < 3; ++a)
+        if (size[a] <= least) direction[a] = 0;
+    return direction;
+}
+
 /// Points where the rays of all voxel centres meet the reference plane, along one lateral axis.
 glm::dvec2 extentOnReference(const Sweep& s, int lateral) {
-    const double last = s.dims[lateral] - 1;
-    double lo = 0, hi = last;
+    const double first = s.first[lateral], last = s.last[lateral];
+    double lo = first, hi = last;
     const auto include = [&](double c) {
-        for (const double x : {0.0, last}) {
+        for (const double x : {first, last}) {
             double at = 0;
             if (s.perspective)
                 at = s.eye[lateral] + (x - s.eye[lateral]) * (s.reference - s.eye.z) / (c - s.eye.z);
@@ -76,10 +106,13 @@ glm::dvec2 extentOnReference(const Sweep& s, int lateral) {
 
 /// Fills in rays and samples; false where no voxel can belong to the sweep.
 bool layOut(Sweep& s, const Sampling& sampling) {
+    if (!s.planes.empty()) s.front = std::max(s.front, s.first.z - 1.0);
     if (s.perspective) {
         s.front = std::max(s.front, s.eye.z);
-        s.firstPlane = std::max(0, static_cast<int>(std::floor(s.eye.z)) + 1);
-        if (s.firstPlane >= s.dims.z) return false;
+        // As doubles: the eye may be farther off than integers reach.
+        const double planeBehindEye = std::floor(s.eye.z) + 1;
+        if (planeBehindEye > s.last.z) return false;
+        s.firstPlane = static_cast<int>(std::max(static_cast<double>(s.first.z), planeBehindEye));
     }
     s.raysPerVoxel = sampling.raysPerVoxel;
     s.tolerance = sampling.tolerance;
@@ -100,8 +133,13 @@ bool layOut(Sweep& s, const Sampling& sampling) {
     if (crossed == 0) { // every ray is a voxel's own line
         s.ownPlanes = {1, 1};
         s.raysPerVoxel = 1;
-        s.rays = {s.dims.x, s.dims.y};
+        s.rays = {s.last.x - s.first.x + 1, s.last.y - s.first.y + 1};
     }
+    // The point d0/2 in front of a voxel must not lie in front of the planes that its own line is followed through:
+    // voxel planes are the closer together the more the grid is sheared.
+    const Vec3 across = glm::cross(s.worldFromQ[0], s.worldFromQ[1]);
+    const double apart = std::abs(glm::dot(s.worldFromQ[2], across)) / glm::length(across);
+    s.ownPlanes = glm::max(s.ownPlanes, static_cast<int>(std::ceil(0.5 / apart - 1e-6)));
     s.pieces = static_cast<int>(std::ceil(1 + sampling.piecesPerVoxel * crossed - 1e-6));
     return true;
 }
@@ -118,11 +156,11 @@ double flattestSlope(const Sweep& s) {
     return slope;
 }
 
-Sweep orthographicSweep(const Vec3& directionInVoxels, const Geometry& geometry, const Sampling& sampling) {
+Sweep orthographicSweep(const Vec3& directionInVoxels, const Swept& swept, const Sampling& sampling) {
     int axis = 0;
     for (int i = 1; i < 3; ++i)
         if (std::abs(directionInVoxels[i]) > std::abs(directionInVoxels[axis])) axis = i;
-    Sweep sweep = alongAxis(geometry, axis, directionInVoxels[axis] > 0 ? 1 : -1);
+    Sweep sweep = alongAxis(swept, axis, directionInVoxels[axis] > 0 ? 1 : -1);
     sweep.perspective = false;
     const auto [a, b] = lateralAxes(axis);
     sweep.shear = glm::dvec2(directionInVoxels[a], directionInVoxels[b]) / std::abs(directionInVoxels[axis]);
@@ -158,19 +196,25 @@ Sweep::Strides Sweep::strides() const {
     return {sign > 0 ? 0 : of(axis) * (dims.z - 1), of(a), of(b), sign * of(axis)};
 }
 
-std::vector<Sweep> makeSweeps(const Camera& camera, const Geometry& geometry, Quality quality) {
+std::vector<Sweep> makeSweeps(const View& view, const Geometry& geometry, Quality quality) {
     const Sampling sampling = samplingOf(quality);
-    const Vec3 fromEye = (geometry.boxCenter() - camera.eye) / geometry.spacing;
+    const Camera& camera = view.camera;
+    Swept swept{geometry, planesInVoxels(view.clipping, geometry), {}};
+    const auto kept = keptVoxels(geometry, swept.planes);
+    if (!kept) return {};
+    swept.kept = *kept;
+    const Mat3 indexFromWorld = geometry.indexFromWorld();
+    const Vec3 fromEye = indexFromWorld * (geometry.boxCenter() - camera.eye);
     if (camera.projection == Projection::Orthographic)
-        return {orthographicSweep(camera.forward() / geometry.spacing, geometry, sampling)};
-    if (glm::length(fromEye) > kFarEye) return {orthographicSweep(fromEye, geometry, sampling)};
+        return {orthographicSweep(withoutRounding(indexFromWorld * camera.forward()), swept, sampling)};
+    if (glm::length(fromEye) > kFarEye) return {orthographicSweep(fromEye, swept, sampling)};
 
     std::vector<Sweep> pyramids;
     const Sweep* best = nullptr;
     double bestSlope = kAloneSlope;
     for (int axis = 0; axis < 3; ++axis)
         for (const int sign : {1, -1}) {
-            Sweep sweep = alongAxis(geometry, axis, sign);
+            Sweep sweep = alongAxis(swept, axis, sign);
             sweep.eye = qFromVoxel(sweep, geometry.voxelFromWorld(camera.eye));
             sweep.pyramid = true;
             pyramids.push_back(sweep);

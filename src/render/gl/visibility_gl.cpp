@@ -1,31 +1,12 @@
 // makeGlEngine: the VisibilityEngine on OpenGL; sweep_device.h does the work in the context.
-#include <array>
-
-#include "base/parallel.h"
+#include "render/gl/visibility_gl.h"
 #include "render/gl/gl_engines.h"
 #include "render/gl/headless_context.h"
 #include "render/gl/sweep_device.h"
-#include "render/gl/visibility_gl.h"
 
 namespace pellucid {
 
 namespace {
-
-/// A number that tells weights apart: they come as plain memory, which may be filled anew between two calls.
-std::uint64_t keyOf(const std::uint32_t* words, std::size_t count) {
-    constexpr std::size_t kPiece = 1 << 20;
-    std::vector<std::uint64_t> parts((count + kPiece - 1) / kPiece);
-    parallelFor(parts.size(), [&](std::size_t part) {
-        std::array<std::uint64_t, 4> hash{1, 2, 3, 4}; // four chains, so that multiplications overlap
-        const std::size_t end = std::min(count, (part + 1) * kPiece);
-        for (std::size_t i = part * kPiece; i < end; ++i)
-            hash[i & 3] = (hash[i & 3] ^ words[i]) * 0x9e3779b97f4a7c15u + (hash[i & 3] >> 29);
-        parts[part] = hash[0] ^ (hash[1] << 1) ^ (hash[2] << 2) ^ (hash[3] << 3);
-    });
-    std::uint64_t key = count;
-    for (const std::uint64_t part : parts) key = (key ^ part) * 0x9e3779b97f4a7c15u + (key >> 29);
-    return key;
-}
 
 class GlEngine final : public VisibilityEngine {
 public:
@@ -49,9 +30,6 @@ public:
     VisibilityField field(const View& view, const TransferFunction& tf, const JobControl& job) override;
 
 private:
-    /// Slot of every code: the index of its feature, or the number of features for "in none".
-    std::vector<std::uint16_t> slotsOfCodes(const std::vector<Feature>& features) const;
-
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
     std::shared_ptr<const IntensityGrid> m_codes;
@@ -61,37 +39,24 @@ private:
     std::unique_ptr<VisibilityEngine> m_cpu; ///< made when first needed
 };
 
-std::vector<std::uint16_t> GlEngine::slotsOfCodes(const std::vector<Feature>& features) const {
-    const int maxCode = gl::textureMaxCode(m_grid);
-    std::vector<std::uint16_t> slots(static_cast<std::size_t>(maxCode) + 1);
-    for (std::size_t code = 0; code < slots.size(); ++code) {
-        const int f = featureAt(features, static_cast<double>(code) / maxCode);
-        slots[code] = static_cast<std::uint16_t>(f < 0 ? static_cast<int>(features.size()) : f);
-    }
-    return slots;
-}
-
 std::vector<FeatureSums> GlEngine::sums(const View& view, std::span<const TransferFunction> tfs,
                                         const WeightFields* weights, const JobControl& job) {
     const Camera& camera = view.camera;
     camera.validate(m_volume->geometry(), "camera");
+    view.clipping.validate();
     if (tfs.empty()) return {};
     const std::vector<Feature>& features = tfs.front().features;
     for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features == features);
     if (weights != nullptr) PELLUCID_CHECK(weights->dims() == m_volume->dims());
 
     gl::SweepRequest request;
-    request.sweeps = gl::makeSweeps(camera, m_volume->geometry(), m_quality);
+    request.sweeps = gl::makeSweeps(view, m_volume->geometry(), m_quality);
     request.eyeInVoxels = m_volume->geometry().voxelFromWorld(camera.eye);
-    request.slotOfCode = slotsOfCodes(features);
+    request.slotOfCode = gl::slotsOfCodes(m_grid, features);
     request.features = static_cast<int>(features.size());
     if (weights != nullptr) {
         request.weights = weights;
-        request.weightsKey =
-            weights->isCompact()
-                ? keyOf(reinterpret_cast<const std::uint32_t*>(weights->compactData()), // in whole words
-                        (weights->size() + 3) / 4)
-                : keyOf(weights->data(), weights->size());
+        request.weightsKey = gl::keyOf(*weights);
     }
     int atOnce = 0;
     m_device.run([&](gl::SweepDevice& device) { atOnce = device.candidatesAtOnce(request); });
@@ -106,26 +71,9 @@ std::vector<FeatureSums> GlEngine::sums(const View& view, std::span<const Transf
         std::vector<double> totals;
         m_device.run([&](gl::SweepDevice& device) { totals = device.sums(request, job.part(first / size, groups)); });
 
-        const auto stride = static_cast<std::size_t>(lanes);
-        for (std::size_t lane = 0; lane < group.size(); ++lane) {
-            FeatureSums r;
-            r.visibility.resize(features.size());
-            for (auto& w : r.weighted) w.resize(features.size());
-            for (std::size_t f = 0; f <= features.size(); ++f) {
-                const double* item = &totals[f * 3 * stride + lane];
-                const double v = item[0];
-                r.allVisibility += v;
-                if (f < features.size()) r.visibility[f] = v;
-                for (std::size_t n = 0; n < 2; ++n) {
-                    const double scale =
-                        weights != nullptr ? static_cast<double>(weights->scale(static_cast<int>(n))) : 0;
-                    const double weighted = item[(n + 1) * stride] * scale;
-                    r.allWeighted[n] += weighted;
-                    if (f < features.size()) r.weighted[n][f] = weighted;
-                }
-            }
-            results.push_back(std::move(r));
-        }
+        for (std::size_t lane = 0; lane < group.size(); ++lane)
+            results.push_back(
+                gl::featureSumsOf(totals, features.size(), lane, static_cast<std::size_t>(lanes), weights));
     }
     job.report(1.0);
     return results;
@@ -134,8 +82,9 @@ std::vector<FeatureSums> GlEngine::sums(const View& view, std::span<const Transf
 VisibilityField GlEngine::field(const View& view, const TransferFunction& tf, const JobControl& job) {
     const Camera& camera = view.camera;
     camera.validate(m_volume->geometry(), "camera");
+    view.clipping.validate();
     gl::SweepRequest request;
-    request.sweeps = gl::makeSweeps(camera, m_volume->geometry(), m_quality);
+    request.sweeps = gl::makeSweeps(view, m_volume->geometry(), m_quality);
     request.eyeInVoxels = m_volume->geometry().voxelFromWorld(camera.eye);
     request.tables = gl::makeDepthTables({&tf, 1}, 1, m_cells);
     VisibilityField result{Grid<float>(m_volume->dims())};

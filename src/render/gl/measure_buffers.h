@@ -1,0 +1,69 @@
+// What the engines on the device share: transfer functions and features in buffers, and sums per feature.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/gl/depth_tables.h"
+#include "render/gl/gl_resources.h"
+#include "volume/intensity_grid.h"
+
+namespace pellucid::gl {
+
+inline constexpr int kGroupSide = 8;      ///< local_size of the engines' shaders, both axes
+inline constexpr int kPlanesPerGroup = 8; ///< of visibility_gather.comp and slices_gather.comp
+/// Features and one; with one candidate they fit into 32 KiB, which every device has.
+inline constexpr int kMostSlots = 2048;
+
+/// Work groups for `count` things, `size` at a time.
+inline GLuint groups(int count, int size) { return static_cast<GLuint>((count + size - 1) / size); }
+void bindStorage(GLuint binding, const Buffer& buffer);
+/// Makes the buffer anew where it is smaller; `what` names its content in errors. Throws OutOfMemory.
+void ensureStorage(Buffer& buffer, double bytes, const std::string& what);
+
+/// The tables that shaders/include/ray_depth.glsl reads.
+class TableBuffers {
+public:
+    void upload(const DepthTables& tables); ///< and binds them
+    /// Sets the uniforms of a program that reads them.
+    static void describe(GLuint program, const DepthTables& tables, int maxCode);
+
+private:
+    Buffer m_integral, m_tau, m_opaque;
+};
+
+/// Slots come in powers of two, so that a feature more rarely means another program.
+int slotsFor(int features);
+/// As many invocations per item as a work group has, where shared memory has room for their accumulators; 0: no room.
+int segmentsFor(int candidates, int slots);
+/// Throws Error: more features than any device has room for.
+void refuseTooManyFeatures(int features);
+/// Slot of every code: the index of its feature, or the number of features for "in none".
+std::vector<std::uint16_t> slotsOfCodes(const IntensityGrid& grid, const std::vector<Feature>& features);
+
+/// The sums that work groups leave, added up on the device in double precision (visibility_reduce.comp).
+class FeatureTotals {
+public:
+    FeatureTotals();
+    /// Binds what include/feature_sums.glsl reads, and starts at 0; `entries`: slots × 3 × candidates.
+    void begin(const std::vector<std::uint16_t>& slotOfCode, int entries);
+    void add(GLuint workGroups); ///< of the sums at binding 5
+    std::vector<double> read() const;
+
+private:
+    ProgramName m_reduce;
+    Buffer m_slotOfCode, m_totals;
+    std::vector<std::uint16_t> m_uploadedSlots;
+    int m_entries = 0;
+    bool m_first = true;
+};
+
+/// Totals of one candidate, [slot][item][lane] with `lanes` of them, as FeatureSums; `weights` may be null.
+FeatureSums featureSumsOf(std::span<const double> totals, std::size_t features, std::size_t lane, std::size_t lanes,
+                          const WeightFields* weights);
+/// A number that tells weights apart: they come as plain memory, which may be filled anew between two calls.
+std::uint64_t keyOf(const WeightFields& weights);
+
+} // namespace pellucid::gl
