@@ -5,7 +5,7 @@
 #include <QStatusBar>
 #include <QToolButton>
 
-#include "axis_ticks.h"
+#include "number_text.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/save_controller.h"

@@ -9,7 +9,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "axis_ticks.h"
+#include "number_text.h"
 #include "number_box.h"
 #include "panel.h"
 #include "store/edits.h"

@@ -1,6 +1,6 @@
 #include "gui_support.h"
 
-#include "axis_ticks.h"
+#include "number_text.h"
 #include "raw_dialog.h"
 #include "tf_edit.h"
 

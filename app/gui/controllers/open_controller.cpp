@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "axis_ticks.h"
+#include "number_text.h"
 #include "controllers/save_controller.h"
 #include "raw_dialog.h"
 #include "render/memory_needs.h"

@@ -14,7 +14,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "axis_ticks.h"
+#include "number_text.h"
 #include "controllers/open_controller.h"
 #include "number_box.h"
 #include "panel.h"
