@@ -1,6 +1,7 @@
 // `info`: what a volume file holds.
 #include "commands.h"
 #include "resolve.h"
+#include "volume/orientation.h"
 
 namespace pellucid::cli {
 
@@ -14,6 +15,8 @@ std::string textOf(const Volume& v) {
         {"type", name(v.sampleType())},
         {"spacing", vectorText(v.geometry().spacing) + " world units"},
         {"origin", vectorText(v.geometry().origin) + " world units"},
+        {"frame", v.geometry().frame == Frame::Patient ? "patient (LPS, mm)" : "the file's own"},
+        {"axes", axesText(v.geometry())},
         {"range", rangeText(v.range().lo, v.range().hi)},
     };
     if (v.range() != v.dataRange()) lines.emplace_back("values", rangeText(v.dataRange().lo, v.dataRange().hi));
@@ -23,12 +26,19 @@ std::string textOf(const Volume& v) {
     return listing(lines);
 }
 
+/// Where the axes i, j and k point: a unit vector each.
+Json directions(const Geometry& g) {
+    return {jsonFromVector(g.directions[0]), jsonFromVector(g.directions[1]), jsonFromVector(g.directions[2])};
+}
+
 Json jsonOf(const Volume& v) {
     return {{"command", "info"},
             {"dims", jsonFromDims(v.dims())},
             {"type", name(v.sampleType())},
             {"spacing", jsonFromVector(v.geometry().spacing)},
             {"origin", jsonFromVector(v.geometry().origin)},
+            {"frame", v.geometry().frame == Frame::Patient ? "patient" : "file"},
+            {"directions", directions(v.geometry())},
             {"range", jsonFromRange(v.range())},
             {"data_range", jsonFromRange(v.dataRange())},
             {"invalid", v.invalidCount()},

@@ -21,16 +21,10 @@ public:
 
     /// A line of round ends: the share of a pixel by its distance from the middle line.
     void addSegment(const Vec2& a, const Vec2& b, double radius) {
-        const Vec2 way = b - a;
-        const double length2 = glm::dot(way, way), reach = radius + 1;
-        forEach({std::min(a.x, b.x) - reach, std::min(a.y, b.y) - reach, std::max(a.x, b.x) + reach,
-                 std::max(a.y, b.y) + reach},
-                [&](const Vec2& p) {
-                    const double t = length2 > 0 ? std::clamp(glm::dot(p - a, way) / length2, 0.0, 1.0) : 0;
-                    const double distance = glm::length(p - a - way * t);
-                    // A line thinner than a pixel covers no more of it than it is thick.
-                    return std::clamp(radius + 0.5 - distance, 0.0, 1.0) * std::min(1.0, 2 * radius);
-                });
+        constexpr double kPiece = 64; // so that the box around a long oblique line is not gone over
+        const int pieces = std::max(1, static_cast<int>(glm::length(b - a) / kPiece));
+        for (int i = 0; i < pieces; ++i)
+            addPiece(a + (b - a) * (double(i) / pieces), a + (b - a) * (double(i + 1) / pieces), radius);
     }
 
     /// A convex area: by the distances from its sides.
@@ -74,6 +68,19 @@ public:
     }
 
 private:
+    void addPiece(const Vec2& a, const Vec2& b, double radius) {
+        const Vec2 way = b - a;
+        const double length2 = glm::dot(way, way), reach = radius + 1;
+        forEach({std::min(a.x, b.x) - reach, std::min(a.y, b.y) - reach, std::max(a.x, b.x) + reach,
+                 std::max(a.y, b.y) + reach},
+                [&](const Vec2& p) {
+                    const double t = length2 > 0 ? std::clamp(glm::dot(p - a, way) / length2, 0.0, 1.0) : 0;
+                    const double distance = glm::length(p - a - way * t);
+                    // A line thinner than a pixel covers no more of it than it is thick.
+                    return std::clamp(radius + 0.5 - distance, 0.0, 1.0) * std::min(1.0, 2 * radius);
+                });
+    }
+
     static int clamped(double v, int limit) { return static_cast<int>(std::clamp(std::floor(v), 0.0, double(limit))); }
 
     /// Where several pieces of a shape meet in a pixel, the larger share counts: they are one shape.

@@ -211,6 +211,12 @@ Session randomSession(std::uint32_t number) {
         d.onlyFeature = only;
         s.display = d;
     }
+    if (random.chance(0.5)) {
+        FrameOfReference reference;
+        reference.on = random.chance(0.8);
+        for (const FramePartInfo& part : kFrameParts) reference.*part.shown = random.chance(0.5);
+        s.reference = reference;
+    }
     if (random.chance(0.7)) s.measure = randomMeasure(random);
     if (random.chance(0.7)) s.optimize = randomOptimize(random);
     for (int i = random.below(4); i > 0; --i) s.addRun(randomRun(random));
