@@ -29,6 +29,8 @@ _pellucid_cli() {
         --step-up) choices="auto" ;;
         --only) choices="setup saliency saliency-direct sweep jacobian optimize refine render" ;;
         --background) choices="transparent" ;;
+        --annotate) choices="all cube letters axes scale legend title" ;;
+        --view) choices="anterior posterior left right superior inferior front back top bottom" ;;
         --tf)
             COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))
             compopt -o filenames -o nospace 2>/dev/null
@@ -38,7 +40,7 @@ _pellucid_cli() {
             compopt -o filenames 2>/dev/null
             return
             ;;
-        --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --view | --step | \
+        --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --step | \
             --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
             --max-iterations | --repeat | --fix | --target | --tolerance)
             return
