@@ -35,7 +35,8 @@ void draw(QPainter& painter, const Mark& mark) {
     QPainterPath path; // one: where strokes cross, a pale one is not darker
     for (const Polyline& stroke : strokesOf(mark)) path.addPolygon(polygonOf(stroke));
     painter.setBrush(Qt::NoBrush);
-    if (mark.halo > 0) painter.strokePath(path, pen(mark.haloColor, kHaloAlpha * mark.alpha, mark.width + 2 * mark.halo));
+    if (mark.halo > 0)
+        painter.strokePath(path, pen(mark.haloColor, kHaloAlpha * mark.alpha, mark.width + 2 * mark.halo));
     painter.strokePath(path, pen(mark.color, mark.alpha, mark.width));
 }
 

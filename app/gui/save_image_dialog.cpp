@@ -82,7 +82,9 @@ SaveImageDialog::SaveImageDialog(const QString& path, const QSize& seen, bool re
 }
 
 SaveImageOptions SaveImageDialog::options() const {
-    return {m_path->text().trimmed(), {m_width->value(), m_height->value()}, m_transparent->isChecked(),
+    return {m_path->text().trimmed(),
+            {m_width->value(), m_height->value()},
+            m_transparent->isChecked(),
             m_reference->isChecked()};
 }
 

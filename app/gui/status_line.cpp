@@ -5,10 +5,10 @@
 #include <QStatusBar>
 #include <QToolButton>
 
-#include "number_text.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/save_controller.h"
+#include "number_text.h"
 #include "render/camera_motion.h"
 #include "volume/orientation.h"
 #include "volume_view.h"

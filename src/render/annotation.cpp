@@ -14,7 +14,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kSmallestText = 7;     // pixels of the screen, height of a capital
+constexpr double kSmallestText = 7;       // pixels of the screen, height of a capital
 constexpr double kTextOfPicture = 0.0115; // the same, of the picture's shorter side
 constexpr Rgb kLight{0.93, 0.94, 0.95}, kDark{0.07, 0.08, 0.09};
 constexpr Rgb kAmber{1.0, 0.83, 0.42}, kBrown{0.48, 0.27, 0.02}; // of the letters at the edges
@@ -51,9 +51,7 @@ public:
         return glm::dot(normal, towardEye) > 1e-9 * glm::length(towardEye);
     }
     /// A direction, seen from far away: right and up in the picture, and toward the viewer.
-    Vec3 turned(const Vec3& d) const {
-        return {glm::dot(d, m_right), glm::dot(d, m_up), -glm::dot(d, m_forward)};
-    }
+    Vec3 turned(const Vec3& d) const { return {glm::dot(d, m_right), glm::dot(d, m_up), -glm::dot(d, m_forward)}; }
     const Vec3& right() const { return m_right; }
     const Vec3& up() const { return m_up; }
 
@@ -214,8 +212,8 @@ private:
         const double stroke = std::max(1.2 * m_in.density, 0.17 * m_cap), end = 0.45 * m_cap;
         const double block = std::max(pixels, m_cap * textWidth(text));
         const double right = m_width - m_margin - (block - pixels) / 2, y = m_height - m_margin - end / 2;
-        Mark bar = lineMark(FramePart::Scale, {{right - pixels, y - end}, {right - pixels, y}, {right, y},
-                                               {right, y - end}}, stroke);
+        Mark bar = lineMark(FramePart::Scale,
+                            {{right - pixels, y - end}, {right - pixels, y}, {right, y}, {right, y - end}}, stroke);
         place({bar, textMark(FramePart::Scale, text, {right - pixels / 2, y - end - 0.4 * m_cap}, Align::Middle,
                              Align::End, m_cap)});
     }
@@ -284,12 +282,12 @@ private:
             // The strip tells the colour of all that is drawn; the curve, by the square root, how opaque it is.
             legend.push_back(boxMark(FramePart::Legend, {right - strip, high, right, low}, row.color));
             const double reach = (right - strip - left) * std::sqrt(row.opacity / most);
-            legend.push_back(boxMark(FramePart::Legend, {right - strip - reach, high, right - strip, low}, row.color,
-                                     0.75));
+            legend.push_back(
+                boxMark(FramePart::Legend, {right - strip - reach, high, right - strip, low}, row.color, 0.75));
         }
-        Mark frame = lineMark(FramePart::Legend,
-                              {{left, top}, {right, top}, {right, top + height}, {left, top + height}, {left, top}},
-                              line);
+        Mark frame =
+            lineMark(FramePart::Legend,
+                     {{left, top}, {right, top}, {right, top + height}, {left, top + height}, {left, top}}, line);
         frame.alpha = 0.8;
         frame.halo = 0;
         legend.push_back(frame);
@@ -306,9 +304,8 @@ private:
         double lowest = m_height; // text goes upward; features are ordered by their lower ends
         std::vector<std::size_t> order(m_in.tf.features.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-            return m_in.tf.features[a].a < m_in.tf.features[b].a;
-        });
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return m_in.tf.features[a].a < m_in.tf.features[b].a; });
         for (const std::size_t i : order) {
             const Feature& f = m_in.tf.features[i];
             if (!(peaks[i] > 0) || (alone != nullptr && alone != &f) || f.name.empty()) continue;
@@ -371,7 +368,7 @@ private:
         }
         const Vec2 from = m_project(a), way = m_project(b) - from;
         double t0 = 0, t1 = 1;
-        const double edge = m_cap; // drawn a little beyond, so that ends are not seen
+        const double edge = m_cap;                  // drawn a little beyond, so that ends are not seen
         const auto keep = [&](double p, double q) { // p·t ≤ q
             if (p == 0) return q >= 0;
             (p < 0 ? t0 : t1) = p < 0 ? std::max(t0, q / p) : std::min(t1, q / p);
@@ -466,15 +463,15 @@ private:
             p[axis] = value;
             const Vec2 at = m_project(p);
             if (at.x < 0 || at.y < 0 || at.x > m_width || at.y > m_height) continue;
-            m_marks.push_back(lineMark(FramePart::Axes, {at, at + outward * tick}, std::max(m_in.density, 0.1 * m_cap)));
+            m_marks.push_back(
+                lineMark(FramePart::Axes, {at, at + outward * tick}, std::max(m_in.density, 0.1 * m_cap)));
             const std::string text = numberText(value, span);
             if (placeLabel(text, at, outward, tick + 0.5 * m_cap, true))
                 widest = std::max(widest, std::abs(outward.x) * m_cap * textWidth(text) + std::abs(outward.y) * m_cap);
         }
-        const std::string caption =
-            m_in.geometry.frame == Frame::Patient
-                ? std::string(1, patientLetter(axis, false)) + "→" + patientLetter(axis, true) + "  mm"
-                : std::string(1, "xyz"[axis]);
+        const std::string caption = m_in.geometry.frame == Frame::Patient ? std::string(1, patientLetter(axis, false)) +
+                                                                                "→" + patientLetter(axis, true) + "  mm"
+                                                                          : std::string(1, "xyz"[axis]);
         for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8})
             if (placeLabel(caption, a + (b - a) * share, outward, tick + 1.2 * m_cap + widest, false)) return;
         for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8}) // within the outline, then
@@ -507,7 +504,8 @@ PixelBox extentOf(const Mark& mark) {
     PixelBox box{kFar, kFar, -kFar, -kFar};
     for (const Polyline& stroke : strokes)
         for (const Vec2& p : stroke)
-            box = {std::min(box.left, p.x), std::min(box.top, p.y), std::max(box.right, p.x), std::max(box.bottom, p.y)};
+            box = {std::min(box.left, p.x), std::min(box.top, p.y), std::max(box.right, p.x),
+                   std::max(box.bottom, p.y)};
     const double rim = mark.kind == Mark::Kind::Area ? 0 : mark.width / 2 + mark.halo;
     return {box.left - rim, box.top - rim, box.right + rim, box.bottom + rim};
 }

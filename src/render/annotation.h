@@ -65,8 +65,8 @@ struct Mark {
     double width = 1; ///< of lines and of the strokes of a text; they have round ends
     double halo = 0;  ///< how far a rim of `haloColor` reaches around them; 0: none
     Rgb haloColor;
-    std::string text;              ///< UTF-8
-    Vec2 across{1, 0}, up{0, -1};  ///< of a text: as far along the line and upward as a capital is high
+    std::string text;             ///< UTF-8
+    Vec2 across{1, 0}, up{0, -1}; ///< of a text: as far along the line and upward as a capital is high
 };
 inline constexpr double kHaloAlpha = 0.6; ///< of the alpha of its mark
 
@@ -75,9 +75,7 @@ std::vector<Polyline> strokesOf(const Mark& mark);
 
 struct PixelBox {
     double left, top, right, bottom;
-    bool meets(const PixelBox& o) const {
-        return left < o.right && o.left < right && top < o.bottom && o.top < bottom;
-    }
+    bool meets(const PixelBox& o) const { return left < o.right && o.left < right && top < o.bottom && o.top < bottom; }
 };
 /// Around all that is drawn of a mark, its halo too.
 PixelBox extentOf(const Mark& mark);

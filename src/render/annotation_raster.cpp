@@ -35,7 +35,8 @@ public:
         for (std::size_t i = 0; i < n; ++i) {
             const Vec2 &a = corners[i], &b = corners[(i + 1) % n];
             area += a.x * b.y - a.y * b.x;
-            box = {std::min(box.left, a.x), std::min(box.top, a.y), std::max(box.right, a.x), std::max(box.bottom, a.y)};
+            box = {std::min(box.left, a.x), std::min(box.top, a.y), std::max(box.right, a.x),
+                   std::max(box.bottom, a.y)};
         }
         const double turn = area < 0 ? -1 : 1;
         forEach({box.left - 1, box.top - 1, box.right + 1, box.bottom + 1}, [&](const Vec2& p) {
@@ -92,8 +93,9 @@ private:
         const int bottom = std::min(m_bottom, static_cast<int>(std::clamp(std::ceil(box.bottom), -1.0, 1e6)));
         for (int y = top; y < bottom; ++y)
             for (int x = left; x < right; ++x) {
-                float& value = m_values[static_cast<std::size_t>(y - m_top) * static_cast<std::size_t>(m_right - m_left) +
-                                        static_cast<std::size_t>(x - m_left)];
+                float& value =
+                    m_values[static_cast<std::size_t>(y - m_top) * static_cast<std::size_t>(m_right - m_left) +
+                             static_cast<std::size_t>(x - m_left)];
                 value = std::max(value, static_cast<float>(share(Vec2(x + 0.5, y + 0.5))));
             }
     }

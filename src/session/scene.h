@@ -42,8 +42,8 @@ struct SceneInputs {
     MemoryUse then;                       ///< what is done with the volume, see VolumeSource
 };
 
-/// From where the inputs look at a volume: `namedView`, else `camera`, else `view`, else the session's camera, else the home view. Throws
-/// Error where that is inside its box.
+/// From where the inputs look at a volume: `namedView`, else `camera`, else `view`, else the session's camera, else the
+/// home view. Throws Error where that is inside its box.
 Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry);
 
 /// Opens everything. The intensity window is `range`, else that of the named transfer-function file, else the

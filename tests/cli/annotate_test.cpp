@@ -4,11 +4,11 @@
 #include "cli_runner.h"
 #include "render/image.h"
 
+using nlohmann::json;
 using pellucid::Image;
 using pellucid::readImage;
 using pellucid::test::Outcome;
 using pellucid::test::Workshop;
-using nlohmann::json;
 
 namespace {
 
@@ -24,7 +24,8 @@ void writeHalf(const Workshop& w, const std::string& name, const std::string& sp
 }
 
 Image rendered(const Workshop& w, const Words& more) {
-    Words words{"render", "--engine", "cpu", "--size", "96x72", "--tf", "tents:1", "--range", "0,255", "--out", "p.png"};
+    Words words{"render",  "--engine", "cpu",   "--size", "96x72", "--tf",
+                "tents:1", "--range",  "0,255", "--out",  "p.png"};
     words.insert(words.end(), more.begin(), more.end());
     const Outcome outcome = w.run(words);
     INFO(outcome.err);

@@ -112,7 +112,8 @@ TEST_CASE("an oblique edge has two letters, the main one first", "[annotation]")
 }
 
 TEST_CASE("no letters where the file does not know", "[annotation]") {
-    CHECK(annotationMarks(inputOf(0, 0, only(&FrameOfReference::letters), Projection::Perspective, Frame::File)).empty());
+    CHECK(
+        annotationMarks(inputOf(0, 0, only(&FrameOfReference::letters), Projection::Perspective, Frame::File)).empty());
     FrameOfReference off = everything();
     off.on = false;
     CHECK(annotationMarks(inputOf(0, 0, off)).empty());
@@ -157,8 +158,8 @@ TEST_CASE("the scale bar is as long as it says, at the depth of the camera's cen
             CHECK(pixels <= 0.22 * 600 + 1e-9); // and the next round number would not have been
             CHECK(pixels > 0.22 * 600 / 2.5 - 1e-9);
         }
-    const auto file = annotationMarks(
-        inputOf(0, 0, only(&FrameOfReference::scale), Projection::Perspective, Frame::File));
+    const auto file =
+        annotationMarks(inputOf(0, 0, only(&FrameOfReference::scale), Projection::Perspective, Frame::File));
     CHECK(file.at(1).text.ends_with(" units"));
 }
 
@@ -304,7 +305,8 @@ TEST_CASE("marks are drawn where they are, and nowhere else", "[annotation]") {
                 CHECK(std::equal(now, now + 4, before.pixel(x, y)));
             }
         }
-    // Half a colour over nothing: the colour whole, alpha a half. Straight colours are not mixed with what is not there.
+    // Half a colour over nothing: the colour whole, alpha a half. Straight colours are not mixed with what is not
+    // there.
     Image clear(10, 10);
     Mark area;
     area.kind = Mark::Kind::Area;
@@ -319,12 +321,12 @@ TEST_CASE("marks are drawn where they are, and nowhere else", "[annotation]") {
 
 TEST_CASE("texts are measured, cut and drawn for any bytes", "[annotation]") {
     CHECK(textWidth("") == 0);
-    CHECK(textWidth("H") == Approx(0.72));                                // as its path says
-    CHECK(textWidth("HH") == Approx(2 * 0.72 + 0.25));                    // and what lies between
+    CHECK(textWidth("H") == Approx(0.72));             // as its path says
+    CHECK(textWidth("HH") == Approx(2 * 0.72 + 0.25)); // and what lies between
     CHECK(textWidth("Ä") == textWidth("A"));
-    CHECK(textStrokes("ä").size() == textStrokes("a").size() + 2);        // two dots
-    CHECK(textStrokes("\xE2\x82") .size() == 2);                          // no UTF-8: two boxes
-    CHECK(textStrokes("日").size() == 1);                                  // not in the font: a box
+    CHECK(textStrokes("ä").size() == textStrokes("a").size() + 2); // two dots
+    CHECK(textStrokes("\xE2\x82").size() == 2);                    // no UTF-8: two boxes
+    CHECK(textStrokes("日").size() == 1);                          // not in the font: a box
     CHECK(shortenedText("volume", 100) == "volume");
     const std::string cut = shortenedText("äöüäöüäöü", 3);
     CHECK(cut.ends_with("…"));

@@ -12,9 +12,10 @@ struct Texts {
 Texts textsOf(FramePart part) {
     switch (part) {
     case FramePart::Cube:
-        return {"frameCubeAction", QObject::tr("&Cube"),
-                QObject::tr("A cube that turns with the volume: left, right, anterior, posterior, superior, inferior, or "
-                            "the file's axes")};
+        return {
+            "frameCubeAction", QObject::tr("&Cube"),
+            QObject::tr("A cube that turns with the volume: left, right, anterior, posterior, superior, inferior, or "
+                        "the file's axes")};
     case FramePart::Letters:
         return {"frameLettersAction", QObject::tr("&Letters at the edges"),
                 QObject::tr("L R A P S I: the direction that each edge of the picture lies in, where the file says how "
@@ -41,7 +42,7 @@ void addFrameActions(Workbench& bench) {
     const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
     bench.actions().add({.id = "frameAction",
                          .menu = menu,
-                         .text = QObject::tr("S&how"),
+                         .text = QObject::tr("S&how frame of reference"),
                          .keys = {QKeySequence("A")},
                          .tip = QObject::tr("All that stands around the picture, on and off"),
                          .trigger =

@@ -43,7 +43,8 @@ QString tipOf(StandardView view, Frame frame) {
     case StandardView::Top:
         return QObject::tr("From above the head, with the front up and the patient's left at the left");
     case StandardView::Bottom:
-        return QObject::tr("From the feet, with the front up and the patient's left at the right, as radiologists look");
+        return QObject::tr(
+            "From the feet, with the front up and the patient's left at the right, as radiologists look");
     }
     return {};
 }
