@@ -84,6 +84,7 @@ public:
         if (show.scale) addScale();
         if (show.legend) addLegend();
         if (show.letters && m_in.geometry.frame == Frame::Patient) addLetters();
+        for (Mark& name : m_names) place({std::move(name)}); // where they fit
         if (show.title) addTitle();
         if (!show.axes) return std::move(m_marks);
         std::vector<Mark> rest;
@@ -293,12 +294,12 @@ private:
         legend.push_back(frame);
 
         if (m_in.picture.mode == RenderMode::Composite || m_in.picture.mode == RenderMode::Surface)
-            addFeatureNames(legend, left, yOf);
-        place(std::move(legend));
+            addFeatureNames(left, yOf);
+        if (!place(std::move(legend))) m_names.clear();
     }
 
     template <class YOf>
-    void addFeatureNames(std::vector<Mark>& legend, double left, const YOf& yOf) const {
+    void addFeatureNames(double left, const YOf& yOf) {
         const std::vector<double> peaks = featureOpacities(m_in.tf);
         const Feature* alone = m_in.picture.featureAlone(m_in.tf);
         double lowest = m_height; // text goes upward; features are ordered by their lower ends
@@ -314,7 +315,7 @@ private:
             const std::string name = shortenedText(f.name, 0.2 * m_width / m_cap);
             Mark text = textMark(FramePart::Legend, name, {left - 0.7 * m_cap, y}, Align::End, Align::Middle, m_cap);
             text.color = mixed(f.color, m_ink, 0.35);
-            legend.push_back(text);
+            m_names.push_back(text);
             lowest = y - 0.9 * m_cap;
         }
     }
@@ -485,6 +486,7 @@ private:
     bool m_onDark = true;
     Rgb m_ink, m_halo;
     std::vector<PixelBox> m_taken;
+    std::vector<Mark> m_names; ///< of features, beside the legend
     std::vector<Mark> m_marks;
 };
 
