@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 namespace pellucid::test {
 
 namespace {
@@ -206,6 +208,7 @@ Session randomSession(std::uint32_t number) {
         d.mode = static_cast<RenderMode>(random.below(5));
         d.light = {random.chance(0.5), parts.x, parts.y, parts.z, 1 + 99 * parts.x, oddVector(random, -1, 1),
                    parts.y, parts.z, parts.x, parts.y};
+        if (!(glm::length(d.light.direction) > 0)) d.light.direction = {0, 0, 1}; // tiny ones have a length of 0
         d.background = randomColor(random);
         if (random.chance(0.3)) d.backgroundTop = randomColor(random);
         d.onlyFeature = only;
