@@ -1,6 +1,7 @@
 // `info`: what a volume file holds.
 #include "commands.h"
 #include "resolve.h"
+#include "volume/orientation.h"
 
 namespace pellucid::cli {
 
@@ -20,6 +21,8 @@ std::string textOf(const Volume& v) {
         {"type", name(v.sampleType())},
         {"spacing", vectorText(v.geometry().spacing) + " world units"},
         {"origin", vectorText(v.geometry().origin) + " world units"},
+        {"frame", v.geometry().frame == Frame::Patient ? "patient (LPS, mm)" : "the file's own"},
+        {"axes", axesText(v.geometry())},
         {"range", rangeText(v.range().lo, v.range().hi)},
     };
     if (v.excerpt) {
@@ -35,6 +38,11 @@ std::string textOf(const Volume& v) {
     return listing(lines);
 }
 
+/// Where the axes i, j and k point: a unit vector each.
+Json directions(const Geometry& g) {
+    return {jsonFromVector(g.directions[0]), jsonFromVector(g.directions[1]), jsonFromVector(g.directions[2])};
+}
+
 Json jsonOf(const Volume& v) {
     const Excerpt whole{v.dims(), {Int3(0), v.dims()}, 1, false}, e = v.excerpt.value_or(whole);
     return {{"command", "info"},
@@ -45,6 +53,8 @@ Json jsonOf(const Volume& v) {
             {"type", name(v.sampleType())},
             {"spacing", jsonFromVector(v.geometry().spacing)},
             {"origin", jsonFromVector(v.geometry().origin)},
+            {"frame", v.geometry().frame == Frame::Patient ? "patient" : "file"},
+            {"directions", directions(v.geometry())},
             {"range", jsonFromRange(v.range())},
             {"data_range", jsonFromRange(v.dataRange())},
             {"invalid", v.invalidCount()},

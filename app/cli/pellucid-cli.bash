@@ -29,6 +29,8 @@ _pellucid_cli() {
         --step-up) choices="auto" ;;
         --only) choices="setup saliency saliency-direct sweep slices jacobian optimize refine render" ;;
         --background) choices="transparent" ;;
+        --annotate) choices="all cube letters axes scale legend title" ;;
+        --view) choices="anterior posterior left right superior inferior front back top bottom" ;;
         --tf)
             COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))
             compopt -o filenames -o nospace 2>/dev/null
@@ -39,7 +41,7 @@ _pellucid_cli() {
             return
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
-            --region | --view | --step | --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
+            --region | --step | --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
             --tolerance)
             return

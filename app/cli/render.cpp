@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <sstream>
 
 #include "commands.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "output_files.h"
 #include "parse.h"
+#include "render/annotation_raster.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
 
@@ -18,7 +20,24 @@ namespace {
 struct Options {
     SceneOptions scene;
     std::string out;
+    FrameOfReference annotate = FrameOfReference::none();
 };
+
+/// "cube,scale" or "all".
+FrameOfReference parseParts(const std::string& text, const std::string& option) {
+    FrameOfReference show = FrameOfReference::none();
+    std::istringstream words(text);
+    bool known = !text.empty() && text.back() != ',';
+    for (std::string word; known && std::getline(words, word, ',');) {
+        known = word == "all";
+        for (const FramePartInfo& part : kFrameParts)
+            if (word == part.name || word == "all") known = show.*part.shown = true;
+    }
+    if (!known)
+        throw UsageError("'" + text + "' does not name parts of the frame of reference", option,
+                         "give all, or some of cube, letters, axes, scale, legend, title with commas between");
+    return show;
+}
 
 bool isJpeg(const std::string& path) {
     std::string suffix = std::filesystem::path(path).extension().string();
@@ -44,8 +63,9 @@ Answer run(const Options& o, Progress& progress) {
     const PictureInput picture = o.scene.picture.pictureOf(opened.scene);
     const auto renderer = makeRenderer(opened.scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;
-    const Image image = renderer->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
+    Image image = renderer->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
     const double renderSeconds = drawing.seconds();
+    if (o.annotate.any()) drawMarks(image, annotationMarks(annotationInput(picture, o.annotate)));
     progress.phase("writing");
     writeImage(image, o.out);
 
@@ -77,6 +97,11 @@ Command addRender(CLI::App& program) {
         "the picture to write: .png, .tif, .exr or .jpg")
         ->required();
     o->scene.picture.add(*app);
+    addValue(
+        *app, "--annotate", "PARTS",
+        [o](const std::string& text, const std::string& option) { o->annotate = parseParts(text, option); },
+        "draw the frame of reference over the picture: all, or some of cube, letters, axes, scale, legend, title with "
+        "commas between");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -59,7 +59,10 @@ void Actions::refresh() {
     for (const Entry& e : m_entries) {
         if (e.spec.enabled) e.action->setEnabled(e.spec.enabled());
         if (e.spec.checked) e.action->setChecked(e.spec.checked());
-        if (e.spec.say) e.action->setToolTip(tipOf(e.spec, e.spec.say()));
+        if (e.spec.caption) e.action->setText(e.spec.caption());
+        if (!e.spec.say) continue;
+        e.action->setToolTip(tipOf(e.spec, e.spec.say()));
+        e.action->setStatusTip(e.spec.say());
     }
 }
 
@@ -122,7 +125,7 @@ QString Actions::keyTable() const {
         if (e.spec.keys.isEmpty() || !e.spec.inKeyTable) continue;
         const QString menu = plain(e.spec.menu.section('/', 0, 0));
         if (menu != group) head(group = menu);
-        row(keysText(e.spec.keys), plain(e.spec.text));
+        row(keysText(e.spec.keys), plain(e.action->text()));
     }
     return QStringLiteral("<table cellpadding=2>%1</table>").arg(rows);
 }

@@ -24,10 +24,11 @@ struct ActionSpec {
     std::function<void()> trigger = {};
     std::function<bool()> enabled = {}; ///< empty: always
     std::function<bool()> checked = {}; ///< empty: not checkable
-    std::function<QString()> say = {};  ///< what the present text is, where it changes ("Undo: Move point")
+    std::function<QString()> say = {};  ///< the tool tip's text, where it changes ("Undo: Move point")
     bool separatorBefore = false;
     bool inToolBar = false;
     bool inKeyTable = true; ///< only where it has keys
+    std::function<QString()> caption = {}; ///< the text, where it changes
 };
 
 /// What the mouse does somewhere, for the table of keys.

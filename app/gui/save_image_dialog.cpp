@@ -13,10 +13,11 @@
 
 namespace pellucid::gui {
 
-SaveImageDialog::SaveImageDialog(const QString& path, const QSize& seen, QWidget* parent)
+SaveImageDialog::SaveImageDialog(const QString& path, const QSize& seen, bool reference, QWidget* parent)
     : QDialog(parent), m_seen(seen), m_path(new QLineEdit(path, this)), m_preset(new QComboBox(this)),
       m_width(new QSpinBox(this)), m_height(new QSpinBox(this)),
-      m_transparent(new QCheckBox(tr("Transparent background (PNG, TIFF, EXR)"), this)) {
+      m_transparent(new QCheckBox(tr("Transparent background (PNG, TIFF, EXR)"), this)),
+      m_reference(new QCheckBox(tr("With &frame of reference"), this)) {
     setObjectName("saveImageDialog");
     setWindowTitle(tr("Save image"));
     m_path->setObjectName("imagePath");
@@ -25,6 +26,10 @@ SaveImageDialog::SaveImageDialog(const QString& path, const QSize& seen, QWidget
     m_width->setObjectName("imageWidth");
     m_height->setObjectName("imageHeight");
     m_transparent->setObjectName("imageTransparent");
+    m_reference->setObjectName("imageReference");
+    m_reference->setToolTip(tr("What the window shows around the picture: View → Frame of reference"));
+    m_reference->setEnabled(reference);
+    m_reference->setChecked(reference);
     for (QSpinBox* box : {m_width, m_height}) {
         box->setRange(1, 16384);
         box->setSuffix(tr(" px"));
@@ -72,11 +77,15 @@ SaveImageDialog::SaveImageDialog(const QString& path, const QSize& seen, QWidget
     form->addRow(tr("Size"), m_preset);
     form->addRow(QString(), size);
     form->addRow(QString(), m_transparent);
+    form->addRow(QString(), m_reference);
     form->addRow(buttons);
 }
 
 SaveImageOptions SaveImageDialog::options() const {
-    return {m_path->text().trimmed(), {m_width->value(), m_height->value()}, m_transparent->isChecked()};
+    return {m_path->text().trimmed(),
+            {m_width->value(), m_height->value()},
+            m_transparent->isChecked(),
+            m_reference->isChecked()};
 }
 
 } // namespace pellucid::gui

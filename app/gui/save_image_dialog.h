@@ -15,13 +15,14 @@ struct SaveImageOptions {
     QString path;
     QSize size;
     bool transparent = false;
+    bool reference = false; ///< with what stands around the picture
 };
 
 class SaveImageDialog : public QDialog {
     Q_OBJECT
 public:
-    /// `seen`: pixels of the view, the size that is offered first.
-    SaveImageDialog(const QString& path, const QSize& seen, QWidget* parent = nullptr);
+    /// `seen`: pixels of the view, the size that is offered first; `reference`: whether a frame of reference is shown.
+    SaveImageDialog(const QString& path, const QSize& seen, bool reference, QWidget* parent = nullptr);
     SaveImageOptions options() const;
 
 private:
@@ -29,7 +30,7 @@ private:
     QLineEdit* m_path;
     QComboBox* m_preset;
     QSpinBox *m_width, *m_height;
-    QCheckBox* m_transparent;
+    QCheckBox *m_transparent, *m_reference;
 };
 
 } // namespace pellucid::gui

@@ -5,11 +5,12 @@
 #include <QStatusBar>
 #include <QToolButton>
 
-#include "axis_ticks.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/save_controller.h"
+#include "number_text.h"
 #include "render/camera_motion.h"
+#include "volume/orientation.h"
 #include "volume_view.h"
 #include "workbench.h"
 
@@ -78,12 +79,13 @@ void StatusLine::followScene() {
                           .arg(volume.dims().y)
                           .arg(volume.dims().z)
                           .arg(QString::fromLatin1(name(volume.sampleType()))));
-    m_volume->setToolTip(tr("%1, values %2, spacing %3 × %4 × %5, %L6 invalid voxels")
+    m_volume->setToolTip(tr("%1, values %2, spacing %3 × %4 × %5, %L6 invalid voxels\naxes: %7")
                              .arg(QString::fromStdString(volume.format), rangeText(volume.dataRange()))
                              .arg(volume.geometry().spacing.x)
                              .arg(volume.geometry().spacing.y)
                              .arg(volume.geometry().spacing.z)
-                             .arg(volume.invalidCount()));
+                             .arg(volume.invalidCount())
+                             .arg(QString::fromStdString(axesText(volume.geometry()))));
     const ViewAngles angles = viewAngles(scene.camera, volume.geometry());
     m_camera->setText(QStringLiteral("%1°, %2°  ×%3")
                           .arg(angles.azimuth, 0, 'f', 0)

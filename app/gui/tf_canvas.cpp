@@ -12,7 +12,7 @@
 #include <QPainterPath>
 #include <QToolTip>
 
-#include "axis_ticks.h"
+#include "number_text.h"
 #include "store/edits.h"
 #include "tf_edit.h"
 #include "theme.h"

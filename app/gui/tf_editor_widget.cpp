@@ -9,8 +9,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "axis_ticks.h"
 #include "number_box.h"
+#include "number_text.h"
 #include "panel.h"
 #include "store/edits.h"
 #include "tf_edit.h"

@@ -9,6 +9,7 @@
 
 #include "controllers/view_actions.h"
 #include "cpu_surface.h"
+#include "frame_layer.h"
 #include "gl_surface.h"
 #include "render/camera_motion.h"
 
@@ -40,6 +41,7 @@ VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* pare
     } else {
         setSurface(std::make_unique<CpuSurface>());
     }
+    m_overlay->add(std::make_unique<FrameLayer>());
     connect(&store, &SessionStore::changed, this, &VolumeView::updateScene);
 }
 

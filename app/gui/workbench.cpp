@@ -1,5 +1,6 @@
 #include "workbench.h"
 
+#include "controllers/frame_actions.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
@@ -23,11 +24,12 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     addTfActions(*this);
     m_optimizing->addActions();
     addViewActions(*this);
+    addFrameActions(*this);
 
     connect(&m_store, &SessionStore::historyChanged, &m_actions, &Actions::refresh);
     connect(&m_store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features.empty() != after.tf.features.empty() ||
-            before.camera.projection != after.camera.projection)
+            before.camera.projection != after.camera.projection || before.session.reference != after.session.reference)
             m_actions.refresh();
     });
     connect(&m_results, &Results::changed, this, &Workbench::idleChanged);

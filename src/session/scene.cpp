@@ -107,11 +107,13 @@ Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry) {
     const Projection projection = inputs.projection.value_or(Projection::Perspective);
     Camera camera;
     std::string where = "the camera of the session";
-    if (inputs.camera) {
+    std::optional<ViewAngles> view = inputs.view;
+    if (inputs.namedView) view = anglesOf(*inputs.namedView, geometry.frame);
+    if (inputs.camera && !inputs.namedView) {
         camera = *inputs.camera;
         where = inputs.cameraName;
-    } else if (inputs.view) {
-        camera = cameraFromView(geometry, inputs.view->azimuth, inputs.view->elevation, inputs.view->zoom, projection);
+    } else if (view) {
+        camera = cameraFromView(geometry, view->azimuth, view->elevation, view->zoom, projection);
         where = "view";
     } else if (inputs.session.camera) {
         camera = *inputs.session.camera;
@@ -135,7 +137,7 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (tf) session.setTf(std::move(*tf));
     Scene scene = resolve(std::move(session), {}, inputs.then, job);
     scene.camera = cameraOf(inputs, scene.volume->geometry());
-    if (inputs.camera || inputs.view || inputs.projection) scene.session.camera = scene.camera;
+    if (inputs.camera || inputs.view || inputs.namedView || inputs.projection) scene.session.camera = scene.camera;
     return scene;
 }
 
@@ -168,6 +170,12 @@ PictureInput pictureInput(const Scene& scene, int width, int height, bool transp
     s.clipping = *scene.session.clipping;
     s.onlyFeature = scene.onlyFeature();
     return input;
+}
+
+AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density) {
+    const Volume& volume = *picture.volume;
+    return {show,           picture.camera, volume.geometry(), picture.tf,
+            volume.range(), volume.title,   picture.settings,  density};
 }
 
 } // namespace pellucid

@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "render/camera_motion.h"
+#include "render/annotation.h"
+#include "render/standard_view.h"
 #include "session/session.h"
 #include "volume/histogram.h"
 #include "volume/intensity_grid.h"
@@ -36,12 +37,13 @@ struct SceneInputs {
     std::optional<Camera> camera;
     std::string cameraName;               ///< of `camera` in messages, such as its file
     std::optional<ViewAngles> view;       ///< in place of `camera`, see cameraFromView()
+    std::optional<NamedView> namedView;   ///< in place of both
     std::optional<Projection> projection; ///< of `view`, else of the session's camera, else of the home view
     MemoryUse then;                       ///< what is done with the volume, see VolumeSource
 };
 
-/// From where the inputs look at a volume: `camera`, else `view`, else the session's camera, else the home view. Throws
-/// Error where that is inside its box.
+/// From where the inputs look at a volume: `namedView`, else `camera`, else `view`, else the session's camera, else the
+/// home view. Throws Error where that is inside its box.
 Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry);
 
 /// Opens everything. The intensity window is `range`, else that of the named transfer-function file, else the
@@ -81,5 +83,9 @@ struct PictureInput {
 };
 /// Samples at half of d0 (quality high: a quarter). `transparent`: without the background.
 PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent = false);
+
+/// Everything that what stands around a picture depends on; the picture has a volume. `density`: pixels of the picture
+/// in which lengths of the screen are one.
+AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density = 1);
 
 } // namespace pellucid

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "optimize/optimizer.h"
+#include "render/annotation.h"
 #include "render/engine_choice.h"
 #include "render/render_settings.h"
 #include "render/view.h"
@@ -99,6 +100,7 @@ struct Session {
     std::optional<Camera> camera; ///< empty: the home view of the volume
     Part<Clipping> clipping;      ///< what is cut away, of pictures and of figures
     Part<DisplaySettings> display;
+    Part<FrameOfReference> reference; ///< what stands around the picture
     Part<MeasureSettings> measure;
     Part<OptimizeOptions> optimize;
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns

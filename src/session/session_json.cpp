@@ -424,6 +424,21 @@ DisplaySettings toDisplay(const JsonValue& j) {
     return d;
 }
 
+json fromReference(const FrameOfReference& r) {
+    json j{{"on", r.on}};
+    for (const FramePartInfo& part : kFrameParts) j[part.name] = r.*part.shown;
+    return j;
+}
+
+FrameOfReference toReference(const JsonValue& j) {
+    j.requireObject();
+    FrameOfReference r;
+    if (j.has("on")) r.on = j["on"].boolean();
+    for (const FramePartInfo& part : kFrameParts)
+        if (j.has(part.name)) r.*part.shown = j[part.name].boolean();
+    return r;
+}
+
 json fromClipping(const Clipping& c) {
     json j{{"lo", fromVec(c.lo)}, {"hi", fromVec(c.hi)}};
     for (const ClipPlane& plane : c.planes)
@@ -455,6 +470,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"features", fromGoals(*s.goals)},
            {"clip", fromClipping(*s.clipping)},
            {"display", fromDisplay(*s.display)},
+           {"reference", fromReference(*s.reference)},
            {"measure", fromMeasure(*s.measure)},
            {"optimize", fromOptimize(*s.optimize)},
            {"runs", json::array()}};
@@ -484,6 +500,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("camera")) s.camera = cameraFromJson(j["camera"]);
     if (j.has("clip")) s.clipping = toClipping(j["clip"]);
     if (j.has("display")) s.display = toDisplay(j["display"]);
+    if (j.has("reference")) s.reference = toReference(j["reference"]);
     if (j.has("measure")) s.measure = toMeasure(j["measure"]);
     if (j.has("optimize")) s.optimize = toOptimize(j["optimize"]);
     if (j.has("runs")) {
@@ -492,7 +509,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         s.runs = std::move(runs);
     }
     s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "camera", "clip", "display",
-                                 "measure", "optimize", "runs", "title"});
+                                 "reference", "measure", "optimize", "runs", "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

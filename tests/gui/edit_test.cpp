@@ -1,6 +1,5 @@
 #include "gui_support.h"
 
-#include "axis_ticks.h"
 #include "raw_dialog.h"
 #include "tf_edit.h"
 
@@ -60,19 +59,6 @@ TEST_CASE("the colour of a feature is the colour of its points, and of its peak"
 TEST_CASE("the opacity of one feature leaves the others alone", "[edit]") {
     const TransferFunction changed = withFeatureOpacity(tents(3, 0.5), 2, 0.125);
     CHECK(featureOpacities(changed) == std::vector<double>{0.5, 0.5, 0.125});
-}
-
-TEST_CASE("axes have round numbers inside their range", "[axis]") {
-    CHECK(axisTicks(0, 255, 6) == std::vector<double>{0, 50, 100, 150, 200, 250});
-    CHECK(axisTicks(-1, 1, 4) == std::vector<double>{-1, -0.5, 0, 0.5, 1});
-    const auto tiny = axisTicks(1e-7, 3e-7, 4); // steps of 5e-8: 1, 1.5, 2, 2.5, 3
-    REQUIRE(tiny.size() == 5);
-    CHECK(tiny[1] == Approx(1.5e-7));
-    CHECK(axisTicks(3, 3, 5).empty());
-    CHECK(axisTicks(0, std::numeric_limits<double>::infinity(), 5).empty());
-    CHECK(numberText(50, 255) == "50");
-    CHECK(numberText(-0.25, 2) == "-0.25");
-    CHECK(numberText(2.5e-7, 2e-7) == "2.5e-07");
 }
 
 TEST_CASE("the layout of raw data is guessed from name and size", "[raw]") {

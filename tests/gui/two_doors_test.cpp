@@ -99,9 +99,10 @@ void compareDoors(OpenWindow& w, const Inputs& inputs) {
 
         // The picture, pixel by pixel.
         const QString ours = folder.filePath("window.png"), theirs = folder.filePath("line.png");
-        w.saving().saveImage({ours, {160, 120}, false});
+        w.saving().saveImage({ours, {160, 120}, false, true});
         w.settle();
-        cli(QStringList{"render"} + door + QStringList{"--size", "160x120", "--out", theirs});
+        cli(QStringList{"render"} + door +
+            QStringList{"--size", "160x120", "--annotate", "cube,letters,scale", "--out", theirs});
         CHECK(readImage(ours.toStdString()).rgba == readImage(theirs.toStdString()).rgba);
 
         const json refined = cli(QStringList{"refine"} + door);

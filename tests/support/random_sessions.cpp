@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 namespace pellucid::test {
 
 namespace {
@@ -215,6 +217,12 @@ Session randomSession(std::uint32_t number) {
         if (random.chance(0.3)) d.backgroundTop = randomColor(random);
         d.onlyFeature = only;
         s.display = d;
+    }
+    if (random.chance(0.5)) {
+        FrameOfReference reference;
+        reference.on = random.chance(0.8);
+        for (const FramePartInfo& part : kFrameParts) reference.*part.shown = random.chance(0.5);
+        s.reference = reference;
     }
     if (random.chance(0.7)) s.measure = randomMeasure(random);
     if (random.chance(0.7)) s.optimize = randomOptimize(random);

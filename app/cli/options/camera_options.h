@@ -13,6 +13,7 @@ namespace pellucid::cli {
 struct CameraOptions {
     std::optional<std::string> file;
     std::optional<ViewAngles> view;
+    std::optional<NamedView> namedView;
     bool orthographic = false;
     std::optional<ViewAngles> fallback; ///< the command's own, where neither options nor session say
 

@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "axis_ticks.h"
 #include "controllers/save_controller.h"
+#include "number_text.h"
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
 #include "tf/formats/tf_json.h"

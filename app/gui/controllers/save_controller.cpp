@@ -9,6 +9,7 @@
 #include "controllers/open_controller.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
+#include "render/annotation_raster.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_json.h"
 #include "workbench.h"
@@ -27,8 +28,10 @@ SaveController::SaveController(Workbench& bench)
       m_images(
           [](const Picture& picture, const JobControl& job) {
               const auto renderer = makeRenderer(EngineChoice::Auto, picture.input.volume);
-              const Image image = renderer->render(picture.input.camera, picture.input.tf, picture.input.settings, job);
+              Image image = renderer->render(picture.input.camera, picture.input.tf, picture.input.settings, job);
               job.throwIfStopped();
+              if (picture.reference.any())
+                  drawMarks(image, annotationMarks(annotationInput(picture.input, picture.reference)));
               writeImage(image, picture.path.toStdString());
               return picture.path;
           },
@@ -106,7 +109,8 @@ bool SaveController::saveTf(const QString& path) {
 void SaveController::saveImage(const SaveImageOptions& options) {
     if (!m_bench.store().hasVolume()) return;
     const Picture picture{
-        pictureInput(m_bench.scene(), options.size.width(), options.size.height(), options.transparent), options.path};
+        pictureInput(m_bench.scene(), options.size.width(), options.size.height(), options.transparent),
+        options.reference ? *m_bench.scene().session.reference : FrameOfReference::none(), options.path};
     try {
         picture.input.settings.validate();
         checkImageSuffix(options.path.toStdString());
@@ -152,7 +156,8 @@ bool SaveController::chooseTf(bool askForName) {
 void SaveController::chooseImage() {
     if (!m_bench.store().hasVolume()) return;
     const QString folder = QSettings().value("imageFolder", QDir::homePath()).toString();
-    SaveImageDialog dialog(QDir(folder).filePath(baseName(m_bench.scene()) + ".png"), m_seen, m_bench.window());
+    SaveImageDialog dialog(QDir(folder).filePath(baseName(m_bench.scene()) + ".png"), m_seen,
+                           m_bench.scene().session.reference->any(), m_bench.window());
     while (dialog.exec() == QDialog::Accepted) {
         const SaveImageOptions options = dialog.options();
         if (options.path.isEmpty()) continue;

@@ -42,6 +42,7 @@ Q_SIGNALS:
 private:
     struct Picture {
         PictureInput input;
+        FrameOfReference reference;
         QString path;
     };
     bool chooseSession(bool askForName);

@@ -4,6 +4,52 @@
 #include "workbench.h"
 
 namespace pellucid::gui {
+namespace {
+
+Frame frameOf(const SessionStore& store) {
+    return store.hasVolume() ? store.scene().volume->geometry().frame : Frame::File;
+}
+
+QString captionOf(StandardView view, Frame frame) {
+    const bool patient = frame == Frame::Patient;
+    switch (view) {
+    case StandardView::Front:
+        return patient ? QObject::tr("Anterior") : QObject::tr("Front");
+    case StandardView::Back:
+        return patient ? QObject::tr("Posterior") : QObject::tr("Back");
+    case StandardView::Left:
+        return QObject::tr("Left");
+    case StandardView::Right:
+        return QObject::tr("Right");
+    case StandardView::Top:
+        return patient ? QObject::tr("Superior") : QObject::tr("Top");
+    case StandardView::Bottom:
+        return patient ? QObject::tr("Inferior") : QObject::tr("Bottom");
+    }
+    return {};
+}
+
+QString tipOf(StandardView view, Frame frame) {
+    if (frame != Frame::Patient) return QObject::tr("Look from this side of the file's axes");
+    switch (view) {
+    case StandardView::Front:
+        return QObject::tr("From the front of the patient, whose left is at the right");
+    case StandardView::Back:
+        return QObject::tr("From behind the patient, whose left is at the left");
+    case StandardView::Left:
+        return QObject::tr("From the patient's left, with the front at the left");
+    case StandardView::Right:
+        return QObject::tr("From the patient's right, with the front at the right");
+    case StandardView::Top:
+        return QObject::tr("From above the head, with the front up and the patient's left at the left");
+    case StandardView::Bottom:
+        return QObject::tr(
+            "From the feet, with the front up and the patient's left at the right, as radiologists look");
+    }
+    return {};
+}
+
+} // namespace
 
 void fitView(SessionStore& store) {
     if (store.hasVolume()) store.setCamera(fitted(store.scene().camera, store.scene().volume->geometry()));
@@ -16,28 +62,9 @@ void resetView(SessionStore& store) {
 
 void setStandardView(SessionStore& store, StandardView view) {
     if (!store.hasVolume()) return;
-    double azimuth = 0, elevation = 0;
-    switch (view) {
-    case StandardView::Front:
-        break;
-    case StandardView::Back:
-        azimuth = 180;
-        break;
-    case StandardView::Left:
-        azimuth = -90;
-        break;
-    case StandardView::Right:
-        azimuth = 90;
-        break;
-    case StandardView::Top:
-        elevation = 90;
-        break;
-    case StandardView::Bottom:
-        elevation = -90;
-        break;
-    }
-    store.setCamera(
-        standardCamera(store.scene().volume->geometry(), azimuth, elevation, store.scene().camera.projection));
+    const Geometry& geometry = store.scene().volume->geometry();
+    const ViewAngles angles = anglesOf(view, geometry.frame);
+    store.setCamera(standardCamera(geometry, angles.azimuth, angles.elevation, store.scene().camera.projection));
 }
 
 void setProjection(SessionStore& store, Projection projection) {
@@ -72,16 +99,19 @@ void addViewActions(Workbench& bench) {
         [&store] { fitView(store); });
     add("resetViewAction", QObject::tr("&Reset"), {QKeySequence("Home")},
         QObject::tr("The view that the volume opened with"), [&store] { resetView(store); });
-    const std::pair<QString, StandardView> views[] = {
-        {QObject::tr("Front"), StandardView::Front}, {QObject::tr("Back"), StandardView::Back},
-        {QObject::tr("Left"), StandardView::Left},   {QObject::tr("Right"), StandardView::Right},
-        {QObject::tr("Top"), StandardView::Top},     {QObject::tr("Bottom"), StandardView::Bottom}};
     int key = 1;
-    for (const auto& [text, view] : views) {
+    for (const StandardView view : kStandardViews) {
         const QString number = QString::number(key);
-        add(
-            "view" + number, text, {QKeySequence(number)}, QObject::tr("Look from this side"),
-            [&store, side = view] { setStandardView(store, side); }, key == 1);
+        actions.add({.id = "view" + number,
+                     .menu = menu,
+                     .text = captionOf(view, Frame::File),
+                     .keys = {QKeySequence(number)},
+                     .trigger = [&store, view] { setStandardView(store, view); },
+                     .enabled = open,
+                     .say = [&store, view] { return tipOf(view, frameOf(store)); },
+                     .separatorBefore = key == 1,
+                     .inToolBar = true,
+                     .caption = [&store, view] { return captionOf(view, frameOf(store)); }});
         ++key;
     }
     actions.add({.id = "perspectiveAction",

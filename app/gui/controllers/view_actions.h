@@ -1,13 +1,12 @@
 // How the camera is set: what the View menu and the hands on the picture share.
 #pragma once
 
+#include "render/standard_view.h"
 #include "store/session_store.h"
 
 namespace pellucid::gui {
 
 class Workbench;
-
-enum class StandardView { Front, Back, Left, Right, Top, Bottom };
 
 void fitView(SessionStore& store);   ///< the same direction, the whole box
 void resetView(SessionStore& store); ///< as a volume opens

@@ -1,6 +1,6 @@
 #include "models/features_model.h"
 
-#include "axis_ticks.h"
+#include "number_text.h"
 #include "store/edits.h"
 #include "tf_edit.h"
 #include "theme.h"

@@ -14,9 +14,9 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "axis_ticks.h"
 #include "controllers/open_controller.h"
 #include "number_box.h"
+#include "number_text.h"
 #include "panel.h"
 #include "theme.h"
 #include "workbench.h"

@@ -1,0 +1,17 @@
+// Numbers as the window writes them.
+#pragma once
+
+#include <QString>
+
+#include "base/round_numbers.h"
+#include "volume/volume.h"
+
+namespace pellucid::gui {
+
+/// As pellucid::numberText().
+QString numberText(double value, double span);
+
+/// "-1024 – 2986": both ends with as many digits as the range needs.
+QString rangeText(const ValueRange& range);
+
+} // namespace pellucid::gui

@@ -1,0 +1,22 @@
+// Round numbers and their texts, for axes, scales and legends.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pellucid {
+
+/// Multiples of 1, 2 or 5 times a power of ten within [lo, hi], about `wanted` of them. Empty unless lo < hi, both
+/// finite.
+std::vector<double> axisTicks(double lo, double hi, int wanted);
+
+/// The largest of 1, 2 or 5 times a power of ten that is at most `most`, which is > 0 and finite.
+double roundNumberBelow(double most);
+
+/// `value` with as many digits as tell apart values in a range of width `span`; the same in every locale.
+std::string numberText(double value, double span);
+
+/// Decimals that tell apart values in a range of width `span`, [0, 12].
+int decimalsFor(double span);
+
+} // namespace pellucid

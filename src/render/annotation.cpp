@@ -1,0 +1,517 @@
+#include "render/annotation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+#include "base/round_numbers.h"
+#include "volume/orientation.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr double kSmallestText = 7;       // pixels of the screen, height of a capital
+constexpr double kTextOfPicture = 0.0115; // the same, of the picture's shorter side
+constexpr Rgb kLight{0.93, 0.94, 0.95}, kDark{0.07, 0.08, 0.09};
+constexpr Rgb kAmber{1.0, 0.83, 0.42}, kBrown{0.48, 0.27, 0.02}; // of the letters at the edges
+
+Rgb mixed(const Rgb& a, const Rgb& b, double share) {
+    return {a.r + (b.r - a.r) * share, a.g + (b.g - a.g) * share, a.b + (b.b - a.b) * share};
+}
+
+enum class Align { Start, Middle, End };
+double shareOf(Align align) { return align == Align::Start ? 0.0 : align == Align::Middle ? 0.5 : 1.0; }
+
+/// The world in the picture.
+class Projected {
+public:
+    Projected(const Camera& camera, double width, double height)
+        : m_camera(camera), m_forward(camera.forward()), m_right(camera.right()), m_up(camera.trueUp()), m_width(width),
+          m_height(height), m_tangent(std::tan(camera.fovY * std::numbers::pi / 360)) {}
+
+    bool isPerspective() const { return m_camera.projection == Projection::Perspective; }
+    double depth(const Vec3& p) const { return glm::dot(p - m_camera.eye, m_forward); }
+    /// World units per pixel at a depth.
+    double unitsPerPixel(double depth) const {
+        return (isPerspective() ? 2 * depth * m_tangent : m_camera.height) / m_height;
+    }
+    /// depth(p) > 0 where perspective.
+    Vec2 operator()(const Vec3& p) const {
+        const Vec3 way = p - m_camera.eye;
+        const double scale = 1 / unitsPerPixel(depth(p));
+        return {m_width / 2 + glm::dot(way, m_right) * scale, m_height / 2 - glm::dot(way, m_up) * scale};
+    }
+    /// Whether a plane through `p` is seen from the side that its normal points to.
+    bool faces(const Vec3& normal, const Vec3& p) const {
+        const Vec3 towardEye = isPerspective() ? m_camera.eye - p : -m_forward;
+        return glm::dot(normal, towardEye) > 1e-9 * glm::length(towardEye);
+    }
+    /// A direction, seen from far away: right and up in the picture, and toward the viewer.
+    Vec3 turned(const Vec3& d) const { return {glm::dot(d, m_right), glm::dot(d, m_up), -glm::dot(d, m_forward)}; }
+    const Vec3& right() const { return m_right; }
+    const Vec3& up() const { return m_up; }
+
+private:
+    Camera m_camera;
+    Vec3 m_forward, m_right, m_up;
+    double m_width, m_height, m_tangent;
+};
+
+/// The sheet that everything is laid out on.
+class Sheet {
+public:
+    explicit Sheet(const AnnotationInput& input)
+        : m_in(input), m_width(input.picture.width), m_height(input.picture.height),
+          m_project(input.camera, m_width, m_height) {
+        m_cap = std::max(kSmallestText * input.density, kTextOfPicture * std::min(m_width, m_height));
+        m_margin = 1.3 * m_cap;
+        Rgb ground = input.picture.background.value_or(Rgb{});
+        if (input.picture.background && input.picture.backgroundTop)
+            ground = mixed(ground, *input.picture.backgroundTop, 0.5);
+        m_onDark = 0.3 * ground.r + 0.59 * ground.g + 0.11 * ground.b < 0.5;
+        m_ink = m_onDark ? kLight : kDark;
+        m_halo = m_onDark ? kDark : kLight;
+    }
+
+    std::vector<Mark> marks() {
+        const FrameOfReference& show = m_in.show;
+        if (!show.on) return {};
+        if (show.cube) addCube();
+        if (show.scale) addScale();
+        if (show.legend) addLegend();
+        if (show.letters && m_in.geometry.frame == Frame::Patient) addLetters();
+        for (Mark& name : m_names) place({std::move(name)}); // where they fit
+        if (show.title) addTitle();
+        if (!show.axes) return std::move(m_marks);
+        std::vector<Mark> rest;
+        std::swap(rest, m_marks);
+        addAxes(); // labels find room between the others; lines lie below them
+        m_marks.insert(m_marks.end(), std::make_move_iterator(rest.begin()), std::make_move_iterator(rest.end()));
+        return std::move(m_marks);
+    }
+
+private:
+    // ---- marks
+
+    Mark lineMark(FramePart part, std::vector<Vec2> points, double width) const {
+        Mark mark;
+        mark.part = part;
+        mark.points = std::move(points);
+        mark.color = m_ink;
+        mark.width = width;
+        mark.halo = 0.14 * m_cap;
+        mark.haloColor = m_halo;
+        return mark;
+    }
+    Mark areaMark(FramePart part, std::vector<Vec2> corners, const Rgb& color, double alpha = 1) const {
+        Mark mark;
+        mark.part = part;
+        mark.kind = Mark::Kind::Area;
+        mark.points = std::move(corners);
+        mark.color = color;
+        mark.alpha = alpha;
+        return mark;
+    }
+    Mark boxMark(FramePart part, const PixelBox& b, const Rgb& color, double alpha = 1) const {
+        return areaMark(part, {{b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}}, color,
+                        alpha);
+    }
+    /// `at`: the start, middle or end of its capitals' box in each direction; vertically Start is the top.
+    Mark textMark(FramePart part, const std::string& text, const Vec2& at, Align horizontal, Align vertical,
+                  double cap) const {
+        Mark mark = lineMark(part, {}, 0.14 * cap);
+        mark.kind = Mark::Kind::Text;
+        mark.points = {{at.x - shareOf(horizontal) * cap * textWidth(text), at.y + (1 - shareOf(vertical)) * cap}};
+        mark.text = text;
+        mark.across = {cap, 0};
+        mark.up = {0, -cap};
+        return mark;
+    }
+
+    bool isFree(const PixelBox& box) const {
+        if (box.left < 0 || box.top < 0 || box.right > m_width || box.bottom > m_height) return false;
+        return std::none_of(m_taken.begin(), m_taken.end(), [&](const PixelBox& t) { return t.meets(box); });
+    }
+    /// Adds marks that belong together, and keeps others away from them; false: there is no room.
+    bool place(std::vector<Mark> group) {
+        if (group.empty()) return false;
+        PixelBox box = extentOf(group.front());
+        for (const Mark& mark : group) {
+            const PixelBox one = extentOf(mark);
+            box = {std::min(box.left, one.left), std::min(box.top, one.top), std::max(box.right, one.right),
+                   std::max(box.bottom, one.bottom)};
+        }
+        if (!isFree(box)) return false;
+        m_taken.push_back(box);
+        std::move(group.begin(), group.end(), std::back_inserter(m_marks));
+        return true;
+    }
+
+    // ---- the parts
+
+    void addCube() {
+        const double radius = std::max(18 * m_in.density, 0.055 * std::min(m_width, m_height)); // to a corner
+        const double half = radius / std::sqrt(3.0);
+        const Vec2 middle{m_margin + radius, m_height - m_margin - radius};
+        const auto at = [&](const Vec3& p) { // p in half edges
+            const Vec3 t = m_project.turned(p);
+            return middle + Vec2(t.x, -t.y) * half;
+        };
+        const auto onPicture = [&](const Vec3& d) {
+            const Vec3 t = m_project.turned(d);
+            return Vec2(t.x, -t.y) * half;
+        };
+        constexpr std::array<Rgb, 3> kColors{Rgb{0.72, 0.33, 0.31}, Rgb{0.36, 0.56, 0.33}, Rgb{0.30, 0.45, 0.74}};
+        const bool patient = m_in.geometry.frame == Frame::Patient;
+        std::vector<Mark> cube;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double sign : {1.0, -1.0}) {
+                Vec3 normal(0);
+                normal[axis] = sign;
+                const double facing = m_project.turned(normal).z;
+                if (facing <= 1e-6) continue;
+                // Letters stand upright on the sides; above and below their top is where the views from there have it.
+                const Vec3 up = axis < 2 ? Vec3(0, 0, 1) : Vec3(0, patient ? -1 : sign, 0);
+                const Vec3 right = glm::cross(up, normal);
+                const std::vector<Vec2> corners{at(normal - right - up), at(normal + right - up),
+                                                at(normal + right + up), at(normal - right + up)};
+                const Rgb color = mixed(kDark, kColors[static_cast<std::size_t>(axis)], 0.45 + 0.55 * facing);
+                cube.push_back(areaMark(FramePart::Cube, corners, color));
+                Mark edges = lineMark(FramePart::Cube, corners, std::max(m_in.density, 0.09 * m_cap));
+                edges.points.push_back(corners.front());
+                edges.color = mixed(kLight, color, 0.35);
+                edges.halo = 0;
+                cube.push_back(edges);
+                std::string text(1, patient ? patientLetter(axis, sign > 0) : "XYZ"[axis]);
+                if (!patient && sign < 0) text = "−" + text;
+                const double cap = text.size() == 1 ? 1.15 : 0.85; // in half edges
+                Mark letter = textMark(FramePart::Cube, text, {}, Align::Start, Align::Start, m_cap);
+                const Vec3 start = normal - right * (0.5 * cap * textWidth(text)) - up * (0.5 * cap);
+                letter.points = {at(start)};
+                letter.across = onPicture(right * cap);
+                letter.up = onPicture(up * cap);
+                letter.color = kLight;
+                letter.alpha = std::clamp((facing - 0.1) / 0.25, 0.0, 1.0);
+                letter.width = 0.14 * cap * half;
+                letter.halo = 0;
+                if (letter.alpha > 0) cube.push_back(letter);
+            }
+        place(std::move(cube));
+    }
+
+    void addScale() {
+        const double depth = m_project.depth(m_in.camera.center);
+        const double units = m_project.unitsPerPixel(depth);
+        const double length = roundNumberBelow(0.22 * m_width * units), pixels = length / units;
+        if (!std::isfinite(pixels)) return;
+        const std::string text =
+            numberText(length, length) + (m_in.geometry.frame == Frame::Patient ? " mm" : " units");
+        const double stroke = std::max(1.2 * m_in.density, 0.17 * m_cap), end = 0.45 * m_cap;
+        const double block = std::max(pixels, m_cap * textWidth(text));
+        const double right = m_width - m_margin - (block - pixels) / 2, y = m_height - m_margin - end / 2;
+        Mark bar = lineMark(FramePart::Scale,
+                            {{right - pixels, y - end}, {right - pixels, y}, {right, y}, {right, y - end}}, stroke);
+        place({bar, textMark(FramePart::Scale, text, {right - pixels / 2, y - end - 0.4 * m_cap}, Align::Middle,
+                             Align::End, m_cap)});
+    }
+
+    struct LegendRow {
+        Rgb color;
+        double opacity = 0;
+    };
+    /// What intensity s is drawn as.
+    LegendRow legendRow(const TfSampler& tf, const std::vector<double>& peaks, double s) const {
+        const RenderMode mode = m_in.picture.mode;
+        const Feature* alone = m_in.picture.featureAlone(m_in.tf);
+        if (alone != nullptr && !alone->contains(s)) return {};
+        if (mode == RenderMode::Composite) return {tf.color(s), tf.opacity(s)};
+        if (mode != RenderMode::Surface) return {{s, s, s}, 1}; // grey
+        const int feature = featureAt(m_in.tf.features, s);
+        if (feature < 0) return {};
+        const auto i = static_cast<std::size_t>(feature);
+        return {m_in.tf.features[i].color, peaks[i]};
+    }
+
+    void addLegend() {
+        const double lo = m_in.window.lo, span = m_in.window.hi - lo;
+        if (!(span > 0) || !std::isfinite(span)) return;
+        double bottom = m_height - m_margin;
+        for (const PixelBox& t : m_taken)
+            if (t.right > 0.5 * m_width) bottom = std::min(bottom, t.top - m_cap);
+        const double top = std::round(m_margin + 0.5 * m_cap);
+        const double height = std::round(std::min(bottom - top - 0.5 * m_cap, std::max(0.45 * m_height, 12 * m_cap)));
+        if (height < 6 * m_cap) return;
+        const auto yOf = [&](double s) { return top + (1 - s) * height; };
+
+        std::vector<Mark> legend;
+        const std::vector<double> ticks =
+            axisTicks(lo, m_in.window.hi, std::clamp(static_cast<int>(height / (3.5 * m_cap)), 2, 10));
+        double labels = 0;
+        for (const double tick : ticks) labels = std::max(labels, m_cap * textWidth(numberText(tick, span)));
+        const double right = std::round(m_width - m_margin - labels - 0.9 * m_cap);
+        const double strip = std::round(0.7 * m_cap), left = right - strip - std::round(2.2 * m_cap);
+        if (left < 0.5 * m_width) return;
+        const double line = std::max(m_in.density, 0.09 * m_cap);
+        for (const double tick : ticks) {
+            const double y = yOf((tick - lo) / span);
+            legend.push_back(lineMark(FramePart::Legend, {{right, y}, {right + 0.45 * m_cap, y}}, line));
+            legend.push_back(textMark(FramePart::Legend, numberText(tick, span), {right + 0.9 * m_cap, y}, Align::Start,
+                                      Align::Middle, m_cap));
+        }
+
+        // From the bottom up, each row a little into the next: no seams.
+        const TfSampler tf(m_in.tf);
+        const std::vector<double> peaks = featureOpacities(m_in.tf);
+        const double rows = std::clamp(height / std::max(1.0, std::floor(m_in.density)), 1.0, 1000.0);
+        std::vector<LegendRow> all;
+        double most = 0;
+        for (int i = 0; i < static_cast<int>(rows); ++i) {
+            all.push_back(legendRow(tf, peaks, (i + 0.5) / std::floor(rows)));
+            most = std::max(most, all.back().opacity);
+        }
+        legend.push_back(boxMark(FramePart::Legend, {left, top, right, top + height}, kDark, 0.55));
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const LegendRow& row = all[i];
+            if (!(row.opacity > 0)) continue;
+            const double n = static_cast<double>(all.size());
+            const double low = yOf(static_cast<double>(i) / n);
+            const double high = std::max(top, yOf(static_cast<double>(i + 1) / n) - (i + 1 < all.size() ? 0.6 : 0));
+            // The strip tells the colour of all that is drawn; the curve, by the square root, how opaque it is.
+            legend.push_back(boxMark(FramePart::Legend, {right - strip, high, right, low}, row.color));
+            const double reach = (right - strip - left) * std::sqrt(row.opacity / most);
+            legend.push_back(
+                boxMark(FramePart::Legend, {right - strip - reach, high, right - strip, low}, row.color, 0.75));
+        }
+        Mark frame =
+            lineMark(FramePart::Legend,
+                     {{left, top}, {right, top}, {right, top + height}, {left, top + height}, {left, top}}, line);
+        frame.alpha = 0.8;
+        frame.halo = 0;
+        legend.push_back(frame);
+
+        if (m_in.picture.mode == RenderMode::Composite || m_in.picture.mode == RenderMode::Surface)
+            addFeatureNames(left, yOf);
+        if (!place(std::move(legend))) m_names.clear();
+    }
+
+    template <class YOf>
+    void addFeatureNames(double left, const YOf& yOf) {
+        const std::vector<double> peaks = featureOpacities(m_in.tf);
+        const Feature* alone = m_in.picture.featureAlone(m_in.tf);
+        double lowest = m_height; // text goes upward; features are ordered by their lower ends
+        std::vector<std::size_t> order(m_in.tf.features.size());
+        for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return m_in.tf.features[a].a < m_in.tf.features[b].a; });
+        for (const std::size_t i : order) {
+            const Feature& f = m_in.tf.features[i];
+            if (!(peaks[i] > 0) || (alone != nullptr && alone != &f) || f.name.empty()) continue;
+            const double y = yOf((f.a + f.b) / 2);
+            if (y + 0.5 * m_cap > lowest) continue;
+            const std::string name = shortenedText(f.name, 0.2 * m_width / m_cap);
+            Mark text = textMark(FramePart::Legend, name, {left - 0.7 * m_cap, y}, Align::End, Align::Middle, m_cap);
+            text.color = mixed(f.color, m_ink, 0.35);
+            m_names.push_back(text);
+            lowest = y - 0.9 * m_cap;
+        }
+    }
+
+    void addLetters() {
+        const double cap = 1.5 * m_cap;
+        const auto letter = [&](const Vec3& direction, const Vec2& at, Align horizontal, Align vertical) {
+            Mark mark = textMark(FramePart::Letters, directionLetters(direction), at, horizontal, vertical, cap);
+            mark.color = m_onDark ? kAmber : kBrown;
+            mark.width = 0.15 * cap;
+            return mark;
+        };
+        const Vec3 right = m_project.right(), up = m_project.up();
+        const double midX = m_width / 2, midY = m_height / 2;
+        place({letter(up, {midX, m_margin}, Align::Middle, Align::Start)});
+        place({letter(-up, {midX, m_height - m_margin}, Align::Middle, Align::End)});
+        // Beside what stands at that edge already.
+        const auto beside = [&](const Vec3& direction, bool atRight) {
+            double x = atRight ? m_width - m_margin : m_margin;
+            for (int tries = 0; tries < 3; ++tries) {
+                const Mark mark = letter(direction, {x, midY}, atRight ? Align::End : Align::Start, Align::Middle);
+                if (place({mark})) return;
+                for (const PixelBox& t : m_taken)
+                    if (t.meets(extentOf(mark))) x = atRight ? t.left - m_margin / 2 : t.right + m_margin / 2;
+            }
+        };
+        beside(right, true);
+        beside(-right, false);
+    }
+
+    void addTitle() {
+        const double cap = 1.15 * m_cap;
+        double room = m_width - 2 * m_margin;
+        for (const PixelBox& t : m_taken)
+            if (t.top < m_margin + 2 * cap) room = std::min(room, t.left - 2 * m_margin);
+        const std::string text = shortenedText(m_in.title, room / cap);
+        if (text.empty() || text == "…") return;
+        place({textMark(FramePart::Title, text, {m_margin, m_margin}, Align::Start, Align::Start, cap)});
+    }
+
+    // ---- axes
+
+    /// The part of a segment in front of the eye and within the picture, or none.
+    std::optional<std::array<Vec2, 2>> visiblePart(Vec3 a, Vec3 b) const {
+        if (m_project.isPerspective()) {
+            const double near = 1e-3 * m_in.geometry.radius();
+            const double da = m_project.depth(a), db = m_project.depth(b);
+            if (da < near && db < near) return {};
+            if (da < near) a = a + (b - a) * ((near - da) / (db - da));
+            if (db < near) b = b + (a - b) * ((near - db) / (da - db));
+        }
+        const Vec2 from = m_project(a), way = m_project(b) - from;
+        double t0 = 0, t1 = 1;
+        const double edge = m_cap;                  // drawn a little beyond, so that ends are not seen
+        const auto keep = [&](double p, double q) { // p·t ≤ q
+            if (p == 0) return q >= 0;
+            (p < 0 ? t0 : t1) = p < 0 ? std::max(t0, q / p) : std::min(t1, q / p);
+            return t0 < t1;
+        };
+        if (!keep(-way.x, from.x + edge) || !keep(way.x, m_width + edge - from.x) || !keep(-way.y, from.y + edge) ||
+            !keep(way.y, m_height + edge - from.y))
+            return {};
+        return std::array<Vec2, 2>{from + way * t0, from + way * t1};
+    }
+
+    struct Edge {
+        Vec3 from, to; ///< along its axis, toward larger coordinates
+        int seen = 0;  ///< how many of the two faces that meet in it are seen
+    };
+
+    std::vector<Edge> edgesAlong(int axis, const Vec3& lo, const Vec3& hi) const {
+        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        std::vector<Edge> edges;
+        for (const bool highB : {false, true})
+            for (const bool highC : {false, true}) {
+                Edge edge{lo, lo, 0};
+                edge.from[b] = edge.to[b] = highB ? hi[b] : lo[b];
+                edge.from[c] = edge.to[c] = highC ? hi[c] : lo[c];
+                edge.to[axis] = hi[axis];
+                Vec3 normalB(0), normalC(0);
+                normalB[b] = highB ? 1 : -1;
+                normalC[c] = highC ? 1 : -1;
+                edge.seen = int{m_project.faces(normalB, edge.from)} + int{m_project.faces(normalC, edge.from)};
+                edges.push_back(edge);
+            }
+        return edges;
+    }
+
+    /// A label beyond a point of an edge, or on its other side where there is no room.
+    bool placeLabel(const std::string& text, const Vec2& at, const Vec2& outward, double distance, bool otherSideToo) {
+        const double halfWidth = 0.5 * m_cap * textWidth(text);
+        for (const double side : {1.0, -1.0}) {
+            const Vec2 way = outward * side;
+            const double support = std::abs(way.x) * halfWidth + std::abs(way.y) * 0.5 * m_cap;
+            if (place({textMark(FramePart::Axes, text, at + way * (distance + support), Align::Middle, Align::Middle,
+                                m_cap)}))
+                return true;
+            if (!otherSideToo) break;
+        }
+        return false;
+    }
+
+    void addAxes() {
+        const Geometry& g = m_in.geometry;
+        const Vec3 lo = g.boundsMin(), hi = g.boundsMax();
+        const double line = std::max(m_in.density, 0.1 * m_cap);
+        for (int axis = 0; axis < 3; ++axis)
+            for (const Edge& edge : edgesAlong(axis, lo, hi))
+                if (const auto part = visiblePart(edge.from, edge.to)) {
+                    Mark mark = lineMark(FramePart::Axes, {(*part)[0], (*part)[1]}, line);
+                    mark.alpha = edge.seen == 1 ? 0.9 : edge.seen == 2 ? 0.5 : 0.2; // outline, in front, behind
+                    if (edge.seen != 1) mark.halo = 0;
+                    m_marks.push_back(mark);
+                }
+        const Vec3 middle = (lo + hi) * 0.5;
+        if (m_project.isPerspective() && m_project.depth(middle) <= 0) return;
+        for (int axis = 0; axis < 3; ++axis) addTicks(axis, lo, hi, m_project(middle));
+    }
+
+    void addTicks(int axis, const Vec3& lo, const Vec3& hi, const Vec2& middle) {
+        // Of the outline's edges the one that is farthest down, or to the left.
+        std::optional<Edge> chosen;
+        double best = 0;
+        for (const Edge& edge : edgesAlong(axis, lo, hi)) {
+            if (edge.seen != 1) continue;
+            if (m_project.isPerspective() && std::min(m_project.depth(edge.from), m_project.depth(edge.to)) <= 0)
+                continue;
+            const Vec2 a = m_project(edge.from), b = m_project(edge.to);
+            const double length = glm::length(b - a);
+            if (!(length > 8 * m_cap)) continue;
+            const Vec2 away = (a + b) * 0.5 - middle, along = (b - a) / length;
+            const double score = away.y * std::abs(along.x) - away.x * std::abs(along.y);
+            if (chosen && score <= best) continue;
+            chosen = edge;
+            best = score;
+        }
+        if (!chosen) return;
+        const Vec2 a = m_project(chosen->from), b = m_project(chosen->to), along = glm::normalize(b - a);
+        Vec2 outward{-along.y, along.x};
+        if (glm::dot(outward, (a + b) * 0.5 - middle) < 0) outward = -outward;
+        const double span = hi[axis] - lo[axis], tick = 0.55 * m_cap;
+        double widest = 0;
+        const int wanted = std::clamp(static_cast<int>(glm::length(b - a) / (6 * m_cap)), 2, 10);
+        for (const double value : axisTicks(lo[axis], hi[axis], wanted)) {
+            Vec3 p = chosen->from;
+            p[axis] = value;
+            const Vec2 at = m_project(p);
+            if (at.x < 0 || at.y < 0 || at.x > m_width || at.y > m_height) continue;
+            m_marks.push_back(
+                lineMark(FramePart::Axes, {at, at + outward * tick}, std::max(m_in.density, 0.1 * m_cap)));
+            const std::string text = numberText(value, span);
+            if (placeLabel(text, at, outward, tick + 0.5 * m_cap, true))
+                widest = std::max(widest, std::abs(outward.x) * m_cap * textWidth(text) + std::abs(outward.y) * m_cap);
+        }
+        const std::string caption = m_in.geometry.frame == Frame::Patient ? std::string(1, patientLetter(axis, false)) +
+                                                                                "→" + patientLetter(axis, true) + "  mm"
+                                                                          : std::string(1, "xyz"[axis]);
+        for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8})
+            if (placeLabel(caption, a + (b - a) * share, outward, tick + 1.2 * m_cap + widest, false)) return;
+        for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8}) // within the outline, then
+            if (placeLabel(caption, a + (b - a) * share, -outward, 0.9 * m_cap, false)) return;
+    }
+
+    const AnnotationInput& m_in;
+    double m_width, m_height;
+    Projected m_project;
+    double m_cap, m_margin; ///< height of a capital; distance from the picture's edges
+    bool m_onDark = true;
+    Rgb m_ink, m_halo;
+    std::vector<PixelBox> m_taken;
+    std::vector<Mark> m_names; ///< of features, beside the legend
+    std::vector<Mark> m_marks;
+};
+
+} // namespace
+
+std::vector<Polyline> strokesOf(const Mark& mark) {
+    if (mark.kind != Mark::Kind::Text) return {mark.points};
+    std::vector<Polyline> strokes = textStrokes(mark.text);
+    for (Polyline& stroke : strokes)
+        for (Vec2& p : stroke) p = mark.points.front() + mark.across * p.x + mark.up * p.y;
+    return strokes;
+}
+
+PixelBox extentOf(const Mark& mark) {
+    const std::vector<Polyline> strokes = strokesOf(mark);
+    constexpr double kFar = 1e300;
+    PixelBox box{kFar, kFar, -kFar, -kFar};
+    for (const Polyline& stroke : strokes)
+        for (const Vec2& p : stroke)
+            box = {std::min(box.left, p.x), std::min(box.top, p.y), std::max(box.right, p.x),
+                   std::max(box.bottom, p.y)};
+    const double rim = mark.kind == Mark::Kind::Area ? 0 : mark.width / 2 + mark.halo;
+    return {box.left - rim, box.top - rim, box.right + rim, box.bottom + rim};
+}
+
+std::vector<Mark> annotationMarks(const AnnotationInput& input) { return Sheet(input).marks(); }
+
+} // namespace pellucid

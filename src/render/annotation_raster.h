@@ -1,0 +1,14 @@
+// Draws marks into a picture.
+#pragma once
+
+#include <vector>
+
+#include "render/annotation.h"
+#include "render/image.h"
+
+namespace pellucid {
+
+/// Over the picture, in their order, with smooth edges. Pixels that no mark reaches keep their bits.
+void drawMarks(Image& image, const std::vector<Mark>& marks);
+
+} // namespace pellucid

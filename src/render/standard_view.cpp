@@ -1,0 +1,55 @@
+#include "render/standard_view.h"
+
+#include "base/error.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::array<const char*, 6> kSides{"front", "back", "left", "right", "top", "bottom"};
+constexpr std::array<const char*, 6> kAnatomy{"anterior", "posterior", "left", "right", "superior", "inferior"};
+
+} // namespace
+
+ViewAngles anglesOf(StandardView view, Frame frame) {
+    const bool patient = frame == Frame::Patient;
+    switch (view) {
+    case StandardView::Front:
+        return {0, 0, 1};
+    case StandardView::Back:
+        return {180, 0, 1};
+    case StandardView::Left: // the patient's left is at +x
+        return {patient ? 90.0 : -90.0, 0, 1};
+    case StandardView::Right:
+        return {patient ? -90.0 : 90.0, 0, 1};
+    case StandardView::Top: // up is +y at azimuth 0, which is posterior
+        return {patient ? 180.0 : 0.0, 90, 1};
+    case StandardView::Bottom: // up is -y at azimuth 0
+        return {0, -90, 1};
+    }
+    return {};
+}
+
+const char* name(StandardView view, Frame frame) {
+    return (frame == Frame::Patient ? kAnatomy : kSides)[static_cast<std::size_t>(view)];
+}
+
+std::optional<NamedView> namedView(const std::string& name) {
+    for (const StandardView view : kStandardViews) {
+        const auto i = static_cast<std::size_t>(view);
+        if (name == kSides[i]) return NamedView{view, false, 1};
+        if (name == kAnatomy[i]) return NamedView{view, true, 1};
+    }
+    return {};
+}
+
+ViewAngles anglesOf(const NamedView& view, Frame frame) {
+    if (view.ofPatient && frame != Frame::Patient)
+        throw UsageError("the volume does not say how a patient lies in it", "view",
+                         std::string("use ") + kSides[static_cast<std::size_t>(view.view)]);
+    ViewAngles angles = anglesOf(view.view, frame);
+    angles.zoom = view.zoom;
+    return angles;
+}
+
+} // namespace pellucid

@@ -1,0 +1,158 @@
+// The frame of reference in the window: switches, undo, saved pictures, views that speak anatomy.
+#include "gui_support.h"
+
+#include <QAction>
+#include <QCheckBox>
+#include <QFile>
+#include <QLabel>
+#include <QSignalSpy>
+#include <QTemporaryDir>
+
+#include "render/annotation_raster.h"
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+namespace {
+
+/// Pixels that differ within a part of the picture, in shares of its sides.
+int differences(const QImage& a, const QImage& b, double left, double top, double right, double bottom) {
+    REQUIRE(a.size() == b.size());
+    int count = 0;
+    for (int y = static_cast<int>(top * a.height()); y < static_cast<int>(bottom * a.height()); ++y)
+        for (int x = static_cast<int>(left * a.width()); x < static_cast<int>(right * a.width()); ++x)
+            count += a.pixel(x, y) != b.pixel(x, y) ? 1 : 0;
+    return count;
+}
+
+/// A patient's head of 12³ voxels, RAS.
+QString writePatient(const QTemporaryDir& folder) {
+    const QString path = folder.filePath("head.nrrd");
+    QByteArray bytes("NRRD0004\ntype: uint8\ndimension: 3\nspace: right-anterior-superior\nsizes: 12 12 12\n"
+                     "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n\n");
+    for (int n = 0; n < 12 * 12 * 12; ++n) bytes.append(static_cast<char>(n % 251));
+    QFile file(path);
+    REQUIRE(file.open(QIODevice::WriteOnly));
+    REQUIRE(file.write(bytes) == bytes.size());
+    return path;
+}
+
+} // namespace
+
+TEST_CASE("the parts of the frame of reference can be switched, and undone", "[frame]") {
+    OpenWindow w(24, ViewRenderer::Cpu);
+    SessionStore& store = w.bench().store();
+    CHECK(*store.session().reference == FrameOfReference{}); // cube, letters, scale
+    const QImage shown = w.picture();
+    w.child<QAction>("frameAction").trigger();
+    CHECK_FALSE(store.session().reference->on);
+    CHECK_FALSE(w.child<QAction>("frameAction").isChecked());
+    const QImage plain = w.picture();
+    // The cube at the lower left, the bar at the lower right; the sample's file knows no anatomy, so no letters.
+    CHECK(differences(shown, plain, 0, 0.7, 0.2, 1) > 200);
+    CHECK(differences(shown, plain, 0.7, 0.8, 1, 1) > 100);
+    CHECK(differences(shown, plain, 0, 0, 1, 0.7) == 0);
+    store.undo();
+    CHECK(w.picture() == shown);
+
+    for (const FramePartInfo& part : kFrameParts) {
+        const QString id = QStringLiteral("frame%1%2Action").arg(QChar(part.name[0]).toUpper()).arg(part.name + 1);
+        INFO(id.toStdString());
+        auto& action = w.child<QAction>(id.toLatin1().constData());
+        const FrameOfReference before = *store.session().reference;
+        CHECK(action.isChecked() == before.*part.shown);
+        action.trigger();
+        CHECK((*store.session().reference).*part.shown != before.*part.shown);
+        CHECK(action.isChecked() != before.*part.shown);
+        store.undo();
+        CHECK(*store.session().reference == before);
+        CHECK(action.isChecked() == before.*part.shown);
+        store.redo();
+    }
+    // Axes, legend and title are on now, the others off.
+    CHECK(store.stepCount() == 6);
+    const QImage others = w.picture();
+    CHECK(differences(others, plain, 0, 0, 0.3, 0.1) > 50);  // title
+    CHECK(differences(others, plain, 0.7, 0, 1, 0.4) > 200); // legend
+    // A part that is switched on while all are hidden shows itself.
+    w.child<QAction>("frameAction").trigger();
+    w.child<QAction>("frameTitleAction").trigger();
+    CHECK(store.session().reference->on);
+    CHECK(store.session().reference->title);
+}
+
+TEST_CASE("no figure and no picture is computed anew for the frame of reference", "[frame]") {
+    OpenWindow w(24, ViewRenderer::Cpu);
+    w.child<QAction>("frameLegendAction").trigger();
+    CHECK(w.document().measuresAreCurrent());
+    CHECK(w.view().isComplete());
+    CHECK(w.window.isSettled());
+}
+
+TEST_CASE("a saved picture has the marks where it is asked for them", "[frame]") {
+    OpenWindow w(24, ViewRenderer::Cpu);
+    const QTemporaryDir folder;
+    QSignalSpy saved(&w.saving(), &SaveController::imageSaved);
+    const auto save = [&](const char* name, bool reference) {
+        const QString path = folder.filePath(name);
+        const auto count = saved.count();
+        w.saving().saveImage({path, {320, 240}, false, reference});
+        REQUIRE(waitFor([&] { return saved.count() == count + 1; }));
+        return readImage(path.toStdString());
+    };
+    const Image plain = save("plain.png", false), marked = save("marked.png", true);
+    CHECK(plain.rgba != marked.rgba);
+    // The same marks over the plain picture; one of 255 steps, since that has been rounded already.
+    Image expected = plain;
+    drawMarks(expected, annotationMarks(annotationInput(pictureInput(w.bench().scene(), 320, 240),
+                                                        *w.bench().store().session().reference)));
+    double most = 0;
+    for (std::size_t i = 0; i < expected.rgba.size(); ++i)
+        most = std::max(most, std::abs(static_cast<double>(expected.rgba[i]) - marked.rgba[i]));
+    CHECK(most < 1.01 / 255);
+    w.child<QAction>("frameAction").trigger();
+    CHECK(save("off.png", true).rgba == plain.rgba);
+}
+
+TEST_CASE("the dialog offers the frame of reference where there is one", "[frame]") {
+    for (const bool shown : {true, false}) {
+        SaveImageDialog dialog("a.png", {400, 300}, shown);
+        CHECK(dialog.options().reference == shown);
+        auto* box = dialog.findChild<QCheckBox*>("imageReference");
+        REQUIRE(box != nullptr);
+        CHECK(box->isEnabled() == shown);
+        box->setChecked(false);
+        CHECK_FALSE(dialog.options().reference);
+    }
+}
+
+TEST_CASE("views speak anatomy where the file does", "[frame]") {
+    OpenWindow w(24, ViewRenderer::Cpu);
+    CHECK(w.child<QAction>("view1").text() == "Front");
+    CHECK(w.child<QAction>("view5").text() == "Top");
+    const QTemporaryDir folder;
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    w.opening().openPath(writePatient(folder));
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.settle();
+    CHECK(w.child<QAction>("view1").text() == "Anterior");
+    CHECK(w.child<QAction>("view2").text() == "Posterior");
+    CHECK(w.child<QAction>("view6").text() == "Inferior");
+    CHECK(w.child<QAction>("view6").toolTip().contains("radiologists"));
+    CHECK(w.bench().actions().keyTable().contains("Anterior"));
+    CHECK(w.child<QLabel>("volumeLabel").toolTip().contains("L→R, P→A, I→S"));
+    // World is LPS: left is +x. From the left the eye is there; from the feet the front, -y, is up.
+    w.child<QAction>("view3").trigger();
+    CHECK(w.document().camera().forward().x == Approx(-1));
+    w.child<QAction>("view6").trigger();
+    CHECK(w.document().camera().forward().z == Approx(1));
+    CHECK(w.document().camera().trueUp().y == Approx(-1));
+    CHECK(w.document().camera().right().x == Approx(1)); // the patient's left at the right
+    const QImage shown = w.picture();
+    w.child<QAction>("frameLettersAction").trigger();
+    const QImage without = w.picture();
+    CHECK(differences(shown, without, 0, 0.45, 0.1, 0.55) > 10);
+    CHECK(differences(shown, without, 0.9, 0.45, 1, 0.55) > 10);
+    CHECK(differences(shown, without, 0.45, 0, 0.55, 0.1) > 10);
+    CHECK(differences(shown, without, 0.45, 0.9, 0.55, 1) > 10);
+}
