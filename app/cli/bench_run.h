@@ -13,7 +13,7 @@
 #include "engines/engines.h"
 #include "output.h"
 #include "progress.h"
-#include "render/camera.h"
+#include "render/view.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
@@ -45,7 +45,7 @@ struct BenchResult {
 struct BenchCase {
     std::shared_ptr<const Volume> volume;
     std::string volumeName;
-    Camera camera; ///< looks at the volume
+    View view; ///< looks at the volume
     std::string tfName;
     TransferFunction tf;
     std::set<BenchRow> rows;
