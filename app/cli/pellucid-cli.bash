@@ -28,6 +28,8 @@ _pellucid_cli() {
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
         --only) choices="setup saliency saliency-direct sweep jacobian optimize refine render" ;;
+        --mode) choices="composite mip minip average surface" ;;
+        --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
         --tf)
             COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))
@@ -39,7 +41,7 @@ _pellucid_cli() {
             return
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --view | --step | \
-            --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
+            --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | --silhouettes | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | --saliency-background | --step-down | \
             --max-iterations | --repeat | --fix | --target | --tolerance)
             return
             ;;

@@ -36,6 +36,11 @@ void ViewOverlay::release() {
     m_holder = nullptr;
 }
 
+void ViewOverlay::cancel() {
+    if (m_holder != nullptr) m_holder->cancel();
+    m_holder = nullptr;
+}
+
 Qt::CursorShape ViewOverlay::cursorAt(const QPointF& point) {
     if (!m_store.hasVolume()) return Qt::ArrowCursor;
     for (auto layer = m_layers.rbegin(); layer != m_layers.rend(); ++layer)
