@@ -251,7 +251,7 @@ void addClipHandles(Workbench& bench, ViewOverlay& overlay) {
     const auto shown = std::make_shared<bool>(false);
     bench.actions().add({.id = "clipHandlesAction",
                          .menu = QObject::tr("&View"),
-                         .text = QObject::tr("Show clip &handles"),
+                         .text = QObject::tr("Clip Show clip &handleshandles"),
                          .keys = {QKeySequence("C")},
                          .tip = QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with "
                                             "Shift the opposite face goes along; Esc gives up"),

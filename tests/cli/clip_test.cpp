@@ -1,4 +1,6 @@
 // --clip: the same half-spaces for pictures and figures, in every command that looks.
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "cli_runner.h"
@@ -59,7 +61,6 @@ TEST_CASE("figures of an oblique clip are those of the reference engine", "[cli]
     inputs.session.clipping = Clipping{{0, 0.1, 0}, {1, 0.9, 1}, {{{1, 2, -0.5}, 14}}};
     Workspace workspace;
     const MeasureInput input = measureInput(openScene(inputs));
-    workspace.prepare(input);
     const Measures expected = workspace.measure(input);
     REQUIRE(told.size() == expected.features.size());
     for (std::size_t i = 0; i < told.size(); ++i) {
@@ -96,7 +97,7 @@ TEST_CASE("every command with a camera takes clips", "[cli][clip]") {
     w.json(Words{"measure"} + kSmall + clips);
     w.json(Words{"render"} + kSmall + clips + Words{"--size", "20x20", "--out", "a.png"});
     w.json(Words{"fields"} + kSmall + clips + Words{"--out", "g"});
-    w.json(Words{"optimize"} + kSmall + clips + Words{"--max-iterations", "1", "--engine", "cpu"});
+    w.json(Words{"optimize"} + kSmall + clips + Words{"--target", "1,1,1", "--max-iterations", "1"});
     w.json(Words{"bench"} + kSmall + clips + Words{"--only", "refine", "--repeat", "1", "--threads", "1"});
     const Words nothing{"refine", "sample:shells", "--clip", "x:0:0.9"}; // it looks at no view
     CHECK(w.run(nothing).status == 2);

@@ -1,4 +1,6 @@
 // Options of the light → the light that is drawn.
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include <CLI/CLI.hpp>

@@ -31,11 +31,13 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     grab(w, "window_opened.png");
     w.child<QAction>("displayAction").trigger();
-    w.child<QAction>("shadingAction").trigger();
+    w.child<QAction>("lightAction").trigger();
+    w.child<QAction>("clipAction").trigger();
+    w.child<QAction>("clipHandlesAction").trigger();
     w.child<QDoubleSpinBox>("clipXHi").setValue(60);
     grab(w, "window_display.png");
-    w.child<QAction>("displayAction").trigger();
-    w.document().undo();
+    for (const char* panel : {"clipHandlesAction", "clipAction", "lightAction", "displayAction"})
+        w.child<QAction>(panel).trigger();
     w.document().undo();
     w.document().setTargets({1.0 / 6, 2.0 / 6, 3.0 / 6});
     w.optimizing().start();

@@ -101,7 +101,8 @@ void compareDoors(OpenWindow& w, const Inputs& inputs) {
         const QString ours = folder.filePath("window.png"), theirs = folder.filePath("line.png");
         w.saving().saveImage({ours, {160, 120}, false});
         w.settle();
-        cli(QStringList{"render"} + door + QStringList{"--size", "160x120", "--out", theirs});
+        const QStringList light = door == named ? QStringList{"--shading"} : QStringList(); // as volumes open here
+        cli(QStringList{"render"} + door + light + QStringList{"--size", "160x120", "--out", theirs});
         CHECK(readImage(ours.toStdString()).rgba == readImage(theirs.toStdString()).rgba);
 
         const json refined = cli(QStringList{"refine"} + door);
