@@ -55,12 +55,13 @@ void drawLine(QPainter& painter, const QLineF& line, const QColor& color, bool h
     painter.drawLine(line);
 }
 
-void drawHandle(QPainter& painter, const QPointF& at, const QColor& color, bool hovered) {
+void drawHandle(QPainter& painter, const QPointF& at, const QColor& color, bool behind, bool active) {
+    const QColor fill = active ? color.lighter(140) : behind ? QColor(20, 20, 22, 150) : color;
     painter.setPen(QPen(QColor(0, 0, 0, 170), 2.5));
-    painter.setBrush(hovered ? color.lighter(140) : color);
-    const double radius = hovered ? kRadius + 1.5 : kRadius;
+    painter.setBrush(fill);
+    const double radius = active ? kRadius + 1.5 : behind ? kRadius - 1 : kRadius;
     painter.drawEllipse(at, radius, radius);
-    painter.setPen(QPen(Qt::white, 1.2));
+    painter.setPen(QPen(behind && !active ? color : QColor(Qt::white), 1.2));
     painter.setBrush(Qt::NoBrush);
     painter.drawEllipse(at, radius, radius);
 }
@@ -132,10 +133,25 @@ void ClipLayer::paint(QPainter& painter, const OverlayView& view) {
     if (!m_shown) return;
     paintBox(painter, view);
     paintPlanes(painter, view);
+    const Geometry& geometry = view.scene.volume->geometry();
+    const Clipping& clipping = *view.scene.session.clipping;
+    const Handle active = m_held.kind != Kind::None ? m_held : m_hovered;
     for (const Placed& h : handles(view)) {
-        const bool active = h.handle == (m_held.kind != Kind::None ? m_held : m_hovered);
-        drawHandle(painter, h.at, h.handle.kind == Kind::Face ? theme::kAccent : kPlane, active);
+        const bool face = h.handle.kind == Kind::Face;
+        const bool behind =
+            face && !facesViewer(view.scene.camera, geometry, clipping, h.handle.index, h.handle.upper);
+        drawHandle(painter, h.at, face ? theme::kAccent : kPlane, behind, h.handle == active);
     }
+    if (active.kind != Kind::Face) return;
+    // Which of the six it is.
+    const int across = (active.index + 1) % 3, along = (active.index + 2) % 3;
+    const int first = active.upper ? 1 << active.index : 0;
+    std::vector<Vec3> corners;
+    for (const int n : {first, first | 1 << across, first | 1 << across | 1 << along, first | 1 << along})
+        corners.push_back(cornerOfPart(clipping, geometry, n));
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(QColor(theme::kAccent.red(), theme::kAccent.green(), theme::kAccent.blue(), 50));
+    painter.drawPolygon(outlineOf(pictureOf(view), corners));
 }
 
 void ClipLayer::paintBox(QPainter& painter, const OverlayView& view) const {
@@ -251,7 +267,7 @@ void addClipHandles(Workbench& bench, ViewOverlay& overlay) {
     const auto shown = std::make_shared<bool>(false);
     bench.actions().add({.id = "clipHandlesAction",
                          .menu = QObject::tr("&View"),
-                         .text = QObject::tr("Clip Show clip &handleshandles"),
+                         .text = QObject::tr("Clip &handles"),
                          .keys = {QKeySequence("C")},
                          .tip = QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with "
                                             "Shift the opposite face goes along; Esc gives up"),

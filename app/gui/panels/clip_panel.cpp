@@ -190,6 +190,8 @@ void ClipPanel::editPlane(std::size_t index, int number, double value) {
                          });
 }
 
+QSize ClipPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
+
 void ClipPanel::follow() {
     const bool ready = isReady(m_bench);
     setEnabled(ready);

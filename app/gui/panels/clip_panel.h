@@ -21,6 +21,8 @@ class ClipPanel : public QWidget {
 public:
     explicit ClipPanel(Workbench& bench, QWidget* parent = nullptr);
 
+    QSize sizeHint() const override; ///< without scrolling
+
 private:
     /// One oblique plane; hidden where there is none of its number.
     struct PlaneRow {

@@ -175,6 +175,8 @@ void LightPanel::editDirection() {
     });
 }
 
+QSize LightPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
+
 void LightPanel::follow() {
     setEnabled(isReady(m_bench));
     if (!m_bench.store().hasVolume()) return;

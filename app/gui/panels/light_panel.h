@@ -23,6 +23,8 @@ class LightPanel : public QWidget {
 public:
     explicit LightPanel(Workbench& bench, QWidget* parent = nullptr);
 
+    QSize sizeHint() const override; ///< without scrolling
+
 private:
     /// A number of the light, by a slider and a box.
     struct Row {
