@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "bench_run.h"
+#include "bench/bench.h"
 #include "commands.h"
 #include "parse.h"
 #include "render/memory_needs.h"
@@ -22,10 +22,7 @@ struct Options {
     bool onBuiltIn() const { return !scene.volume.path && !scene.session.file; }
 };
 
-constexpr const char* kDense = "dense";
-constexpr const char* kSparse = "sparse";
-constexpr const char* kCube = "cube:"; ///< followed by the number of voxels along each side
-constexpr int kCubeSize = 128;         ///< of the smallest
+constexpr int kCubeSize = 128; ///< of the smallest
 
 /// All rows at once: what measuring takes, weights for nine features (4), a renderer's codes (3) and, while `setup`
 /// runs, another engine (5).
@@ -48,27 +45,6 @@ void check(const Options& o) {
         throw UsageError("--full is about the built-in volumes", "--full", "leave it or VOLUME out");
     if (o.onBuiltIn() && o.scene.volume.anyDetail())
         throw UsageError("options of the volume are given, but no volume", "bench", "name a file or sample:NAME");
-}
-
-/// Blocks of the same volume side by side, `n` along each axis: the same voxels whatever the size, so that only the
-/// engine can make larger ones slower.
-std::shared_ptr<const Volume> tiled(const Volume& block, int n) {
-    Geometry geometry = block.geometry();
-    const Int3 d = geometry.dims;
-    geometry.dims = d * n;
-    Samples samples = std::visit(
-        [&](const auto& from) -> Samples {
-            std::decay_t<decltype(from)> to;
-            to.reserve(voxelCount(geometry.dims));
-            for (int k = 0; k < geometry.dims.z; ++k)
-                for (int j = 0; j < geometry.dims.y; ++j) {
-                    const std::ptrdiff_t row = d.x * (j % d.y + static_cast<std::ptrdiff_t>(d.y) * (k % d.z));
-                    for (int i = 0; i < n; ++i) to.insert(to.end(), from.begin() + row, from.begin() + row + d.x);
-                }
-            return to;
-        },
-        block.samples());
-    return std::make_shared<const Volume>(Volume(geometry, std::move(samples)).withRange(block.range()));
 }
 
 std::set<BenchRow> both(const std::set<BenchRow>& a, const std::set<BenchRow>& b) {
@@ -115,15 +91,19 @@ public:
         blockOptions.volume.sampleSize = kCubeSize;
         const SceneInputs inputs = inputsOf(blockOptions, kWork, m_results.notices);
         const Scene block = openScene(inputs, m_progress.phase("loading"));
-        const bool dense = !m_options.scene.tf.spec;
+        const bool isDense = !m_options.scene.tf.spec;
         const int largest = m_options.full ? 4 : 2;
         requireMemory(inputs.then, kCube + std::to_string(largest * kCubeSize), block.volume->dims() * largest);
         std::vector<BenchCase> cubes;
         for (int n = 1; n <= largest; n *= 2) {
             const auto volume = n == 1 ? block.volume : tiled(*block.volume, n);
-            cubes.push_back({volume, kCube + std::to_string(n * kCubeSize), {cameraOf(inputs, volume->geometry()), *inputs.session.clipping},
-                             m_options.scene.tf.spec.value_or(kDense), block.tf, rows});
-            if (dense) makeDense(cubes.back());
+            cubes.push_back({volume,
+                             kCube + std::to_string(n * kCubeSize),
+                             {cameraOf(inputs, volume->geometry()), *inputs.session.clipping},
+                             m_options.scene.tf.spec.value_or(kDense),
+                             block.tf,
+                             rows});
+            if (isDense) cubes.back() = dense(std::move(cubes.back()));
         }
         bench(cubes, m_bench, m_progress.phase("cubes"), m_results);
     }
@@ -133,16 +113,11 @@ public:
     }
 
 private:
-    static void makeDense(BenchCase& of) {
-        of.tf = denseTf();
-        of.stepScale = kDenseStepScale;
-        of.equalCosts = true;
-    }
-
     /// All rows under `tf` and, unless the user wants this one alone, some under two of other densities.
     void measureMain(const Scene& scene) {
         const auto caseOf = [&](const std::string& tfName, TransferFunction tf, std::set<BenchRow> rows) {
-            return BenchCase{scene.volume, m_mainVolume, {scene.camera, *scene.session.clipping}, tfName, std::move(tf), std::move(rows)};
+            return BenchCase{scene.volume, m_mainVolume,  {scene.camera, *scene.session.clipping},
+                             tfName,       std::move(tf), std::move(rows)};
         };
         BenchCase main = caseOf(m_mainTf, scene.tf, m_options.only);
         main.nineFeatures = true;
@@ -150,8 +125,7 @@ private:
         if (!m_options.scene.tf.spec) {
             const std::set<BenchRow> rows =
                 both(m_options.only, {BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize});
-            cases.push_back(caseOf(kDense, scene.tf, rows));
-            makeDense(cases.back());
+            cases.push_back(dense(caseOf(kDense, scene.tf, rows)));
             cases.push_back(caseOf(kSparse, sparseTf(*scene.volume), rows));
         }
         for (const BenchCase& each : cases) // in turn: only one's fields are in memory
@@ -254,25 +228,7 @@ private:
         return "\n" + table.text();
     }
 
-    Json jsonOfRow(const BenchResult& r) const {
-        const auto voxels = static_cast<double>(voxelCount(r.dims));
-        Json j{{"name", name(r.row)}, {"engine", r.engine}, {"volume", r.volume}};
-        if (r.tf) j["tf"] = *r.tf;
-        j["dims"] = jsonFromDims(r.dims);
-        j["threads"] = r.threads;
-        if (r.candidates) j["candidates"] = *r.candidates;
-        if (r.features) j["features"] = *r.features;
-        const double seconds = std::max(r.seconds, 1e-9); // of the clock's resolution
-        j["runs"] = r.runs;
-        j["seconds"] = r.seconds;
-        j["cpu_seconds"] = r.cpuSeconds;
-        j["ns_per_voxel"] = 1e9 * r.seconds / voxels;
-        j["gb_per_s"] = r.bytes / seconds / 1e9;
-        j["bytes_per_voxel"] = r.bytes / voxels;
-        j["memcpy_share"] = r.bytes / seconds / 1e9 / memcpyOf(r.threads);
-        j.update(r.extra);
-        return j;
-    }
+    Json jsonOfRow(const BenchResult& r) const { return jsonFromBenchResult(r, memcpyOf(r.threads)); }
 
     Json json() const {
         Json rows = Json::array(), memory = Json::array(), values = Json::object();

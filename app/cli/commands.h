@@ -1,11 +1,11 @@
 // The commands of pellucid-cli, one file each.
 #pragma once
 
-#include <chrono>
 #include <functional>
 
 #include <CLI/CLI.hpp>
 
+#include "base/stopwatch.h"
 #include "output.h"
 #include "progress.h"
 
@@ -27,14 +27,5 @@ Command addFields(CLI::App& program);
 Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
 Command addBench(CLI::App& program);
-
-/// Wall-clock seconds since it was made.
-class Stopwatch {
-public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count(); }
-
-private:
-    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
-};
 
 } // namespace pellucid::cli

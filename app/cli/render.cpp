@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "engines/engines.h"
+#include "image_io/image_file.h"
 #include "output_files.h"
 #include "parse.h"
 #include "render/memory_needs.h"

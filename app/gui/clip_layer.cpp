@@ -15,9 +15,9 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kReach = 10;    // pixels from a handle's middle at which it is taken
-constexpr double kOnLine = 5;    // from a plane's outline
-constexpr double kRadius = 5.5;  // of a handle
+constexpr double kReach = 10;     // pixels from a handle's middle at which it is taken
+constexpr double kOnLine = 5;     // from a plane's outline
+constexpr double kRadius = 5.5;   // of a handle
 constexpr double kTipLength = 64; // from a plane's handle to the one that turns it
 const QColor kPlane{0xff, 0xb0, 0x3a};
 
@@ -97,8 +97,7 @@ std::vector<ClipLayer::Placed> ClipLayer::handles(const OverlayView& view) const
     const Clipping& clipping = *view.scene.session.clipping;
     std::vector<Placed> placed;
     const auto add = [&](const Handle& handle, const Vec3& world) {
-        if (const auto at = pointOf(picture, world))
-            placed.push_back({handle, *at, depthOf(view.scene.camera, world)});
+        if (const auto at = pointOf(picture, world)) placed.push_back({handle, *at, depthOf(view.scene.camera, world)});
     };
     for (int axis = 0; axis < 3; ++axis)
         for (const bool upper : {false, true})
@@ -138,8 +137,7 @@ void ClipLayer::paint(QPainter& painter, const OverlayView& view) {
     const Handle active = m_held.kind != Kind::None ? m_held : m_hovered;
     for (const Placed& h : handles(view)) {
         const bool face = h.handle.kind == Kind::Face;
-        const bool behind =
-            face && !facesViewer(view.scene.camera, geometry, clipping, h.handle.index, h.handle.upper);
+        const bool behind = face && !facesViewer(view.scene.camera, geometry, clipping, h.handle.index, h.handle.upper);
         drawHandle(painter, h.at, face ? theme::kAccent : kPlane, behind, h.handle == active);
     }
     if (active.kind != Kind::Face) return;
@@ -242,9 +240,8 @@ Clipping ClipLayer::dragged(const QPointF& point, Qt::KeyboardModifiers keys, co
 void ClipLayer::drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) {
     if (m_bench.isReadOnly()) return;
     const QString text = m_held.kind == Kind::Face ? QObject::tr("Clip") : QObject::tr("Clip plane");
-    m_bench.store().preview(text, [clipping = dragged(point, keys, view)](Session& session) {
-        session.clipping.set(clipping);
-    });
+    m_bench.store().preview(
+        text, [clipping = dragged(point, keys, view)](Session& session) { session.clipping.set(clipping); });
 }
 
 void ClipLayer::release() {

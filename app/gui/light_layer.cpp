@@ -11,8 +11,8 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kBallRadius = 36;      // of what is shown, pixels
-constexpr double kRadiusOfView = 0.25;  // of the ball that is turned, heights of the view
+constexpr double kBallRadius = 36;     // of what is shown, pixels
+constexpr double kRadiusOfView = 0.25; // of the ball that is turned, heights of the view
 
 } // namespace
 

@@ -77,8 +77,7 @@ void MainWindow::addPanels() {
         dock->setWidget(panel.make(*m_bench, dock));
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
-        if (panel.tabOf != nullptr)
-            tabifyDockWidget(findChild<QDockWidget*>(QString(panel.tabOf) + "Dock"), dock);
+        if (panel.tabOf != nullptr) tabifyDockWidget(findChild<QDockWidget*>(QString(panel.tabOf) + "Dock"), dock);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
         if (panel.shown)
@@ -90,9 +89,13 @@ void MainWindow::addPanels() {
                      .keys = {panel.keys},
                      .tip = panel.tip,
                      .trigger =
-                         [dock] {
+                         [this, dock] {
                              dock->setVisible(dock->isHidden());
-                             if (!dock->isHidden()) dock->raise(); // it may be a tab
+                             if (dock->isHidden()) return;
+                             dock->raise(); // it may be a tab
+                             // As high as it likes, where it would be much lower.
+                             const int wanted = dock->widget()->sizeHint().height();
+                             if (dock->widget()->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
                          },
                      .checked = [dock] { return !dock->isHidden(); },
                      .separatorBefore = std::exchange(first, false)});

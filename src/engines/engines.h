@@ -11,8 +11,8 @@ namespace pellucid {
 /// Auto: gl on a real GPU, cpu on a software rasterizer, without GL, or where the volume is too large for the GPU.
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality = Quality::Normal);
-/// Auto: on a real GPU whichever of gl and cpu is faster here (renderer_probe.h), measured once; else cpu. The reference
-/// choice draws with the cpu renderer, since no other image is defined.
+/// Auto: on a real GPU whichever of gl and cpu is faster here (renderer_probe.h), measured once; else cpu. The
+/// reference choice draws with the cpu renderer, since no other image is defined.
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);
 
 } // namespace pellucid

@@ -1,5 +1,5 @@
-// Handles in a picture: where things of the world appear, and what a hand that drags them means. Pure functions, so that
-// they are tested without a window.
+// Handles in a picture: where things of the world appear, and what a hand that drags them means. Pure functions, so
+// that they are tested without a window.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
-// A picture in memory and on disk.
+// A picture in memory.
 #pragma once
 
-#include <string>
+#include <cstddef>
 #include <vector>
 
 namespace pellucid {
@@ -20,12 +20,5 @@ struct Image {
     }
     const float* pixel(int x, int y) const { return const_cast<Image*>(this)->pixel(x, y); }
 };
-
-/// PNG (8 bit), TIFF (16 bit), JPEG (8 bit, no alpha) or EXR (half float) by suffix, through OpenImageIO and a
-/// temporary file that is renamed. Throws FileError.
-void writeImage(const Image& image, const std::string& path);
-Image readImage(const std::string& path);
-/// Throws UsageError where the suffix is none of these, before any work is done.
-void checkImageSuffix(const std::string& path);
 
 } // namespace pellucid

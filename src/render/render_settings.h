@@ -28,7 +28,7 @@ struct Light {
     bool on = false;
     double ambient = 0.35, diffuse = 0.65, specular = 0.25; ///< [0, 2]
     double shininess = 24;                                  ///< exponent of the highlight, [1, 1000]
-    Vec3 direction{0, 0, 1};   ///< toward the light, in the camera's right, up and toward the viewer; any length but 0
+    Vec3 direction{0, 0, 1};    ///< toward the light, in the camera's right, up and toward the viewer; any length but 0
     double gradientOpacity = 0; ///< [0,1], how far homogeneous regions fade
     double occlusion = 0;       ///< [0,1], strength of ambient occlusion
     double depthCue = 0;        ///< [0,1], how far the farthest fades into the background
@@ -39,8 +39,8 @@ struct Light {
 struct RenderSettings {
     int width = 512, height = 512;                ///< pixels, each in [1, 16384]
     std::optional<Rgb> background = Rgb{0, 0, 0}; ///< empty: transparent
-    std::optional<Rgb> backgroundTop;             ///< at the top of the picture, `background` at its bottom; empty: plain
-    double stepInD0 = 0.5;                        ///< largest distance of samples along a ray, in d0, (0, 16]
+    std::optional<Rgb> backgroundTop; ///< at the top of the picture, `background` at its bottom; empty: plain
+    double stepInD0 = 0.5;            ///< largest distance of samples along a ray, in d0, (0, 16]
     RenderMode mode = RenderMode::Composite;
     Light light;
     Clipping clipping;

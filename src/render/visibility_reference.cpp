@@ -38,8 +38,8 @@ public:
     std::string name() const override { return "reference"; }
     const Volume& volume() const override { return *m_volume; }
 
-    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
-                                  const WeightFields* weights, const JobControl& job) override {
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights,
+                                  const JobControl& job) override {
         std::vector<FeatureSums> all;
         for (const TransferFunction& tf : tfs) {
             PELLUCID_CHECK(tf.features == tfs[0].features);

@@ -147,7 +147,7 @@ void prepareToShow(Scene& scene, const JobControl& job) {
     if (!scene.codes) scene.codes = sharedIntensityGrid(*scene.volume);
 }
 
-MeasureInput measureInput(const Scene& scene) { 
+MeasureInput measureInput(const Scene& scene) {
     return {scene.volume, scene.tf, {scene.camera, *scene.session.clipping}, *scene.session.measure};
 }
 

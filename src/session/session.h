@@ -65,7 +65,7 @@ struct DisplaySettings {
     Light light;
     Rgb background{0, 0, 0};
     std::optional<Rgb> backgroundTop; ///< at the top of the picture; empty: `background` everywhere
-    FeatureId onlyFeature = 0; ///< draw the voxels of this feature alone; 0: all
+    FeatureId onlyFeature = 0;        ///< draw the voxels of this feature alone; 0: all
     bool operator==(const DisplaySettings&) const = default;
 };
 
@@ -97,7 +97,7 @@ struct Session {
     int frame = 0;
     Part<FeatureGoals> goals;
     std::optional<Camera> camera; ///< empty: the home view of the volume
-    Part<Clipping> clipping; ///< what is cut away, of pictures and of figures
+    Part<Clipping> clipping;      ///< what is cut away, of pictures and of figures
     Part<DisplaySettings> display;
     Part<MeasureSettings> measure;
     Part<OptimizeOptions> optimize;

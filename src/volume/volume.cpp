@@ -82,9 +82,7 @@ Mat3 Geometry::worldFromIndex() const {
 
 Mat3 Geometry::indexFromWorld() const { return glm::inverse(worldFromIndex()); }
 
-Vec3 Geometry::voxelFromWorld(const Vec3& world) const {
-    return glm::inverse(directions) * (world - origin) / spacing;
-}
+Vec3 Geometry::voxelFromWorld(const Vec3& world) const { return glm::inverse(directions) * (world - origin) / spacing; }
 
 Vec3 Geometry::corner(int n) const {
     const Vec3 lo = voxelBoxMin(), hi = voxelBoxMax();

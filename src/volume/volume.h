@@ -53,14 +53,14 @@ struct Geometry {
     Vec3 worldFromVoxel(const Vec3& voxel) const { return origin + directions * (voxel * spacing); }
     Vec3 voxelFromWorld(const Vec3& world) const;
 
-    Vec3 voxelBoxMin() const { return Vec3(-0.5); }          ///< of the box, voxel coordinates
-    Vec3 voxelBoxMax() const { return Vec3(dims) - 0.5; }    ///< of the box, voxel coordinates
-    Vec3 corner(int n) const;                                ///< of the box, world; bits 0, 1, 2 of n: far along i, j, k
-    Vec3 boxCenter() const;                                  ///< world
-    double radius() const;                                   ///< of the sphere around the box, world units
-    Vec3 boundsMin() const;                                  ///< of the box along the world's axes
-    Vec3 boundsMax() const;                                  ///< likewise
-    bool contains(const Vec3& world) const;                  ///< strictly inside the box
+    Vec3 voxelBoxMin() const { return Vec3(-0.5); }       ///< of the box, voxel coordinates
+    Vec3 voxelBoxMax() const { return Vec3(dims) - 0.5; } ///< of the box, voxel coordinates
+    Vec3 corner(int n) const;                             ///< of the box, world; bits 0, 1, 2 of n: far along i, j, k
+    Vec3 boxCenter() const;                               ///< world
+    double radius() const;                                ///< of the sphere around the box, world units
+    Vec3 boundsMin() const;                               ///< of the box along the world's axes
+    Vec3 boundsMax() const;                               ///< likewise
+    bool contains(const Vec3& world) const;               ///< strictly inside the box
     /// The reference length: one unit of path for opacity, world units.
     double d0() const { return std::min(spacing.x, std::min(spacing.y, spacing.z)); }
 };

@@ -1,4 +1,6 @@
+#include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -61,4 +63,18 @@ TEST_CASE("parallelFor begins in order, and nothing more after an exception", "[
                     std::runtime_error);
     setThreadCount(0);
     CHECK(begun == std::vector<std::size_t>{0, 1, 2, 3});
+}
+
+TEST_CASE("loops may be begun inside loops, and by several threads at once", "[parallel]") {
+    setThreadCount(4);
+    std::atomic<int> calls = 0;
+    std::vector<std::thread> callers;
+    for (int caller = 0; caller < 3; ++caller)
+        callers.emplace_back([&] {
+            for (int n = 0; n < 10; ++n)
+                parallelFor(20, [&](std::size_t) { parallelFor(20, [&](std::size_t) { ++calls; }); });
+        });
+    for (std::thread& caller : callers) caller.join();
+    setThreadCount(0);
+    CHECK(calls == 3 * 10 * 20 * 20);
 }

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "cli_runner.h"
-#include "render/image.h"
+#include "image_io/image_file.h"
 #include "volume/loader.h"
 
 using namespace pellucid;

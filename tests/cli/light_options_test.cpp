@@ -36,9 +36,10 @@ TEST_CASE("light is off unless it is asked for, or on in the session", "[cli][li
     CHECK(lightOf({}, lit) == lit);
     CHECK_FALSE(lightOf({"--no-shading"}, lit).on);
     CHECK(lightOf({"--no-shading"}, lit).specular == 0.5);
-    for (const std::vector<std::string>& asked :
-         {std::vector<std::string>{"--shading"}, {"--light", "diffuse=1"}, {"--light-preset", "matte"},
-          {"--light-direction", "1,0,0"}})
+    for (const std::vector<std::string>& asked : {std::vector<std::string>{"--shading"},
+                                                  {"--light", "diffuse=1"},
+                                                  {"--light-preset", "matte"},
+                                                  {"--light-direction", "1,0,0"}})
         CHECK(lightOf(asked).on);
     CHECK_FALSE(lightOf({"--silhouettes", "0.5"}).on); // it works without
 }
@@ -49,10 +50,10 @@ TEST_CASE("single numbers lie over the preset, the preset over the session", "[c
     session.depthCue = 0.25;
     const Light metal = lightOf({"--light-preset", "metal"}, session);
     CHECK(metal == withPreset(session, lightPreset("metal")));
-    const Light light = lightOf({"--light-preset", "metal", "--light", "ambient=0.5,shininess=10", "--light-direction",
-                                 "-1,0,1", "--occlusion", "0.5", "--depth-cue", "1", "--gradient-opacity", "0.75",
-                                 "--silhouettes", "0"},
-                                session);
+    const Light light =
+        lightOf({"--light-preset", "metal", "--light", "ambient=0.5,shininess=10", "--light-direction", "-1,0,1",
+                 "--occlusion", "0.5", "--depth-cue", "1", "--gradient-opacity", "0.75", "--silhouettes", "0"},
+                session);
     CHECK(light.ambient == 0.5);
     CHECK(light.shininess == 10);
     CHECK(light.diffuse == metal.diffuse);
@@ -64,11 +65,16 @@ TEST_CASE("single numbers lie over the preset, the preset over the session", "[c
 }
 
 TEST_CASE("wrong lights are wrong usage", "[cli][light]") {
-    for (const std::vector<std::string>& wrong :
-         {std::vector<std::string>{"--light", "ambient"}, {"--light", "ambient=3"}, {"--light", "shininess=0"},
-          {"--light", "colour=1"}, {"--light-preset", "gold"}, {"--light-direction", "0,0,0"},
-          {"--light-direction", "1,2"}, {"--occlusion", "2"}, {"--no-shading", "--shading"},
-          {"--no-shading", "--light-preset", "soft"}}) {
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--light", "ambient"},
+                                                  {"--light", "ambient=3"},
+                                                  {"--light", "shininess=0"},
+                                                  {"--light", "colour=1"},
+                                                  {"--light-preset", "gold"},
+                                                  {"--light-direction", "0,0,0"},
+                                                  {"--light-direction", "1,2"},
+                                                  {"--occlusion", "2"},
+                                                  {"--no-shading", "--shading"},
+                                                  {"--no-shading", "--light-preset", "soft"}}) {
         INFO(wrong.back());
         CHECK_THROWS_AS(lightOf(wrong), UsageError);
     }

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "cli_runner.h"
-#include "render/image_renderer.h"
+#include "image_io/image_file.h"
 #include "session/session_json.h"
 #include "session/workspace.h"
 #include "tf/formats/tf_json.h"

@@ -96,27 +96,31 @@ TEST_CASE("every shader file is embedded as it is, and every include is found", 
     CHECK(files > 0);
 }
 
-TEST_CASE("the list of GL functions is that of the sources", "[shader_source]") {
+TEST_CASE("the lists of GL and EGL functions are those of the sources", "[shader_source]") {
     const std::filesystem::path root = PELLUCID_SOURCE_DIR, list = root / "src/render/gl/gl_functions.h";
-    // Every word after `before` that starts with gl and a capital letter and is followed by `after`.
-    const auto names = [](const std::string& text, const std::string& before, char after) {
+    // Every word after `before` that starts with `prefix` and a capital letter and is followed by `after`.
+    const auto names = [](const std::string& text, const std::string& before, const std::string& prefix, char after) {
         std::set<std::string> found;
-        for (std::size_t at = text.find(before + "gl"); at != std::string::npos;
-             at = text.find(before + "gl", at + 1)) {
+        for (std::size_t at = text.find(before + prefix); at != std::string::npos;
+             at = text.find(before + prefix, at + 1)) {
             const std::size_t first = at + before.size();
             std::size_t end = first;
             while (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_') ++end;
             const char previous = first == 0 ? ' ' : text[first - 1];
             const bool wordStart = std::isalnum(static_cast<unsigned char>(previous)) == 0 && previous != '_';
-            if (wordStart && std::isupper(static_cast<unsigned char>(text[first + 2])) != 0 && text[end] == after)
+            if (wordStart && std::isupper(static_cast<unsigned char>(text[first + prefix.size()])) != 0 &&
+                text[end] == after)
                 found.insert(text.substr(first, end - first));
         }
         return found;
     };
-    std::set<std::string> used;
-    for (const char* folder : {"src/render/gl", "tests/gl"})
-        for (const auto& entry : std::filesystem::directory_iterator(root / folder))
-            if (entry.path() != list) used.merge(names(readFile(entry.path()), "", '('));
-    used.erase("glInteger"); // a function of ours
-    CHECK(used == names(readFile(list), "X(", ')'));
+    for (const std::string prefix : {"gl", "egl"}) {
+        std::set<std::string> used;
+        for (const char* folder : {"src/render/gl", "tests/gl"})
+            for (const auto& entry : std::filesystem::directory_iterator(root / folder))
+                if (entry.path() != list) used.merge(names(readFile(entry.path()), "", prefix, '('));
+        used.erase("glInteger"); // functions of ours
+        used.erase("eglCandidates");
+        CHECK(used == names(readFile(list), "X(", prefix, ')'));
+    }
 }

@@ -231,7 +231,7 @@ WeightFields unevenWeights(const Int3& dims) {
 
 } // namespace
 
-TEST_CASE("a volume swept in bricks has the same visibility", "[gl]") {
+TEST_CASE("a volume swept in bricks has the same visibility", "[gl][slow]") {
     if (!haveGl()) return;
     const Int3 dims(90, 26, 41);
     std::mt19937 random(8);

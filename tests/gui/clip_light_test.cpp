@@ -184,7 +184,7 @@ TEST_CASE("the light is turned by hand", "[light]") {
     CHECK(lightOf(w).on);
     CHECK(glm::length(lightOf(w).direction - Vec3(std::sin(1.0), 0, std::cos(1.0))) < 1e-9);
     CHECK(w.child<QDoubleSpinBox>("lightRight").value() == Approx(57)); // degrees
-    CHECK(w.child<QComboBox>("lightPresetCombo").currentIndex() == 0); // wherever it comes from
+    CHECK(w.child<QComboBox>("lightPresetCombo").currentIndex() == 0);  // wherever it comes from
     w.document().undo();
     CHECK_FALSE(lightOf(w).on);
     CHECK(lightOf(w).direction == Vec3(0, 0, 1));

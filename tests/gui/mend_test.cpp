@@ -22,7 +22,7 @@
 
 #include "input_habits.h"
 #include "render/camera_motion.h"
-#include "render/image.h"
+#include "image_io/image_file.h"
 #include "tf_edit.h"
 
 using namespace pellucid;

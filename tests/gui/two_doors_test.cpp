@@ -10,7 +10,7 @@
 #include <QSignalSpy>
 #include <QTemporaryDir>
 
-#include "render/image.h"
+#include "image_io/image_file.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_json.h"
 

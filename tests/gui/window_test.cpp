@@ -29,7 +29,7 @@
 
 #include "optimize/refine.h"
 #include "render/camera_motion.h"
-#include "render/image.h"
+#include "image_io/image_file.h"
 #include "tf/formats/tf_json.h"
 #include "tf/sample_tf.h"
 

@@ -21,14 +21,18 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/saliency", {"base", "volume", "tf"}},
     {"src/render", {"base", "volume", "tf", "saliency"}},
     {"src/render/gl", {"base", "volume", "tf", "saliency", "render"}},
+    {"src/image_io", {"base", "volume", "tf", "saliency", "render"}},
     {"src/optimize", {"base", "volume", "tf", "saliency", "render"}},
     {"src/engines", {"base", "volume", "tf", "saliency", "render"}},
+    {"src/bench", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
     {"src/session", {"base", "volume", "tf", "saliency", "render", "optimize", "engines"}},
-    {"app/cli", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "session", "cli"}},
-    {"app/gui", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "session", "gui"}},
+    {"app/cli",
+     {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "bench", "session", "cli"}},
+    {"app/gui", {"base", "volume", "tf", "saliency", "render", "image_io", "optimize", "engines", "session", "gui"}},
+    {"app/gpu_check", {"base", "volume", "tf", "saliency", "render", "optimize", "engines", "bench", "gpu_check"}},
 };
-const std::set<std::string> kOurFolders{"base",     "volume",  "tf",      "saliency", "render",
-                                        "optimize", "engines", "session", "cli",      "gui"};
+const std::set<std::string> kOurFolders{"base",    "volume", "tf",      "saliency", "render", "image_io", "optimize",
+                                        "engines", "bench",  "session", "cli",      "gui",    "gpu_check"};
 
 struct Include {
     std::string file; ///< relative to the sources' top
@@ -77,8 +81,8 @@ std::string fault(const Include& include) {
     if (include.name.find('/') == std::string::npos || !kOurFolders.count(folder)) return "";
     const std::string own = layer.substr(layer.find('/') + 1);
     if (startsWith(include.name, "render/gl/") && layer != "src/render/gl" && layer != "src/engines" &&
-        layer != "app/gui")
-        return "only engines and the window may include render/gl";
+        layer != "app/gui" && layer != "app/gpu_check")
+        return "only engines, the window and the GPU's check may include render/gl";
     if (folder == own || kAllowed.at(layer).count(folder)) return "";
     return "an arrow that points up or sideways";
 }

@@ -2,11 +2,14 @@
 
 #include <limits>
 
+#include <glm/gtc/quaternion.hpp>
+
 #include "base/parallel.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/ray_box.h"
 #include "support/engine_checks.h"
 #include "support/field_sums.h"
+#include "support/random_cases.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -341,5 +344,107 @@ TEST_CASE("slices far apart, and eyes far off, are no obstacle to the cpu engine
     for (const double distance : {1e10, 1e30}) {
         camera.eye = camera.center + Vec3(1, -2, 1) * distance;
         check(volume, camera);
+    }
+}
+
+namespace {
+
+/// A random map of the world onto itself: a turn, mirrored or not, then sheared by up to `shear` (tangent).
+Mat3 randomMap(Random& random, double shear) {
+    const Vec3 axis = glm::normalize(Vec3(random.between(-1, 1), random.between(-1, 1), random.between(0.1, 1)));
+    Mat3 map = glm::mat3_cast(glm::angleAxis(random.between(0, 6.3), axis));
+    if (random.chance(0.5)) map[random.below(3)] *= -1.0;
+    Mat3 sheared(1);
+    sheared[1].x = random.between(-shear, shear);
+    sheared[2].x = random.between(-shear, shear);
+    sheared[2].y = random.between(-shear, shear);
+    return map * sheared;
+}
+
+/// The same voxels where `map` brings them; the camera goes along.
+void moveBy(const Mat3& map, RandomCase& c) {
+    Geometry g = c.volume->geometry();
+    const Mat3 axes = map * g.worldFromIndex();
+    for (int a = 0; a < 3; ++a) {
+        g.spacing[a] = glm::length(axes[a]);
+        g.directions[a] = axes[a] / g.spacing[a];
+    }
+    const Vec3 shift(3, -5, 7);
+    g.origin = map * g.origin + shift;
+    c.volume = std::make_shared<const Volume>(
+        Volume(g, c.volume->samples(), c.volume->missing()).withRange(c.volume->range()));
+    c.camera.eye = map * c.camera.eye + shift;
+    c.camera.center = map * c.camera.center + shift;
+    c.camera.up = map * c.camera.up;
+}
+
+/// A part of the box, and up to three planes that leave the middle of it.
+Clipping randomClipping(Random& random, const Geometry& g) {
+    Clipping clipping;
+    for (int a = 0; a < 3; ++a)
+        if (random.chance(0.4)) {
+            clipping.lo[a] = random.between(0, 0.4);
+            clipping.hi[a] = random.between(0.6, 1);
+        }
+    for (int n = random.below(4); n > 0; --n) {
+        const Vec3 normal = glm::normalize(Vec3(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)));
+        clipping.planes.push_back(
+            {normal * 2.0, 2 * (glm::dot(normal, g.boxCenter()) + random.between(-0.1, 0.5) * g.radius())});
+    }
+    return clipping;
+}
+
+} // namespace
+
+TEST_CASE("a turned, mirrored and sheared grid is measured as the reference does", "[visibility][cpu][affine]") {
+    for (std::uint32_t n = 0; n < 24; ++n) {
+        Random random(n);
+        RandomCase c = randomCase(n);
+        if (c.tfKind.find("boxes") != std::string::npos) continue; // vertical sides: a sample more or less decides
+        moveBy(randomMap(random, 0.35), c);                        // up to 19°
+        INFO(c.describe());
+        const WeightFields weights = saliencyFields(*c.volume, c.tf);
+        const auto engine = makeCpuEngine(c.volume), oracle = makeReferenceEngine(c.volume, 8);
+        const Disagreement d = compare(*oracle, *engine, c.camera, c.tf, weights);
+        CAPTURE(n, d.visibilityRms, d.visibility, d.vws);
+        CHECK(d.visibilityRms < kNormalTolerances.visibilityRms);
+        CHECK(d.visibility < kNormalTolerances.figure);
+        CHECK(d.vws < kNormalTolerances.figure);
+    }
+}
+
+TEST_CASE("a turn or mirroring of the whole world changes no figure", "[visibility][reference][cpu][affine]") {
+    for (std::uint32_t n = 0; n < 12; ++n) {
+        Random random(n);
+        const RandomCase c = randomCase(n, 0.5);
+        RandomCase moved = c;
+        moveBy(randomMap(random, 0), moved);
+        INFO(c.describe());
+        for (const bool fast : {false, true}) {
+            const auto of = [&](const RandomCase& what) {
+                const auto engine = fast ? makeCpuEngine(what.volume) : makeReferenceEngine(what.volume, 2);
+                return featureMeasures(engine->sums(what.camera, {&what.tf, 1}, nullptr)[0]);
+            };
+            const auto before = of(c), after = of(moved);
+            for (std::size_t f = 0; f < before.size(); ++f)
+                CHECK(after[f].visibility == Approx(before[f].visibility).margin(fast ? 2e-3 : 1e-4));
+        }
+    }
+}
+
+TEST_CASE("what is clipped away is neither seen nor hides, as the reference has it", "[visibility][cpu][clip]") {
+    for (std::uint32_t n = 0; n < 36; ++n) {
+        Random random(n + 100);
+        RandomCase c = randomCase(n);
+        if (n % 2 == 1) moveBy(randomMap(random, 0.2), c);
+        const View view(c.camera, randomClipping(random, c.volume->geometry()));
+        INFO(c.describe());
+        const WeightFields weights = saliencyFields(*c.volume, c.tf);
+        const auto engine = makeCpuEngine(c.volume), oracle = makeReferenceEngine(c.volume, 8);
+        const Disagreement d = compare(*oracle, *engine, view, c.tf, weights);
+        CAPTURE(n, d.visibilityRms, d.visibility, d.vws);
+        CHECK(d.visibilityRms < kNormalTolerances.visibilityRms);
+        CHECK(d.visibility < kNormalTolerances.figure);
+        CHECK(d.vws < kNormalTolerances.figure);
     }
 }

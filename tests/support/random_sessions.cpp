@@ -204,8 +204,8 @@ Session randomSession(std::uint32_t number) {
         const Vec3 parts = oddVector(random, 0, 1);
         DisplaySettings d;
         d.mode = static_cast<RenderMode>(random.below(5));
-        d.light = {random.chance(0.5), parts.x, parts.y, parts.z, 1 + 99 * parts.x, oddVector(random, -1, 1),
-                   parts.y, parts.z, parts.x, parts.y};
+        d.light = {random.chance(0.5),        parts.x, parts.y, parts.z, 1 + 99 * parts.x,
+                   oddVector(random, 0.1, 1), parts.y, parts.z, parts.x, parts.y};
         d.background = randomColor(random);
         if (random.chance(0.3)) d.backgroundTop = randomColor(random);
         d.onlyFeature = only;

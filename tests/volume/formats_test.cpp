@@ -274,8 +274,19 @@ TEST_CASE("NIfTI says where the volume lies", "[formats]") {
     CHECK(read().geometry().origin == Vec3(-5000, -6000, 7000));
     CHECK(read().geometry().spacing == Vec3(1000, 2000, 3000));
     nifti.units = 2;
-    nifti.sform[0] = 1; // x goes to the right
-    CHECK(read().notices.size() == 2);
+    CHECK(read().geometry().directions == Mat3(1));
+    CHECK(read().geometry().frame == Frame::Patient);
+    nifti.sform[0] = 1; // i goes to the right: against our x
+    CHECK(read().geometry().directions[0] == Vec3(-1, 0, 0));
+    CHECK(read().geometry().directions[1] == Vec3(0, 1, 0));
+    CHECK(read().notices.size() == 1);
+    nifti.sform = {-1, 1, 0, 5, 0, -2, 0, 6, 0, 0, 3, 7}; // sheared: j goes (1, −2, 0) to the right and front
+    CHECK(glm::length(read().geometry().directions[1] - Vec3(-1, 2, 0) / std::sqrt(5.0)) < 1e-6);
+    CHECK(std::abs(read().geometry().spacing.y - std::sqrt(5.0)) < 1e-6); // the length of the map's column
+    nifti.sformCode = nifti.qformCode = 0;
+    CHECK(read().geometry().frame == Frame::File); // no form at all: the grid's own axes
+    CHECK(read().geometry().directions == Mat3(1));
+    nifti.sformCode = 1;
     const Volume packed = load(folder.write("b.nii", gzipped(nifti.header() + data))); // .gz left out of the name
     CHECK(packed.dims() == Int3(2, 3, 4));
     CHECK(packed.value(23) == 'x');
@@ -413,15 +424,38 @@ TEST_CASE("numbers have a point in every locale", "[formats]") {
     std::setlocale(LC_NUMERIC, before.c_str());
 }
 
-TEST_CASE("axis directions are not applied, and the volume says so", "[formats]") {
+TEST_CASE("MetaImage and NRRD say where the axes point", "[formats]") {
     const TempFolder folder;
     const Volume turned = load(folder.write(
         "a.mha", "ObjectType = Image\nNDims = 3\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\nElementSpacing = 1 2 3\n"
                  "DimSize = 2 1 1\nElementType = MET_UCHAR\nElementDataFile = LOCAL\nab"));
-    REQUIRE(turned.notices.size() == 1);
-    CHECK_THAT(turned.notices[0], Contains("directions of the axes"));
+    CHECK(turned.notices.empty());
     CHECK(turned.geometry().spacing == Vec3(1, 2, 3));
+    // Row n of the matrix is axis n: i points along y, j against x.
+    CHECK(turned.geometry().directions == Mat3(Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1)));
+    CHECK(turned.geometry().frame == Frame::File); // nobody speaks of a patient
+    CHECK(turned.geometry().worldFromVoxel({1, 1, 0}) == Vec3(-2, 1, 0));
     CHECK(turned.value(0) == 'a');
+    const auto nrrd = [&](const std::string& space, const std::string& units) {
+        return load(folder.write("b.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nspace: " + space +
+                                               "\nsizes: 2 1 1\nspace directions: (0,2,0) (1,0,0) (0,0,3)\n" + units +
+                                               "space origin: (1,2,3)\nencoding: raw\n\nab"))
+            .geometry();
+    };
+    CHECK(nrrd("left-posterior-superior", "").directions == Mat3(Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)));
+    const Geometry ras = nrrd("RAS", "space units: \"m\" \"m\" \"m\"\n");
+    CHECK(ras.frame == Frame::Patient);
+    CHECK(ras.directions == Mat3(Vec3(0, -1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1))); // x and y are the other way round
+    CHECK(ras.origin == Vec3(-1000, -2000, 3000));
+    CHECK(ras.spacing == Vec3(2000, 1000, 3000));
+    CHECK(nrrd("3D-right-handed", "").frame == Frame::File);
+    CHECK(nrrd("3D-right-handed", "").directions[0] == Vec3(0, 1, 0));
+    // What is written says the same.
+    writeNrrd(Volume(ras, std::vector<std::uint8_t>{1, 2}), folder.path("c.nrrd"));
+    const Geometry again = load(folder.path("c.nrrd")).geometry();
+    CHECK(again.directions == ras.directions);
+    CHECK(again.frame == Frame::Patient);
+    CHECK(again.origin == ras.origin);
 }
 
 TEST_CASE("one component of several, the first of several time steps", "[formats]") {

@@ -11,7 +11,8 @@ namespace {
 
 std::string presetNames(const char* separator) {
     std::string names;
-    for (const LightPreset& preset : lightPresets()) names += (names.empty() ? "" : separator) + std::string(preset.name);
+    for (const LightPreset& preset : lightPresets())
+        names += (names.empty() ? "" : separator) + std::string(preset.name);
     return names;
 }
 

@@ -8,7 +8,7 @@
 
 #include "controllers/open_controller.h"
 #include "engines/engines.h"
-#include "render/image.h"
+#include "image_io/image_file.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_json.h"
 #include "workbench.h"

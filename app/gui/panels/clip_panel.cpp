@@ -125,10 +125,12 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
         box->setDecimals(3);
         box->setSingleStep(0.05);
         box->setKeyboardTracking(false);
-        box->setToolTip(number < 3 ? tr("%1 of the plane's normal, which points to what is cut away")
-                                         .arg(kAxes[number])
+        box->setToolTip(number < 3 ? tr("%1 of the plane's normal, which points to what is cut away").arg(kAxes[number])
                                    : tr("Where the plane lies along its normal n, in world units: points p with "
                                         "n·p at most this are left, as --clip NX,NY,NZ,D says it"));
+        // As wide as there is room, whatever the range.
+        box->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+        box->setMinimumWidth(64);
         row.boxes[static_cast<std::size_t>(number)] = box;
         if (number < 3)
             grid->addWidget(box, 0, number + 1);
@@ -184,10 +186,9 @@ void ClipPanel::editPlane(std::size_t index, int number, double value) {
     else
         plane.offset = value;
     if (!(glm::length(plane.normal) > 0)) return follow(); // no direction is left
-    m_bench.store().edit(tr("Clip plane"), QStringLiteral("clip-plane-%1-%2").arg(index).arg(number),
-                         [&](Session& session) {
-                             session.clipping.edit([&](Clipping& c) { c.planes.at(index) = plane; });
-                         });
+    m_bench.store().edit(
+        tr("Clip plane"), QStringLiteral("clip-plane-%1-%2").arg(index).arg(number),
+        [&](Session& session) { session.clipping.edit([&](Clipping& c) { c.planes.at(index) = plane; }); });
 }
 
 QSize ClipPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
@@ -237,10 +238,11 @@ PanelInfo clipPanel() {
                                      .keys = {QKeySequence("Shift+C")},
                                      .tip = QObject::tr("Cut away what is nearer than the middle of the volume"),
                                      .trigger = [&bench] { addPlane(bench); },
-                                     .enabled = [&bench] {
-                                         return isReady(bench) &&
-                                                bench.scene().session.clipping->planes.size() < kMostClipPlanes;
-                                     }});
+                                     .enabled =
+                                         [&bench] {
+                                             return isReady(bench) &&
+                                                    bench.scene().session.clipping->planes.size() < kMostClipPlanes;
+                                         }});
                 bench.actions().add(
                     {.id = "resetClipAction",
                      .menu = QObject::tr("&View"),

@@ -27,11 +27,12 @@ namespace pellucid::gui {
 namespace {
 
 /// In the order of RenderMode.
-const std::array kModes{std::pair{QT_TR_NOOP("Composite"), QT_TR_NOOP("Emission and absorption by the transfer function")},
-                        std::pair{QT_TR_NOOP("Maximum (MIP)"), QT_TR_NOOP("The largest value along each ray, as grey")},
-                        std::pair{QT_TR_NOOP("Minimum (MinIP)"), QT_TR_NOOP("The smallest value, as grey")},
-                        std::pair{QT_TR_NOOP("Average"), QT_TR_NOOP("The mean value, as grey: like an X-ray")},
-                        std::pair{QT_TR_NOOP("Surfaces"), QT_TR_NOOP("The first surface of each feature")}};
+const std::array kModes{
+    std::pair{QT_TR_NOOP("Composite"), QT_TR_NOOP("Emission and absorption by the transfer function")},
+    std::pair{QT_TR_NOOP("Maximum (MIP)"), QT_TR_NOOP("The largest value along each ray, as grey")},
+    std::pair{QT_TR_NOOP("Minimum (MinIP)"), QT_TR_NOOP("The smallest value, as grey")},
+    std::pair{QT_TR_NOOP("Average"), QT_TR_NOOP("The mean value, as grey: like an X-ray")},
+    std::pair{QT_TR_NOOP("Surfaces"), QT_TR_NOOP("The first surface of each feature")}};
 
 constexpr Rgb kFirstTop{0.16, 0.19, 0.24}; // of a gradient that is switched on
 
@@ -46,8 +47,9 @@ QPixmap swatchOf(const Rgb& color) {
 DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_mode(new QComboBox(this)), m_background(new QToolButton(this)),
       m_gradient(new QCheckBox(tr("to the top"), this)), m_top(new QToolButton(this)), m_feature(new QComboBox(this)),
-      m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)), m_wholeRange(new QPushButton(tr("&All values"), this)),
-      m_component(new QSpinBox(this)), m_note(new QLabel(this)) {
+      m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
+      m_wholeRange(new QPushButton(tr("&All values"), this)), m_component(new QSpinBox(this)),
+      m_note(new QLabel(this)) {
     setObjectName("displayPanel");
     m_mode->setObjectName("modeCombo");
     m_mode->setToolTip(tr("What becomes of the values along a ray"));
@@ -148,8 +150,8 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     });
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         const Session &old = before.session, &now = after.session;
-        const bool same = before.volume == after.volume && before.tf.features == after.tf.features &&
-                          old.display.isSame(now.display);
+        const bool same =
+            before.volume == after.volume && before.tf.features == after.tf.features && old.display.isSame(now.display);
         if (!same) follow(); // the view turns, the curve is dragged: nothing of this panel's
     });
     connect(&m_bench, &Workbench::readOnlyChanged, this, &DisplayPanel::follow);

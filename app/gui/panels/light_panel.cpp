@@ -32,8 +32,7 @@ bool isReady(Workbench& bench) { return bench.store().hasVolume() && !bench.isRe
 } // namespace
 
 int LightPanel::Row::positionOf(double number) const {
-    const double part =
-        logarithmic ? std::log(number / lo) / std::log(hi / lo) : (number - lo) / (hi - lo);
+    const double part = logarithmic ? std::log(number / lo) / std::log(hi / lo) : (number - lo) / (hi - lo);
     return static_cast<int>(std::lround(part * kSliderSteps));
 }
 
@@ -128,7 +127,7 @@ LightPanel::LightPanel(Workbench& bench, QWidget* parent)
 }
 
 void LightPanel::addRow(QFormLayout& form, const char* name, const QString& label, const QString& tip,
-                        double Light::* value, double lo, double hi, bool logarithmic) {
+                        double Light::*value, double lo, double hi, bool logarithmic) {
     Row row{value, lo, hi, logarithmic, new QSlider(Qt::Horizontal, this), new QDoubleSpinBox(this), label};
     row.slider->setObjectName(QString::fromLatin1(name) + "Slider");
     row.slider->setRange(0, kSliderSteps);

@@ -28,7 +28,7 @@ public:
 private:
     /// A number of the light, by a slider and a box.
     struct Row {
-        double Light::* value;
+        double Light::*value;
         double lo, hi;
         bool logarithmic; ///< on the slider
         QSlider* slider;
@@ -37,7 +37,7 @@ private:
         int positionOf(double number) const;
         double numberAt(int position) const;
     };
-    void addRow(QFormLayout& form, const char* name, const QString& label, const QString& tip, double Light::* value,
+    void addRow(QFormLayout& form, const char* name, const QString& label, const QString& tip, double Light::*value,
                 double lo, double hi, bool logarithmic = false);
     void follow();
     void edit(const Row& row, double number);

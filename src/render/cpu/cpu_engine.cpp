@@ -7,6 +7,9 @@
 #include <limits>
 #include <mutex>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include "base/parallel.h"
 #include "base/zeroed_memory.h"
 #include "render/cpu/cpu_engine.h"
@@ -224,15 +227,15 @@ public:
     std::string name() const override { return "cpu"; }
     const Volume& volume() const override { return *m_volume; }
 
-    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs,
-                                  const WeightFields* weights, const JobControl& job) override {
+    std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights,
+                                  const JobControl& job) override {
         std::vector<FeatureSums> all;
         for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features == tfs[0].features);
         const std::size_t batches = (tfs.size() + kSweepLanes - 1) / kSweepLanes;
         for (std::size_t first = 0; first < tfs.size(); first += kSweepLanes) {
             const auto batch = tfs.subspan(first, std::min<std::size_t>(kSweepLanes, tfs.size() - first));
-            const Sums sums = sweep(view.camera, SweepTables(batch, m_codeSpace), weights, nullptr,
-                                    job.part(first / kSweepLanes, batches));
+            const Sums sums =
+                sweep(view, SweepTables(batch, m_codeSpace), weights, nullptr, job.part(first / kSweepLanes, batches));
             for (std::size_t lane = 0; lane < batch.size(); ++lane) all.push_back(sums.ofLane(lane));
         }
         return all;
@@ -245,7 +248,7 @@ public:
         const std::size_t sweeps = std::max<std::size_t>(1, (tf.features.size() + kAtOnce - 1) / kAtOnce);
         for (std::size_t first = 0; first < sweeps * kAtOnce; first += kAtOnce) {
             const SweepTables tables(tf, static_cast<int>(first), m_codeSpace);
-            const Sums sums = sweep(view.camera, tables, weights, nullptr, job.part(first / kAtOnce, sweeps));
+            const Sums sums = sweep(view, tables, weights, nullptr, job.part(first / kAtOnce, sweeps));
             if (first == 0) result.sums = sums.ofLane(0);
             for (std::size_t lane = 1; lane < kJacobianLanes && first + lane <= tf.features.size(); ++lane)
                 result.byOpacity.push_back(sums.ofLane(lane));
@@ -255,7 +258,7 @@ public:
 
     VisibilityField field(const View& view, const TransferFunction& tf, const JobControl& job) override {
         VisibilityField field{Grid<float>(m_volume->dims())};
-        sweep(view.camera, SweepTables({&tf, 1}, m_codeSpace), nullptr, &field.values, job);
+        sweep(view, SweepTables({&tf, 1}, m_codeSpace), nullptr, &field.values, job);
         return field;
     }
 
@@ -333,7 +336,7 @@ private:
         const auto axesOf = [](int w, bool flipped) { return Axes{w == 0 ? 1 : 0, w == 2 ? 1 : 2, w, flipped}; };
         const Geometry& g = m_volume->geometry();
         if (camera.projection == Projection::Orthographic) {
-            const Vec3 d = camera.forward() / g.spacing;
+            const Vec3 d = g.indexFromWorld() * camera.forward();
             int w = 0;
             for (int a = 1; a < 3; ++a)
                 if (std::abs(d[a]) > std::abs(d[w])) w = a;
@@ -375,9 +378,11 @@ private:
     void setRays(SweepInput& in, const Camera& camera, const Pass& pass) const {
         const Axes& axes = pass.axes;
         const Geometry& g = m_volume->geometry();
-        const Vec3 h = permuted(g.spacing, axes) / g.d0();
-        in.hu = h.x, in.hv = h.y, in.hw = h.z;
-        const double sign = axes.flipped ? -1 : 1;
+        const double sign = axes.flipped ? -1 : 1; // w runs against the axis
+        const Mat3 axesInD0 = g.worldFromIndex() / g.d0();
+        const Vec3 u = axesInD0[axes.u], v = axesInD0[axes.v], w = sign * axesInD0[axes.w];
+        in.guu = glm::dot(u, u), in.gvv = glm::dot(v, v), in.gww = glm::dot(w, w);
+        in.guv = glm::dot(u, v), in.guw = glm::dot(u, w), in.gvw = glm::dot(v, w);
         const bool high = m_quality == Quality::High;
         // What is off averages out over many voxels, which small volumes do not have; but they have the time.
         const bool small = isSmall();
@@ -391,7 +396,7 @@ private:
         in.perspective = camera.projection == Projection::Perspective;
         if (!high && !small && in.perspective) in.raySpacing = 1.2; // at most: nearer to the eye they are denser
         if (!in.perspective) {
-            const Vec3 d = permuted(camera.forward() / g.spacing, axes);
+            const Vec3 d = permuted(g.indexFromWorld() * camera.forward(), axes);
             in.slopeU = d.x / (sign * d.z);
             in.slopeV = d.y / (sign * d.z);
             return;
@@ -403,6 +408,35 @@ private:
         in.pyramid = pass.pyramid;
         in.ownsTieU = axes.w < axes.u;
         in.ownsTieV = axes.w < axes.v;
+    }
+
+    static void setPlanes(SweepInput& in, std::span<const VoxelPlane> planes, const Axes& axes) {
+        PELLUCID_CHECK(planes.size() <= kMostSweepPlanes);
+        in.clipTie = kClipTie;
+        for (const VoxelPlane& plane : planes) {
+            SweepPlane& p = in.planes[in.planeCount++];
+            const Vec3 n = permuted(plane.normal, axes);
+            p = {n.x, n.y, n.z, plane.offset};
+            if (!axes.flipped) continue;
+            p.w = -n.z;
+            p.offset = plane.offset - n.z * (in.nw - 1);
+        }
+    }
+
+    /// Takes blocks out of the opaque map that are clipped away, with all that interpolation around them reaches.
+    void clearClipped(std::vector<std::uint8_t>& opaque, std::span<const VoxelPlane> planes) const {
+        for (const VoxelPlane& plane : planes)
+            parallelFor(asSize(m_blocks.z), [&](std::size_t z) {
+                std::uint8_t* block = &opaque[z * asSize(m_blocks.x) * asSize(m_blocks.y)];
+                for (int y = 0; y < m_blocks.y; ++y)
+                    for (int x = 0; x < m_blocks.x; ++x, ++block) {
+                        // The corner that is least beyond.
+                        Vec3 corner;
+                        const Vec3 first = Vec3(x, y, static_cast<int>(z)) * static_cast<double>(kBlockSize);
+                        for (int a = 0; a < 3; ++a) corner[a] = first[a] + (plane.normal[a] > 0 ? -1 : kBlockSize);
+                        if (plane.beyond(corner) > kClipTie) *block = 0;
+                    }
+            });
     }
 
     /// Codes laid out so that neighbours along u are neighbours in memory.
@@ -447,27 +481,30 @@ private:
         return spans;
     }
 
-    Sums sweep(const Camera& camera, const SweepTables& tables, const WeightFields* weights, Grid<float>* field,
+    Sums sweep(const View& view, const SweepTables& tables, const WeightFields* weights, Grid<float>* field,
                const JobControl& job) {
         const Geometry& g = m_volume->geometry();
+        const Camera& camera = view.camera;
         camera.validate(g, "camera");
+        view.clipping.validate();
         if (camera.projection == Projection::Perspective) {
-            const Vec3 eye = camera.eye - g.boxCenter();
-            if (std::max({std::abs(eye.x / g.spacing.x), std::abs(eye.y / g.spacing.y),
-                          std::abs(eye.z / g.spacing.z)}) > kFarEye) {
+            const Vec3 eye = camera.eye - g.boxCenter(), inVoxels = glm::abs(g.indexFromWorld() * eye);
+            if (std::max({inVoxels.x, inVoxels.y, inVoxels.z}) > kFarEye) {
                 Camera parallel = camera;
                 parallel.projection = Projection::Orthographic;
                 parallel.center = g.boxCenter();
                 parallel.up = std::abs(eye.z) > std::hypot(eye.x, eye.y) ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
                 parallel.height = 1; // of the image; no ray depends on it
-                return sweep(parallel, tables, weights, field, job);
+                return sweep({parallel, view.clipping}, tables, weights, field, job);
             }
         }
-        const std::vector<std::uint8_t> opaque = tables.opaqueBlocks(m_ranges);
+        const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, g);
+        std::vector<std::uint8_t> opaque = tables.opaqueBlocks(m_ranges);
+        clearClipped(opaque, planes);
         Sums sums;
         const std::vector<Pass> passes = passesOf(camera);
         for (std::size_t n = 0; n < passes.size(); ++n) {
-            Sums part = sweep(camera, passes[n], tables, opaque, weights, field, job.part(n, passes.size()));
+            Sums part = sweep(camera, planes, passes[n], tables, opaque, weights, field, job.part(n, passes.size()));
             if (n == 0) {
                 sums = std::move(part);
                 continue;
@@ -477,7 +514,7 @@ private:
         return sums;
     }
 
-    Sums sweep(const Camera& camera, const Pass& pass, const SweepTables& tables,
+    Sums sweep(const Camera& camera, std::span<const VoxelPlane> planes, const Pass& pass, const SweepTables& tables,
                const std::vector<std::uint8_t>& opaque, const WeightFields* weights, Grid<float>* field,
                const JobControl& job) {
         const Geometry& g = m_volume->geometry();
@@ -508,6 +545,7 @@ private:
         }
         if (field) in.field = field->data() + start;
         setRays(in, camera, pass);
+        setPlanes(in, planes, axes);
         in.exhaustedDepth = static_cast<float>(m_quality == Quality::High || isSmall() ? kExhaustedExact
                                                : in.mode == SweepMode::Jacobian        ? kExhaustedDerivative
                                                                                        : kExhausted);

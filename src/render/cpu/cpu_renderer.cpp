@@ -100,9 +100,7 @@ private:
         const int steps = std::max(1, static_cast<int>(std::ceil((t.exit - t.enter) / (settings.stepInD0 * g.d0()))));
         const double step = (t.exit - t.enter) / steps;
         const double stepInD0 = step / g.d0();
-        const auto voxelAt = [&](double n) {
-            return voxelRay.origin + voxelRay.direction * (t.enter + n * step);
-        };
+        const auto voxelAt = [&](double n) { return voxelRay.origin + voxelRay.direction * (t.enter + n * step); };
         Interpolated from = interpolate(m_grid.codes, m_grid.valid, voxelAt(0));
         for (int n = 1; n <= steps && light.transmittance > kDark; ++n) {
             const Interpolated to = interpolate(m_grid.codes, m_grid.valid, voxelAt(n));

@@ -20,8 +20,9 @@ inline constexpr int kSweepLanes = 8;     ///< candidates of one sweep
 inline constexpr int kJacobianLanes = 16; ///< of a sweep for derivatives: the depth itself and up to 15 of them
 inline constexpr std::uint16_t kTransparent = 65535; ///< in SweepInput::featureOfCode: opacity 0 in every candidate
 inline constexpr std::uint16_t kInvalidCode = 65535;
-inline constexpr int kCodePadding = 16; ///< codes that may be read behind the last voxel
-inline constexpr int kBlockSize = 8;    ///< voxels along each edge of a block of the opaque map
+inline constexpr int kCodePadding = 16;     ///< codes that may be read behind the last voxel
+inline constexpr int kMostSweepPlanes = 12; ///< sides of a part of the box, and oblique ones
+inline constexpr int kBlockSize = 8;        ///< voxels along each edge of a block of the opaque map
 
 enum class SweepMode {
     Single,  ///< one lane, one transfer function; writes the field if asked to
@@ -40,6 +41,12 @@ struct SweepStrides {
 /// The blocks first … last of a row; none where last < first.
 struct SweepSpan {
     int first = 0, last = -1;
+};
+
+/// A half-space that is kept: u·U + v·V + w·W ≤ offset, the difference in d0.
+struct SweepPlane {
+    double u = 0, v = 0, w = 0, offset = 0;
+    double beyond(double U, double V, double W) const { return u * U + v * V + w * W - offset; }
 };
 
 /// Pointers are to the voxel u = v = 0 of the nearest slice.
@@ -71,6 +78,11 @@ struct SweepInput {
     float exhaustedDepth = 0;             ///< a ray is given up in the lanes whose depth exceeds this
     int firstDerivative = 0;              ///< Jacobian: the feature of lane 1
 
+    // What is left of the volume.
+    SweepPlane planes[kMostSweepPlanes];
+    int planeCount = 0;
+    double clipTie = 0; ///< voxels no farther than this beyond a plane are kept
+
     // The rays.
     bool perspective = false;
     double slopeU = 0, slopeV = 0;       ///< orthographic: du/dw, dv/dw of every ray
@@ -78,10 +90,12 @@ struct SweepInput {
     bool pyramid = false; ///< perspective: … and only those that lie no farther off along u and v than along w;
     bool ownsTieU = false, ownsTieV = false; ///< … or as far
     double raySpacing = 1;                   ///< of the rays, in voxels; perspective: at most
-    double hu = 1, hv = 1, hw = 1;           ///< spacing in d0
-    int stepsPerSlice = 1;                   ///< samples of a line per slice distance
-    int ownSteps = 4;    ///< samples per slice distance of the lines of voxels that are followed all the way
-    float tolerance = 1; ///< transmittance: where neighbouring rays differ by more, voxels follow their own line
+    /// The length in d0 of a difference Δ of voxel coordinates is √(Δᵀ·metric·Δ): guu … the entries of that symmetric
+    /// matrix.
+    double guu = 1, gvv = 1, gww = 1, guv = 0, guw = 0, gvw = 0;
+    int stepsPerSlice = 1; ///< samples of a line per slice distance
+    int ownSteps = 4;      ///< samples per slice distance of the lines of voxels that are followed all the way
+    float tolerance = 1;   ///< transmittance: where neighbouring rays differ by more, voxels follow their own line
 };
 
 /// A part of a sweep that needs no other: the voxels of the slices [begin, end) that lie between the rows of rays

@@ -116,8 +116,8 @@ public:
     }
     /// Length in d0 of a line from one slice to the next, of slopes in voxels.
     double lengthOf(double slopeU, double slopeV) const {
-        return __builtin_sqrt(m_in.hw * m_in.hw + slopeU * m_in.hu * slopeU * m_in.hu +
-                              slopeV * m_in.hv * slopeV * m_in.hv);
+        return __builtin_sqrt(m_in.gww + slopeU * (m_in.guu * slopeU + 2 * (m_in.guv * slopeV + m_in.guw)) +
+                              slopeV * (m_in.gvv * slopeV + 2 * m_in.gvw));
     }
 
     // ---- Samples: trilinear, clamped to the outer centres ----
@@ -230,6 +230,59 @@ public:
         cut(fromU, toU, m_in.nu);
         cut(zero + fromV, zero + toV, m_in.nv);
         return leave > enter ? leave - enter : zero;
+    }
+
+    // ---- Clip planes ----
+
+    bool clips() const { return m_in.planeCount > 0; }
+
+    /// What clip planes leave of eight lines between two planes: parts [0,1] of the way, none where leave ≤ enter.
+    struct Kept {
+        Vec8 enter = {}, leave = {};
+    };
+    enum class Clipped { Nothing, Part, All };
+    /// Of the lines (a … a + 7, b) from the plane w0 to the plane w1. `kept` is set where a part is clipped.
+    Clipped clip(const LinePlane& from, const LinePlane& to, double w0, double w1, double a, double b,
+                 Kept& kept) const {
+        const Vec8 zero = {};
+        const double u0 = from.u(a), u1 = to.u(a), v0 = from.v(b), v1 = to.v(b);
+        Clipped result = Clipped::Nothing;
+        for (int i = 0; i < m_in.planeCount; ++i) {
+            const SweepPlane& p = m_in.planes[i];
+            // Linear in each of line and way: the extremes are at the corners.
+            const double near0 = p.beyond(u0, v0, w0), near1 = p.beyond(u1, v1, w1), step0 = p.u * from.scale,
+                         step1 = p.u * to.scale, far0 = near0 + (kWide - 1) * step0, far1 = near1 + (kWide - 1) * step1;
+            if (near0 <= 0 && near1 <= 0 && far0 <= 0 && far1 <= 0) continue;
+            if (near0 > 0 && near1 > 0 && far0 > 0 && far1 > 0) return Clipped::All;
+            if (result == Clipped::Nothing) kept = {zero, zero + 1.0f};
+            result = Clipped::Part;
+            constexpr float kParallel = 1e-9f; // to the plane, all along
+            const Vec8 x0 = static_cast<float>(near0) + kIota * static_cast<float>(step0),
+                       x1 = static_cast<float>(near1) + kIota * static_cast<float>(step1);
+            Vec8 way = x1 - x0;
+            way = (way < 0.0f ? -way : way) < kParallel ? zero + kParallel : way;
+            const Vec8 at = -x0 / way;
+            kept.leave = way > 0.0f && at < kept.leave ? at : kept.leave;
+            kept.enter = way < 0.0f && at > kept.enter ? at : kept.enter;
+        }
+        return result;
+    }
+    /// The intensities where the kept part of a stretch begins and ends: they go linearly along it.
+    static void narrow(Samples& from, Samples& to, const Kept& kept) {
+        const Vec8 e0 = toFloat(from.entry), way = toFloat(to.entry) - e0, zero = {}, one = zero + 1.0f;
+        const Vec8 enter = kept.enter < one ? kept.enter : one, leave = kept.leave > zero ? kept.leave : zero;
+        from.entry = toInt(e0 + enter * way + 0.5f);
+        to.entry = toInt(e0 + leave * way + 0.5f);
+    }
+    /// Bit n: the voxel (u + n, v, k) is kept.
+    unsigned keptVoxels(int u, int v, int k) const {
+        unsigned kept = (1u << kWide) - 1;
+        for (int i = 0; i < m_in.planeCount; ++i) {
+            const double first = m_in.planes[i].beyond(u, v, k);
+            for (int n = 0; n < kWide; ++n)
+                if (first + n * m_in.planes[i].u > m_in.clipTie) kept &= ~(1u << n);
+        }
+        return kept;
     }
 
     // ---- The opaque map ----
@@ -377,7 +430,20 @@ public:
             Vec8 path = load(m_length + ray) * slices;
             if (!(inside0 && inside1) || !m_lines.insideU(u1, end1) || !m_lines.insideU(p0.u(a), p0.u(a + kWide - 1)))
                 path *= m_lines.insideShare(p0, p1, a, b);
-            addDepth(m_depth + ray * K, m_lines.stretch(s0, s1, path));
+            if (m_lines.clips()) {
+                typename Lines<kInvalid>::Kept kept;
+                const auto clipped = m_lines.clip(p0, p1, w0, w1, a, b, kept);
+                if (clipped == Lines<kInvalid>::Clipped::All) continue;
+                Samples end = s1; // the next stretch begins with s1
+                if (clipped == Lines<kInvalid>::Clipped::Part) {
+                    const Vec8 part = kept.leave - kept.enter;
+                    path *= part > 0.0f ? part : Vec8{};
+                    m_lines.narrow(s0, end, kept);
+                }
+                addDepth(m_depth + ray * K, m_lines.stretch(s0, end, path));
+            } else {
+                addDepth(m_depth + ray * K, m_lines.stretch(s0, s1, path));
+            }
             if (look) m_alive[at] &= static_cast<std::uint8_t>(alive(m_depth + ray * K));
         }
     }

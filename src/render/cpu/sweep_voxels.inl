@@ -170,9 +170,10 @@ public:
             block.codes = codes + block.u;
             block.listed = 0;
             const int end = smaller(kWide, extent.u1 + 1 - block.u);
+            const unsigned kept = m_lines.clips() ? m_lines.keptVoxels(block.u, v, k) : ~0u;
             for (int n = larger(0, extent.u0 - block.u); n < end; ++n) {
                 block.list[block.listed] = n;
-                block.listed += m_in.featureOfCode[block.codes[n]] != kTransparent;
+                block.listed += m_in.featureOfCode[block.codes[n]] != kTransparent && (kept >> n & 1) != 0;
             }
             if (block.listed == 0) continue;
             block.field = field + block.u * m_in.fieldStrides.u;
@@ -374,10 +375,10 @@ private:
     /// Of the own lines, d0 per slice.
     Vec8 ownLengths(const VoxelBlock& block) const {
         if (!m_in.perspective) return Vec8{} + static_cast<float>(m_lines.lengthOf(m_in.slopeU, m_in.slopeV));
-        const double perSlice = 1 / (block.k - m_in.eyeW), v = (block.v - m_in.eyeV) * perSlice * m_in.hv;
-        const Vec8 u = static_cast<float>((block.u - m_in.eyeU) * perSlice * m_in.hu) +
-                       kIota * static_cast<float>(perSlice * m_in.hu);
-        Vec8 length = u * u + static_cast<float>(m_in.hw * m_in.hw + v * v);
+        const double perSlice = 1 / (block.k - m_in.eyeW), v = (block.v - m_in.eyeV) * perSlice;
+        const Vec8 u = static_cast<float>((block.u - m_in.eyeU) * perSlice) + kIota * static_cast<float>(perSlice);
+        Vec8 length = u * (static_cast<float>(m_in.guu) * u + static_cast<float>(2 * (m_in.guv * v + m_in.guw))) +
+                      static_cast<float>(m_in.gww + v * (m_in.gvv * v + 2 * m_in.gvw));
         for (int n = 0; n < kWide; ++n) length[n] = __builtin_sqrtf(length[n]);
         return length;
     }
@@ -388,7 +389,7 @@ private:
         const OwnPlane& p = m_near.planes[0];
         const Vec8 length = ownLengths(block), zero = {};
         const float slices = static_cast<float>(block.k - p.w);
-        const Samples from = m_lines.sample(p.rows, p.lines.u(block.u), p.lines.scale);
+        Samples from = m_lines.sample(p.rows, p.lines.u(block.u), p.lines.scale);
         Vec8 path = length * slices - 0.5f;
         path = path > zero ? path : zero;
         const Vec8 part = path / (length * slices); // of the way to the voxels' centres
@@ -399,6 +400,14 @@ private:
         const Samples to{toInt(before + part * (own - before) + 0.5f), from.share + part * (1.0f - from.share)};
         if (!p.insideV || !m_lines.insideU(p.lines.u(block.u), p.lines.u(block.u + kWide - 1)))
             path *= m_lines.insideShare(p.lines, m_lines.voxelLines(block.k, block.k), block.u, block.v);
+        typename Lines<kInvalid>::Kept kept;
+        // The voxels that count are kept themselves: what is cut away lies before them.
+        if (m_lines.clips() && m_lines.clip(p.lines, m_lines.voxelLines(block.k, block.k), p.w, block.k, block.u,
+                                            block.v, kept) == Lines<kInvalid>::Clipped::Part) {
+            const Vec8 enter = kept.enter < part ? kept.enter : part;
+            path *= part > zero ? (part - enter) / part : zero;
+            from.entry = toInt(before + enter * (own - before) + 0.5f);
+        }
         return m_lines.stretch(from, to, path);
     }
 
@@ -441,13 +450,36 @@ private:
                            reach = (upTo < ends ? upTo : ends) - static_cast<float>(p0.w);
                 Vec8 path = length * (reach > zero ? reach : zero);
                 if (!inside(p0) || !inside(p1)) path *= m_lines.insideShare(p0.lines, p1.lines, block.u, block.v);
-                if (!body(m_lines.stretch(before, now, path))) return;
+                Samples from = before, to = now;
+                if (m_lines.clips()) path *= clippedShare(block, p0, p1, reach, from, to);
+                if (!body(m_lines.stretch(from, to, path))) return;
                 before = now;
                 known = true;
             }
             wasOpaque = opaque;
             if (isLast) return;
         }
+    }
+
+    /// What clip planes leave of the first `reach` (w) of the own lines between two planes, of which `from` and `to`
+    /// are made the ends: [0,1].
+    Vec8 clippedShare(const VoxelBlock& block, const OwnPlane& p0, const OwnPlane& p1, Vec8 reach, Samples& from,
+                      Samples& to) const {
+        const Vec8 zero = {}, one = zero + 1.0f;
+        typename Lines<kInvalid>::Kept kept;
+        switch (m_lines.clip(p0.lines, p1.lines, p0.w, p1.w, block.u, block.v, kept)) {
+        case Lines<kInvalid>::Clipped::Nothing:
+            return one;
+        case Lines<kInvalid>::Clipped::All:
+            return zero;
+        case Lines<kInvalid>::Clipped::Part:
+            break;
+        }
+        const Vec8 part = reach / static_cast<float>(p1.w > p0.w ? p1.w - p0.w : 1);
+        kept.leave = kept.leave < part ? kept.leave : part;
+        m_lines.narrow(from, to, kept);
+        const Vec8 share = (kept.leave - kept.enter) / part;
+        return part > zero && share > zero ? (share < one ? share : one) : zero;
     }
 
     const SweepInput& m_in;

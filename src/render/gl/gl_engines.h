@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "render/image_renderer.h"
 #include "render/visibility.h"
@@ -23,6 +25,7 @@ struct GlInfo {
     std::string vendor, renderer, version;
     std::string platform;  ///< "EGL surfaceless", "OSMesa", …
     bool software = false; ///< isSoftwareRenderer(renderer)
+    std::vector<std::pair<std::string, long>> limits; ///< by OpenGL's names: "max_3d_texture_size", …
 };
 std::optional<GlInfo> probeGl();
 

@@ -1,5 +1,5 @@
-// Every OpenGL function that src/render/gl and its tests call, for loaders that must find each by name (osmesa.cpp). A
-// test compares this list with the sources.
+// Every OpenGL and EGL function that src/render/gl and its tests call, for loaders that must find each by name
+// (osmesa.cpp, gl_loader.cpp). A test compares these lists with the sources.
 #pragma once
 
 // clang-format off
@@ -19,4 +19,8 @@
     X(glProgramUniformMatrix3fv) X(glReadPixels) X(glScissor) X(glShaderSource) X(glTexParameteri) X(glTexStorage2D)  \
     X(glTexStorage3D) X(glTexSubImage2D) X(glTexSubImage3D) X(glUnmapBuffer) X(glUseProgram)                          \
     X(glVertexAttribPointer) X(glViewport)
+#define PELLUCID_EGL_FUNCTIONS(X)                                                                                     \
+    X(eglBindAPI) X(eglChooseConfig) X(eglCreateContext) X(eglDestroyContext) X(eglGetCurrentContext)                 \
+    X(eglGetDisplay) X(eglGetPlatformDisplayEXT) X(eglInitialize) X(eglMakeCurrent) X(eglQueryDeviceStringEXT)        \
+    X(eglQueryDevicesEXT) X(eglQueryString) X(eglReleaseThread)
 // clang-format on

@@ -13,6 +13,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "render/gl/gl.h"
+#include "render/gl/gl_resources.h"
 #include "render/gl/osmesa.h"
 #include "render/gl/shader_program.h"
 
@@ -25,8 +26,17 @@ GlInfo describe(const std::string& platform) {
         const GLubyte* s = glGetString(what);
         return std::string(s ? reinterpret_cast<const char*>(s) : "");
     };
-    GlInfo info{text(GL_VENDOR), text(GL_RENDERER), text(GL_VERSION), platform, false};
+    GlInfo info{text(GL_VENDOR), text(GL_RENDERER), text(GL_VERSION), platform, false, {}};
     info.software = isSoftwareRenderer(info.renderer);
+    const auto limit = [&](const char* name, GLenum what) { info.limits.emplace_back(name, glInteger(what)); };
+    limit("max_3d_texture_size", GL_MAX_3D_TEXTURE_SIZE);
+    limit("max_texture_size", GL_MAX_TEXTURE_SIZE);
+    limit("max_array_texture_layers", GL_MAX_ARRAY_TEXTURE_LAYERS);
+    limit("max_texture_image_units", GL_MAX_TEXTURE_IMAGE_UNITS);
+    limit("max_compute_texture_image_units", GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS);
+    limit("max_compute_work_group_invocations", GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
+    limit("max_compute_shared_memory_size", GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
+    limit("max_shader_storage_block_size", GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
     return info;
 }
 

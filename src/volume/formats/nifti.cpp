@@ -203,7 +203,8 @@ std::optional<Placement> placementIn(const NiftiHeader& header, const Vec3& spac
         throw FileError("the place of the volume has numbers that are not finite", path,
                         "correct qform and sform in the header");
     const std::optional<Placement> sform = hasSform ? fromSform(header) : std::nullopt;
-    if (sform && (!hasQform || header.sformCode() == kScanner || agree(*sform, fromQform(header, spacing)))) return sform;
+    if (sform && (!hasQform || header.sformCode() == kScanner || agree(*sform, fromQform(header, spacing))))
+        return sform;
     if (hasQform) return fromQform(header, spacing);
     if (hasSform)
         throw FileError("the axes that sform gives lie in one plane", path,

@@ -50,11 +50,10 @@ std::string headerText(const Geometry& g, SampleType type) {
     // Without a patient the world has a dimension and no name.
     const Mat3 axes = g.worldFromIndex();
     std::string text =
-        "NRRD0004\ntype: " + std::string(nrrdType(type)) +
-        "\ndimension: 3\n" +
-        (g.frame == Frame::Patient ? "space: left-posterior-superior" : "space dimension: 3") + "\nsizes: " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) +
-        " " + std::to_string(g.dims.z) + "\nspace directions: " + vector(axes[0]) + " " + vector(axes[1]) + " " +
-        vector(axes[2]) +
+        "NRRD0004\ntype: " + std::string(nrrdType(type)) + "\ndimension: 3\n" +
+        (g.frame == Frame::Patient ? "space: left-posterior-superior" : "space dimension: 3") +
+        "\nsizes: " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) + " " + std::to_string(g.dims.z) +
+        "\nspace directions: " + vector(axes[0]) + " " + vector(axes[1]) + " " + vector(axes[2]) +
         "\nkinds: domain domain domain\nendian: " + (std::endian::native == std::endian::big ? "big" : "little") +
         "\nencoding: gzip\nspace origin: " + vector(g.origin) + "\n\n";
     return text;

@@ -1,4 +1,4 @@
-// What `bench` measures: how long the parts of a measurement take on one volume, with several numbers of threads.
+// How long the parts of a measurement take on one volume, with several numbers of threads (docs/performance.md).
 #pragma once
 
 #include <array>
@@ -9,22 +9,23 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "base/job.h"
 #include "engines/engines.h"
-#include "output.h"
-#include "progress.h"
 #include "render/view.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
-namespace pellucid::cli {
+namespace pellucid {
 
 enum class BenchRow { Setup, Saliency, SaliencyDirect, Sweep, Jacobian, Optimize, Refine, Render };
 inline constexpr std::array kBenchRows{BenchRow::Setup,  BenchRow::Saliency, BenchRow::SaliencyDirect,
                                        BenchRow::Sweep,  BenchRow::Jacobian, BenchRow::Optimize,
                                        BenchRow::Refine, BenchRow::Render};
-const char* name(BenchRow row);                                                ///< "setup" … "render"
-BenchRow benchRowFromName(const std::string& name, const std::string& option); ///< throws UsageError
+const char* name(BenchRow row); ///< "setup" … "render"
+/// Throws UsageError that names `where`.
+BenchRow benchRowFromName(const std::string& name, const std::string& where);
 
 /// One line of the table.
 struct BenchResult {
@@ -34,12 +35,15 @@ struct BenchResult {
     Int3 dims{0, 0, 0};
     int threads = 1;
     std::optional<int> candidates, features;
-    int runs = 0;          ///< warm ones
-    double seconds = 0;    ///< median of the warm runs
-    double cpuSeconds = 0; ///< of all threads together, median too: hardly changes where others use the machine
-    double bytes = 0;      ///< that have to be read or written at least once, see docs/performance.md
-    Json extra;            ///< further fields of this row, an object
+    int runs = 0;                 ///< warm ones
+    double seconds = 0;           ///< median of the warm runs
+    double cpuSeconds = 0;        ///< of all threads together, median too: hardly changes where others use the machine
+    double bytes = 0;             ///< that have to be read or written at least once, see docs/performance.md
+    nlohmann::ordered_json extra; ///< further fields of this row, an object
 };
+
+/// A row as `bench --json` prints it, keys in that order. `memcpyGbPerS` is that of as many threads.
+nlohmann::ordered_json jsonFromBenchResult(const BenchResult& result, double memcpyGbPerS);
 
 /// A volume under a transfer function, and what is to be measured of them.
 struct BenchCase {
@@ -56,19 +60,31 @@ struct BenchCase {
 };
 
 inline constexpr const char* kNineTents = "tents:9";
+inline constexpr const char* kDense = "dense";
+inline constexpr const char* kSparse = "sparse";
+inline constexpr const char* kCube = "cube:"; ///< name of a volume, followed by the number of voxels along each side
 
 /// Every voxel has an opacity, so low that no ray is exhausted: nothing can be left out. Three features.
 TransferFunction denseTf();
+/// The case under denseTf().
+BenchCase dense(BenchCase of);
 /// Three tents over the (about) 3 % of the voxels with the highest intensities: nearly all can be left out.
 TransferFunction sparseTf(const Volume& volume);
-/// Steps in proportion to the low opacities of denseTf().
-inline constexpr double kDenseStepScale = 0.002;
+/// Blocks of the same volume side by side, `n` along each axis: the same voxels whatever the size, so that only the
+/// engine can make larger ones slower.
+std::shared_ptr<const Volume> tiled(const Volume& block, int n);
+
+struct BenchPicture {
+    int width = 512, height = 512; ///< pixels
+    bool lit = false;
+};
 
 struct BenchOptions {
     std::vector<int> threads;  ///< ascending
     std::optional<int> repeat; ///< runs of each row after a warm-up; else as many as tell enough, 3 at least
     EngineChoice engine = EngineChoice::Auto;
     Quality quality = Quality::Normal;
+    std::vector<BenchPicture> pictures{{}}; ///< a row `render` of each
 };
 
 struct BenchResults {
@@ -85,4 +101,4 @@ inline constexpr std::size_t kMemcpyBytes = std::size_t{256} << 20;
 /// what this machine's memory gives. Median of five.
 double memcpyGbPerS(int threads, const JobControl& job);
 
-} // namespace pellucid::cli
+} // namespace pellucid

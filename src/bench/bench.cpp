@@ -1,4 +1,4 @@
-#include "bench_run.h"
+#include "bench/bench.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,18 +9,19 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "commands.h"
+#include "base/stopwatch.h"
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
 #include "saliency/saliency_direct.h"
 #include "volume/histogram.h"
 
-namespace pellucid::cli {
+namespace pellucid {
 
 namespace {
 
 constexpr double kBytesPerCode = 2; ///< what engines and renderers read of a voxel, see IntensityGrid
 constexpr double kDensePeak = 0.001;
+constexpr double kDenseStepScale = 0.002; ///< steps in proportion to kDensePeak
 constexpr double kSparseShare = 0.03;
 /// Without a number of repetitions: rounds over all rows, and how long each row at least repeats in every round.
 /// Seconds; what else a machine does comes and goes in tenths of them.
@@ -127,7 +128,7 @@ private:
         r.tf = tfName;
         if (candidates > 0) r.candidates = candidates;
         r.features = static_cast<int>(tf.features.size());
-        r.extra = Json::object();
+        r.extra = nlohmann::ordered_json::object();
         return r;
     }
     BenchResult row(BenchRow which, const std::string& engine, int candidates = 0) const { ///< 0: none are measured
@@ -207,13 +208,19 @@ private:
 
     void addRender() {
         const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_case.volume);
-        RenderSettings settings;
-        settings.clipping = m_case.view.clipping;
-        BenchResult r = row(BenchRow::Render, renderer->name());
-        r.extra = {{"size", {settings.width, settings.height}}};
-        add(r, voxels() * kBytesPerCode, [this, renderer, settings](BenchResult&, const JobControl& j) {
-            renderer->render(m_case.view.camera, m_case.tf, settings, j);
-        });
+        for (const BenchPicture& picture : m_options.pictures) {
+            RenderSettings settings;
+            settings.width = picture.width;
+            settings.height = picture.height;
+            settings.clipping = m_case.view.clipping;
+            settings.light.on = picture.lit;
+            BenchResult r = row(BenchRow::Render, renderer->name());
+            r.extra = {{"size", {picture.width, picture.height}}};
+            if (picture.lit) r.extra["lit"] = true;
+            add(r, voxels() * kBytesPerCode, [this, renderer, settings](BenchResult&, const JobControl& j) {
+                renderer->render(m_case.view.camera, m_case.tf, settings, j);
+            });
+        }
     }
 
     const BenchCase& m_case;
@@ -270,13 +277,13 @@ const char* name(BenchRow row) {
     return "";
 }
 
-BenchRow benchRowFromName(const std::string& text, const std::string& option) {
+BenchRow benchRowFromName(const std::string& text, const std::string& where) {
     std::string known;
     for (const BenchRow row : kBenchRows) {
         if (text == name(row)) return row;
         known += std::string(known.empty() ? "" : " ") + name(row);
     }
-    throw UsageError("there is no row '" + text + "'", option, "known: " + known);
+    throw UsageError("there is no row '" + text + "'", where, "known: " + known);
 }
 
 TransferFunction denseTf() {
@@ -289,6 +296,13 @@ TransferFunction denseTf() {
         tf.features.push_back({"f" + std::to_string(i + 1), a, b, color, {}});
     }
     return tf;
+}
+
+BenchCase dense(BenchCase of) {
+    of.tf = denseTf();
+    of.stepScale = kDenseStepScale;
+    of.equalCosts = true;
+    return of;
 }
 
 TransferFunction sparseTf(const Volume& volume) {
@@ -316,6 +330,45 @@ TransferFunction sparseTf(const Volume& volume) {
         tf.features[t].b = b;
     }
     return tf;
+}
+
+std::shared_ptr<const Volume> tiled(const Volume& block, int n) {
+    Geometry geometry = block.geometry();
+    const Int3 d = geometry.dims;
+    geometry.dims = d * n;
+    Samples samples = std::visit(
+        [&](const auto& from) -> Samples {
+            std::decay_t<decltype(from)> to;
+            to.reserve(voxelCount(geometry.dims));
+            for (int k = 0; k < geometry.dims.z; ++k)
+                for (int j = 0; j < geometry.dims.y; ++j) {
+                    const std::ptrdiff_t row = d.x * (j % d.y + static_cast<std::ptrdiff_t>(d.y) * (k % d.z));
+                    for (int i = 0; i < n; ++i) to.insert(to.end(), from.begin() + row, from.begin() + row + d.x);
+                }
+            return to;
+        },
+        block.samples());
+    return std::make_shared<const Volume>(Volume(geometry, std::move(samples)).withRange(block.range()));
+}
+
+nlohmann::ordered_json jsonFromBenchResult(const BenchResult& r, double memcpyGbPerS) {
+    const auto voxels = static_cast<double>(voxelCount(r.dims));
+    nlohmann::ordered_json j{{"name", name(r.row)}, {"engine", r.engine}, {"volume", r.volume}};
+    if (r.tf) j["tf"] = *r.tf;
+    j["dims"] = {r.dims.x, r.dims.y, r.dims.z};
+    j["threads"] = r.threads;
+    if (r.candidates) j["candidates"] = *r.candidates;
+    if (r.features) j["features"] = *r.features;
+    const double seconds = std::max(r.seconds, 1e-9); // of the clock's resolution
+    j["runs"] = r.runs;
+    j["seconds"] = r.seconds;
+    j["cpu_seconds"] = r.cpuSeconds;
+    j["ns_per_voxel"] = 1e9 * r.seconds / voxels;
+    j["gb_per_s"] = r.bytes / seconds / 1e9;
+    j["bytes_per_voxel"] = r.bytes / voxels;
+    j["memcpy_share"] = r.bytes / seconds / 1e9 / memcpyGbPerS;
+    j.update(r.extra);
+    return j;
 }
 
 void bench(std::span<const BenchCase> cases, const BenchOptions& options, const JobControl& job,
@@ -368,4 +421,4 @@ double memcpyGbPerS(int threads, const JobControl& job) {
     return 2.0 * static_cast<double>(kMemcpyBytes) / median(seconds) / 1e9;
 }
 
-} // namespace pellucid::cli
+} // namespace pellucid

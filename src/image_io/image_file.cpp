@@ -1,4 +1,4 @@
-#include "render/image.h"
+#include "image_io/image_file.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,0 +1,17 @@
+// A picture on disk.
+#pragma once
+
+#include <string>
+
+#include "render/image.h"
+
+namespace pellucid {
+
+/// PNG (8 bit), TIFF (16 bit), JPEG (8 bit, no alpha) or EXR (half float) by suffix, through OpenImageIO and a
+/// temporary file that is renamed. Throws FileError.
+void writeImage(const Image& image, const std::string& path);
+Image readImage(const std::string& path);
+/// Throws UsageError where the suffix is none of these, before any work is done.
+void checkImageSuffix(const std::string& path);
+
+} // namespace pellucid
