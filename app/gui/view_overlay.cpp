@@ -9,7 +9,10 @@ ViewOverlay::ViewOverlay(SessionStore& store, QWidget* view) : QWidget(view), m_
     setAttribute(Qt::WA_TransparentForMouseEvents);
     setAttribute(Qt::WA_NoSystemBackground);
     setFocusPolicy(Qt::NoFocus);
-    connect(&store, &SessionStore::changed, this, [this] { update(); });
+    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.data != after.data) cancel(); // what was taken hold of is gone
+        update();
+    });
 }
 
 void ViewOverlay::add(std::unique_ptr<OverlayLayer> layer) {

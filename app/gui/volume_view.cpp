@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include <QCoreApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QSettings>
@@ -89,7 +90,8 @@ void VolumeView::chooseRenderer(ViewRenderer wanted) {
         m_reason = tr("There is no OpenGL 4.3 here.");
     } else {
         m_expectGl = gl;
-        m_machine = QStringLiteral("%1, %2").arg(renderer).arg(threadCount());
+        m_machine =
+            QStringLiteral("%1, %2, %3").arg(renderer).arg(threadCount()).arg(QCoreApplication::applicationVersion());
         if (const auto times = keptTimes(m_machine)) {
             gl = times->preferGl(m_expectGl);
             m_reason = reasonOf(*times, gl);

@@ -69,7 +69,7 @@ private:
     QElapsedTimer m_sinceWheel; // and so are turns of the wheel that follow each other
     int m_wheelGesture = 0;
     QString m_reason;
-    QString m_machine; ///< renderer and processors, for which times are kept
+    QString m_machine; ///< renderer, processors and version, for which times are kept
     bool m_expectGl = false, m_probeWaits = false;
     Job<int, RendererTimes> m_probe; // last: it ends before the rest goes
 };

@@ -237,10 +237,19 @@ TEST_CASE("mode and background are edits of the display", "[display]") {
     gradient.click();
     CHECK_FALSE(w.bench().store().session().display->backgroundTop);
     for (int i = 0; i < 3; ++i) w.document().undo();
-    CHECK(*w.bench().store().session().display == DisplaySettings{.light = Light{.on = true}});
+    DisplaySettings opened;
+    opened.light.on = true;
+    CHECK(*w.bench().store().session().display == opened);
 }
 
-TEST_CASE("the status line says why something draws", "[window]") {
+TEST_CASE("the faster renderer draws, and the status line says why", "[window]") {
+    // By half as much again, or what is expected stays.
+    CHECK(RendererTimes{1.0, 1.4}.preferGl(true));
+    CHECK_FALSE(RendererTimes{1.0, 1.6}.preferGl(true));
+    CHECK(RendererTimes{1.0, 0.6}.preferGl(false));
+    CHECK_FALSE(RendererTimes{1.0, 0.7}.preferGl(false));
+    CHECK_FALSE(RendererTimes{1.0, {}}.preferGl(true));
+    CHECK(timeRenderers().cpu > 0);
     OpenWindow w;
     CHECK_FALSE(w.view().rendererReason().isEmpty());
     OpenWindow cpu(16, ViewRenderer::Cpu);

@@ -198,7 +198,9 @@ TEST_CASE("files that know only whether there is shading keep their meaning", "[
         j["display"] = display;
         return *sessionOfDocument(j).display;
     };
-    CHECK(displayOf({{"shading", true}}).light == Light{.on = true});
+    Light lit;
+    lit.on = true;
+    CHECK(displayOf({{"shading", true}}).light == lit);
     CHECK_FALSE(displayOf({{"shading", false}}).light.on);
     CHECK_FALSE(displayOf(json::object()).light.on); // light is on where a window opens a volume, not in files
     CHECK(displayOf({{"shading", true}, {"light", {{"on", false}}}}).light == Light{});
