@@ -108,8 +108,12 @@ public:
         std::vector<BenchCase> cubes;
         for (int n = 1; n <= largest; n *= 2) {
             const auto volume = n == 1 ? block.volume : tiled(*block.volume, n);
-            cubes.push_back({volume, kCube + std::to_string(n * kCubeSize), cameraOf(inputs, volume->geometry()),
-                             m_options.scene.tf.spec.value_or(kDense), block.tf, rows});
+            cubes.push_back({volume,
+                             kCube + std::to_string(n * kCubeSize),
+                             {cameraOf(inputs, volume->geometry()), *inputs.session.clipping},
+                             m_options.scene.tf.spec.value_or(kDense),
+                             block.tf,
+                             rows});
             if (isDense) cubes.back() = dense(std::move(cubes.back()));
         }
         bench(cubes, m_bench, m_progress.phase("cubes"), m_results);
@@ -123,7 +127,8 @@ private:
     /// All rows under `tf` and, unless the user wants this one alone, some under two of other densities.
     void measureMain(const Scene& scene) {
         const auto caseOf = [&](const std::string& tfName, TransferFunction tf, std::set<BenchRow> rows) {
-            return BenchCase{scene.volume, m_mainVolume, scene.camera, tfName, std::move(tf), std::move(rows)};
+            return BenchCase{scene.volume, m_mainVolume,  {scene.camera, *scene.session.clipping},
+                             tfName,       std::move(tf), std::move(rows)};
         };
         BenchCase main = caseOf(m_mainTf, scene.tf, m_rows);
         main.nineFeatures = true;
@@ -285,6 +290,7 @@ Command addBench(CLI::App& program) {
     app->get_option("--tf")->description("transfer function; without it that of the volume, one that gives every voxel "
                                          "a little opacity (dense), and one that gives it to 3 % of them (sparse)");
     o->scene.camera.add(*app);
+    o->scene.clip.add(*app);
     o->scene.engine.add(*app, "high: half the error, more time");
     addValue(
         *app, "--only", "ROW,...",

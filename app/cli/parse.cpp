@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
 #include "base/error.h"
 #include "output.h"
 
@@ -12,16 +14,6 @@ namespace pellucid::cli {
 namespace {
 
 std::string quoted(const std::string& text) { return "'" + text + "'"; }
-
-std::vector<std::string> split(const std::string& text, char separator) {
-    std::vector<std::string> parts(1);
-    for (const char c : text)
-        if (c == separator)
-            parts.emplace_back();
-        else
-            parts.back() += c;
-    return parts;
-}
 
 template <class T>
 std::optional<T> numberIn(const std::string& text) {
@@ -38,6 +30,16 @@ std::optional<double> finiteIn(const std::string& text) {
 }
 
 } // namespace
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts(1);
+    for (const char c : text)
+        if (c == separator)
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    return parts;
+}
 
 double parseReal(const std::string& text, const std::string& option) {
     if (const auto value = finiteIn(text)) return *value;
@@ -111,8 +113,12 @@ Rgb parseColor(const std::string& text, const std::string& option) {
     return {v[0], v[1], v[2]};
 }
 
-bool looksLikeClip(const std::string& text) {
-    return text.size() > 1 && text[1] == ':' && text[0] >= 'x' && text[0] <= 'z';
+Gradient parseBackground(const std::string& text, const std::string& option) {
+    const auto parts = split(text, '/');
+    if (parts.size() > 2)
+        throw UsageError(quoted(text) + " is more than two colours", option, "give one, or TOP/BOTTOM");
+    if (parts.size() == 1) return {parseColor(text, option), {}};
+    return {parseColor(parts[1], option), parseColor(parts[0], option)};
 }
 
 bool looksLikeNumber(const std::string& text) {
@@ -120,13 +126,33 @@ bool looksLikeNumber(const std::string& text) {
     return std::all_of(parts.begin(), parts.end(), [](const std::string& p) { return finiteIn(p).has_value(); });
 }
 
-Clip parseClip(const std::string& text, const std::string& option) {
+bool looksLikeClip(const std::string& text) {
+    const bool axis = text.size() > 1 && text[1] == ':' && text[0] >= 'x' && text[0] <= 'z';
+    return axis || (looksLikeNumber(text) && split(text, ',').size() == 4);
+}
+
+namespace {
+
+ClipAxis parseClipAxis(const std::string& text, const std::string& option) {
     const auto parts = split(text, ':');
-    if (parts.size() != 3 || !looksLikeClip(text))
-        throw UsageError(quoted(text) + " is not a clipped axis", option, "give x:A:B, y:A:B or z:A:B");
-    const Clip clip{parts[0][0] - 'x', parseReal(parts[1], option, 0, 1), parseReal(parts[2], option, 0, 1)};
+    if (parts.size() != 3) throw UsageError(quoted(text) + " is not a clipped axis", option, "give x:A:B");
+    const ClipAxis clip{parts[0][0] - 'x', parseReal(parts[1], option, 0, 1), parseReal(parts[2], option, 0, 1)};
     if (!(clip.lo < clip.hi)) throw UsageError("nothing is left between the ends of " + text, option, "give A < B");
     return clip;
+}
+
+} // namespace
+
+Clip parseClip(const std::string& text, const std::string& option) {
+    if (text.size() > 1 && text[1] == ':' && looksLikeClip(text)) return parseClipAxis(text, option);
+    if (text.find(',') == std::string::npos)
+        throw UsageError(quoted(text) + " is no clip", option,
+                         "give x:A:B, y:A:B, z:A:B, or a plane NX,NY,NZ,D, which keeps NX*x + NY*y + NZ*z <= D");
+    const auto v = parseReals(text, option, 4, "NX,NY,NZ,D: a normal, and how far along it is kept");
+    const ClipPlane plane{{v[0], v[1], v[2]}, v[3]};
+    if (!(glm::length(plane.normal) > 0))
+        throw UsageError("the plane " + text + " has no normal", option, "give one that is not 0,0,0");
+    return plane;
 }
 
 CLI::Option* addValue(CLI::App& app, const std::string& names, const std::string& valueName,

@@ -4,16 +4,20 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "base/error.h"
+#include "render/clipping.h"
 #include "tf/color.h"
 #include "volume/volume.h"
 
 namespace pellucid::cli {
 
+/// The parts of `text` between separators, empty ones too: one at least.
+std::vector<std::string> split(const std::string& text, char separator);
 /// A finite decimal number in [lo, hi].
 double parseReal(const std::string& text, const std::string& option);
 double parseReal(const std::string& text, const std::string& option, double lo, double hi);
@@ -36,13 +40,22 @@ ImageSize parseImageSize(const std::string& text, const std::string& option);
 /// "#rrggbb", "#rgb" or "R,G,B" with components in [0,1].
 Rgb parseColor(const std::string& text, const std::string& option);
 
-struct Clip {
+/// Two colours for a picture's background, bottom and top.
+struct Gradient {
+    Rgb bottom;
+    std::optional<Rgb> top; ///< empty: one colour
+};
+/// "COLOUR", or "TOP/BOTTOM" of two.
+Gradient parseBackground(const std::string& text, const std::string& option);
+
+struct ClipAxis {
     int axis = 0; ///< 0 x, 1 y, 2 z
     double lo = 0, hi = 1;
 };
-/// "x:a:b", 0 ≤ a < b ≤ 1.
+using Clip = std::variant<ClipAxis, ClipPlane>;
+/// "x:a:b", 0 ≤ a < b ≤ 1, or "nx,ny,nz,d" with a normal that is not 0.
 Clip parseClip(const std::string& text, const std::string& option);
-/// Whether `text` means to be one: it starts with an axis and a colon.
+/// Whether `text` means to be one: it starts with an axis and a colon, or is four numbers.
 bool looksLikeClip(const std::string& text);
 bool looksLikeNumber(const std::string& text);
 

@@ -28,6 +28,8 @@ _pellucid_cli() {
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
         --only) choices="setup saliency saliency-direct sweep slices jacobian optimize refine render" ;;
+        --mode) choices="composite mip minip average surface" ;;
+        --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
         --annotate) choices="all cube letters axes scale legend title" ;;
         --view) choices="anterior posterior left right superior inferior front back top bottom" ;;
@@ -41,7 +43,8 @@ _pellucid_cli() {
             return
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
-            --region | --step | --clip | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
+            --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
+            --silhouettes | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
             --tolerance)
             return

@@ -91,6 +91,7 @@ Command addRender(CLI::App& program) {
     o->scene.session.add(*app);
     o->scene.tf.add(*app);
     o->scene.camera.add(*app);
+    o->scene.clip.add(*app);
     o->scene.engine.add(*app, "high: samples at half the distance along each ray (unless --step is given)");
     addValue(
         *app, "--out", "FILE", [o](const std::string& text, const std::string&) { o->out = text; },

@@ -9,6 +9,7 @@ void SceneOptions::addForFigures(CLI::App& app) {
     session.add(app);
     tf.add(app);
     camera.add(app);
+    clip.add(app);
     engine.add(app, "high: half the error, more time");
     saliency.add(app);
 }
@@ -21,6 +22,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.volume.applyTo(inputs);
     options.tf.applyTo(inputs);
     options.camera.applyTo(inputs);
+    options.clip.applyTo(inputs);
     options.engine.applyTo(inputs);
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "options/camera_options.h"
+#include "options/clip_options.h"
 #include "options/engine_options.h"
 #include "options/picture_options.h"
 #include "options/saliency_options.h"
@@ -21,6 +22,7 @@ struct SceneOptions {
     VolumeOptions volume;
     TfOptions tf;
     CameraOptions camera;
+    ClipOptions clip;
     EngineOptions engine;
     SaliencyInput saliency;
     PictureOptions picture;

@@ -36,7 +36,7 @@ QString glText(QOpenGLFunctions* gl, GLenum name) {
 
 } // namespace
 
-GlSurface::Available GlSurface::available() {
+GlSurface::Available GlSurface::available(QString* renderer) {
     QOpenGLContext context;
     context.setFormat(wantedFormat());
     if (!context.create()) return Available::No;
@@ -46,7 +46,9 @@ GlSurface::Available GlSurface::available() {
     surface.setFormat(context.format());
     surface.create();
     if (!context.makeCurrent(&surface)) return Available::No;
-    const bool software = isSoftwareRenderer(glText(context.functions(), GL_RENDERER).toStdString());
+    const QString name = glText(context.functions(), GL_RENDERER);
+    const bool software = isSoftwareRenderer(name.toStdString());
+    if (renderer != nullptr) *renderer = name;
     context.doneCurrent();
     return software ? Available::InSoftware : Available::OnGpu;
 }

@@ -28,7 +28,7 @@ public:
 
     /// Whether this machine gives a context that can draw (OpenGL 4.3 core or later), and by what; tries one.
     enum class Available { No, InSoftware, OnGpu };
-    static Available available();
+    static Available available(QString* renderer = nullptr);
 
     QWidget* widget() override { return this; }
     void setScene(const PictureInput& scene) override;

@@ -11,10 +11,12 @@
 #include <QStatusBar>
 #include <QVBoxLayout>
 
+#include "clip_layer.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
 #include "controllers/save_controller.h"
+#include "light_layer.h"
 #include "notice_bar.h"
 #include "panel.h"
 #include "status_line.h"
@@ -35,6 +37,8 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     column->addWidget(m_view, 1);
     setCentralWidget(middle);
 
+    addClipHandles(*m_bench, m_view->overlay());
+    m_view->overlay().add(std::make_unique<LightLayer>(*m_bench, m_view->overlay()));
     addPanels();
     addHelpActions();
     m_bench->actions().build(*this);
@@ -73,6 +77,7 @@ void MainWindow::addPanels() {
         dock->setWidget(panel.make(*m_bench, dock));
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
+        if (panel.tabOf != nullptr) tabifyDockWidget(findChild<QDockWidget*>(QString(panel.tabOf) + "Dock"), dock);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
         if (panel.shown)
@@ -83,7 +88,15 @@ void MainWindow::addPanels() {
                      .text = tr("%1 panel").arg(panel.title),
                      .keys = {panel.keys},
                      .tip = panel.tip,
-                     .trigger = [dock] { dock->setVisible(dock->isHidden()); },
+                     .trigger =
+                         [this, dock] {
+                             dock->setVisible(dock->isHidden());
+                             if (dock->isHidden()) return;
+                             dock->raise(); // it may be a tab
+                             // As high as it likes, where it would be much lower.
+                             const int wanted = dock->widget()->sizeHint().height();
+                             if (dock->widget()->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
+                         },
                      .checked = [dock] { return !dock->isHidden(); },
                      .separatorBefore = std::exchange(first, false)});
         connect(dock, &QDockWidget::visibilityChanged, &actions, &Actions::refresh);
@@ -104,7 +117,10 @@ void MainWindow::addHelpActions() {
     actions.addGestures({{volume, tr("Left drag, arrow keys"), tr("rotate")},
                          {volume, tr("Middle drag, Shift + left drag"), tr("pan")},
                          {volume, tr("Wheel, right drag, + and −"), tr("zoom")},
-                         {volume, tr("Double-click"), tr("fit")}});
+                         {volume, tr("Double-click"), tr("fit")},
+                         {volume, tr("Ctrl + left drag"), tr("turn the light")},
+                         {volume, tr("Left drag of a clip handle; with Shift"), tr("cut; move the whole slab")},
+                         {volume, tr("Esc"), tr("give up a drag")}});
     add("keysAction", tr("&Help"), tr("&Mouse and keys"), QKeySequence("F1"), [this] {
         QMessageBox box(QMessageBox::NoIcon, tr("Mouse and keys"), m_bench->actions().keyTable(), QMessageBox::Ok,
                         this);

@@ -7,6 +7,8 @@
     PANEL(featuresPanel) \
     PANEL(influencePanel) \
     PANEL(displayPanel) \
+    PANEL(lightPanel) \
+    PANEL(clipPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

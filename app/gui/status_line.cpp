@@ -31,7 +31,6 @@ StatusLine::StatusLine(Workbench& bench, VolumeView& view, QStatusBar& bar)
     m_engine->setObjectName("engineLabel");
     m_camera->setToolTip(tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
                             "volume fits): what pellucid-cli takes as --view"));
-    m_renderer->setToolTip(tr("What draws the picture, and how well: pixels, distance of the samples along a ray"));
     m_engine->setToolTip(tr("What computes visibility and VWS"));
     m_background->setObjectName("backgroundLabel");
     m_progress->setObjectName("backgroundProgress");
@@ -96,6 +95,8 @@ void StatusLine::followScene() {
 }
 
 void StatusLine::followView() {
+    m_renderer->setToolTip(tr("What draws the picture, and how well: pixels, distance of the samples along a ray.\n%1")
+                               .arg(m_view.rendererReason()));
     const FrameInfo& frame = m_view.frame();
     const QString quality = frame.complete ? tr("step %1 d0").arg(frame.stepInD0) : tr("coarse");
     m_renderer->setText(

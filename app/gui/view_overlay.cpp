@@ -9,7 +9,10 @@ ViewOverlay::ViewOverlay(SessionStore& store, QWidget* view) : QWidget(view), m_
     setAttribute(Qt::WA_TransparentForMouseEvents);
     setAttribute(Qt::WA_NoSystemBackground);
     setFocusPolicy(Qt::NoFocus);
-    connect(&store, &SessionStore::changed, this, [this] { update(); });
+    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.data != after.data) cancel(); // what was taken hold of is gone
+        update();
+    });
 }
 
 void ViewOverlay::add(std::unique_ptr<OverlayLayer> layer) {
@@ -33,6 +36,11 @@ void ViewOverlay::drag(const QPointF& point, Qt::KeyboardModifiers keys) {
 
 void ViewOverlay::release() {
     if (m_holder != nullptr) m_holder->release();
+    m_holder = nullptr;
+}
+
+void ViewOverlay::cancel() {
+    if (m_holder != nullptr) m_holder->cancel();
     m_holder = nullptr;
 }
 

@@ -30,6 +30,7 @@ public:
     }
     virtual void drag(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const OverlayView& /*view*/) {}
     virtual void release() {}
+    virtual void cancel() { release(); } ///< in place of the release: as if it had not been pressed
 };
 
 /// A transparent widget over the view that holds layers, the last one on top. The view hands it the mouse.
@@ -43,6 +44,7 @@ public:
     bool isDragging() const { return m_holder != nullptr; }
     void drag(const QPointF& point, Qt::KeyboardModifiers keys);
     void release();
+    void cancel();
     Qt::CursorShape cursorAt(const QPointF& point);
 
 protected:

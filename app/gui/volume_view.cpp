@@ -2,11 +2,16 @@
 
 #include <cmath>
 
+#include <map>
+
+#include <QCoreApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
+#include <QSettings>
 #include <QVBoxLayout>
 #include <QWheelEvent>
 
+#include "base/parallel.h"
 #include "controllers/view_actions.h"
 #include "cpu_surface.h"
 #include "frame_layer.h"
@@ -22,27 +27,103 @@ constexpr double kZoomPerNotch = 1.15;  // factor of one notch of the wheel
 constexpr double kDegreesPerKey = 5;
 constexpr qint64 kWheelPause = 600; // milliseconds that part two zooms
 
+// Times are kept for the process, and for later ones.
+std::map<QString, RendererTimes>& timesOfProcess() {
+    static std::map<QString, RendererTimes> s_times;
+    return s_times;
+}
+
+// A slash would make a group of settings.
+QString keyOf(QString machine) { return "renderers/" + machine.replace('/', '_').replace('\\', '_'); }
+
+std::optional<RendererTimes> keptTimes(const QString& machine) {
+    const auto known = timesOfProcess().find(machine);
+    if (known != timesOfProcess().end()) return known->second;
+    const QVariantList kept = QSettings().value(keyOf(machine)).toList();
+    if (kept.size() != 2 || !(kept[0].toDouble() > 0)) return {};
+    RendererTimes times{kept[0].toDouble(), {}};
+    if (kept[1].toDouble() > 0) times.gl = kept[1].toDouble();
+    return times;
+}
+
+void keepTimes(const QString& machine, const RendererTimes& times) {
+    timesOfProcess()[machine] = times;
+    QSettings().setValue(keyOf(machine), QVariantList{times.cpu, times.gl.value_or(0)});
+}
+
+QString reasonOf(const RendererTimes& times, bool gl) {
+    if (!times.gl) return QObject::tr("OpenGL cannot draw here.");
+    const auto ms = [](double seconds) { return QString::number(1000 * seconds, 'g', 3); };
+    return (gl ? QObject::tr("OpenGL draws a small picture in %1 ms, the CPU in %2 ms.")
+               : QObject::tr("The CPU draws a small picture in %2 ms, OpenGL in %1 ms."))
+        .arg(ms(*times.gl), ms(times.cpu));
+}
+
 } // namespace
 
 VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent)
-    : QWidget(parent), m_store(store), m_overlay(new ViewOverlay(store, this)) {
+    : QWidget(parent), m_store(store), m_overlay(new ViewOverlay(store, this)),
+      m_probe([](const int&, const JobControl& job) { return timeRenderers(job); },
+              [this](const int&, RendererTimes& times) {
+                  keepTimes(m_machine, times);
+                  showTimes(times);
+              }) {
     setObjectName("volumeView");
     setAccessibleName(tr("Volume"));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
-    const auto available = renderer == ViewRenderer::Cpu ? GlSurface::Available::No : GlSurface::available();
-    if (renderer == ViewRenderer::Gl && available == GlSurface::Available::No)
+    m_overlay->add(std::make_unique<FrameLayer>());
+    chooseRenderer(renderer);
+    connect(&store, &SessionStore::changed, this, &VolumeView::updateScene);
+}
+
+void VolumeView::chooseRenderer(ViewRenderer wanted) {
+    QString renderer;
+    const auto available = wanted == ViewRenderer::Cpu ? GlSurface::Available::No : GlSurface::available(&renderer);
+    if (wanted == ViewRenderer::Gl && available == GlSurface::Available::No)
         throw Error("no OpenGL 4.3 or later", "this display", "draw on the CPU");
-    // A software OpenGL takes twice as long as our own renderer.
-    if (renderer == ViewRenderer::Gl || available == GlSurface::Available::OnGpu) {
-        setSurface(std::make_unique<GlSurface>());
+    bool gl = available == GlSurface::Available::OnGpu;
+    if (wanted != ViewRenderer::Auto) {
+        gl = wanted == ViewRenderer::Gl;
+        m_reason = tr("As it was asked for.");
+    } else if (available == GlSurface::Available::No) {
+        m_reason = tr("There is no OpenGL 4.3 here.");
     } else {
+        m_expectGl = gl;
+        m_machine =
+            QStringLiteral("%1, %2, %3").arg(renderer).arg(threadCount()).arg(QCoreApplication::applicationVersion());
+        if (const auto times = keptTimes(m_machine)) {
+            gl = times->preferGl(m_expectGl);
+            m_reason = reasonOf(*times, gl);
+        } else {
+            m_reason = gl ? tr("There is a GPU.") : tr("OpenGL is drawn by the CPU here.");
+            m_probeWaits = true;
+        }
+    }
+    if (gl)
+        setSurface(std::make_unique<GlSurface>());
+    else
+        setSurface(std::make_unique<CpuSurface>());
+}
+
+/// Once the first picture is complete: opening comes before.
+void VolumeView::startProbe() {
+    m_probeWaits = false;
+    if (const auto times = keptTimes(m_machine)) return showTimes(*times); // another window was first
+    m_probe.start(0, tr("the renderers"));
+}
+
+void VolumeView::showTimes(const RendererTimes& times) {
+    const bool drawsGl = dynamic_cast<GlSurface*>(m_surface.get()) != nullptr;
+    m_reason = reasonOf(times, drawsGl);
+    // The other way, a view that has never shown OpenGL would have to make its window anew: it waits for the next one.
+    if (drawsGl && !times.preferGl(m_expectGl)) {
+        m_reason = reasonOf(times, false);
         setSurface(std::make_unique<CpuSurface>());
     }
-    m_overlay->add(std::make_unique<FrameLayer>());
-    connect(&store, &SessionStore::changed, this, &VolumeView::updateScene);
+    Q_EMIT frameShown();
 }
 
 VolumeView::~VolumeView() {
@@ -56,7 +137,10 @@ void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
     m_surface->widget()->setMouseTracking(true);
     layout()->addWidget(m_surface->widget());
     m_overlay->raise();
-    m_surface->onFrame = [this] { Q_EMIT frameShown(); };
+    m_surface->onFrame = [this] {
+        Q_EMIT frameShown();
+        if (m_probeWaits && isComplete()) startProbe();
+    };
     m_surface->onFailure = [this](const Error& error) { surfaceFailed(error); };
     updateScene();
 }
@@ -70,7 +154,12 @@ void VolumeView::surfaceFailed(const Error& error) {
     Q_EMIT rendererFailed({error.problem(), error.where(), tr("the CPU draws the picture from now on").toStdString()});
     // In a later turn: the one that failed is still on the stack.
     QMetaObject::invokeMethod(
-        this, [this] { setSurface(std::make_unique<CpuSurface>()); }, Qt::QueuedConnection);
+        this,
+        [this] {
+            m_reason = tr("OpenGL could not draw this.");
+            setSurface(std::make_unique<CpuSurface>());
+        },
+        Qt::QueuedConnection);
 }
 
 void VolumeView::updateScene() {
@@ -171,6 +260,9 @@ void VolumeView::keyPressEvent(QKeyEvent* event) {
         return zoomView(m_store, kZoomPerNotch);
     case Qt::Key_Minus:
         return zoomView(m_store, 1.0 / kZoomPerNotch);
+    case Qt::Key_Escape:
+        if (m_overlay->isDragging()) return m_overlay->cancel();
+        return QWidget::keyPressEvent(event);
     default:
         return QWidget::keyPressEvent(event);
     }

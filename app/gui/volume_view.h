@@ -7,6 +7,8 @@
 #include <QPointF>
 #include <QWidget>
 
+#include "engines/renderer_probe.h"
+#include "jobs/job.h"
 #include "store/session_store.h"
 #include "view_overlay.h"
 #include "view_surface.h"
@@ -16,11 +18,12 @@ namespace pellucid::gui {
 enum class ViewRenderer { Auto, Gl, Cpu };
 
 /// Shows the store's scene, moves its camera: left-drag rotates, middle or Shift+left pans, wheel and right-drag
-/// zoom, double-click fits, arrow keys rotate.
+/// zoom, double-click fits, arrow keys rotate; layers of the overlay take the left button first.
 class VolumeView : public QWidget {
     Q_OBJECT
 public:
-    /// Auto draws with OpenGL on a GPU and on the CPU else: what is faster. Gl throws Error where there is none.
+    /// Auto draws with whichever is faster here. As long as that has not been measured, which happens beside the first
+    /// pictures, it is OpenGL on a GPU and the CPU else. Gl throws Error where there is none.
     explicit VolumeView(SessionStore& store, ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr);
     ~VolumeView() override;
 
@@ -28,6 +31,7 @@ public:
     bool isComplete() const { return m_surface->frame().complete; }
     ViewOverlay& overlay() { return *m_overlay; }
     QString rendererName() const { return m_surface->rendererName(); }
+    QString rendererReason() const { return m_reason; } ///< why it draws, a sentence
 
     QSize sizeHint() const override { return {860, 520}; }
     QSize minimumSizeHint() const override { return {240, 180}; }
@@ -50,6 +54,9 @@ private:
     enum class Motion { None, Rotate, Pan, Zoom };
     void setSurface(std::unique_ptr<ViewSurface> surface);
     void surfaceFailed(const Error& error);
+    void chooseRenderer(ViewRenderer wanted);
+    void startProbe();
+    void showTimes(const RendererTimes& times);
     void updateScene();
 
     SessionStore& m_store;
@@ -61,6 +68,10 @@ private:
     int m_gesture = 0;          // one drag is one step of the camera's history
     QElapsedTimer m_sinceWheel; // and so are turns of the wheel that follow each other
     int m_wheelGesture = 0;
+    QString m_reason;
+    QString m_machine; ///< renderer, processors and version, for which times are kept
+    bool m_expectGl = false, m_probeWaits = false;
+    Job<int, RendererTimes> m_probe; // last: it ends before the rest goes
 };
 
 } // namespace pellucid::gui

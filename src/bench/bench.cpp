@@ -165,7 +165,7 @@ private:
     }
 
     void addSweeps(const JobControl& job) {
-        const auto sums = m_engine->sums(m_case.camera, {&m_case.tf, 1}, &m_weights, {job.stop, {}});
+        const auto sums = m_engine->sums(m_case.view, {&m_case.tf, 1}, &m_weights, {job.stop, {}});
         m_candidates = searchCandidates(m_case.tf, vwsOf(sums[0]), m_case.stepScale);
         // One by one the same eight, since more opaque ones are done sooner. Where nothing is opaque one stands for
         // all.
@@ -174,11 +174,11 @@ private:
             row(BenchRow::Sweep, m_engine->name(), 1), sweepBytes(),
             [this, singles](BenchResult&, const JobControl& j) {
                 for (int i = 0; i < singles; ++i)
-                    m_engine->sums(m_case.camera, {&m_candidates[static_cast<std::size_t>(i)], 1}, &m_weights, j);
+                    m_engine->sums(m_case.view, {&m_candidates[static_cast<std::size_t>(i)], 1}, &m_weights, j);
             },
             singles);
         add(row(BenchRow::Sweep, m_engine->name(), 8), sweepBytes(),
-            [this](BenchResult&, const JobControl& j) { m_engine->sums(m_case.camera, m_candidates, &m_weights, j); });
+            [this](BenchResult&, const JobControl& j) { m_engine->sums(m_case.view, m_candidates, &m_weights, j); });
     }
 
     /// A sweep by the thesis's own method. Where there is no OpenGL the row is left out, not the others.
@@ -186,21 +186,21 @@ private:
         add(row(BenchRow::Slices, name(EngineChoice::Slices), 1), sweepBytes(),
             [this](BenchResult&, const JobControl& j) {
                 if (!m_slices) m_slices = makeEngine(EngineChoice::Slices, m_case.volume, m_options.quality);
-                m_slices->sums(m_case.camera, {&m_case.tf, 1}, &m_weights, j);
+                m_slices->sums(m_case.view, {&m_case.tf, 1}, &m_weights, j);
             });
     }
 
     void addJacobians(const JobControl& job) {
         if (!m_case.tf.features.empty())
             add(row(BenchRow::Jacobian, m_engine->name(), 1), sweepBytes(), [this](BenchResult&, const JobControl& j) {
-                m_engine->jacobian(m_case.camera, m_case.tf, &m_weights, j);
+                m_engine->jacobian(m_case.view, m_case.tf, &m_weights, j);
             });
         if (!m_case.nineFeatures) return;
         m_nine = tents(9);
         m_nineWeights = saliencyFields(*m_case.volume, m_nine, {}, job);
         add(row(BenchRow::Jacobian, m_engine->name(), 1, m_nine, kNineTents), sweepBytes(),
             [this](BenchResult&, const JobControl& j) {
-                m_engine->jacobian(m_case.camera, m_nine, &m_nineWeights, j);
+                m_engine->jacobian(m_case.view, m_nine, &m_nineWeights, j);
             });
     }
 
@@ -208,7 +208,7 @@ private:
     void addOptimize() {
         if (m_case.tf.features.empty()) return;
         add(row(BenchRow::Optimize, m_engine->name(), 8), 0, [this](BenchResult& r, const JobControl& j) {
-            const VwsFunction function(*m_engine, m_case.camera, m_case.tf, m_weights);
+            const VwsFunction function(*m_engine, m_case.view, m_case.tf, m_weights);
             const OptimizeResult found = optimize(function, benchTargets(m_case.tf.features.size()), {}, j);
             if (found.reason == StopReason::Cancelled) throw Cancelled{};
             const int sweeps = 1 + (found.evaluations - 1) / 8; // the start, then eight at a time
@@ -229,7 +229,8 @@ private:
 
     void addRender() {
         const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_case.volume);
-        for (const RenderSettings& settings : m_options.pictures) {
+        for (RenderSettings settings : m_options.pictures) {
+            settings.clipping = m_case.view.clipping;
             BenchResult r = row(BenchRow::Render, renderer->name());
             r.extra = {{"size", {settings.width, settings.height}}};
             if (settings.light.on) r.extra["lit"] = true;
@@ -241,7 +242,7 @@ private:
                         const double angle = 2 * std::numbers::pi * i / m_options.orbit;
                         const Stopwatch watch;
                         const double cpuStart = cpuSeconds();
-                        renderer->render(turned(m_case.camera, angle), m_case.tf, settings, j);
+                        renderer->render(turned(m_case.view.camera, angle), m_case.tf, settings, j);
                         if (m_options.orbit == 1) continue;
                         result.extra["frames"].push_back(watch.seconds());
                         result.extra["cpu_frames"].push_back(cpuSeconds() - cpuStart);

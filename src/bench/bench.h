@@ -13,8 +13,8 @@
 
 #include "base/job.h"
 #include "engines/engines.h"
-#include "render/camera.h"
 #include "render/render_settings.h"
+#include "render/view.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
@@ -50,7 +50,7 @@ nlohmann::ordered_json jsonFromBenchResult(const BenchResult& result, double mem
 struct BenchCase {
     std::shared_ptr<const Volume> volume;
     std::string volumeName;
-    Camera camera; ///< looks at the volume
+    View view; ///< looks at the volume
     std::string tfName;
     TransferFunction tf;
     std::set<BenchRow> rows;

@@ -1,6 +1,7 @@
 #include "engines/engines.h"
 
 #include "base/error.h"
+#include "engines/renderer_probe.h"
 #include "render/gl/gl_engines.h"
 
 namespace pellucid {
@@ -15,6 +16,12 @@ bool haveGpu() {
 }
 
 namespace {
+
+/// Measured only where the answer is open: a software rasterizer is no faster than our own renderer.
+bool gpuDrawsFaster() {
+    static const bool faster = haveGpu() && timeRenderers().preferGl(true);
+    return faster;
+}
 
 /// Who leaves the choice to us gets an answer even where the volume is too large for the GPU.
 template <class T, class MakeGl, class MakeCpu>
@@ -48,6 +55,7 @@ std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_pt
 }
 
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume) {
+    if (choice == EngineChoice::Auto && !gpuDrawsFaster()) return makeCpuRenderer(std::move(volume));
     if (choice == EngineChoice::Auto)
         return gpuElseCpu<ImageRenderer>([&] { return makeGlRenderer(volume); },
                                          [&] { return makeCpuRenderer(volume); });

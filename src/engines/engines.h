@@ -14,7 +14,8 @@ bool haveGpu();
 /// Auto: gl on a real GPU, cpu on a software rasterizer, without GL, or where the volume is too large for the GPU.
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality = Quality::Normal);
-/// The reference choice draws with the cpu renderer, since no other image is defined; slices are what gl draws.
+/// Auto: on a real GPU whichever of gl and cpu is faster here (renderer_probe.h), measured once; else cpu. The
+/// reference choice draws with the cpu renderer, since no other image is defined; slices are what gl draws.
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);
 
 } // namespace pellucid

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "cli_runner.h"
-#include "render/image.h"
+#include "image_io/image_file.h"
 
 using nlohmann::json;
 using pellucid::Image;

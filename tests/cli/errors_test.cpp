@@ -122,12 +122,16 @@ TEST_CASE("wrong values of render are wrong usage", "[cli][errors]") {
     checkFails(w, {"render", "sample:shells"}, 2, "--out is required");
     for (const char* size : {"0x0", "64", "-5x5", "16385x10", "axb"})
         checkFails(w, kRender + Words{"--size", size}, 2, "--size");
-    for (const char* background : {"0,0,1.5", "#12345", "red"})
+    for (const char* background : {"0,0,1.5", "#12345", "red", "#fff/red"})
         checkFails(w, kRender + Words{"--background", background}, 2, "--background");
     for (const char* step : {"0", "17", "nan"}) checkFails(w, kRender + Words{"--step", step}, 2, "--step");
     for (const char* clip : {"x:0.5:0.5", "w:0:1", "x:0", "x:-1:1", "x:a:b"})
         checkFails(w, kRender + Words{"--clip", clip}, 2, "--clip");
     checkFails(w, kRender + Words{"--clip", "x:0:0.2", "x:0.5:1"}, 2, "--clip");
+    checkFails(w, kRender + Words{"--mode", "xray"}, 2, "minip");
+    checkFails(w, kRender + Words{"--light-preset", "gold"}, 2, "metal");
+    checkFails(w, kRender + Words{"--no-shading", "--shading"}, 2, "--no-shading");
+    checkFails(w, kRender + Words{"--depth-cue", "2"}, 2, "--depth-cue");
     checkFails(w, kRender + Words{"--feature", "dentine"}, 2, "'core'");
     // Before any work: the volume would be refused too.
     checkFails(w, {"render", "missing.nrrd", "--out", "x.bmp"}, 2, "x.bmp");

@@ -3,6 +3,7 @@
 
 #include "cli_runner.h"
 #include "image_io/image_file.h"
+#include "render/image_renderer.h"
 #include "session/session_json.h"
 #include "session/workspace.h"
 #include "tf/formats/tf_json.h"

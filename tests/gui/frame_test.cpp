@@ -8,6 +8,7 @@
 #include <QSignalSpy>
 #include <QTemporaryDir>
 
+#include "image_io/image_file.h"
 #include "render/annotation_raster.h"
 
 using namespace pellucid;

@@ -6,6 +6,8 @@
 #include <QDoubleSpinBox>
 #include <QSignalSpy>
 
+#include "render/camera_motion.h"
+
 using namespace pellucid;
 using namespace pellucid::gui;
 
@@ -31,11 +33,18 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     grab(w, "window_opened.png");
     w.child<QAction>("displayAction").trigger();
-    w.child<QAction>("shadingAction").trigger();
     w.child<QDoubleSpinBox>("clipXHi").setValue(60);
+    w.child<QAction>("lightAction").trigger();
     grab(w, "window_display.png");
-    w.child<QAction>("displayAction").trigger();
     w.document().undo();
+    w.child<QAction>("clipAction").trigger();
+    w.child<QAction>("addPlaneAction").trigger();
+    const Camera home = w.document().camera();
+    w.document().setCamera(rotated(home, w.document().volume()->geometry(), 50, 10));
+    grab(w, "window_clip.png");
+    w.document().setCamera(home);
+    for (const char* action : {"clipHandlesAction", "clipAction", "lightAction", "displayAction"})
+        w.child<QAction>(action).trigger();
     w.document().undo();
     w.document().setTargets({1.0 / 6, 2.0 / 6, 3.0 / 6});
     w.optimizing().start();

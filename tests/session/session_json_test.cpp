@@ -192,6 +192,20 @@ TEST_CASE("a key that is missing is named, or has a default", "[session][json]")
           Session{});
 }
 
+TEST_CASE("files that know only whether there is shading keep their meaning", "[session][json]") {
+    const auto displayOf = [](const json& display) {
+        json j = documentOf(Session{});
+        j["display"] = display;
+        return *sessionOfDocument(j).display;
+    };
+    Light lit;
+    lit.on = true;
+    CHECK(displayOf({{"shading", true}}).light == lit);
+    CHECK_FALSE(displayOf({{"shading", false}}).light.on);
+    CHECK_FALSE(displayOf(json::object()).light.on); // light is on where a window opens a volume, not in files
+    CHECK(displayOf({{"shading", true}, {"light", {{"on", false}}}}).light == Light{});
+}
+
 TEST_CASE("wrong sessions are refused", "[session][json]") {
     const json good = documentOf(full());
     const auto with = [&](const char* pointer, json value) {
@@ -202,6 +216,9 @@ TEST_CASE("wrong sessions are refused", "[session][json]") {
     CHECK_THAT(with("/camera/center", good["camera"]["eye"]), Catch::Contains("/camera"));
     CHECK_THAT(with("/camera/up", {0, 0, 0}), Catch::Contains("/camera"));
     CHECK_THAT(with("/clip/hi", good["clip"]["lo"]), Catch::Contains("/clip"));
+    CHECK_THAT(with("/clip/planes", {{{"normal", {0, 0, 0}}, {"offset", 1}}}), Catch::Contains("/clip/planes/0"));
+    CHECK_THAT(with("/display/mode", "xray"), Catch::Contains("/display/mode"));
+    CHECK_THAT(with("/display/light/occlusion", 2), Catch::Contains("/display/light/occlusion"));
     CHECK_THAT(with("/variables/0/window", {1, 1}), Catch::Contains("/variables/0/window"));
     CHECK_THAT(with("/variables/0/window", {-1.7e308, 1.7e308}), Catch::Contains("/variables/0/window"));
     CHECK_THAT(with("/measure/sigma", 9), Catch::Contains("/measure/sigma"));

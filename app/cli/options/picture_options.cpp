@@ -1,7 +1,5 @@
 #include "options/picture_options.h"
 
-#include <algorithm>
-
 namespace pellucid::cli {
 
 void PictureOptions::add(CLI::App& app) {
@@ -10,40 +8,42 @@ void PictureOptions::add(CLI::App& app) {
         [this](const std::string& text, const std::string& option) { size = parseImageSize(text, option); },
         "pixels (default 512x512)");
     addValue(
-        app, "--background", "R,G,B|transparent",
+        app, "--background", "COLOR|TOP/BOTTOM|transparent",
         [this](const std::string& text, const std::string& option) {
             transparent = text == "transparent";
-            if (!transparent) background = parseColor(text, option);
+            if (!transparent) background = parseBackground(text, option);
         },
-        "components from 0 to 1, #rrggbb or transparent (default 0,0,0)");
+        "components R,G,B from 0 to 1 or #rrggbb, two of them for a gradient, or transparent (default 0,0,0)");
     addValue(
         app, "--step", "D",
         [this](const std::string& text, const std::string& option) { step = parseRealAbove(text, option, 0, 16); },
         "largest distance of samples in reference lengths, the smallest voxel spacing (default 0.5)");
-    app.add_flag("--shading", shading, "light from the eye, by the gradient");
-    addRepeated(
-        app, "--clip", "x:A:B",
-        [this](const std::string& text, const std::string& option) { clips.push_back(parseClip(text, option)); },
-        "draw only this part of the box along x, y or z, in fractions from 0 to 1");
+    addValue(
+        app, "--mode", "composite|mip|minip|average|surface",
+        [this](const std::string& text, const std::string& option) {
+            mode = renderModeFromName(text);
+            if (!mode)
+                throw UsageError("'" + text + "' is no way to draw", option,
+                                 "use composite, mip, minip, average or surface");
+        },
+        "what becomes of the intensities along a ray: emission and absorption by the transfer function (default); the "
+        "largest, smallest or mean one, as grey; the first surface of each feature");
+    app.add_flag("--jitter", jitter, "shift the samples of each pixel, against bands of colour");
     addValue(
         app, "--feature", "NAME", [this](const std::string& text, const std::string&) { feature = text; },
         "draw the voxels of this feature alone");
+    light.add(app);
 }
 
 void PictureOptions::applyTo(SceneInputs& inputs) const {
     inputs.session.display.edit([this](DisplaySettings& d) {
-        d.background = background.value_or(d.background);
-        d.light.on = d.light.on || shading;
+        if (background) {
+            d.background = background->bottom;
+            d.backgroundTop = background->top;
+        }
+        d.mode = mode.value_or(d.mode);
+        light.applyTo(d.light);
     });
-    if (clips.empty()) return;
-    Clipping left;
-    for (const Clip& clip : clips) {
-        left.lo[clip.axis] = std::max(left.lo[clip.axis], clip.lo);
-        left.hi[clip.axis] = std::min(left.hi[clip.axis], clip.hi);
-        if (!(left.lo[clip.axis] < left.hi[clip.axis]))
-            throw UsageError("nothing is left between the clips of one axis", "--clip", "let them overlap");
-    }
-    inputs.session.clipping.set(left);
 }
 
 void PictureOptions::applyTo(Scene& scene) const {
@@ -63,6 +63,7 @@ void PictureOptions::applyTo(Scene& scene) const {
 PictureInput PictureOptions::pictureOf(const Scene& scene) const {
     PictureInput picture = pictureInput(scene, size.width, size.height, transparent);
     if (step) picture.settings.stepInD0 = *step;
+    picture.settings.jitter = jitter;
     picture.settings.validate();
     return picture;
 }

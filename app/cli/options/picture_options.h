@@ -1,12 +1,12 @@
-// --size, --background, --step, --shading, --clip, --feature: how the picture looks.
+// --size, --background, --step, --mode, --jitter, --feature and the light: how the picture looks.
 #pragma once
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "options/light_options.h"
 #include "parse.h"
 #include "session/scene.h"
 
@@ -14,15 +14,16 @@ namespace pellucid::cli {
 
 struct PictureOptions {
     ImageSize size;
-    std::optional<Rgb> background;
+    std::optional<Gradient> background;
     bool transparent = false;
     std::optional<double> step;
-    bool shading = false;
-    std::vector<Clip> clips; ///< any: in place of the session's
+    std::optional<RenderMode> mode;
+    bool jitter = false;
+    LightOptions light;
     std::optional<std::string> feature;
 
     void add(CLI::App& app);
-    /// Throws UsageError where the clips leave nothing.
+    /// Throws UsageError for options of the light that do not go together.
     void applyTo(SceneInputs& inputs) const;
     /// What needs the transfer function. Throws UsageError where no feature has the name.
     void applyTo(Scene& scene) const;

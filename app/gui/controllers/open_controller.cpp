@@ -158,6 +158,7 @@ void OpenController::addActions() {
 void OpenController::openVolume(const VolumeSource& source, const QString& tfSpec) {
     Request request;
     request.inputs.session = sessionOf(source);
+    request.inputs.session.display.edit([](DisplaySettings& d) { d.light.on = true; }); // shapes at the first look
     request.inputs.range = source.range;
     if (!tfSpec.isEmpty()) {
         request.inputs.tf = tfSpec.toStdString();

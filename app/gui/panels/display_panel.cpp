@@ -1,5 +1,7 @@
 #include "panels/display_panel.h"
 
+#include <array>
+
 #include <QCheckBox>
 #include <QColorDialog>
 #include <QComboBox>
@@ -24,26 +26,45 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kThinnest = 0.1; // per cent of the box that clipping leaves at least
-constexpr const char* kAxes[] = {"x", "y", "z"};
+/// In the order of RenderMode.
+const std::array kModes{
+    std::pair{QT_TR_NOOP("Composite"), QT_TR_NOOP("Emission and absorption by the transfer function")},
+    std::pair{QT_TR_NOOP("Maximum (MIP)"), QT_TR_NOOP("The largest value along each ray, as grey")},
+    std::pair{QT_TR_NOOP("Minimum (MinIP)"), QT_TR_NOOP("The smallest value, as grey")},
+    std::pair{QT_TR_NOOP("Average"), QT_TR_NOOP("The mean value, as grey: like an X-ray")},
+    std::pair{QT_TR_NOOP("Surfaces"), QT_TR_NOOP("The first surface of each feature")}};
+
+constexpr Rgb kFirstTop{0.16, 0.19, 0.24}; // of a gradient that is switched on
+
+QPixmap swatchOf(const Rgb& color) {
+    QPixmap swatch(22, 14);
+    swatch.fill(colorFromRgb(color));
+    return swatch;
+}
 
 } // namespace
 
 DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_shading(new QCheckBox(tr("&Shading"), this)),
-      m_background(new QToolButton(this)), m_feature(new QComboBox(this)),
-      m_resetClip(new QPushButton(tr("&Whole box"), this)), m_lo(new QDoubleSpinBox(this)),
-      m_hi(new QDoubleSpinBox(this)), m_wholeRange(new QPushButton(tr("&All values"), this)),
-      m_component(new QSpinBox(this)), m_note(new QLabel(this)) {
+    : QWidget(parent), m_bench(bench), m_mode(new QComboBox(this)), m_background(new QToolButton(this)),
+      m_gradient(new QCheckBox(tr("to the top"), this)), m_top(new QToolButton(this)), m_feature(new QComboBox(this)),
+      m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
+      m_wholeRange(new QPushButton(tr("&All values"), this)), m_component(new QSpinBox(this)),
+      m_note(new QLabel(this)) {
     setObjectName("displayPanel");
-    m_shading->setObjectName("shadingCheck");
-    m_shading->setToolTip(tr("Light from the eye, by the gradient; figures do not depend on it (L)"));
+    m_mode->setObjectName("modeCombo");
+    m_mode->setToolTip(tr("What becomes of the values along a ray"));
+    for (const auto& [text, tip] : kModes) {
+        m_mode->addItem(tr(text));
+        m_mode->setItemData(m_mode->count() - 1, tr(tip), Qt::ToolTipRole);
+    }
     m_background->setObjectName("backgroundColor");
-    m_background->setToolTip(tr("Colour behind the volume"));
+    m_background->setToolTip(tr("Colour behind the volume; a saved picture can be transparent instead"));
+    m_gradient->setObjectName("gradientCheck");
+    m_gradient->setToolTip(tr("Another colour at the top of the picture"));
+    m_top->setObjectName("backgroundTopColor");
+    m_top->setToolTip(tr("Colour at the top of the picture"));
     m_feature->setObjectName("onlyFeatureCombo");
     m_feature->setToolTip(tr("Draw the voxels of one feature alone; figures are of all"));
-    m_resetClip->setObjectName("resetClipButton");
-    m_resetClip->setToolTip(tr("Cut nothing away"));
     m_wholeRange->setObjectName("wholeRangeButton");
     m_wholeRange->setToolTip(tr("From the smallest to the largest value of the data"));
     m_component->setObjectName("componentSpin");
@@ -66,34 +87,14 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     auto* form = new QFormLayout(content);
     form->setContentsMargins(10, 8, 10, 8);
     form->setVerticalSpacing(7);
-    auto* look = new QHBoxLayout;
-    look->addWidget(m_shading);
-    look->addStretch(1);
-    look->addWidget(new QLabel(tr("Background"), content));
-    look->addWidget(m_background);
-    form->addRow(tr("Picture"), look);
+    form->addRow(tr("&Mode"), m_mode);
+    auto* behind = new QHBoxLayout;
+    behind->addWidget(m_background);
+    behind->addWidget(m_gradient);
+    behind->addWidget(m_top);
+    behind->addStretch(1);
+    form->addRow(tr("Background"), behind);
     form->addRow(tr("&Only"), m_feature);
-    auto* clip = new QGridLayout;
-    clip->setHorizontalSpacing(6);
-    for (int axis = 0; axis < 3; ++axis) {
-        clip->addWidget(new QLabel(kAxes[axis], content), axis, 0);
-        for (int side = 0; side < 2; ++side) {
-            auto* box = new QDoubleSpinBox(content);
-            box->setObjectName(QStringLiteral("clip%1%2").arg(QString(kAxes[axis]).toUpper(), side == 0 ? "Lo" : "Hi"));
-            box->setRange(0, 100);
-            box->setDecimals(1);
-            box->setSuffix(tr(" %"));
-            box->setKeyboardTracking(false);
-            box->setToolTip(tr("The part of the box along %1 that is drawn, per cent of its length; figures are of all")
-                                .arg(kAxes[axis]));
-            clip->addWidget(box, axis, side + 1);
-            m_clip[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] = box;
-            connect(box, &QDoubleSpinBox::valueChanged, this,
-                    [this, axis, side](double percent) { editClipping(axis, side == 1, percent); });
-        }
-    }
-    clip->addWidget(m_resetClip, 3, 1, 1, 2);
-    form->addRow(tr("Clip"), clip);
     auto* window = new QGridLayout;
     window->addWidget(m_lo, 0, 0);
     window->addWidget(m_hi, 0, 1);
@@ -110,13 +111,19 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     column->addWidget(scroll);
 
     SessionStore& store = m_bench.store();
-    connect(m_shading, &QCheckBox::clicked, this, [this] { m_bench.actions().find("shadingAction")->trigger(); });
-    connect(m_background, &QToolButton::clicked, this, [this] {
-        const QColor color = QColorDialog::getColor(colorFromRgb(m_bench.store().session().display->background), this,
-                                                    tr("Colour behind the volume"));
-        if (!color.isValid()) return;
+    connect(m_mode, &QComboBox::activated, this, [this](int index) {
+        m_bench.store().edit(tr("Mode"), {}, [&](Session& session) {
+            session.display.edit([&](DisplaySettings& d) { d.mode = static_cast<RenderMode>(index); });
+        });
+    });
+    connect(m_background, &QToolButton::clicked, this, [this] { chooseBackground(false); });
+    connect(m_top, &QToolButton::clicked, this, [this] { chooseBackground(true); });
+    connect(m_gradient, &QCheckBox::clicked, this, [this](bool checked) {
         m_bench.store().edit(tr("Background"), {}, [&](Session& session) {
-            session.display.edit([&](DisplaySettings& d) { d.background = rgbFromColor(color); });
+            session.display.edit([&](DisplaySettings& d) {
+                d.backgroundTop.reset();
+                if (checked) d.backgroundTop = kFirstTop;
+            });
         });
     });
     connect(m_feature, &QComboBox::activated, this, [this] {
@@ -125,8 +132,6 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
             session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; });
         });
     });
-    connect(m_resetClip, &QPushButton::clicked, this,
-            [this] { m_bench.store().edit(tr("Whole box"), {}, [](Session& session) { session.clipping.set({}); }); });
     connect(m_lo, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_hi, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_wholeRange, &QPushButton::clicked, this, [this] {
@@ -145,22 +150,26 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     });
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         const Session &old = before.session, &now = after.session;
-        const bool same = before.volume == after.volume && before.tf.features == after.tf.features &&
-                          old.display.isSame(now.display) && old.clipping.isSame(now.clipping);
+        const bool same =
+            before.volume == after.volume && before.tf.features == after.tf.features && old.display.isSame(now.display);
         if (!same) follow(); // the view turns, the curve is dragged: nothing of this panel's
     });
     connect(&m_bench, &Workbench::readOnlyChanged, this, &DisplayPanel::follow);
     follow();
 }
 
-void DisplayPanel::editClipping(int axis, bool upper, double percent) {
-    if (m_showing) return;
-    m_bench.store().edit(tr("Clip"), QStringLiteral("clip-%1-%2").arg(axis).arg(upper), [&](Session& session) {
-        session.clipping.edit([&](Clipping& c) {
-            if (upper)
-                c.hi[axis] = std::max(percent / 100, c.lo[axis] + kThinnest / 100);
+void DisplayPanel::chooseBackground(bool top) {
+    const DisplaySettings& display = *m_bench.store().session().display;
+    const Rgb now = top ? display.backgroundTop.value_or(display.background) : display.background;
+    const QColor color = QColorDialog::getColor(
+        colorFromRgb(now), this, top ? tr("Colour at the top of the picture") : tr("Colour behind the volume"));
+    if (!color.isValid()) return;
+    m_bench.store().edit(tr("Background"), {}, [&](Session& session) {
+        session.display.edit([&](DisplaySettings& d) {
+            if (top)
+                d.backgroundTop = rgbFromColor(color);
             else
-                c.lo[axis] = std::min(percent / 100, c.hi[axis] - kThinnest / 100);
+                d.background = rgbFromColor(color);
         });
     });
 }
@@ -180,10 +189,12 @@ void DisplayPanel::follow() {
     setEnabled(ready);
     if (!m_bench.store().hasVolume()) return;
     m_showing = true;
-    m_shading->setChecked(scene.session.display->light.on);
-    QPixmap swatch(22, 14);
-    swatch.fill(colorFromRgb(scene.session.display->background));
-    m_background->setIcon(swatch);
+    const DisplaySettings& display = *scene.session.display;
+    m_mode->setCurrentIndex(static_cast<int>(display.mode));
+    m_background->setIcon(swatchOf(display.background));
+    m_gradient->setChecked(display.backgroundTop.has_value());
+    m_top->setIcon(swatchOf(display.backgroundTop.value_or(display.background)));
+    m_top->setEnabled(display.backgroundTop.has_value());
     m_feature->clear();
     m_feature->addItem(tr("all features"), QVariant::fromValue<qulonglong>(0));
     for (const Feature& f : scene.tf.features) {
@@ -192,12 +203,6 @@ void DisplayPanel::follow() {
         m_feature->addItem(color, QString::fromStdString(f.name), QVariant::fromValue<qulonglong>(f.id));
     }
     m_feature->setCurrentIndex(scene.onlyFeature() + 1);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int a = static_cast<int>(axis);
-        showNumber(*m_clip[axis][0], 100 * scene.session.clipping->lo[a]);
-        showNumber(*m_clip[axis][1], 100 * scene.session.clipping->hi[a]);
-    }
-    m_resetClip->setEnabled(!(*scene.session.clipping == Clipping{}));
     const ValueRange window = scene.volume->range();
     const double span = window.hi - window.lo;
     for (QDoubleSpinBox* box : {m_lo, m_hi}) {
@@ -224,31 +229,8 @@ PanelInfo displayPanel() {
             .visible = false,
             .size = 0,
             .keys = QKeySequence("Ctrl+D"),
-            .tip = QObject::tr("Light, clipping, one feature alone, range of values, component"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                SessionStore& store = bench.store();
-                bench.actions().add({.id = "shadingAction",
-                                     .menu = QObject::tr("&View"),
-                                     .text = QObject::tr("&Shading"),
-                                     .keys = {QKeySequence("L")},
-                                     .tip = QObject::tr("Light from the eye, by the gradient"),
-                                     .trigger =
-                                         [&store] {
-                                             store.edit(QObject::tr("Shading"), {}, [](Session& session) {
-                                                 session.display.edit(
-                                                     [](DisplaySettings& d) { d.light.on = !d.light.on; });
-                                             });
-                                         },
-                                     .enabled = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); },
-                                     .checked = [&store] { return store.session().display->light.on; },
-                                     .separatorBefore = true});
-                QObject::connect(&store, &SessionStore::changed, &bench.actions(),
-                                 [&bench](const Scene& before, const Scene& after) {
-                                     if (!before.session.display.isSame(after.session.display))
-                                         bench.actions().refresh();
-                                 });
-                return new DisplayPanel(bench, parent);
-            }};
+            .tip = QObject::tr("Mode, background, one feature alone, range of values, component"),
+            .make = [](Workbench& bench, QWidget* parent) { return new DisplayPanel(bench, parent); }};
 }
 
 } // namespace pellucid::gui

@@ -1,7 +1,5 @@
-// The panel of the picture: light, clipping, one feature alone, and which values of the data are looked at.
+// The panel of the picture: how it is made, what is behind it, one feature alone, and which values are looked at.
 #pragma once
-
-#include <array>
 
 #include <QWidget>
 
@@ -24,15 +22,15 @@ public:
 
 private:
     void follow();
-    void editClipping(int axis, bool upper, double percent);
+    void chooseBackground(bool top);
     void editWindow();
 
     Workbench& m_bench;
-    QCheckBox* m_shading;
+    QComboBox* m_mode;
     QToolButton* m_background;
+    QCheckBox* m_gradient;
+    QToolButton* m_top;
     QComboBox* m_feature;
-    std::array<std::array<QDoubleSpinBox*, 2>, 3> m_clip{}; ///< [axis][lower, upper], per cent of the box
-    QPushButton* m_resetClip;
     QDoubleSpinBox *m_lo, *m_hi;
     QPushButton* m_wholeRange;
     QSpinBox* m_component;

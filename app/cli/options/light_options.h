@@ -1,0 +1,29 @@
+// --shading, --light, --light-preset, … : how the picture is lit.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "session/scene.h"
+
+namespace pellucid::cli {
+
+struct LightOptions {
+    bool shading = false, noShading = false;
+    std::optional<std::string> preset;
+    std::optional<double> ambient, diffuse, specular, shininess;
+    std::optional<Vec3> direction;
+    std::optional<double> gradientOpacity, occlusion, depthCue, silhouettes;
+
+    void add(CLI::App& app);
+    /// The preset first, single numbers over it. Throws UsageError for options that do not go together.
+    void applyTo(Light& light) const;
+
+private:
+    bool saysHowBright() const { return preset || ambient || diffuse || specular || shininess || direction; }
+    void takeParts(const std::string& text, const std::string& option);
+};
+
+} // namespace pellucid::cli
