@@ -9,7 +9,7 @@
 #include <QOpenGLFunctions>
 
 #include "render/gl/gl_engines.h"
-#include "render/gl/slice_raycaster.h"
+#include "render/gl/volume_raycaster.h"
 #include "theme.h"
 
 namespace pellucid::gui {
@@ -101,7 +101,7 @@ void GlSurface::initializeGL() {
                          .arg(version.second)
                          .arg(m_software ? tr("software") : renderer.section('/', 0, 0));
     try {
-        m_raycaster = std::make_unique<gl::SliceRaycaster>();
+        m_raycaster = std::make_unique<gl::VolumeRaycaster>();
     } catch (const Error& error) {
         fail(error);
     }

@@ -1,4 +1,4 @@
-// The picture drawn by the slice raycaster in the window's own OpenGL context.
+// The picture drawn by the raycaster in the window's own OpenGL context.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 class QOpenGLFramebufferObject;
 
 namespace pellucid::gl {
-class SliceRaycaster;
+class VolumeRaycaster;
 }
 
 namespace pellucid::gui {
@@ -58,7 +58,7 @@ private:
     void fail(const Error& error);
 
     PictureInput m_scene;
-    std::unique_ptr<gl::SliceRaycaster> m_raycaster;
+    std::unique_ptr<gl::VolumeRaycaster> m_raycaster;
     std::shared_ptr<const Volume> m_uploaded;
     std::unique_ptr<QOpenGLFramebufferObject> m_picture;
     bool m_software = true, m_failed = false;

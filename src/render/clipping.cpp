@@ -49,7 +49,7 @@ void cut(RayInterval& interval, const Ray& ray, std::span<const VoxelPlane> plan
     for (const VoxelPlane& plane : planes) {
         const double beyond = plane.beyond(ray.origin), rate = glm::dot(plane.normal, ray.direction);
         if (rate == 0) {
-            if (beyond > 0) interval.exit = interval.enter; // nothing is left
+            if (beyond > kClipTie) interval.exit = interval.enter; // nothing is left
             continue;
         }
         const double at = -beyond / rate;

@@ -2,7 +2,7 @@
 
 #include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
-#include "render/gl/slice_raycaster.h"
+#include "render/gl/volume_raycaster.h"
 
 using namespace pellucid;
 using namespace pellucid::testing;
@@ -344,7 +344,7 @@ TEST_CASE("the ray caster draws into a part of any framebuffer, coarser where as
     const Image expected = makeCpuRenderer(volume)->render(camera, tf, settings);
     gl::HeadlessContext context;
     context.run([&] {
-        gl::SliceRaycaster raycaster;
+        gl::VolumeRaycaster raycaster;
         raycaster.setVolume(volume);
         raycaster.setTransferFunction(tf);
         const auto target = gl::makeColorTarget({100, 80}, GL_RGBA8, GL_NEAREST, "test");
@@ -401,14 +401,14 @@ TEST_CASE("a volume drawn in bricks is the same picture", "[gl]") {
     gl::HeadlessContext context;
     context.run([&] {
         const auto target = gl::makeColorTarget({settings.width, settings.height}, GL_RGBA32F, GL_NEAREST, "test");
-        const auto drawn = [&](gl::SliceRaycaster& raycaster, const Camera& camera) {
+        const auto drawn = [&](gl::VolumeRaycaster& raycaster, const Camera& camera) {
             raycaster.setTransferFunction(tf);
             raycaster.draw(camera, settings, {target.framebuffer.id()});
             std::vector<float> pixels(static_cast<std::size_t>(4 * settings.width * settings.height));
             glReadPixels(0, 0, settings.width, settings.height, GL_RGBA, GL_FLOAT, pixels.data());
             return pixels;
         };
-        gl::SliceRaycaster whole, cut, streamed;
+        gl::VolumeRaycaster whole, cut, streamed;
         whole.setVolume(volume);
         cut.setVolume(volume, 20);   // 16 to 20 voxels of every brick, neighbours' included
         gl::limitAllocations(100e3); // the volume takes 151 700
@@ -421,7 +421,7 @@ TEST_CASE("a volume drawn in bricks is the same picture", "[gl]") {
                 settings.light.on = shading;
                 const auto expected = drawn(whole, camera);
                 CHECK(*std::max_element(expected.begin(), expected.end()) > 0.2f);
-                for (gl::SliceRaycaster* other : {&cut, &streamed}) {
+                for (gl::VolumeRaycaster* other : {&cut, &streamed}) {
                     const auto found = drawn(*other, camera);
                     double mean = 0, worst = 0;
                     for (std::size_t i = 0; i < found.size(); ++i) {

@@ -278,8 +278,10 @@ public:
         for (int i = 0; i < m_in.planeCount; ++i) {
             const SweepPlane& p = m_in.planes[i];
             // Linear in each of line and way: the extremes are at the corners.
-            const double near0 = p.beyond(u0, v0, w0), near1 = p.beyond(u1, v1, w1), step0 = p.u * from.scale,
-                         step1 = p.u * to.scale, far0 = near0 + (kWide - 1) * step0, far1 = near1 + (kWide - 1) * step1;
+            // Lines that run in a plane, up to rounding, are kept as voxels are.
+            const double near0 = p.beyond(u0, v0, w0) - m_in.clipTie, near1 = p.beyond(u1, v1, w1) - m_in.clipTie,
+                         step0 = p.u * from.scale, step1 = p.u * to.scale, far0 = near0 + (kWide - 1) * step0,
+                         far1 = near1 + (kWide - 1) * step1;
             if (near0 <= 0 && near1 <= 0 && far0 <= 0 && far1 <= 0) continue;
             if (near0 > 0 && near1 > 0 && far0 > 0 && far1 > 0) return Clipped::All;
             if (result == Clipped::Nothing) kept = {zero, zero + 1.0f};

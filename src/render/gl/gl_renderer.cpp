@@ -4,7 +4,7 @@
 #include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/headless_context.h"
-#include "render/gl/slice_raycaster.h"
+#include "render/gl/volume_raycaster.h"
 
 namespace pellucid {
 
@@ -16,7 +16,7 @@ class GlRenderer final : public ImageRenderer {
 public:
     explicit GlRenderer(const std::shared_ptr<const Volume>& volume) {
         m_raycaster.emplace([&] {
-            auto raycaster = std::make_unique<gl::SliceRaycaster>();
+            auto raycaster = std::make_unique<gl::VolumeRaycaster>();
             raycaster->setVolume(volume);
             return raycaster;
         });
@@ -28,7 +28,7 @@ public:
                  const JobControl& job) override {
         settings.validate();
         Image image(settings.width, settings.height);
-        m_raycaster.run([&](gl::SliceRaycaster& raycaster) {
+        m_raycaster.run([&](gl::VolumeRaycaster& raycaster) {
             raycaster.setTransferFunction(tf);
             const int across = (settings.width + kTile - 1) / kTile, down = (settings.height + kTile - 1) / kTile;
             for (int i = 0; i < across * down; ++i) {
@@ -41,7 +41,7 @@ public:
     }
 
 private:
-    static void drawTile(gl::SliceRaycaster& raycaster, const Camera& camera, const RenderSettings& settings, int x,
+    static void drawTile(gl::VolumeRaycaster& raycaster, const Camera& camera, const RenderSettings& settings, int x,
                          int y, Image& image, const JobControl& job) {
         const int width = std::min(kTile, settings.width - x), height = std::min(kTile, settings.height - y);
         const auto target = gl::makeColorTarget({width, height}, GL_RGBA32F, GL_NEAREST, "the picture");
@@ -66,7 +66,7 @@ private:
             }
     }
 
-    gl::InContext<gl::SliceRaycaster> m_raycaster;
+    gl::InContext<gl::VolumeRaycaster> m_raycaster;
 };
 
 } // namespace

@@ -29,13 +29,13 @@ struct DrawTarget {
 /// current. GL state afterwards: no program, vertex array or texture bound; blending, depth, stencil and scissor test
 /// and face culling off; depth function and all write masks as GL has them at first; the target framebuffer bound and
 /// the viewport over the picture.
-class SliceRaycaster {
+class VolumeRaycaster {
 public:
     /// Compiles the shaders. Throws Error where the context is older than 4.3 or a shader does not compile.
-    SliceRaycaster();
-    ~SliceRaycaster();
-    SliceRaycaster(SliceRaycaster&&) noexcept;
-    SliceRaycaster& operator=(SliceRaycaster&&) noexcept;
+    VolumeRaycaster();
+    ~VolumeRaycaster();
+    VolumeRaycaster(VolumeRaycaster&&) noexcept;
+    VolumeRaycaster& operator=(VolumeRaycaster&&) noexcept;
 
     /// Uploads the intensities: in bricks where the volume is longer than the device's textures, and brick by brick at
     /// every drawing, which takes its time, where the device has not the memory for all. Throws Error (not even memory

@@ -1,4 +1,4 @@
-#include "render/gl/slice_raycaster.h"
+#include "render/gl/volume_raycaster.h"
 
 #include <algorithm>
 #include <array>
@@ -119,6 +119,24 @@ private:
     GLuint m_id;
 };
 
+/// Half as many cells along an axis: the means of two neighbours.
+Grid<std::uint8_t> everySecond(const Grid<std::uint8_t>& cells, int axis) {
+    Int3 dims = cells.dims();
+    dims[axis] = (dims[axis] + 1) / 2;
+    Grid<std::uint8_t> half(dims);
+    for (int k = 0; k < dims.z; ++k)
+        for (int j = 0; j < dims.y; ++j)
+            for (int i = 0; i < dims.x; ++i) {
+                Int3 one(i, j, k);
+                one[axis] *= 2;
+                Int3 other = one;
+                other[axis] = std::min(other[axis] + 1, cells.dims()[axis] - 1);
+                half.at(i, j, k) = static_cast<std::uint8_t>(
+                    (cells.at(one.x, one.y, one.z) + cells.at(other.x, other.y, other.z) + 1) / 2);
+            }
+    return half;
+}
+
 /// composite.vert and composite.frag.
 class CompositeProgram {
 public:
@@ -199,7 +217,7 @@ glm::vec3 vec3Of(const Rgb& c) { return {c.r, c.g, c.b}; }
 
 } // namespace
 
-struct SliceRaycaster::Impl {
+struct VolumeRaycaster::Impl {
     CompositeProgram composite;
     std::map<std::vector<std::string>, RaycastProgram> programs; ///< by their defines; compiled when first needed
     VertexArrayName emptyArray = VertexArrayName::make();
@@ -216,6 +234,7 @@ struct SliceRaycaster::Impl {
     std::vector<int> opaqueBefore;   ///< number of opaque entries of the table before each
     std::vector<Surface> drawn;      ///< in `surfaces`: by their intervals
     Texture3d openness;              ///< of AmbientOcclusion
+    Int3 opennessCells{1};           ///< cells of AmbientOcclusion per texel
     bool opennessIsMade = false;     ///< for the tables' transfer function
     std::optional<int> tableFeature; ///< onlyFeature that the tables were made for; empty: they are out of date
 
@@ -245,7 +264,7 @@ struct SliceRaycaster::Impl {
     void drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile);
 };
 
-void SliceRaycaster::Impl::fillTables(const RenderSettings& settings) {
+void VolumeRaycaster::Impl::fillTables(const RenderSettings& settings) {
     if (tableFeature != settings.onlyFeature) fillTable(settings);
     if (isColored(settings.mode)) fillDistances(settings.mode == RenderMode::Surface);
     if (settings.light.occlusion > 0 && !opennessIsMade) fillOpenness(settings);
@@ -253,7 +272,7 @@ void SliceRaycaster::Impl::fillTables(const RenderSettings& settings) {
 
 /// (τ·rgb, τ) per entry, then their running integral (shaders/include/tf_segment.glsl); a feature alone leaves the
 /// other intensities transparent.
-void SliceRaycaster::Impl::fillTable(const RenderSettings& settings) {
+void VolumeRaycaster::Impl::fillTable(const RenderSettings& settings) {
     const Feature* const only = settings.featureAlone(*tf);
     const TfTable made = makeTfTable(*tf, kTableSize);
     std::vector<float> values(static_cast<std::size_t>(8 * kTableSize));
@@ -282,7 +301,7 @@ void SliceRaycaster::Impl::fillTable(const RenderSettings& settings) {
 }
 
 /// The features that mode Surface draws, by their intervals.
-void SliceRaycaster::Impl::fillSurfaces(const Feature* only) {
+void VolumeRaycaster::Impl::fillSurfaces(const Feature* only) {
     drawn.clear();
     const std::vector<double> opacities = featureOpacities(*tf);
     for (std::size_t f = 0; f < tf->features.size(); ++f) {
@@ -300,7 +319,7 @@ void SliceRaycaster::Impl::fillSurfaces(const Feature* only) {
 }
 
 /// Blocks that rays leap over.
-void SliceRaycaster::Impl::fillDistances(bool toSurfaces) {
+void VolumeRaycaster::Impl::fillDistances(bool toSurfaces) {
     if (distancesToSurfaces == toSurfaces) return;
     distancesToSurfaces.reset();
     const double entriesPerCode = static_cast<double>(kTableSize - 1) / bricks->maxCode();
@@ -315,30 +334,41 @@ void SliceRaycaster::Impl::fillDistances(bool toSurfaces) {
             return (high + 1) / 65535.0 >= s.codes.low && (low - 1) / 65535.0 < s.codes.high;
         });
     };
-    const std::vector<std::uint8_t> blockDistances =
-        toSurfaces ? blocks->distances(isSurface) : blocks->distances(isOpaque);
-    const Int3 size = blocks->dims();
+    std::vector<std::uint8_t> blockDistances = toSurfaces ? blocks->distances(isSurface) : blocks->distances(isOpaque);
+    Int3 size = blocks->dims();
+    if (std::max({size.x, size.y, size.z}) > glInteger(GL_MAX_3D_TEXTURE_SIZE)) {
+        size = Int3(1); // longer than any texture: nothing is leapt over
+        blockDistances = {0};
+    }
     if (distances.size != size) distances = makeTexture3d(size, GL_R8UI, GL_NEAREST, "the map of empty space");
     uploadBytes(distances, blockDistances.data(), GL_RED_INTEGER);
     distancesToSurfaces = toSurfaces;
 }
 
-void SliceRaycaster::Impl::fillOpenness(const RenderSettings& settings) {
+void VolumeRaycaster::Impl::fillOpenness(const RenderSettings& settings) {
     const AmbientOcclusion occlusion =
         makeAmbientOcclusion(*sharedIntensityGrid(*volume), volume->geometry(), *tf, settings.featureAlone(*tf));
-    const Int3 size = occlusion.open.dims();
+    Grid<std::uint8_t> open = occlusion.open;
+    opennessCells = Int3(1);
+    const int longest = glInteger(GL_MAX_3D_TEXTURE_SIZE);
+    for (int axis = 0; axis < 3; ++axis)
+        while (open.dims()[axis] > longest) { // longer than any texture: coarser along that axis
+            open = everySecond(open, axis);
+            opennessCells[axis] *= 2;
+        }
+    const Int3 size = open.dims();
     if (openness.size != size) openness = makeTexture3d(size, GL_R8, GL_LINEAR, "ambient occlusion");
-    uploadBytes(openness, occlusion.open.data(), GL_RED);
+    uploadBytes(openness, open.data(), GL_RED);
     opennessIsMade = true;
 }
 
-void SliceRaycaster::Impl::resize(glm::ivec2 size) {
+void VolumeRaycaster::Impl::resize(glm::ivec2 size) {
     if (accumulated.color.size == size) return;
     seen = {};
     accumulated = makeColorTarget(size, GL_RGBA32F, GL_LINEAR, "the picture");
 }
 
-void SliceRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& camera, const RenderSettings& settings,
+void VolumeRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& camera, const RenderSettings& settings,
                                        const Tile& tile) {
     const Geometry& g = volume->geometry();
     const glm::vec2 size(accumulated.color.size), picture(settings.width, settings.height);
@@ -359,7 +389,7 @@ void SliceRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& ca
     const Vec3 dims(g.dims);
     p.setRegion(settings.clipping.lo * dims - 0.5, settings.clipping.hi * dims - 0.5, planesInVoxels(oblique, g));
     p.setJitter(settings.jitter ? picture : glm::vec2(0));
-    p.setBlocks(g.dims - 1, blocks->dims() - 1);
+    p.setBlocks(g.dims - 1, distances.size - 1);
 
     const double codes = 65535.0 / bricks->maxCode(); // intensity of code/65535 = 1
     if (settings.mode == RenderMode::Composite) {
@@ -379,12 +409,13 @@ void SliceRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& ca
     if (settings.light.occlusion > 0) {
         constexpr double kCell = AmbientOcclusion::kCell;
         const Vec3 cells(openness.size);
-        p.setOpenness(1.0 / (kCell * cells), (0.5 - 0.5 * (kCell - 1) / kCell) / cells);
+        const Vec3 voxels = kCell * Vec3(opennessCells); // of a texel
+        p.setOpenness(1.0 / (voxels * cells), (0.5 - 0.5 * (voxels - 1.0) / voxels) / cells);
     }
     p.setDepthCue(settings.background.value_or(Rgb{}), 0.5 / g.radius(), 0.5);
 }
 
-void SliceRaycaster::Impl::cast(const Camera& camera, const RenderSettings& settings, const Tile& tile,
+void VolumeRaycaster::Impl::cast(const Camera& camera, const RenderSettings& settings, const Tile& tile,
                                 const JobControl& job) {
     const bool bricked = bricks->count() > 1, surface = settings.mode == RenderMode::Surface;
     if (surface && drawn.size() > kMostSurfaces)
@@ -449,7 +480,7 @@ void SliceRaycaster::Impl::cast(const Camera& camera, const RenderSettings& sett
     throwOnGlError("casting the rays");
 }
 
-void SliceRaycaster::Impl::drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile) {
+void VolumeRaycaster::Impl::drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile) {
     glDisable(GL_SCISSOR_TEST);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
@@ -469,15 +500,15 @@ void SliceRaycaster::Impl::drawComposite(const RenderSettings& settings, const D
     throwOnGlError("drawing the picture");
 }
 
-SliceRaycaster::SliceRaycaster() {
+VolumeRaycaster::VolumeRaycaster() {
     requireGl43();
     m_impl = std::make_unique<Impl>();
 }
-SliceRaycaster::~SliceRaycaster() = default;
-SliceRaycaster::SliceRaycaster(SliceRaycaster&&) noexcept = default;
-SliceRaycaster& SliceRaycaster::operator=(SliceRaycaster&&) noexcept = default;
+VolumeRaycaster::~VolumeRaycaster() = default;
+VolumeRaycaster::VolumeRaycaster(VolumeRaycaster&&) noexcept = default;
+VolumeRaycaster& VolumeRaycaster::operator=(VolumeRaycaster&&) noexcept = default;
 
-void SliceRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longestTexture) {
+void VolumeRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longestTexture) {
     auto blocks = std::make_unique<RayBlocks>(*sharedIntensityGrid(*volume));
     m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture);
     m_impl->blocks = std::move(blocks);
@@ -485,13 +516,13 @@ void SliceRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longest
     m_impl->tableFeature.reset(); // in the former volume's codes
 }
 
-void SliceRaycaster::setTransferFunction(const TransferFunction& tf) {
+void VolumeRaycaster::setTransferFunction(const TransferFunction& tf) {
     if (m_impl->tf == tf) return;
     m_impl->tf = tf;
     m_impl->tableFeature.reset();
 }
 
-void SliceRaycaster::draw(const Camera& camera, const RenderSettings& settings, const DrawTarget& target,
+void VolumeRaycaster::draw(const Camera& camera, const RenderSettings& settings, const DrawTarget& target,
                           const JobControl& job) {
     PELLUCID_CHECK(m_impl->volume && m_impl->tf);
     PELLUCID_CHECK(target.resolutionScale > 0 && target.resolutionScale <= 1);

@@ -1,0 +1,64 @@
+// How long a frame takes while the hand turns the volume, and what rests afterwards; run by hand:
+//   PELLUCID_VOLUME=scan.nrrd xvfb-run -a -s "-screen 0 1600x1000x24" build/release/bin/test_gui "[.frames]"
+#include "gui_support.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+
+#include <QElapsedTimer>
+#include <QSignalSpy>
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+TEST_CASE("frames of a rotation", "[.frames]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_VOLUME")) return;
+    SceneInputs inputs;
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME").toStdString();
+    inputs.session = sessionOf(source);
+    inputs.tf = qEnvironmentVariable("PELLUCID_TF", "tents:3").toStdString();
+    inputs.session.display.edit([](DisplaySettings& d) { d.light.on = true; });
+    Scene scene = openScene(inputs);
+    prepareToShow(scene);
+    SessionStore store;
+    VolumeView view(store, ViewRenderer::Cpu);
+    view.resize(1600, 970);
+    view.show();
+    REQUIRE(QTest::qWaitForWindowExposed(&view, kPatience));
+    store.open(scene);
+    REQUIRE(waitFor([&] { return view.isComplete(); }));
+
+    const auto send = [&](QEvent::Type type, const QPointF& at, Qt::MouseButtons held) {
+        QMouseEvent event(type, at, view.mapToGlobal(at), type == QEvent::MouseMove ? Qt::NoButton : Qt::LeftButton,
+                          held, Qt::NoModifier);
+        QCoreApplication::sendEvent(&view, &event);
+    };
+    std::vector<qint64> frames;
+    double leastScale = 1;
+    QSignalSpy shown(&view, &VolumeView::frameShown);
+    send(QEvent::MouseButtonPress, {600, 480}, Qt::LeftButton);
+    for (int i = 1; i <= 80; ++i) {
+        QElapsedTimer timer;
+        timer.start();
+        const auto before = shown.count();
+        send(QEvent::MouseMove, {600.0 + 5 * i, 480.0 + i}, Qt::LeftButton);
+        REQUIRE(waitFor([&] { return shown.count() > before; }));
+        frames.push_back(timer.elapsed());
+        leastScale = std::min(leastScale, view.frame().resolutionScale);
+    }
+    QElapsedTimer rest;
+    rest.start();
+    send(QEvent::MouseButtonRelease, {1000, 560}, Qt::NoButton);
+    REQUIRE(waitFor([&] { return view.isComplete(); }));
+    const qint64 complete = rest.elapsed();
+    QTest::qWait(500);
+    const std::clock_t start = std::clock();
+    QTest::qWait(3000);
+    const double idle = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    std::sort(frames.begin(), frames.end());
+    std::printf("median frame %lld ms, 90%% %lld ms, least resolution %.2f; complete after %lld ms; idle: %.3f s of "
+                "processor time in 3 s\n",
+                frames[frames.size() / 2], frames[frames.size() * 9 / 10], leastScale, complete, idle);
+}
