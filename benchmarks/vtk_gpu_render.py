@@ -13,7 +13,6 @@ per pixel, samples one d0 apart. Pellucid is timed by `pellucid-cli bench --only
 and with the picture read back; VTK by the time from Render() to glFinish (vtkRenderWindow.WaitForCompletion).
 """
 
-import argparse
 import json
 import statistics
 import subprocess
@@ -31,6 +30,7 @@ except ImportError as missing:
     sys.exit(f"{missing}; install python3-vtk9 and python3-skimage and run this with the system's Python")
 
 from vtk_raycast import Picture, pellucid, read_nrrd, tents
+from vtk_render import parser_of, volume_file
 
 # The light of Pellucid's --shading: from the camera.
 AMBIENT, DIFFUSE, SPECULAR, SHININESS = 0.35, 0.65, 0.25, 24.0
@@ -92,31 +92,8 @@ def similarity(options, file, picture, peak, lit, view, folder):
     return structural_similarity(imread(ours)[..., :3], imread(theirs)[..., :3], channel_axis=-1)
 
 
-def volume_file(options, name, folder):
-    """A file that both read, made where a sample is named: sample:NAME[:SIZE]."""
-    if not name.startswith("sample:"):
-        return name
-    sample, _, size = name.removeprefix("sample:").partition(":")
-    file = str(folder / f"{sample}{size}.nrrd")
-    subprocess.run([options.cli, "generate", sample, *(["--size", size] if size else []), "--out", file], check=True,
-                   stdout=subprocess.DEVNULL)
-    return file
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("volumes", nargs="*", default=["sample:knee", "sample:shells:256"],
-                        help="NRRD files, or sample:NAME[:SIZE] (default: sample:knee sample:shells:256)")
-    parser.add_argument("--cli", required=True, help="the pellucid-cli to measure")
-    parser.add_argument("--peaks", default="0.5,0.1,0.02", help="peaks of tents:3 (default 0.5,0.1,0.02)")
-    parser.add_argument("--light", choices=["off", "on", "both"], default="both")
-    parser.add_argument("--views", type=int, default=8, help="pictures of an orbit (default 8)")
-    parser.add_argument("--elevation", type=float, default=20, help="degrees, of the orbit (default 20)")
-    parser.add_argument("--rounds", type=int, default=2, help="turns of both programs (default 2)")
-    parser.add_argument("--image-size", type=int, default=512)
-    parser.add_argument("--pictures", help="keep pictures of both in this folder, to look at")
-    parser.add_argument("--json", help="write the figures into this file too")
-    options = parser.parse_args()
+    options = parser_of(__doc__, 8).parse_args()
     views = [(360.0 * i / options.views, options.elevation) for i in range(options.views)]
     figures = []
 

@@ -122,20 +122,26 @@ def compare(options, file, picture, peak, lit, views, folder):
     return figures
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def parser_of(description, views):
+    """The options of both comparisons of pictures; `views`: how many an orbit has by default."""
+    parser = argparse.ArgumentParser(description=description.splitlines()[0])
     parser.add_argument("volumes", nargs="*", default=["sample:knee", "sample:shells:256"],
                         help="NRRD files, or sample:NAME[:SIZE] (default: sample:knee sample:shells:256)")
     parser.add_argument("--cli", required=True, help="the pellucid-cli to measure")
     parser.add_argument("--peaks", default="0.5,0.1,0.02", help="peaks of tents:3 (default 0.5,0.1,0.02)")
     parser.add_argument("--light", choices=["off", "on", "both"], default="both")
-    parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--views", type=int, default=24, help="pictures of an orbit (default 24)")
+    parser.add_argument("--views", type=int, default=views, help=f"pictures of an orbit (default {views})")
     parser.add_argument("--elevation", type=float, default=20, help="degrees, of the orbit (default 20)")
     parser.add_argument("--rounds", type=int, default=2, help="turns of both programs (default 2)")
     parser.add_argument("--image-size", type=int, default=512)
     parser.add_argument("--pictures", help="keep pictures of both in this folder, to look at")
     parser.add_argument("--json", help="write the figures into this file too")
+    return parser
+
+
+def main():
+    parser = parser_of(__doc__, 24)
+    parser.add_argument("--threads", type=int, default=2)
     options = parser.parse_args()
     views = orbit(options.views, options.elevation)
     lights = {"off": [False], "on": [True], "both": [False, True]}[options.light]
