@@ -1,0 +1,102 @@
+// Small pictures of every mode and of light, kept beside this file: what users see stays what it is, on both renderers.
+// After a change that is meant, look at what it does and write them anew:
+//   PELLUCID_WRITE_GOLDEN=1 build/release/bin/test_golden
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+
+#include "engines/engines.h"
+#include "image_io/image_file.h"
+#include "render/gl/gl_engines.h"
+#include "volume/procedural.h"
+
+using namespace pellucid;
+
+namespace {
+
+struct Golden {
+    const char* name;
+    std::function<void(RenderSettings&)> change;
+    double glLargest = 0.1; ///< of a single pixel: gl lights what it has gathered in other portions
+};
+
+const std::vector<Golden>& goldens() {
+    static const std::vector<Golden> all{
+        {"composite", [](RenderSettings&) {}},
+        {"lit", [](RenderSettings& s) { s.light.on = true; }},
+        {"lit_from_the_side",
+         [](RenderSettings& s) {
+             s.light = Light{.on = true, .specular = 0.6, .direction = {1, 0.5, 0.4}};
+             s.backgroundTop = Rgb{0.2, 0.3, 0.5};
+         },
+         0.2},
+        {"depth",
+         [](RenderSettings& s) {
+             s.light = Light{.on = true, .gradientOpacity = 0.6, .occlusion = 0.8, .depthCue = 0.7, .silhouettes = 0.8};
+         },
+         0.2},
+        {"clipped",
+         [](RenderSettings& s) {
+             s.light.on = true;
+             s.clipping.hi.x = 0.7;
+             s.clipping.planes = {{{0, -1, 1}, 0}};
+         },
+         0.2},
+        {"mip", [](RenderSettings& s) { s.mode = RenderMode::Mip; }},
+        {"minip_of_a_feature",
+         [](RenderSettings& s) {
+             s.mode = RenderMode::MinIp;
+             s.onlyFeature = 1;
+         }},
+        {"average", [](RenderSettings& s) { s.mode = RenderMode::Average; }},
+        {"surface",
+         [](RenderSettings& s) {
+             s.mode = RenderMode::Surface;
+             s.light.on = true;
+         },
+         0.4}};
+    return all;
+}
+
+struct Difference {
+    double mean = 0, largest = 0;
+};
+Difference differenceOf(const Image& a, const Image& b) {
+    REQUIRE(a.rgba.size() == b.rgba.size());
+    Difference d;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        const double way = std::abs(static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]));
+        d.mean += way / static_cast<double>(a.rgba.size());
+        d.largest = std::max(d.largest, way);
+    }
+    return d;
+}
+
+} // namespace
+
+TEST_CASE("every mode looks as it should", "[golden]") {
+    const auto volume = std::make_shared<const Volume>(makeSample("shells", 40));
+    TransferFunction tf = withFeatureOpacities(tents(3), {0.1, 0.3, 0.8});
+    const Camera camera = cameraFromView(volume->geometry(), 30, 20, 1.4, Projection::Perspective);
+    const auto info = probeGl();
+    if (!info) WARN("no OpenGL: only the cpu renderer is compared");
+    for (const Golden& golden : goldens()) {
+        RenderSettings settings;
+        settings.width = settings.height = 96;
+        golden.change(settings);
+        const std::string path = std::string(PELLUCID_SOURCE_DIR) + "/tests/golden/images/" + golden.name + ".png";
+        const Image cpu = makeRenderer(EngineChoice::Cpu, volume)->render(camera, tf, settings);
+        if (std::getenv("PELLUCID_WRITE_GOLDEN") != nullptr) writeImage(cpu, path);
+        const Image kept = readImage(path);
+        const Difference now = differenceOf(cpu, kept);
+        INFO(golden.name);
+        CHECK(now.mean < 0.25 / 255 + 1e-3); // 8 bits round by a quarter of a level in the mean
+        CHECK(now.largest < 4.0 / 255);
+        if (!info) continue;
+        const Difference gl = differenceOf(makeRenderer(EngineChoice::Gl, volume)->render(camera, tf, settings), kept);
+        CHECK(gl.mean < 0.004);
+        CHECK(gl.largest < golden.glLargest);
+    }
+}
