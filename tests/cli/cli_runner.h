@@ -16,6 +16,12 @@ struct Outcome {
     std::string out, err;
 };
 
+using Words = std::vector<std::string>; ///< arguments
+inline Words operator+(Words a, const Words& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
 /// A new empty folder, removed at the end; commands run in it.
 class Workshop {
 public:

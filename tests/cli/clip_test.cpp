@@ -11,17 +11,12 @@
 
 using namespace pellucid;
 using nlohmann::json;
+using pellucid::test::operator+;
 using pellucid::test::Outcome;
+using pellucid::test::Words;
 using pellucid::test::Workshop;
 
 namespace {
-
-using Words = std::vector<std::string>;
-
-Words operator+(Words a, const Words& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
 
 const Words kSmall{"sample:shells", "--sample-size", "16", "--tf", "tents:3", "--view", "40,25"};
 

@@ -8,17 +8,12 @@
 
 #include "cli_runner.h"
 
+using pellucid::test::operator+;
 using pellucid::test::Outcome;
+using pellucid::test::Words;
 using pellucid::test::Workshop;
 
 namespace {
-
-using Words = std::vector<std::string>;
-
-Words operator+(Words a, const Words& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
 
 /// Runs it and checks everything that all errors have in common.
 void checkFails(const Workshop& w, const Words& arguments, int status, const std::string& part) {

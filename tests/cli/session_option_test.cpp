@@ -173,8 +173,10 @@ TEST_CASE("every command takes a session", "[cli][session]") {
     // What was cut away in the window is cut away here, unless other clips are given.
     Session session = saved.session;
     session.clipping = Clipping{{0, 0, 0}, {0.5, 1, 1}, {}};
-    session.display = DisplaySettings{
-        .light = Light{.on = true}, .background = {0, 0, 1}, .onlyFeature = session.tf()->features[1].id};
+    session.display = DisplaySettings{.light = Light{.on = true},
+                                      .background = {0, 0, 1},
+                                      .backgroundTop = {},
+                                      .onlyFeature = session.tf()->features[1].id};
     writeSession(session, w.path("a.pellucid.json").string());
     const auto shown = picture("c.exr", {});
     CHECK(shown != plain);

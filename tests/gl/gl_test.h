@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 
 #include "render/gl/headless_context.h"
+#include "saliency/weight_fields.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
@@ -89,6 +90,21 @@ inline Camera perspective(const Geometry& geometry, const Vec3& eyeFromCenter) {
     camera.up = {0.01, 0.02, 1};
     camera.fovY = 40;
     return camera;
+}
+
+inline double worstDifference(const Grid<float>& a, const Grid<float>& b) {
+    double worst = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        worst = std::max(worst, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
+    return worst;
+}
+
+/// Weights without any pattern that a mistake of one voxel would leave as it is.
+inline WeightFields unevenWeights(const Int3& dims) {
+    WeightFields weights(dims, 1.0, 2.0);
+    for (std::size_t i = 0; i < voxelCount(dims); ++i)
+        weights.set(i, static_cast<float>(i * 7919 % 1009) / 1009, static_cast<float>(i * 104729 % 997) / 500);
+    return weights;
 }
 
 } // namespace pellucid::testing

@@ -17,20 +17,6 @@ namespace {
 
 const auto slices = [](std::shared_ptr<const Volume> v) { return makeSlicesEngine(std::move(v)); };
 
-double worstDifference(const Grid<float>& a, const Grid<float>& b) {
-    double worst = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        worst = std::max(worst, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
-    return worst;
-}
-
-WeightFields unevenWeights(const Int3& dims) {
-    WeightFields weights(dims, 1.0, 2.0);
-    for (std::size_t i = 0; i < voxelCount(dims); ++i)
-        weights.set(i, static_cast<float>(i * 7919 % 1009) / 1009, static_cast<float>(i * 104729 % 997) / 500);
-    return weights;
-}
-
 std::vector<Camera> views(const Geometry& g) {
     const Vec3 half = 0.5 * (g.boundsMax() - g.boundsMin());
     return {orthographic(g, {0, 0, -1}, 40), orthographic(g, {1, -1, 1}, 40), perspective(g, {30, -60, 20}),

@@ -232,25 +232,6 @@ TEST_CASE("sums of a batch are those of the single fields", "[gl]") {
     }
 }
 
-namespace {
-
-double worstDifference(const Grid<float>& a, const Grid<float>& b) {
-    double worst = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        worst = std::max(worst, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
-    return worst;
-}
-
-/// Weights without any pattern that a mistake of one voxel would leave as it is.
-WeightFields unevenWeights(const Int3& dims) {
-    WeightFields weights(dims, 1.0, 2.0);
-    for (std::size_t i = 0; i < voxelCount(dims); ++i)
-        weights.set(i, static_cast<float>(i * 7919 % 1009) / 1009, static_cast<float>(i * 104729 % 997) / 500);
-    return weights;
-}
-
-} // namespace
-
 TEST_CASE("a volume swept in bricks has the same visibility", "[gl][slow]") {
     if (!haveGl()) return;
     const Int3 dims(90, 26, 41);

@@ -5,15 +5,15 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
-#include <QScrollArea>
 #include <QToolButton>
 #include <QVBoxLayout>
 
 #include <glm/geometric.hpp>
 
-#include "number_text.h"
 #include "number_box.h"
+#include "number_text.h"
 #include "panel.h"
+#include "panels/scrolled.h"
 #include "render/clip_handles.h"
 #include "workbench.h"
 
@@ -63,13 +63,7 @@ ClipPanel::ClipPanel(Workbench& bench, QWidget* parent)
     rows->addLayout(buttons);
     rows->addWidget(handles);
     rows->addStretch(1);
-    auto* scroll = new QScrollArea(this);
-    scroll->setWidget(content);
-    scroll->setWidgetResizable(true);
-    scroll->setFrameShape(QFrame::NoFrame);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->addWidget(scroll);
+    fillScrolled(this, content);
 
     connect(m_add, &QPushButton::clicked, this, [this] { addPlane(m_bench); });
     connect(m_reset, &QPushButton::clicked, this,

@@ -11,7 +11,6 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
-#include <QScrollArea>
 #include <QSpinBox>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -20,6 +19,7 @@
 #include "number_box.h"
 #include "number_text.h"
 #include "panel.h"
+#include "panels/scrolled.h"
 #include "theme.h"
 #include "workbench.h"
 
@@ -102,13 +102,7 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     form->addRow(tr("Values"), window);
     form->addRow(tr("Co&mponent"), m_component);
     form->addRow(m_note);
-    auto* scroll = new QScrollArea(this);
-    scroll->setWidget(content);
-    scroll->setWidgetResizable(true);
-    scroll->setFrameShape(QFrame::NoFrame);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->addWidget(scroll);
+    fillScrolled(this, content);
 
     SessionStore& store = m_bench.store();
     connect(m_mode, &QComboBox::activated, this, [this](int index) {

@@ -10,7 +10,6 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
-#include <QScrollArea>
 #include <QSlider>
 #include <QVBoxLayout>
 
@@ -18,6 +17,7 @@
 
 #include "number_box.h"
 #include "panel.h"
+#include "panels/scrolled.h"
 #include "render/light_presets.h"
 #include "workbench.h"
 
@@ -98,13 +98,7 @@ LightPanel::LightPanel(Workbench& bench, QWidget* parent)
     addRow(*form, "lightGradientOpacity", tr("Surfaces"),
            tr("How far what is homogeneous fades, so that surfaces stay, 0 to 1; figures do not depend on it"),
            &Light::gradientOpacity, 0, 1);
-    auto* scroll = new QScrollArea(this);
-    scroll->setWidget(content);
-    scroll->setWidgetResizable(true);
-    scroll->setFrameShape(QFrame::NoFrame);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->addWidget(scroll);
+    fillScrolled(this, content);
 
     SessionStore& store = m_bench.store();
     connect(m_on, &QCheckBox::clicked, this, [this] { m_bench.actions().find("shadingAction")->trigger(); });

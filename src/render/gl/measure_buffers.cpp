@@ -69,6 +69,20 @@ int segmentsFor(int candidates, int slots) {
     return std::min(room, group / (3 * candidates));
 }
 
+std::vector<std::string> definesFor(const ResidentVolume& volume, int candidates, int slots, bool clipped) {
+    std::vector<std::string> defines{"CANDIDATES " + std::to_string(candidates)};
+    if (volume.hasInvalid()) defines.push_back("HAS_INVALID");
+    if (volume.folding().folded()) defines.push_back("FOLDED");
+    if (clipped) defines.push_back("CLIPPED");
+    if (slots == 0) {
+        defines.push_back("FIELD");
+    } else {
+        defines.push_back("SLOTS " + std::to_string(slots));
+        defines.push_back("SEGMENTS " + std::to_string(segmentsFor(candidates, slots)));
+    }
+    return defines;
+}
+
 void refuseTooManyFeatures(int features) {
     if (features + 1 > kMostSlots)
         throw Error("at most " + std::to_string(kMostSlots - 1) + " features can be measured", "transfer function",

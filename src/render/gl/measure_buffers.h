@@ -8,6 +8,7 @@
 
 #include "render/gl/depth_tables.h"
 #include "render/gl/gl_resources.h"
+#include "render/gl/resident_volume.h"
 #include "volume/intensity_grid.h"
 
 namespace pellucid::gl {
@@ -38,6 +39,8 @@ private:
 int slotsFor(int features);
 /// As many invocations per item as a work group has, where shared memory has room for their accumulators; 0: no room.
 int segmentsFor(int candidates, int slots);
+/// The permutation of the engines' shaders; slots 0: the field instead of sums.
+std::vector<std::string> definesFor(const ResidentVolume& volume, int candidates, int slots, bool clipped);
 /// Throws Error: more features than any device has room for.
 void refuseTooManyFeatures(int features);
 /// Slot of every code: the index of its feature, or the number of features for "in none".

@@ -17,9 +17,9 @@
 #include "render/gl/headless_context.h"
 #include "render/gl/layered_view.h"
 #include "render/gl/measure_buffers.h"
-#include "render/gl/volume_texture.h"
 #include "render/gl/resident_volume.h"
 #include "render/gl/shader_program.h"
+#include "render/gl/volume_texture.h"
 
 namespace pellucid {
 
@@ -111,16 +111,7 @@ private:
     void requireVolume() { m_volume.require({2, 0, m_grid.codes.dims().z, true}); }
 
     const Programs& programsFor(int slots, bool clipped) {
-        std::vector<std::string> defines{"CANDIDATES 1"};
-        if (m_volume.hasInvalid()) defines.push_back("HAS_INVALID");
-        if (m_volume.folding().folded()) defines.push_back("FOLDED");
-        if (clipped) defines.push_back("CLIPPED");
-        if (slots == 0) {
-            defines.push_back("FIELD");
-        } else {
-            defines.push_back("SLOTS " + std::to_string(slots));
-            defines.push_back("SEGMENTS " + std::to_string(segmentsFor(1, slots)));
-        }
+        const std::vector<std::string> defines = definesFor(m_volume, 1, slots, clipped);
         auto& programs = m_programs[defines];
         if (!programs) programs = std::make_unique<Programs>(defines);
         return *programs;

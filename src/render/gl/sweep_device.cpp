@@ -127,16 +127,7 @@ int SweepDevice::candidatesAtOnce(const SweepRequest& request) const {
 }
 
 const SweepDevice::Programs& SweepDevice::programsFor(int candidates, int slots, bool clipped) {
-    std::vector<std::string> defines{"CANDIDATES " + std::to_string(candidates)};
-    if (m_volume.hasInvalid()) defines.push_back("HAS_INVALID");
-    if (m_volume.folding().folded()) defines.push_back("FOLDED");
-    if (clipped) defines.push_back("CLIPPED");
-    if (slots == 0) {
-        defines.push_back("FIELD");
-    } else {
-        defines.push_back("SLOTS " + std::to_string(slots));
-        defines.push_back("SEGMENTS " + std::to_string(segmentsFor(candidates, slots)));
-    }
+    const std::vector<std::string> defines = definesFor(m_volume, candidates, slots, clipped);
     auto& programs = m_programs[defines];
     if (!programs) programs = std::make_unique<Programs>(defines);
     return *programs;
