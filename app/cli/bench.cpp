@@ -237,7 +237,8 @@ private:
         Table table({"ratio", "value", "wanted"});
         const auto all = ratios();
         if (all.empty()) return {};
-        for (const Ratio& r : all) table.add({r.key, fixedText(r.value, 3), r.wanted});
+        for (const Ratio& r : all)
+            table.add({r.key, r.value < 0.01 ? plainText(r.value) : fixedText(r.value, 3), r.wanted});
         return "\n" + table.text();
     }
 

@@ -1,7 +1,6 @@
 #include "results_json.h"
 
 #include "optimize/refine_words.h"
-
 #include "tf/formats/tf_json.h"
 
 namespace pellucid::cli {
