@@ -62,7 +62,7 @@ TEST_CASE("a kept preset comes back with its title and opacities", "[tf][presets
     const test::TempFolder folder;
     TransferFunction tf = *tfFromPresetSpec("preset:ct-vessels");
     tf.points[1].opacity = 0.123;
-    const std::string path = folder / "mine.tf.json";
+    const std::string path = folder.path("mine.tf.json");
     writePreset(tf, "Mine, ü", path);
     const TfPreset back = readPreset(path);
     CHECK(back.name == "mine");
