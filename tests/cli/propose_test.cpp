@@ -81,7 +81,8 @@ TEST_CASE("what propose writes is a transfer function that shows the matter and 
 TEST_CASE("propose has an answer where there is nothing to see", "[cli][propose]") {
     const Workshop w;
     w.write("constant.raw", cube(7, 7));
-    const json constant = w.json({"propose", "constant.raw", "--raw", "16,16,16,u8"});
+    // The reader's note that all voxels are alike goes to stderr.
+    const json constant = json::parse(w.run({"propose", "constant.raw", "--raw", "16,16,16,u8", "--json"}).out);
     CHECK(constant["kind"] == "constant");
     CHECK_FALSE(constant.contains("background"));
     REQUIRE(constant["features"].size() == 1);
@@ -91,7 +92,7 @@ TEST_CASE("propose has an answer where there is nothing to see", "[cli][propose]
     std::string bytes;
     for (int i = 0; i < 64; ++i) bytes.append(reinterpret_cast<const char*>(&nan), sizeof nan);
     w.write("nan.raw", bytes);
-    const json empty = w.json({"propose", "nan.raw", "--raw", "4,4,4,f32"});
+    const json empty = json::parse(w.run({"propose", "nan.raw", "--raw", "4,4,4,f32", "--json"}).out);
     CHECK(empty["kind"] == "empty");
     CHECK(empty["features"].size() == 1);
 }
