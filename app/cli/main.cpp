@@ -204,7 +204,7 @@ int run(const std::vector<std::string>& arguments) {
                    "`pellucid-cli COMMAND --help` lists a command's options.");
 
     const std::array commands{addInfo(program),   addSamples(program),  addPresets(program), addGenerate(program),
-                              addRender(program), addMeasure(program),  addFields(program),
+                              addRender(program), addMeasure(program),  addFields(program),  addPropose(program),
                               addRefine(program), addOptimize(program), addBench(program)};
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);
