@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -13,13 +14,24 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kStepsPerD0 = 16;    ///< intensity is linear in between
-constexpr int kStepsPerSample = 8; ///< one of so many is kept for the profile
+constexpr int kStepsPerD0 = 8;     ///< first; they are halved
+constexpr int kMostHalvings = 5;   ///< so often at most
+constexpr double kStraight = 1e-4; ///< until the middle is no farther than this off the straight line
+constexpr int kStepsPerSample = 4; ///< one of so many is kept for the profile
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Nodes and weights of Gauss and Legendre on [0, 1].
 constexpr std::array<std::array<double, 2>, 3> kGauss{
     {{0.11270166537925831, 5.0 / 18}, {0.5, 8.0 / 18}, {0.88729833462074169, 5.0 / 18}}};
+
+/// The mean of −ln(1 − α) while α goes from a to b along a straight line; empty where it is so nearly straight itself
+/// that a quadrature tells it better.
+std::optional<double> meanDepth(double a, double b) {
+    a = std::clamp(a, 0.0, kMaxOpacity), b = std::clamp(b, 0.0, kMaxOpacity);
+    if (std::abs(b - a) < 0.01 * (1 - std::max(a, b))) return {};
+    const auto integral = [](double alpha) { return (1 - alpha) * std::log1p(-alpha) + alpha; };
+    return (integral(b) - integral(a)) / (b - a);
+}
 
 /// The ray at a point: intensity, and the weight of the valid voxels around it.
 struct Met {
@@ -72,25 +84,17 @@ public:
         m_result.shares.assign(tf.features.size(), 0);
     }
 
-    /// From t to t + length, where the intensity goes from `from` to `to` along a straight line.
-    void step(double t, double length, Met from, Met to) {
-        if (from.valid == 0) from.s = to.s;
-        if (to.valid == 0) to.s = from.s;
-        // Pieces that no control point and no border of a feature divides.
-        const double lo = std::min(from.s, to.s), hi = std::max(from.s, to.s);
-        auto first = std::upper_bound(m_cuts.begin(), m_cuts.end(), lo);
-        auto last = std::lower_bound(first, m_cuts.end(), hi);
-        double begin = 0;
-        const auto until = [&](double cut) {
-            const double end = (cut - from.s) / (to.s - from.s);
-            piece(t, length, from, to, begin, end);
-            begin = end;
-        };
-        if (from.s < to.s)
-            for (; first < last; ++first) until(*first);
-        else
-            for (; first < last; --last) until(*(last - 1));
-        piece(t, length, from, to, begin, 1);
+    /// From t to t + length, in steps along which the intensity goes straight; `metAfter(t)` tells what is between.
+    template <class MetAfter>
+    void between(double t, double length, const Met& from, const Met& to, const MetAfter& metAfter, int halvings) {
+        const Met middle = halvings > 0 ? metAfter(t + length / 2) : Met{};
+        const auto isOff = [](double a, double m, double b) { return std::abs(m - (a + b) / 2) > kStraight; };
+        if (halvings == 0 || (!isOff(from.s, middle.s, to.s) && !isOff(from.valid, middle.valid, to.valid))) {
+            step(t, length, from, to);
+            return;
+        }
+        between(t, length / 2, from, middle, metAfter, halvings - 1);
+        between(t + length / 2, length / 2, middle, to, metAfter, halvings - 1);
     }
 
     void sample(double t, const Met& met) {
@@ -119,29 +123,58 @@ private:
         double perLength = 0, t = 0, intensity = kNone;
     };
 
+    /// From t to t + length, where the intensity goes from `from` to `to` along a straight line.
+    void step(double t, double length, Met from, Met to) {
+        if (from.valid == 0) from.s = to.s;
+        if (to.valid == 0) to.s = from.s;
+        // Pieces that no control point and no border of a feature divides.
+        const double lo = std::min(from.s, to.s), hi = std::max(from.s, to.s);
+        auto first = std::upper_bound(m_cuts.begin(), m_cuts.end(), lo);
+        auto last = std::lower_bound(first, m_cuts.end(), hi);
+        double begin = 0;
+        const auto until = [&](double cut) {
+            const double end = (cut - from.s) / (to.s - from.s);
+            piece(t, length, from, to, begin, end);
+            begin = end;
+        };
+        if (from.s < to.s)
+            for (; first < last; ++first) until(*first);
+        else
+            for (; first < last; --last) until(*(last - 1));
+        piece(t, length, from, to, begin, 1);
+    }
+
     void piece(double t, double length, const Met& from, const Met& to, double begin, double end) {
         if (!(begin < end)) return;
         const auto mix = [](double a, double b, double f) { return a + f * (b - a); };
         const double middle = mix(from.s, to.s, (begin + end) / 2);
         const int feature = featureAt(m_tf.features, middle);
-        double depth = 0;
+        double tau = 0, valid = 0; // τ·d0, and the same where voxels are valid
         std::array<double, 3> emitted{};
         if (m_only < 0 || feature == m_only)
             for (const auto& [node, weight] : kGauss) {
                 const double u = mix(begin, end, node), s = mix(from.s, to.s, u);
-                const double tau = weight * mix(from.valid, to.valid, u) * opticalDepthOfOpacity(m_sampler.opacity(s));
-                if (tau == 0) continue;
-                depth += tau;
+                const double here = weight * opticalDepthOfOpacity(m_sampler.opacity(s));
+                if (here == 0) continue;
+                tau += here;
+                const double there = here * mix(from.valid, to.valid, u);
+                valid += there;
                 const Rgb c = m_sampler.color(s);
-                emitted[0] += tau * c.r;
-                emitted[1] += tau * c.g;
-                emitted[2] += tau * c.b;
+                emitted[0] += there * c.r;
+                emitted[1] += there * c.g;
+                emitted[2] += there * c.b;
             }
         const double own = (end - begin) * length;
-        const double opticalDepth = depth * own / m_d0;
+        double opticalDepth = 0;
+        if (valid > 0) {
+            // The sides of the piece, where there may be a step of α, are met from its inside.
+            const double a = m_sampler.opacity(mix(from.s, to.s, mix(begin, end, 0.25))),
+                         b = m_sampler.opacity(mix(from.s, to.s, mix(begin, end, 0.75)));
+            opticalDepth = valid / tau * meanDepth(a + (a - b) / 2, b + (b - a) / 2).value_or(tau) * own / m_d0;
+        }
         const double share = std::exp(-m_depth) * -std::expm1(-opticalDepth);
         if (share > 0)
-            for (std::size_t c = 0; c < 3; ++c) m_color[c] += share * emitted[c] / depth;
+            for (std::size_t c = 0; c < 3; ++c) m_color[c] += share * emitted[c] / valid;
         m_depth += opticalDepth;
 
         if (m_result.runs.empty() || m_result.runs.back().feature != feature)
@@ -196,16 +229,15 @@ RayProbe probe(const Volume& volume, const TransferFunction& tf, const View& vie
     Walk walk(tf, g.d0(), onlyFeature, result);
     std::visit(
         [&](const auto& values) {
-            const auto metAtNode = [&](std::size_t n) {
-                const double t = inside.enter + static_cast<double>(n) * step;
-                return metAt(volume, values, ray.origin + t * ray.direction);
+            const auto metAfter = [&](double t) {
+                return metAt(volume, values, ray.origin + (inside.enter + t) * ray.direction);
             };
-            Met from = metAtNode(0);
+            Met from = metAfter(0);
             walk.sample(0, from);
             for (std::size_t n = 0; n < steps; ++n) {
-                const Met to = metAtNode(n + 1);
                 const double t = static_cast<double>(n) * step;
-                walk.step(t, step, from, to);
+                const Met to = metAfter(t + step);
+                walk.between(t, step, from, to, metAfter, kMostHalvings);
                 if ((n + 1) % kStepsPerSample == 0 || n + 1 == steps) walk.sample(t + step, to);
                 from = to;
             }
