@@ -7,6 +7,7 @@
 #include "resolve.h"
 #include "results_json.h"
 #include "tf/formats/tf_json.h"
+#include "tf/shown_tf.h"
 
 namespace pellucid::cli {
 
@@ -93,8 +94,9 @@ Answer run(const Options& o, Progress& progress) {
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
     const Scene& scene = opened.scene;
-    const std::vector<double> targets = o.targets.value_or(scene.targets());
-    atOption("--target", [&] { return normalizedTargets(targets, scene.tf.features.size()); });
+    const std::vector<double> named = o.targets.value_or(scene.targets());
+    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
+    const std::vector<double> targets = shownShares(scene.tf, named);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
     const MeasureInput input = measureInput(scene);
     Workspace workspace;
@@ -103,10 +105,11 @@ Answer run(const Options& o, Progress& progress) {
     JobControl job = progress.phase("optimizing");
     job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
     int moves = -1;
-    const OptimizeResult result = workspace.optimize(input, targets, options, job, [&](const OptimizeState& state) {
+    OptimizeResult result = workspace.optimize(input, targets, options, job, [&](const OptimizeState& state) {
         progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
     });
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
+    result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
     return {textOf(result, engine, seconds), jsonOf(result, options, *input.volume, engine, seconds), opened.notices(),

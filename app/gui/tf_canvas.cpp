@@ -42,6 +42,7 @@ TfCanvas::TfCanvas(SessionStore& store, Results& results, QWidget* parent)
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
     connect(&store, &SessionStore::changed, this, &TfCanvas::follow);
     connect(&results, &Results::changed, this, qOverload<>(&TfCanvas::update));
+    connect(&m_axis, &IntensityAxis::changed, this, qOverload<>(&TfCanvas::update));
 }
 
 void TfCanvas::setLogHistogram(bool on) {
@@ -133,12 +134,10 @@ double TfCanvas::opacityOfHeight(double height) const {
 
 QPointF TfCanvas::positionOf(double x, double opacity) const {
     const QRectF r = plot();
-    return {r.left() + x * r.width(), r.bottom() - heightOfOpacity(opacity) * r.height()};
+    return {m_axis.toPixel(x, r), r.bottom() - heightOfOpacity(opacity) * r.height()};
 }
 
-double TfCanvas::intensityAt(double pixelX) const {
-    return std::clamp((pixelX - plot().left()) / plot().width(), 0.0, 1.0);
-}
+double TfCanvas::intensityAt(double pixelX) const { return m_axis.toIntensity(pixelX, plot()); }
 double TfCanvas::opacityAt(double pixelY) const {
     return opacityOfHeight((plot().bottom() - pixelY) / plot().height());
 }
@@ -331,6 +330,7 @@ void TfCanvas::paintEvent(QPaintEvent*) {
     paintVisibility(painter);
     paintAxes(painter);
     paintFeatures(painter);
+    for (const auto& layer : m_layers) layer->paint(painter, *this);
     paintCurve(painter);
     paintPoints(painter);
 }

@@ -1,17 +1,35 @@
 // The curve of the transfer function over the histogram, edited with the mouse.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include <QWidget>
 
+#include "intensity_axis.h"
 #include "results.h"
 #include "store/session_store.h"
 
 namespace pellucid::gui {
 
+/// Where things of the plane (intensity, opacity) are drawn, widget pixels.
+class CanvasGeometry {
+public:
+    virtual ~CanvasGeometry() = default;
+    virtual QRectF plot() const = 0;
+    virtual QPointF positionOf(double x, double opacity) const = 0;
+};
+
+/// Something drawn behind the curve and over the histogram, by whoever knows of it.
+class CanvasLayer {
+public:
+    virtual ~CanvasLayer() = default;
+    virtual void paint(QPainter& painter, const CanvasGeometry& where) = 0;
+};
+
 /// Every finished drag is one undo step; while the mouse is down the store previews.
-class TfCanvas : public QWidget {
+class TfCanvas : public QWidget, public CanvasGeometry {
     Q_OBJECT
 public:
     TfCanvas(SessionStore& store, Results& results, QWidget* parent = nullptr);
@@ -29,7 +47,11 @@ public:
     void chooseColor();
 
     /// Where a point of the plane (intensity, opacity) is drawn, widget pixels.
-    QPointF positionOf(double x, double opacity) const;
+    QPointF positionOf(double x, double opacity) const override;
+    QRectF plot() const override;
+    IntensityAxis& axis() { return m_axis; }
+    /// In the order of adding; who adds calls update() when it looks different.
+    void addLayer(std::unique_ptr<CanvasLayer> layer) { m_layers.push_back(std::move(layer)); }
 
     QSize sizeHint() const override { return {640, 190}; }
     QSize minimumSizeHint() const override { return {300, 130}; }
@@ -56,7 +78,6 @@ private:
         bool moved = false;
     };
 
-    QRectF plot() const;
     double heightOfOpacity(double opacity) const; ///< [0,1] up the axis
     double opacityOfHeight(double height) const;
     double intensityAt(double pixelX) const;
@@ -77,6 +98,8 @@ private:
 
     SessionStore& m_store;
     Results& m_results;
+    IntensityAxis m_axis;
+    std::vector<std::unique_ptr<CanvasLayer>> m_layers;
     bool m_logHistogram = true, m_rootOpacity = false, m_readOnly = false;
     int m_selected = -1, m_hovered = -1;
     std::optional<Drag> m_drag;

@@ -108,11 +108,11 @@ TfEditorWidget::TfEditorWidget(SessionStore& store, Results& results, QWidget* p
     row->addSpacing(6);
     row->addWidget(logHistogram);
     row->addWidget(rootAxis);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 2, 0, 6);
-    column->setSpacing(4);
-    column->addWidget(m_canvas, 1);
-    column->addLayout(row);
+    m_column = new QVBoxLayout(this);
+    m_column->setContentsMargins(0, 2, 0, 6);
+    m_column->setSpacing(4);
+    m_column->addWidget(m_canvas, 1);
+    m_column->addLayout(row);
 
     connect(m_canvas, &TfCanvas::selectionChanged, this, [this] {
         ++m_editSession;
@@ -132,6 +132,8 @@ void TfEditorWidget::setReadOnly(bool on) {
     m_canvas->setReadOnly(on);
     showPoint();
 }
+
+void TfEditorWidget::addRow(QWidget* row) { m_column->insertWidget(++m_rows, row); }
 
 void TfEditorWidget::showPoint() {
     const int index = m_canvas->selectedPoint();

@@ -9,6 +9,7 @@ class QCheckBox;
 class QDoubleSpinBox;
 class QLabel;
 class QToolButton;
+class QVBoxLayout;
 
 namespace pellucid::gui {
 
@@ -19,6 +20,8 @@ public:
 
     TfCanvas& canvas() { return *m_canvas; }
     void setReadOnly(bool on);
+    /// A row of its own right below the canvas, such as what is drawn along the same axis.
+    void addRow(QWidget* row);
 
 private:
     void showPoint();
@@ -26,6 +29,8 @@ private:
 
     SessionStore& m_store;
     TfCanvas* m_canvas;
+    QVBoxLayout* m_column;
+    int m_rows = 0; ///< below the canvas
     QLabel* m_which;
     QDoubleSpinBox* m_value;
     QDoubleSpinBox* m_opacity;

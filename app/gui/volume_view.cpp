@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include <QCoreApplication>
+#include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QSettings>
@@ -187,7 +187,8 @@ void VolumeView::mousePressEvent(QMouseEvent* event) {
         return event->ignore();
     }
     m_button = event->button();
-    m_last = event->position();
+    m_last = m_pressed = event->position();
+    m_moved = false;
     m_gesture = SessionStore::newGesture();
 }
 
@@ -195,6 +196,8 @@ void VolumeView::mouseMoveEvent(QMouseEvent* event) {
     if (m_overlay->isDragging()) return m_overlay->drag(event->position(), event->modifiers());
     if (m_motion == Motion::None) setCursor(m_overlay->cursorAt(event->position()));
     if (m_motion == Motion::None || !m_store.hasVolume()) return;
+    if (!m_moved && (event->position() - m_pressed).manhattanLength() < QApplication::startDragDistance() / 3) return;
+    m_moved = true;
     const QPointF way = event->position() - m_last;
     m_last = event->position();
     const Geometry& geometry = m_store.scene().volume->geometry();
@@ -219,8 +222,10 @@ void VolumeView::mouseMoveEvent(QMouseEvent* event) {
 
 void VolumeView::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != m_button) return;
+    const bool click = m_motion == Motion::Rotate && !m_moved && m_store.hasVolume();
     m_motion = Motion::None;
     m_overlay->release();
+    if (click) Q_EMIT clicked(event->position());
 }
 
 void VolumeView::mouseDoubleClickEvent(QMouseEvent* event) {

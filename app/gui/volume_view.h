@@ -38,6 +38,8 @@ public:
 
 Q_SIGNALS:
     void frameShown();
+    /// The left button went down and up in one place, logical pixels, which nothing over the picture has taken.
+    void clicked(const QPointF& point);
     /// OpenGL gave up (a volume too large for the device, say) and the CPU draws from now on; or nobody can draw.
     void rendererFailed(const pellucid::Error& error);
 
@@ -64,7 +66,8 @@ private:
     ViewOverlay* m_overlay; // a child
     Motion m_motion = Motion::None;
     Qt::MouseButton m_button = Qt::NoButton;
-    QPointF m_last;
+    QPointF m_last, m_pressed;
+    bool m_moved = false;       ///< since the press, by more than a trembling hand
     int m_gesture = 0;          // one drag is one step of the camera's history
     QElapsedTimer m_sinceWheel; // and so are turns of the wheel that follow each other
     int m_wheelGesture = 0;

@@ -7,6 +7,7 @@
 #include "jobs/lane.h"
 #include "notices.h"
 #include "results.h"
+#include "selection.h"
 #include "session/workspace.h"
 #include "store/session_store.h"
 
@@ -29,6 +30,7 @@ class Workbench : public QObject {
     Workspace m_workspace; // used on m_compute alone
     Lane m_compute;
     Results m_results;
+    Selection m_selection;
 
 public:
     /// `window` is the parent of dialogs.
@@ -39,6 +41,7 @@ public:
     SessionStore& store() { return m_store; }
     const Scene& scene() const { return m_store.scene(); }
     Results& results() { return m_results; }
+    Selection& selection() { return m_selection; }
     Notices& notices() { return m_notices; }
     Actions& actions() { return m_actions; }
     Workspace& workspace() { return m_workspace; }

@@ -10,11 +10,15 @@
 
 namespace pellucid {
 
+/// Greedy: the steps of the thesis. Exact: the least variance of edge weights that opacities can have.
+enum class RefineMethod { Greedy, Exact };
+
 struct RefineOptions {
     double stepDown = 1.0 / 256;
     /// Empty: derived in each iteration from stepDown and the ratio of the two ends' significances.
     std::optional<double> stepUp = 1.0 / 256;
     int maxIterations = 5000;
+    RefineMethod method = RefineMethod::Greedy;
     void validate() const; ///< throws UsageError: steps in (0,1], maxIterations ≥ 0
 };
 

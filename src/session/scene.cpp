@@ -4,6 +4,7 @@
 
 #include "tf/formats/tf_json.h"
 #include "tf/sample_tf.h"
+#include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 
 namespace pellucid {
@@ -150,11 +151,11 @@ void prepareToShow(Scene& scene, const JobControl& job) {
 }
 
 MeasureInput measureInput(const Scene& scene) {
-    return {scene.volume, scene.tf, {scene.camera, *scene.session.clipping}, *scene.session.measure};
+    return {scene.volume, shownTf(scene.tf), {scene.camera, *scene.session.clipping}, *scene.session.measure};
 }
 
 PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent) {
-    PictureInput input{scene.volume, scene.tf, scene.camera, {}};
+    PictureInput input{scene.volume, shownTf(scene.tf), scene.camera, {}};
     RenderSettings& s = input.settings;
     const DisplaySettings& display = *scene.session.display;
     s.width = width;

@@ -24,6 +24,7 @@ struct Scene {
     std::shared_ptr<const Histogram> histogram; ///< 256 bins of `volume`; null before prepareToShow()
     std::shared_ptr<const IntensityGrid> codes; ///< of `volume`, kept for those who draw and measure; likewise
 
+    /// Wanted shares of the features, in their order; 0 of hidden ones.
     std::vector<double> targets() const { return targetsOf(tf, *session.goals); }
     /// Index in tf.features of the feature that is drawn alone; −1: all are.
     int onlyFeature() const;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "tf/shown_tf.h"
 
 namespace pellucid {
 
@@ -185,7 +186,7 @@ std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& go
             sum += targets[i];
             ++known;
         }
-    if (!(sum > 0)) return std::vector<double>(n, n == 0 ? 0.0 : 1.0 / static_cast<double>(n));
+    if (!(sum > 0)) return shownShares(tf, std::vector<double>(n, n == 0 ? 0.0 : 1.0 / static_cast<double>(n)));
     const double mean = sum / static_cast<double>(known);
     for (double& t : targets)
         if (t < 0) {
@@ -195,12 +196,12 @@ std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& go
     // Shares that sum to 1 already keep their bits.
     if (std::abs(sum - 1) > 1e-12)
         for (double& t : targets) t /= sum;
-    return targets;
+    return shownShares(tf, std::move(targets));
 }
 
 FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const std::vector<double>& targets) {
     for (std::size_t i = 0; i < targets.size() && i < tf.features.size(); ++i)
-        goals[tf.features[i].id].target = targets[i];
+        if (!tf.features[i].hidden) goals[tf.features[i].id].target = targets[i];
     return goals;
 }
 

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "optimize/optimizer.h"
+#include "optimize/refine.h"
 #include "render/annotation.h"
 #include "render/engine_choice.h"
+#include "render/image_region.h"
 #include "render/render_settings.h"
 #include "render/view.h"
 #include "saliency/saliency_field.h"
@@ -79,6 +81,29 @@ struct MeasureSettings {
     bool operator==(const MeasureSettings&) const = default;
 };
 
+/// How opacities are refined by entropy (docs/method.md, "Entropy refinement"), and what is favoured: one intensity, or
+/// the colours in a region of the picture, or (both empty) nothing. At most one of the two is set.
+struct RefineSettings {
+    double stepDown = 1.0 / 256;              ///< (0,1]
+    std::optional<double> stepUp = 1.0 / 256; ///< (0,1]; empty: derived, see RefineOptions
+    int maxIterations = 5000;                 ///< 0 and up
+    RefineMethod method = RefineMethod::Greedy;
+    bool live = false;                      ///< after every edit, not only when asked for
+    std::optional<double> intensity = {};   ///< [0,1]
+    std::optional<ImageRegion> region = {}; ///< of the picture as the view shows it
+    bool operator==(const RefineSettings&) const = default;
+};
+
+/// Slices beside the picture. No figure depends on them.
+struct SliceViews {
+    enum class Layout { Volume, Four, VolumeLarge }; ///< the volume alone; four of a size; the volume and three small
+    Layout layout = Layout::Volume;
+    std::optional<Vec3> crosshair = {};    ///< voxel coordinates, where the three meet; empty: the middle
+    std::optional<ValueRange> window = {}; ///< data units of black and white; empty: the variable's window
+    double tfStrength = 0.5;               ///< [0,1]: 0 grey alone, 1 the colours of the transfer function alone
+    bool operator==(const SliceViews&) const = default;
+};
+
 /// An optimization or refinement that was run, with what came of it.
 struct Run {
     std::string kind;                   ///< "optimize", "refine"
@@ -103,6 +128,8 @@ struct Session {
     Part<FrameOfReference> reference; ///< what stands around the picture
     Part<MeasureSettings> measure;
     Part<OptimizeOptions> optimize;
+    Part<RefineSettings> refine;
+    Part<SliceViews> slices;
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns
     std::string extraJson;       ///< unknown keys of the file it came from, as one JSON object; written back
 

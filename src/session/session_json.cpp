@@ -1,5 +1,6 @@
 #include "session/session_json.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -338,6 +339,81 @@ OptimizeOptions toOptimize(const JsonValue& j) {
     return o;
 }
 
+constexpr std::size_t kMostCorners = 10'000; ///< of a region
+
+json fromRefine(const RefineSettings& r) {
+    json j{{"step_down", r.stepDown},
+           {"max_iterations", r.maxIterations},
+           {"method", r.method == RefineMethod::Exact ? "exact" : "greedy"},
+           {"live", r.live}};
+    j["step_up"] = r.stepUp ? json(*r.stepUp) : json("auto");
+    if (r.intensity) j["intensity"] = *r.intensity;
+    if (r.region)
+        for (const glm::dvec2& corner : r.region->outline) j["region"].push_back({corner.x, corner.y});
+    return j;
+}
+
+RefineSettings toRefine(const JsonValue& j) {
+    j.requireObject();
+    RefineSettings r;
+    const auto step = [](const JsonValue& value) {
+        const double number = value.number(0, 1);
+        if (number == 0) value.fail("a step is above 0");
+        return number;
+    };
+    if (j.has("step_down")) r.stepDown = step(j["step_down"]);
+    if (j.has("step_up")) {
+        if (j["step_up"].json().is_string() && j["step_up"].text() == "auto")
+            r.stepUp.reset();
+        else
+            r.stepUp = step(j["step_up"]);
+    }
+    if (j.has("max_iterations")) r.maxIterations = static_cast<int>(j["max_iterations"].integer(0, 1'000'000'000));
+    if (j.has("method"))
+        r.method = named(j["method"], [](const std::string& text) {
+            if (text != "greedy" && text != "exact") throw UsageError("no such method", "", "write greedy or exact");
+            return text == "exact" ? RefineMethod::Exact : RefineMethod::Greedy;
+        });
+    if (j.has("live")) r.live = j["live"].boolean();
+    if (j.has("intensity")) r.intensity = j["intensity"].number(0, 1);
+    if (j.has("region")) {
+        ImageRegion region;
+        for (const JsonValue& corner : j["region"].items()) {
+            const auto parts = corner.items(2);
+            region.outline.emplace_back(parts[0].number(0, 1), parts[1].number(0, 1));
+        }
+        if (region.outline.size() < 3 || region.outline.size() > kMostCorners)
+            j["region"].fail("an outline has 3 to 10000 corners");
+        if (r.intensity) j["region"].fail("an intensity and a region cannot both be favoured", "leave one");
+        r.region = std::move(region);
+    }
+    return r;
+}
+
+constexpr std::array kLayouts{"volume", "four", "volume-large"}; ///< in the order of SliceViews::Layout
+
+json fromSlices(const SliceViews& s) {
+    json j{{"layout", kLayouts[static_cast<std::size_t>(s.layout)]}, {"tf_strength", s.tfStrength}};
+    if (s.crosshair) j["crosshair"] = fromVec(*s.crosshair);
+    if (s.window) j["window"] = fromRange(*s.window);
+    return j;
+}
+
+SliceViews toSlices(const JsonValue& j) {
+    j.requireObject();
+    SliceViews s;
+    if (j.has("layout"))
+        s.layout = named(j["layout"], [](const std::string& text) {
+            const auto at = std::find(kLayouts.begin(), kLayouts.end(), text);
+            if (at == kLayouts.end()) throw UsageError("no such layout", "", "write volume, four or volume-large");
+            return static_cast<SliceViews::Layout>(at - kLayouts.begin());
+        });
+    if (j.has("tf_strength")) s.tfStrength = j["tf_strength"].number(0, 1);
+    if (j.has("crosshair")) s.crosshair = toVec(j["crosshair"], -0.5, 1e9);
+    if (j.has("window")) s.window = toRange(j["window"]);
+    return s;
+}
+
 json fromRun(const Run& r) {
     json history = json::array();
     for (const OptimizeState& s : r.history)
@@ -473,6 +549,8 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"reference", fromReference(*s.reference)},
            {"measure", fromMeasure(*s.measure)},
            {"optimize", fromOptimize(*s.optimize)},
+           {"refine", fromRefine(*s.refine)},
+           {"slices", fromSlices(*s.slices)},
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
@@ -503,13 +581,15 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("reference")) s.reference = toReference(j["reference"]);
     if (j.has("measure")) s.measure = toMeasure(j["measure"]);
     if (j.has("optimize")) s.optimize = toOptimize(j["optimize"]);
+    if (j.has("refine")) s.refine = toRefine(j["refine"]);
+    if (j.has("slices")) s.slices = toSlices(j["slices"]);
     if (j.has("runs")) {
         std::vector<Run> runs;
         for (const JsonValue& run : j["runs"].items()) runs.push_back(toRun(run));
         s.runs = std::move(runs);
     }
     s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "camera", "clip", "display",
-                                 "reference", "measure", "optimize", "runs", "title"});
+                                 "reference", "measure", "optimize", "refine", "slices", "runs", "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -22,10 +22,12 @@ struct Feature {
     std::string extraJson; ///< unknown keys of the file it came from, as one JSON object; written back
 
     bool contains(double s) const { return s >= a && (s < b || (b >= 1.0 && s <= 1.0)); }
-    FeatureId id = 0; ///< no part of the value: two features may be equal and not the same
+    bool hidden = false; ///< an eye: the feature is as good as transparent, see shown_tf.h
+    FeatureId id = 0;    ///< no part of the value: two features may be equal and not the same
 
     bool operator==(const Feature& o) const {
-        return name == o.name && a == o.a && b == o.b && color == o.color && extraJson == o.extraJson;
+        return name == o.name && a == o.a && b == o.b && color == o.color && extraJson == o.extraJson &&
+               hidden == o.hidden;
     }
 };
 

@@ -147,6 +147,33 @@ OptimizeOptions randomOptimize(Random& random) {
     return o;
 }
 
+RefineSettings randomRefine(Random& random) {
+    RefineSettings r;
+    r.stepDown = random.between(1e-9, 1);
+    r.stepUp = random.chance(0.3) ? std::nullopt : std::optional(random.between(1e-9, 1));
+    r.maxIterations = random.below(100000);
+    r.method = random.chance(0.5) ? RefineMethod::Greedy : RefineMethod::Exact;
+    r.live = random.chance(0.5);
+    if (random.chance(0.3)) {
+        r.intensity = oddNumber(random, 0, 1);
+    } else if (random.chance(0.4)) {
+        ImageRegion region;
+        for (int i = 3 + random.below(5); i > 0; --i)
+            region.outline.emplace_back(oddNumber(random, 0, 1), oddNumber(random, 0, 1));
+        r.region = std::move(region);
+    }
+    return r;
+}
+
+SliceViews randomSlices(Random& random) {
+    SliceViews s;
+    s.layout = static_cast<SliceViews::Layout>(random.below(3));
+    if (random.chance(0.5)) s.crosshair = oddVector(random, 0, 500);
+    if (random.chance(0.5)) s.window = randomRange(random);
+    s.tfStrength = oddNumber(random, 0, 1);
+    return s;
+}
+
 } // namespace
 
 double oddNumber(Random& random, double lo, double hi) {
@@ -185,6 +212,7 @@ TransferFunction randomTf(Random& random, FeatureId first) {
     for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {
         if (!(ends[i] < ends[i + 1])) continue;
         Feature f{"f" + std::to_string(i), ends[i], ends[i + 1], randomColor(random), randomExtra(random)};
+        f.hidden = random.chance(0.2);
         f.id = first++;
         tf.features.push_back(std::move(f));
     }
@@ -226,6 +254,8 @@ Session randomSession(std::uint32_t number) {
     }
     if (random.chance(0.7)) s.measure = randomMeasure(random);
     if (random.chance(0.7)) s.optimize = randomOptimize(random);
+    if (random.chance(0.7)) s.refine = randomRefine(random);
+    if (random.chance(0.7)) s.slices = randomSlices(random);
     for (int i = random.below(4); i > 0; --i) s.addRun(randomRun(random));
     s.extraJson = randomExtra(random);
     return s;

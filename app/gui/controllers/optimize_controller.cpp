@@ -1,6 +1,7 @@
 #include "controllers/optimize_controller.h"
 
 #include "optimize/refine.h"
+#include "tf/shown_tf.h"
 #include "workbench.h"
 
 namespace pellucid::gui {
@@ -104,7 +105,8 @@ void OptimizeController::start() {
     m_move = -1;
     m_firstObjective = m_objective = 0;
     const About about = present();
-    m_job.start({about.input, about.targets, *store.session().optimize, ++m_number}, tr("the optimization"));
+    m_job.start({about.input, m_bench.scene().tf, about.targets, *store.session().optimize, ++m_number},
+                tr("the optimization"));
     Q_EMIT moved();
 }
 
@@ -115,11 +117,11 @@ void OptimizeController::showMove(const Task& task, int move, const OptimizeStat
     m_move = move;
     m_objective = state.objective;
     if (move == 0) m_firstObjective = state.objective;
-    const TransferFunction tf = withFeatureOpacities(task.input.tf, state.opacity);
+    const TransferFunction tf = withShownOpacities(task.tf, state.opacity);
     m_bench.store().preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     if (!isRunning()) return;        // whoever saw it has stopped it
     MeasureInput input = task.input; // of the camera that it began with, wherever the eye is now
-    input.tf = tf;
+    input.tf = shownTf(tf);
     m_bench.results().addVws(input, state.vws);
     Q_EMIT moved();
 }
@@ -127,13 +129,14 @@ void OptimizeController::showMove(const Task& task, int move, const OptimizeStat
 void OptimizeController::finish(const Task& task, const OptimizeResult& result) {
     SessionStore& store = m_bench.store();
     const OptimizeState& best = result.history[result.best];
+    const TransferFunction tf = withShownOpacities(task.tf, best.opacity);
     store.preview(tr("Optimize"), [&](Session& session) {
-        session.setTf(result.tf);
-        session.addRun(runOf(result, result.tf));
+        session.setTf(tf);
+        session.addRun(runOf(result, tf));
     });
     store.commit();
     MeasureInput input = task.input;
-    input.tf = result.tf;
+    input.tf = shownTf(tf);
     m_bench.results().addVws(input, best.vws);
     const QString figures = tr("F = %1, from %2, in %3")
                                 .arg(fixed4(best.objective), fixed4(result.history.front().objective),

@@ -47,6 +47,7 @@ private:
     };
     struct Task {
         MeasureInput input;
+        TransferFunction tf; ///< with what is hidden of it
         std::vector<double> targets;
         OptimizeOptions options;
         int number = 0;

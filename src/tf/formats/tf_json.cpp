@@ -43,10 +43,11 @@ Feature featureFromJson(const JsonValue& j, Identities identities) {
     f.a = range.lo;
     f.b = range.hi;
     f.color = colorFromJson(j["color"]);
+    if (j.has("hidden")) f.hidden = j["hidden"].boolean();
     if (identities == Identities::Keep && j.has(kIdentity))
         f.id = static_cast<FeatureId>(j[kIdentity].integer(1, std::numeric_limits<std::int64_t>::max() / 2));
-    f.extraJson = identities == Identities::Keep ? j.unknownKeys({"name", "range", "color", kIdentity})
-                                                 : j.unknownKeys({"name", "range", "color"});
+    f.extraJson = identities == Identities::Keep ? j.unknownKeys({"name", "range", "color", "hidden", kIdentity})
+                                                 : j.unknownKeys({"name", "range", "color", "hidden"});
     return f;
 }
 
@@ -98,6 +99,7 @@ json jsonFromTf(const TransferFunction& tf, Identities identities) {
     }
     for (const Feature& f : tf.features) {
         json feature = {{"name", f.name}, {"range", {f.a, f.b}}, {"color", jsonFromColor(f.color)}};
+        if (f.hidden) feature["hidden"] = true;
         addUnknownKeys(feature, f.extraJson);
         if (identities == Identities::Keep && f.id != 0) feature[kIdentity] = f.id;
         j["features"].push_back(std::move(feature));

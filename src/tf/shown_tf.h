@@ -1,0 +1,21 @@
+// The transfer function as picture and figures have it: without what the eye of a feature hides.
+#pragma once
+
+#include <vector>
+
+#include "tf/transfer_function.h"
+
+namespace pellucid {
+
+/// `tf` with α = 0 over every hidden feature; points, features and their order stay, a step is added where a hidden
+/// feature ends above 0. `tf` itself where nothing is hidden.
+TransferFunction shownTf(const TransferFunction& tf);
+
+/// `tf` with the opacities x of its features (see withFeatureOpacities()); hidden features keep theirs: what was found
+/// for shownTf(tf), put into what people edit. shownTf() of the result has the opacities x.
+TransferFunction withShownOpacities(const TransferFunction& tf, std::vector<double> x);
+
+/// `shares` with those of hidden features at 0 and the others scaled to sum 1; equal shares where those are all 0.
+std::vector<double> shownShares(const TransferFunction& tf, std::vector<double> shares);
+
+} // namespace pellucid
