@@ -26,6 +26,7 @@ Command addMeasure(CLI::App& program);
 Command addFields(CLI::App& program);
 Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
+Command addProbe(CLI::App& program);
 Command addBench(CLI::App& program);
 
 } // namespace pellucid::cli

@@ -248,4 +248,19 @@ RayProbe probe(const Volume& volume, const TransferFunction& tf, const View& vie
     return result;
 }
 
+std::vector<double> depthInFront(const RayProbe& probe, std::size_t feature) {
+    std::vector<double> depths(probe.shares.size(), 0);
+    const auto less = [](const ProbeRun& a, const ProbeRun& b) {
+        return a.share != b.share ? a.share < b.share : a.opticalDepth < b.opticalDepth;
+    };
+    const ProbeRun* main = nullptr;
+    for (const ProbeRun& run : probe.runs)
+        if (run.feature == static_cast<int>(feature) && (main == nullptr || less(*main, run))) main = &run;
+    if (main == nullptr) return depths;
+    for (const ProbeRun* run = probe.runs.data(); run != main; ++run)
+        if (run->feature >= 0 && run->feature != main->feature)
+            depths[static_cast<std::size_t>(run->feature)] += run->opticalDepth;
+    return depths;
+}
+
 } // namespace pellucid

@@ -46,4 +46,9 @@ struct RayProbe {
 RayProbe probe(const Volume& volume, const TransferFunction& tf, const View& view, double x, double y, int width,
                int height, int onlyFeature = -1);
 
+/// The optical depth of each feature in front of one of them: what hides it on this ray. In front of the run in which
+/// that feature adds most or, where none adds anything, of the one of the largest optical depth. All are 0 where the
+/// ray does not meet it.
+std::vector<double> depthInFront(const RayProbe& probe, std::size_t feature);
+
 } // namespace pellucid

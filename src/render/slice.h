@@ -3,11 +3,15 @@
 
 #include <optional>
 
+#include <glm/vec2.hpp>
+
 #include "render/clipping.h"
 #include "render/image.h"
 #include "tf/transfer_function.h"
 
 namespace pellucid {
+
+using Vec2 = glm::dvec2;
 
 /// Which index axes run to the right and down the picture of a slice, and whether against the picture's direction.
 struct SliceView {

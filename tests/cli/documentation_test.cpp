@@ -16,7 +16,7 @@ using pellucid::test::Workshop;
 namespace {
 
 const std::vector<std::string> kCommands{"info",   "samples", "generate", "render", "measure",
-                                         "fields", "refine",  "optimize", "bench"};
+                                         "fields", "refine",  "optimize", "probe",  "bench"};
 
 std::string sourceFile(const std::string& path) {
     std::ifstream in(std::string(PELLUCID_SOURCE_DIR) + "/" + path);

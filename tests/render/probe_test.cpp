@@ -1,5 +1,6 @@
 #include "render/probe.h"
 
+#include <array>
 #include <numeric>
 
 #include <catch2/catch.hpp>
@@ -151,4 +152,23 @@ TEST_CASE("a ray that meets nothing says so", "[probe]") {
     CHECK(std::isnan(half.samples.front().intensity));
     // Four voxels, and half of the cell in between: the interpolated opacity goes from 0 to full along it.
     CHECK(half.alpha == Approx(1 - std::pow(0.9, 4)).margin(1e-6));
+}
+
+TEST_CASE("what is in front of a feature is what hides it", "[probe]") {
+    // f1, f3, f1, f2 and f3 of four tents, two planes each along y, as sharp as a plane is thin.
+    const std::array<double, 5> along{0.125, 0.625, 0.125, 0.375, 0.625};
+    const auto volume = volumeFrom(geometryOf({5, 1000, 5}, {1, 0.01, 1}),
+                                   [&](int, int j, int) { return along[static_cast<std::size_t>(j / 200)]; });
+    TransferFunction tf = tents(4, 1 - std::pow(0.8, 0.01));
+    RayProbe p = probeMiddle(*volume, tf, lookingAlong(volume->geometry(), {0, 1, 0}));
+    const double each = -2 * std::log(0.8); // two units of length of α = 0.8 each
+    // f3 adds most in its first run, behind one of f1.
+    CHECK(depthInFront(p, 2)[0] == Approx(each).epsilon(0.01));
+    CHECK(depthInFront(p, 2)[1] < 0.01);
+    CHECK(depthInFront(p, 0) == std::vector<double>(4, 0.0)); // nothing is in front of the first
+    const auto second = depthInFront(p, 1);
+    CHECK(second[0] == Approx(2 * each).epsilon(0.01));
+    CHECK(second[1] == 0);
+    CHECK(second[2] == Approx(each).epsilon(0.02));
+    CHECK(depthInFront(p, 3) == std::vector<double>(4, 0.0)); // not on the ray
 }
