@@ -135,8 +135,8 @@ Command addProbe(CLI::App& program) {
     const auto o = std::make_shared<Options>();
     o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
     app->add_option_function<std::string>(
-           "X,Y", [o](const std::string& text) { o->pixel = text; },
-           "the pixel: its column and row, from 0,0 at the top left of the picture")
+           "PIXEL", [o](const std::string& text) { o->pixel = text; },
+           "X,Y: its column and row, from 0,0 at the top left of the picture")
         ->type_name("");
     o->scene.session.add(*app);
     o->scene.tf.add(*app);

@@ -73,18 +73,32 @@ Between between(double at, int count, std::size_t stride, bool linear) {
 /// The mean over the valid of up to eight voxels.
 template <class Values>
 bool mean(const Values& values, bool allValid, std::optional<double> missing, const Between (&b)[3], double& result) {
+    if (allValid) { // nearly always: no weights to keep
+        const auto alongX = [&](std::size_t at) {
+            const auto low = static_cast<double>(values[at + b[0].low]),
+                       high = static_cast<double>(values[at + b[0].high]);
+            return low + static_cast<double>(b[0].weight) * (high - low);
+        };
+        const auto alongY = [&](std::size_t at) {
+            const double low = alongX(at + b[1].low), high = alongX(at + b[1].high);
+            return low + static_cast<double>(b[1].weight) * (high - low);
+        };
+        const double low = alongY(b[2].low);
+        result = b[2].weight == 0 ? low : low + static_cast<double>(b[2].weight) * (alongY(b[2].high) - low);
+        return true;
+    }
     double sum = 0, share = 0;
     for (int corner = 0; corner < 8; ++corner) {
         double w = 1;
         std::size_t at = 0;
         for (int a = 0; a < 3; ++a) {
             const bool high = (corner >> a) & 1;
-            w *= high ? b[a].weight : 1.0f - b[a].weight;
+            w *= static_cast<double>(high ? b[a].weight : 1.0f - b[a].weight);
             at += high ? b[a].high : b[a].low;
         }
         if (w == 0) continue;
         const auto v = static_cast<double>(values[at]);
-        if (!allValid && (!std::isfinite(v) || (missing && v == *missing))) continue;
+        if (!std::isfinite(v) || (missing && v == *missing)) continue;
         sum += w * v;
         share += w;
     }
@@ -97,13 +111,18 @@ std::array<std::size_t, 3> strides(const Int3& dims) {
     return {1, static_cast<std::size_t>(dims.x), static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y)};
 }
 
-/// Where in a window a value lies, [0, 1]; `ifEqual` where the window is one value. Halves, since its ends may lie
-/// further apart than the largest double.
-double within(const ValueRange& window, double value, double ifEqual) {
-    const double span = window.hi / 2 - window.lo / 2;
-    if (!(span > 0)) return value < window.lo ? 0 : ifEqual;
-    return std::clamp((value / 2 - window.lo / 2) / span, 0.0, 1.0);
-}
+/// Where in a window values lie, [0, 1]. In halves, since its ends may lie further apart than the largest double.
+struct Window {
+    double lo, perHalf; ///< perHalf 0: the window is one value
+    double ifEqual;     ///< what values from there on are
+
+    Window(const ValueRange& range, double equal)
+        : lo(range.lo), perHalf(range.hi > range.lo ? 1 / (range.hi / 2 - range.lo / 2) : 0), ifEqual(equal) {}
+    double operator()(double value) const {
+        if (perHalf == 0) return value < lo ? 0 : ifEqual;
+        return std::clamp((value / 2 - lo / 2) * perHalf, 0.0, 1.0);
+    }
+};
 
 /// What lies over the grey at an intensity.
 struct Overlay {
@@ -230,6 +249,7 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
     const std::vector<Overlay> overlay = overlays(tf, settings.tfStrength);
     const auto greyShown = static_cast<float>(std::min(1.0, 2 * (1 - settings.tfStrength)));
     const bool allValid = volume.invalidCount() == 0;
+    const Window greyOf(settings.window, 1), intensityOf(volume.range(), 0);
 
     const auto draw = [&](const auto& values, int y) {
         const Between row = around(view.down, voxelAtPixel(g, plane, {0.5, y + 0.5})[view.down]);
@@ -241,7 +261,7 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
             const Between corners[3] = {column, row, through};
             double value = 0;
             if (!mean(values, allValid, volume.missing(), corners, value)) continue;
-            const double grey = within(settings.window, value, 1), s = within(volume.range(), value, 0);
+            const double grey = greyOf(value), s = intensityOf(value);
             const Overlay& over = overlay[static_cast<std::size_t>(s * (kTableSize - 1) + 0.5)];
             const float under = (1 - over.weight) * greyShown * static_cast<float>(grey);
             float* pixel = image.pixel(x, y);
