@@ -170,11 +170,12 @@ TEST_CASE("slices do not depend on the order in which a file stores its voxels",
     writeNumbered(w, "flipped.nrrd", {-1, -1, -1});
     writeNumbered(w, "half.nrrd", {1, -1, 1});
     for (const std::string axis : {"x", "y", "z"}) {
-        // Fractions count along the index axis: 0.25 of one that is stored backwards is 0.75 of the other.
-        const Image plain = sliced(w, {"plain.nrrd", "--slice", axis + ":0.25"});
-        CHECK(plain.rgba == sliced(w, {"flipped.nrrd", "--slice", axis + ":0.75"}).rgba);
-        CHECK(plain.rgba == sliced(w, {"half.nrrd", "--slice", axis + (axis == "y" ? ":0.75" : ":0.25")}).rgba);
-        CHECK(plain.rgba != sliced(w, {"plain.nrrd", "--slice", axis + ":0.75"}).rgba);
+        // Fractions count along the index axis: 0.3125 of one that is stored backwards is 0.6875 of the
+        // other.
+        const Image plain = sliced(w, {"plain.nrrd", "--slice", axis + ":0.3125"});
+        CHECK(plain.rgba == sliced(w, {"flipped.nrrd", "--slice", axis + ":0.6875"}).rgba);
+        CHECK(plain.rgba == sliced(w, {"half.nrrd", "--slice", axis + (axis == "y" ? ":0.6875" : ":0.3125")}).rgba);
+        CHECK(plain.rgba != sliced(w, {"plain.nrrd", "--slice", axis + ":0.6875"}).rgba);
     }
 }
 
