@@ -32,6 +32,7 @@ _pellucid_cli() {
         --step-up) choices="auto" ;;
         --only) choices="setup saliency saliency-direct sweep slices jacobian optimize refine refine-500 refine-direct render" ;;
         --mode) choices="composite mip minip average surface" ;;
+        --slice) choices="x: y: z:" ;;
         --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
         --annotate) choices="all cube letters axes scale legend title" ;;
@@ -49,7 +50,7 @@ _pellucid_cli() {
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
-            --tolerance)
+            --tolerance | --window | --tf-strength)
             return
             ;;
     esac

@@ -19,6 +19,7 @@
 #include "light_layer.h"
 #include "notice_bar.h"
 #include "panel.h"
+#include "panels/probe_panel.h"
 #include "status_line.h"
 
 namespace pellucid::gui {
@@ -39,6 +40,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
 
     addClipHandles(*m_bench, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_bench, m_view->overlay()));
+    addProbe(*m_bench, *m_view);
     addPanels();
     addHelpActions();
     m_bench->actions().build(*this);

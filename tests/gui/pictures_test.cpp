@@ -53,3 +53,18 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     w.child<QAction>("influenceAction").trigger();
     grab(w, "window_influence.png");
 }
+
+TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
+    if (source.isSample()) source.sampleSize = 160;
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.settle();
+    QTest::mouseClick(&w.view(), Qt::LeftButton, {}, w.view().rect().center() + QPoint(20, 10));
+    grab(w, "probe.png");
+}
