@@ -56,7 +56,8 @@ const char* unitOf(const Geometry& geometry) { return geometry.frame == Frame::P
 } // namespace
 
 QColor slicePlaneColor(int worldAxis) {
-    static const std::array kColors{QColor(0x56, 0xb4, 0xe9), QColor(0x2f, 0xc0, 0x93), QColor(0xe6, 0x9f, 0x00)};
+    // Red, green and blue as on the cube, of Okabe and Ito's hues.
+    static const std::array kColors{QColor(0xf0, 0x75, 0x3f), QColor(0x2f, 0xc0, 0x93), QColor(0x5f, 0xb8, 0xee)};
     return kColors.at(static_cast<std::size_t>(worldAxis));
 }
 
@@ -438,7 +439,7 @@ QString SlicePane::titleText() const {
     const Vec3 voxel = crosshairOf(m_bench.scene());
     const double at = geometry.worldFromVoxel(voxel)[m_worldAxis];
     QString name = QString::fromLatin1(sliceName(geometry, a));
-    name[0] = name[0].toUpper();
+    if (geometry.frame == Frame::Patient) name[0] = name[0].toUpper(); // a word, not an axis
     return tr("%1  %2 of %3   %4 %5")
         .arg(name)
         .arg(static_cast<int>(std::lround(voxel[a])) + 1)
@@ -500,32 +501,36 @@ void SlicePane::paintCrosshair(QPainter& painter, const SlicePlane& plane) const
     haloLine(painter, {at.x + kGap, at.y, static_cast<double>(width()), at.y}, level);
 }
 
-/// Where the edges lie: in the patient, else along the file's axes.
-void SlicePane::paintLetters(QPainter& painter) const {
+QStringList SlicePane::edgeLetters() const {
     const Geometry& geometry = m_bench.scene().volume->geometry();
     const SliceView view = sliceView(geometry, axis());
     const Vec3 right = geometry.directions[view.right] * (view.flipRight ? -1.0 : 1.0),
                up = geometry.directions[view.down] * (view.flipDown ? 1.0 : -1.0);
-    const QFontMetricsF metrics(painter.font());
-    const auto letter = [&](const Vec3& direction, const QPointF& middle) {
-        QString text;
+    QStringList letters;
+    for (const Vec3& direction : {right, -right, up, -up}) {
         if (geometry.frame == Frame::Patient) {
-            text = QString::fromStdString(directionLetters(direction));
-        } else {
-            int most = 0;
-            for (int a = 1; a < 3; ++a)
-                if (std::abs(direction[a]) > std::abs(direction[most])) most = a;
-            text = (direction[most] < 0 ? QString(QChar(0x2212)) : QString()) + QLatin1Char("xyz"[most]);
+            letters << QString::fromStdString(directionLetters(direction));
+            continue;
         }
-        const double w = metrics.horizontalAdvance(text);
-        const double left = std::clamp(middle.x() - w / 2, kMargin, width() - kMargin - w);
-        haloText(painter, {left, middle.y() + metrics.capHeight() / 2}, text, theme::kMark);
-    };
+        int most = 0;
+        for (int a = 1; a < 3; ++a)
+            if (std::abs(direction[a]) > std::abs(direction[most])) most = a;
+        letters << (direction[most] < 0 ? QString(QChar(0x2212)) : QString()) + QLatin1Char("xyz"[most]);
+    }
+    return letters;
+}
+
+void SlicePane::paintLetters(QPainter& painter) const {
+    const QFontMetricsF metrics(painter.font());
     const double cap = metrics.capHeight(), midX = width() / 2.0, midY = height() / 2.0;
-    letter(right, {static_cast<double>(width()), midY});
-    letter(-right, {0, midY});
-    letter(up, {midX, kTitle + cap});
-    letter(-up, {midX, height() - kMargin - cap / 2});
+    const QPointF middles[] = {
+        {static_cast<double>(width()), midY}, {0, midY}, {midX, kTitle + cap}, {midX, height() - kMargin - cap / 2}};
+    const QStringList letters = edgeLetters();
+    for (int i = 0; i < 4; ++i) {
+        const double w = metrics.horizontalAdvance(letters[i]);
+        const double left = std::clamp(middles[i].x() - w / 2, kMargin, std::max(kMargin, width() - kMargin - w));
+        haloText(painter, {left, middles[i].y() + cap / 2}, letters[i], theme::kMark);
+    }
 }
 
 void SlicePane::paintScale(QPainter& painter, const SlicePlane& plane) const {

@@ -45,6 +45,9 @@ public:
     const std::optional<Hovered>& hovered() const { return m_hovered; }
     QString hoverText() const; ///< value, feature, place; empty where nothing is
 
+    /// Where the right, left, upper and lower edge lie: in the patient (L R A P S I), else along the file's axes.
+    QStringList edgeLetters() const;
+
     void fit();
     void setMaximized(bool on); ///< how the button looks
     QSize minimumSizeHint() const override { return {110, 90}; }
