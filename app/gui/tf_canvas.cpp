@@ -353,7 +353,7 @@ void TfCanvas::paintHistogram(QPainter& painter) const {
     }
     path.lineTo(r.bottomRight());
     path.closeSubpath();
-    painter.fillPath(path, QColor(0x44, 0x47, 0x4c));
+    painter.fillPath(path, theme::kHistogram);
 }
 
 void TfCanvas::paintVisibility(QPainter& painter) const {
@@ -369,7 +369,7 @@ void TfCanvas::paintVisibility(QPainter& painter) const {
         const double x = (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size());
         line << QPointF(r.left() + x * r.width(), r.bottom() - 0.94 * shares[i] / most * r.height());
     }
-    painter.setPen(QPen(translucent(QColor(0xdf, 0xe6, 0xf0), m_results.measuresAreCurrent() ? 0.55 : 0.2), 1));
+    painter.setPen(QPen(translucent(theme::kCurve, m_results.measuresAreCurrent() ? 0.55 : 0.2), 1));
     painter.drawPolyline(line);
 }
 
@@ -459,7 +459,7 @@ void TfCanvas::paintCurve(QPainter& painter) const {
     area.lineTo(r.bottomLeft());
     area.closeSubpath();
     painter.fillPath(area, fill);
-    painter.strokePath(line, QPen(QColor(0xd8, 0xda, 0xde), 1.6));
+    painter.strokePath(line, QPen(theme::kCurve, 1.6));
     painter.fillRect(QRectF(r.left(), r.bottom() + 3, r.width(), kStrip - 2), gradient);
 }
 
@@ -475,7 +475,7 @@ void TfCanvas::paintPoints(QPainter& painter) const {
             painter.setBrush(translucent(theme::kAccent, 0.5));
             painter.drawEllipse(c, radius + 4, radius + 4);
         }
-        painter.setPen(QPen(m_readOnly ? theme::kFaint : QColor(Qt::white), 1.5));
+        painter.setPen(QPen(m_readOnly ? theme::kFaint : theme::kKnob, 1.5));
         painter.setBrush(colorFromRgb(p.color));
         if (p.fixed) { // squares stay put in refinement
             painter.drawRect(QRectF(c.x() - radius + 1, c.y() - radius + 1, 2 * radius - 2, 2 * radius - 2));

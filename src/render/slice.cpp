@@ -162,10 +162,14 @@ SliceView sliceView(const Geometry& geometry, int axis) {
     return {right.axis, down.axis, right.flip, down.flip};
 }
 
-const char* sliceName(const Geometry& geometry, int axis) {
+int sliceWorldAxis(const Geometry& geometry, int axis) {
     PELLUCID_CHECK(axis >= 0 && axis < 3);
+    return worldAxes(geometry)[static_cast<std::size_t>(axis)];
+}
+
+const char* sliceName(const Geometry& geometry, int axis) {
     constexpr std::array kOfPatient{"sagittal", "coronal", "axial"}, kOfFile{"x", "y", "z"};
-    const auto world = static_cast<std::size_t>(worldAxes(geometry)[static_cast<std::size_t>(axis)]);
+    const auto world = static_cast<std::size_t>(sliceWorldAxis(geometry, axis));
     return geometry.frame == Frame::Patient ? kOfPatient[world] : kOfFile[world];
 }
 

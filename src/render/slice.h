@@ -26,6 +26,9 @@ struct SliceView {
 /// right, y (below z) and z upward. Axes count by the world axis that they are nearest to, each to another one.
 SliceView sliceView(const Geometry& geometry, int axis);
 
+/// The world axis (0, 1, 2) that an index axis counts by, above.
+int sliceWorldAxis(const Geometry& geometry, int axis);
+
 /// "axial", "coronal", "sagittal" in the patient's frame, else the world axis that it is perpendicular to: "x", "y",
 /// "z".
 const char* sliceName(const Geometry& geometry, int axis);
