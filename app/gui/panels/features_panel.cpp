@@ -39,6 +39,8 @@ constexpr int kRowHeight = 26;
 constexpr int kSwatch = 26; // width of the colour in the name's cell
 constexpr int kEye = 30;    // width of the eyes' column
 
+constexpr const char* kNoIndicator = "QToolButton::menu-indicator { image: none; }"; // the text has an arrow
+
 /// An eye in each cell of its column: open, closed, or faint where another feature is drawn alone.
 class EyeDelegate : public QStyledItemDelegate {
 public:
@@ -161,11 +163,6 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
         fillFeatureMenu(menu, m_bench);
         menu.exec(m_table->viewport()->mapToGlobal(at));
     });
-    connect(m_table, &QTableView::doubleClicked, this, [this](const QModelIndex& index) {
-        if (index.column() != FeaturesModel::Name || m_bench.isReadOnly()) return;
-        const QPoint mouse = m_table->viewport()->mapFromGlobal(QCursor::pos());
-        if (mouse.x() > m_table->columnViewportPosition(FeaturesModel::Name) + kSwatch) m_table->edit(index);
-    });
     connect(m_table->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this](const QModelIndex& now) {
         if (!m_showingSelection && now.isValid()) select(now.row());
     });
@@ -273,7 +270,8 @@ QWidget* FeaturesPanel::makeShapeRow() {
     row->setContentsMargins(10, 0, 10, 0);
     row->setSpacing(4);
     m_add->setObjectName("addShapeButton");
-    m_add->setText(tr("Add"));
+    m_add->setText(tr("Add ▾"));
+    m_add->setStyleSheet(kNoIndicator);
     m_add->setToolTip(tr("A new feature of some shape, in a gap between the others"));
     m_add->setPopupMode(QToolButton::InstantPopup);
     auto* shapes = new QMenu(m_add);
@@ -284,10 +282,11 @@ QWidget* FeaturesPanel::makeShapeRow() {
     for (const auto& [id, text] :
          {std::pair{"featureSplit", tr("Split")}, std::pair{"featureMerge", tr("Merge")},
           std::pair{"featureDuplicate", tr("Duplicate")}, std::pair{"featureRemove", tr("Remove")}}) {
+        QAction* const action = m_bench.actions().find(id);
+        action->setIconText(text); // what buttons say
         auto* b = new QToolButton(widget);
-        b->setDefaultAction(m_bench.actions().find(id));
+        b->setDefaultAction(action);
         b->setObjectName(QString::fromLatin1(id) + "Button");
-        b->setText(text);
         row->addWidget(b);
     }
     row->addStretch(1);
@@ -300,7 +299,8 @@ QWidget* FeaturesPanel::makeColorRow() {
     row->setContentsMargins(10, 0, 10, 0);
     row->setSpacing(10);
     m_colors->setObjectName("colorMapButton");
-    m_colors->setText(tr("Colours"));
+    m_colors->setText(tr("Colours ▾"));
+    m_colors->setStyleSheet(kNoIndicator);
     m_colors->setToolTip(tr("Colours by value from a map; opacities stay"));
     m_colors->setPopupMode(QToolButton::InstantPopup);
     auto* maps = new QMenu(m_colors);
@@ -315,24 +315,29 @@ bool FeaturesPanel::eventFilter(QObject* watched, QEvent* event) {
     if (watched == m_table->viewport() &&
         (event->type() == QEvent::MouseButtonPress || event->type() == QEvent::MouseButtonDblClick)) {
         const auto* mouse = static_cast<QMouseEvent*>(event);
-        if (pressTable(mouse->position().toPoint(), mouse->button(), mouse->modifiers())) return true;
+        if (pressTable(*mouse)) return true;
     }
     return QWidget::eventFilter(watched, event);
 }
 
-bool FeaturesPanel::pressTable(const QPoint& at, Qt::MouseButton button, Qt::KeyboardModifiers modifiers) {
+bool FeaturesPanel::pressTable(const QMouseEvent& mouse) {
+    const QPoint at = mouse.position().toPoint();
     const QModelIndex index = m_table->indexAt(at);
-    if (!index.isValid() || button != Qt::LeftButton || m_bench.isReadOnly()) return false;
+    if (!index.isValid() || mouse.button() != Qt::LeftButton || m_bench.isReadOnly()) return false;
     if (index.column() == FeaturesModel::Eye) {
-        if (modifiers & (Qt::AltModifier | Qt::ControlModifier))
+        if (mouse.modifiers() & (Qt::AltModifier | Qt::ControlModifier))
             toggleOnlyFeature(m_bench, index.row());
         else
             m_model->setData(index, !index.data(Qt::EditRole).toBool());
         return true;
     }
-    if (index.column() != FeaturesModel::Name ||
-        at.x() > m_table->columnViewportPosition(FeaturesModel::Name) + kSwatch)
-        return false;
+    if (index.column() != FeaturesModel::Name) return false;
+    const bool second = mouse.type() == QEvent::MouseButtonDblClick;
+    if (at.x() > m_table->columnViewportPosition(FeaturesModel::Name) + kSwatch) {
+        if (second) m_table->edit(index);
+        return second;
+    }
+    if (second) return true;
     select(index.row());
     const QPersistentModelIndex place(index);
     const QColor color =

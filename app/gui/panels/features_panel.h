@@ -9,6 +9,7 @@
 class QComboBox;
 class QDoubleSpinBox;
 class QLabel;
+class QMouseEvent;
 class QProgressBar;
 class QPushButton;
 class QTableView;
@@ -30,7 +31,7 @@ protected:
 private:
     QWidget* makeShapeRow();
     QWidget* makeColorRow();
-    bool pressTable(const QPoint& at, Qt::MouseButton button, Qt::KeyboardModifiers modifiers);
+    bool pressTable(const QMouseEvent& mouse);
     void select(int row);
     void followSelection();
     void editOptions();
