@@ -30,7 +30,11 @@ _pellucid_cli() {
             ;;
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
-        --only) choices="setup saliency saliency-direct sweep slices jacobian optimize refine refine-500 refine-direct render" ;;
+        --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
+        --only)
+            [[ $command == bench ]] || return
+            choices="setup saliency saliency-direct sweep slices jacobian optimize refine refine-500 refine-direct render"
+            ;;
         --mode) choices="composite mip minip average surface" ;;
         --slice) choices="x: y: z:" ;;
         --light-preset) choices="default soft matte metal contrast" ;;
@@ -48,7 +52,7 @@ _pellucid_cli() {
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
-            --silhouettes | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
+            --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
             --tolerance | --window | --tf-strength)
             return

@@ -13,7 +13,7 @@
 #include "number_text.h"
 #include "panel.h"
 #include "store/edits.h"
-#include "tf_edit.h"
+#include "tf/edit.h"
 #include "theme.h"
 #include "workbench.h"
 
