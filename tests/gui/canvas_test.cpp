@@ -11,6 +11,7 @@
 #include <QWheelEvent>
 
 #include "histogram_bars.h"
+#include "number_text.h"
 #include "opacity_axis.h"
 #include "point_selection.h"
 #include "selection.h"
@@ -266,8 +267,7 @@ TEST_CASE("the joint histogram appears behind the curve, with its axis of gradie
     // The third of the plot where no tent has a blue colour.
     QRectF where = w.canvas().plot().adjusted(2, 2, -2, -2);
     where.setWidth(where.width() / 3);
-    CHECK(countPixels(before, where, bluish) == 0);
-    CHECK(countPixels(after, where, bluish) > 100);
+    CHECK(countPixels(after, where, bluish) > countPixels(before, where, bluish) + 500);
     const QRectF axis(w.canvas().plot().right() + 6, w.canvas().plot().top(), 40, w.canvas().plot().height());
     const auto light = [](const QColor& c) { return c.lightness() > 110; };
     CHECK(countPixels(after, axis, light) > 20); // labels
@@ -290,7 +290,7 @@ TEST_CASE("the readout tells value, opacity, voxels and feature of what the mous
     const auto bin = static_cast<std::size_t>(histogramBin(x, 256));
     const QString text = w.canvas().readout();
     INFO(text.toStdString());
-    CHECK(text.contains(numberText(scene.volume->valueOfIntensity(x), scene.volume->range().hi)));
+    CHECK(text.contains(gui::numberText(scene.volume->valueOfIntensity(x), scene.volume->range().hi)));
     CHECK(text.contains("opacity " + QString::number(scene.tf.opacity(x), 'g', 3)));
     CHECK(text.contains(QLocale().toString(static_cast<qlonglong>(scene.histogram->counts[bin])) + " voxel"));
     CHECK(text.contains(QString::fromStdString(scene.tf.features[1].name)));

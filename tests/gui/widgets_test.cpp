@@ -211,3 +211,17 @@ TEST_CASE("notices stay until they are dismissed", "[notices]") {
     CHECK(done == 1);
     CHECK(bar.isHidden());
 }
+
+TEST_CASE("the layout of raw data is guessed from name and size", "[raw]") {
+    const RawLayout nucleon = guessRawLayout("/a/nucleon_41x41x41_uint8.raw", 41 * 41 * 41);
+    CHECK(nucleon.dims == Int3(41, 41, 41));
+    CHECK(nucleon.type == SampleType::U8);
+    const RawLayout foot = guessRawLayout("foot_16x8x4_int16.raw", 1024);
+    CHECK(foot.dims == Int3(16, 8, 4));
+    CHECK(foot.type == SampleType::I16);
+    CHECK(guessRawLayout("x_4x4x4_float32.raw", 256).type == SampleType::F32);
+    CHECK(guessRawLayout("x_4x4x4.raw", 256).type == SampleType::F32); // four bytes each
+    CHECK(guessRawLayout("cube.dat", 64 * 64 * 64).dims == Int3(64, 64, 64));
+    CHECK(isHeaderless("a.RAW"));
+    CHECK_FALSE(isHeaderless("a.nrrd"));
+}

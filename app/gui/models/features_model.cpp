@@ -2,7 +2,7 @@
 
 #include "number_text.h"
 #include "store/edits.h"
-#include "tf_edit.h"
+#include "tf/edit.h"
 #include "theme.h"
 
 namespace pellucid::gui {
