@@ -19,13 +19,14 @@
 #include "light_layer.h"
 #include "notice_bar.h"
 #include "panel.h"
+#include "slice_layer.h"
 #include "status_line.h"
 
 namespace pellucid::gui {
 
 MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_bench(std::make_unique<Workbench>(this)),
-      m_view(new VolumeView(m_bench->store(), renderer, this)) {
+      m_view(new VolumeView(m_bench->store(), renderer, this)), m_views(new ViewGrid(*m_bench, *m_view, this)) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setDockNestingEnabled(true);
@@ -34,9 +35,10 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(0);
     column->addWidget(new NoticeBar(m_bench->notices(), middle));
-    column->addWidget(m_view, 1);
+    column->addWidget(m_views, 1);
     setCentralWidget(middle);
 
+    m_view->overlay().add(std::make_unique<SliceLayer>());
     addClipHandles(*m_bench, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_bench, m_view->overlay()));
     addPanels();
@@ -49,6 +51,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
         m_bench->saving().setSeenSize({m_view->frame().width, m_view->frame().height});
         Q_EMIT settledChanged();
     });
+    connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
     connect(m_view, &VolumeView::rendererFailed, this, [this](const Error& error) {
         m_bench->notices().add({QString::fromUtf8(error.what()), {}});
     });
@@ -141,7 +144,7 @@ void MainWindow::restoreLayout() {
     restoreState(settings.value("windowState").toByteArray());
 }
 
-bool MainWindow::isSettled() const { return m_bench->isIdle() && m_view->isComplete(); }
+bool MainWindow::isSettled() const { return m_bench->isIdle() && m_views->isComplete(); }
 
 void MainWindow::updateTitle() {
     SessionStore& store = m_bench->store();
@@ -150,6 +153,11 @@ void MainWindow::updateTitle() {
     setWindowTitle(file.isEmpty() ? tr("%1[*] – Pellucid").arg(title)
                                   : tr("%1 – %2[*] – Pellucid").arg(title, QFileInfo(file).fileName()));
     setWindowModified(!store.isClean());
+}
+
+void MainWindow::changeEvent(QEvent* event) {
+    QMainWindow::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange) m_bench->actions().refresh(); // the theme, perhaps by another window
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

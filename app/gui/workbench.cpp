@@ -5,7 +5,9 @@
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
 #include "controllers/save_controller.h"
+#include "controllers/slice_actions.h"
 #include "controllers/tf_actions.h"
+#include "controllers/theme_actions.h"
 #include "controllers/view_actions.h"
 #include "error_dialog.h"
 
@@ -25,11 +27,14 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     m_optimizing->addActions();
     addViewActions(*this);
     addFrameActions(*this);
+    addSliceActions(*this);
+    addThemeActions(*this);
 
     connect(&m_store, &SessionStore::historyChanged, &m_actions, &Actions::refresh);
     connect(&m_store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features.empty() != after.tf.features.empty() ||
-            before.camera.projection != after.camera.projection || before.session.reference != after.session.reference)
+            before.camera.projection != after.camera.projection ||
+            before.session.reference != after.session.reference || !before.session.slices.isSame(after.session.slices))
             m_actions.refresh();
     });
     connect(&m_results, &Results::changed, this, &Workbench::idleChanged);

@@ -5,11 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include <glm/vec2.hpp>
+#include "volume/grid.h"
 
 namespace pellucid {
 
-using Vec2 = glm::dvec2;
 using Polyline = std::vector<Vec2>;
 
 /// Middle lines of the strokes of a text, in heights of a capital: x from the text's left end, y upward from its

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "base/check.h"
@@ -14,6 +15,7 @@
 namespace pellucid {
 
 using Int3 = glm::ivec3;
+using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
 using Mat3 = glm::dmat3; ///< columns first, as glm
 

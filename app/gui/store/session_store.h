@@ -16,7 +16,8 @@ namespace pellucid::gui {
 ///
 /// An edit is one step of the history. A preview (while the mouse is down, while an optimization runs) is none: it
 /// shows a change of the committed session until commit() or cancel(). An edit, undo or redo during a preview ends that
-/// first: an edit commits it, undo and redo cancel it. The camera has a history of its own: undo never turns the view.
+/// first: an edit commits it, undo and redo cancel it. The camera has a history of its own, the crosshair of the slices
+/// has none: undo never turns the view.
 class SessionStore : public QObject {
     Q_OBJECT
 public:
@@ -60,6 +61,9 @@ public:
     void undoCamera();
     void redoCamera();
 
+    /// Where the slices meet, voxel coordinates. It has no history: undo leaves it where it is.
+    void setCrosshair(const Vec3& voxel);
+
     /// Nothing would be lost by closing: the present state is the one that was opened or saved.
     bool isClean() const;
     void setClean();
@@ -81,7 +85,7 @@ private:
     void push(const QString& text, const QString& mergeKey, Scene before);
     void forgetOldData();
     Scene changedBy(const Change& change, const Scene& from, const Scene& basis) const;
-    Scene withPresentCamera(Scene scene) const;
+    Scene withPresentGaze(Scene scene) const;
 
     Scene m_scene;
     std::optional<Scene> m_committed; // while previewing
