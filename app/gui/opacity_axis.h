@@ -21,7 +21,8 @@ public:
     }
     /// Opacities that are written at the axis; the first ones before the others where there is no room for all.
     std::vector<double> labels() const {
-        return m_fine ? std::vector<double>{0, 1, 0.05, 0.2, 0.01, 0.001, 0.5} : std::vector<double>{0, 1, 0.5, 0.25, 0.75};
+        return m_fine ? std::vector<double>{0, 1, 0.05, 0.2, 0.01, 0.001, 0.5}
+                      : std::vector<double>{0, 1, 0.5, 0.25, 0.75};
     }
 
 private:

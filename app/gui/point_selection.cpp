@@ -14,9 +14,7 @@ PointSelection::PointSelection(std::vector<int> indices, int current)
     if (!contains(m_current)) m_current = m_indices.empty() ? -1 : m_indices.back();
 }
 
-bool PointSelection::contains(int index) const {
-    return std::binary_search(m_indices.begin(), m_indices.end(), index);
-}
+bool PointSelection::contains(int index) const { return std::binary_search(m_indices.begin(), m_indices.end(), index); }
 
 PointSelection PointSelection::toggled(int index) const {
     std::vector<int> indices = m_indices;

@@ -22,10 +22,10 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kGrab = 9;       // how near the mouse must come to a point, pixels
-constexpr double kSameSpot = 4;   // points nearer to each other than this are chosen in turn by clicks
-constexpr double kGrabEnd = 5;    // the same of the end of a feature's bar
-constexpr double kTremble = 3;    // a click that moves less is no drag
+constexpr double kGrab = 9;     // how near the mouse must come to a point, pixels
+constexpr double kSameSpot = 4; // points nearer to each other than this are chosen in turn by clicks
+constexpr double kGrabEnd = 5;  // the same of the end of a feature's bar
+constexpr double kTremble = 3;  // a click that moves less is no drag
 constexpr double kFineSpeed = 0.1;
 constexpr double kWheelStep = 0.8; // of the visible part, per notch of the wheel
 constexpr double kNotch = 120;     // of QWheelEvent::angleDelta()
@@ -116,9 +116,7 @@ void TfCanvas::selectPoints(const PointSelection& points) {
     Q_EMIT selectionChanged(m_points.current());
 }
 
-void TfCanvas::selectPoint(int index) {
-    selectPoints(index < 0 ? PointSelection() : PointSelection({index}, index));
-}
+void TfCanvas::selectPoint(int index) { selectPoints(index < 0 ? PointSelection() : PointSelection({index}, index)); }
 
 void TfCanvas::addPoint(double x, double opacity) {
     if (m_readOnly || !m_store.hasVolume()) return;
@@ -142,11 +140,10 @@ void TfCanvas::toggleFixed() {
     if (m_readOnly || m_points.isEmpty()) return;
     m_store.commit();
     const auto& indices = m_points.indices();
-    const bool fix = std::any_of(indices.begin(), indices.end(), [&](int index) {
-        return !tf().points[static_cast<std::size_t>(index)].fixed;
-    });
-    const QString text = indices.size() == 1 ? (fix ? tr("Fix point") : tr("Free point"))
-                                             : (fix ? tr("Fix points") : tr("Free points"));
+    const bool fix = std::any_of(indices.begin(), indices.end(),
+                                 [&](int index) { return !tf().points[static_cast<std::size_t>(index)].fixed; });
+    const QString text =
+        indices.size() == 1 ? (fix ? tr("Fix point") : tr("Free point")) : (fix ? tr("Fix points") : tr("Free points"));
     editTf(m_store, withPointsFixed(tf(), m_points, fix), text);
 }
 
@@ -293,9 +290,8 @@ void TfCanvas::hover(const QPointF& position) {
     m_selection.setHoveredIntensity(over ? std::optional(intensityAt(position.x())) : std::nullopt);
     const int point = m_readOnly ? -1 : pointAt(position);
     const std::optional<BarHit> bar = m_readOnly || point >= 0 ? std::nullopt : barAt(position);
-    const bool same =
-        point == m_hovered && bar.has_value() == m_hoveredBar.has_value() &&
-        (!bar || (bar->feature == m_hoveredBar->feature && bar->part == m_hoveredBar->part));
+    const bool same = point == m_hovered && bar.has_value() == m_hoveredBar.has_value() &&
+                      (!bar || (bar->feature == m_hoveredBar->feature && bar->part == m_hoveredBar->part));
     if (same) return;
     m_hovered = point;
     m_hoveredBar = bar;
@@ -385,11 +381,11 @@ void TfCanvas::mouseMoveEvent(QMouseEvent* event) {
     case Drag::Kind::Band:
         return selectBand(QRectF(drag.pressed, at).normalized());
     case Drag::Kind::Pan:
-        return showRange(drag.lo - (at.x() - drag.pressed.x()) * perPixel,
-                         drag.lo - (at.x() - drag.pressed.x()) * perPixel + m_axis.hi() - m_axis.lo());
+        return m_axis.setVisible(drag.lo - (at.x() - drag.pressed.x()) * perPixel,
+                                 drag.lo - (at.x() - drag.pressed.x()) * perPixel + m_axis.hi() - m_axis.lo());
     case Drag::Kind::Overview: {
         const double by = (at.x() - drag.pressed.x()) / plot().width();
-        return showRange(drag.lo + by, drag.lo + by + m_axis.hi() - m_axis.lo());
+        return m_axis.setVisible(drag.lo + by, drag.lo + by + m_axis.hi() - m_axis.lo());
     }
     }
 }
@@ -444,11 +440,6 @@ void TfCanvas::selectBand(const QRectF& band) {
     update(); // the band
 }
 
-void TfCanvas::showRange(double lo, double hi) {
-    m_axis.setVisible(lo, hi);
-    if (!m_axis.isWhole()) m_counts.fine(true);
-}
-
 void TfCanvas::mouseReleaseEvent(QMouseEvent* event) {
     if ((event->button() != Qt::LeftButton && event->button() != Qt::MiddleButton) || !m_drag) return;
     const Drag drag = std::move(*m_drag);
@@ -468,14 +459,14 @@ void TfCanvas::mouseDoubleClickEvent(QMouseEvent* event) {
         if (pointAt(at) < 0) return m_axis.reset();
     }
     if (m_readOnly) return;
-    if (pointAt(at) >= 0) {
-        if (m_points.isEmpty()) selectPoint(pointAt(at));
+    if (const int index = pointAt(at); index >= 0) {
+        if (!m_points.contains(index)) selectPoint(index);
         chooseColor();
     } else if (zone == Zone::Bars) {
         if (const std::optional<BarHit> bar = barAt(at)) {
             const Feature& f = tf().features[static_cast<std::size_t>(bar->feature)];
             const double beside = (f.b - f.a) / 4;
-            showRange(f.a - beside, f.b + beside);
+            m_axis.setVisible(f.a - beside, f.b + beside);
         }
     } else if (plot().adjusted(-4, -4, 4, 4).contains(at)) {
         addPoint(intensityAt(at.x()), opacityAt(at.y()));
@@ -491,10 +482,9 @@ void TfCanvas::wheelEvent(QWheelEvent* event) {
     const double along = turned.x() != 0 && turned.y() == 0 ? turned.x() : shift ? turned.y() : 0;
     if (along != 0) {
         const double by = -along / kNotch * width / 10;
-        showRange(m_axis.lo() + by, m_axis.hi() + by);
+        m_axis.setVisible(m_axis.lo() + by, m_axis.hi() + by);
     } else if (turned.y() != 0) {
         m_axis.zoomAbout(intensityAt(event->position().x()), std::pow(kWheelStep, turned.y() / kNotch));
-        if (!m_axis.isWhole()) m_counts.fine(true);
     }
     event->accept();
     if (!m_drag) hover(event->position());
@@ -524,9 +514,8 @@ void TfCanvas::fillMenu(QMenu& menu, const QPointF& position) {
         QAction* fixed = menu.addAction(tr("Fixed (refinement leaves it alone)"), this, &TfCanvas::toggleFixed);
         fixed->setCheckable(true);
         const auto& indices = m_points.indices();
-        fixed->setChecked(std::all_of(indices.begin(), indices.end(), [&](int i) {
-            return tf().points[static_cast<std::size_t>(i)].fixed;
-        }));
+        fixed->setChecked(std::all_of(indices.begin(), indices.end(),
+                                      [&](int i) { return tf().points[static_cast<std::size_t>(i)].fixed; }));
         menu.addSeparator();
         menu.addAction(one ? tr("Remove point") : tr("Remove %1 points").arg(m_points.size()), this,
                        &TfCanvas::removeSelected);
@@ -545,7 +534,7 @@ void TfCanvas::fillMenu(QMenu& menu, const QPointF& position) {
         const Feature& f = tf().features[static_cast<std::size_t>(here)];
         const double beside = (f.b - f.a) / 4;
         menu.addAction(tr("Zoom to %1").arg(QString::fromStdString(f.name)), this,
-                       [this, lo = f.a - beside, hi = f.b + beside] { showRange(lo, hi); });
+                       [this, lo = f.a - beside, hi = f.b + beside] { m_axis.setVisible(lo, hi); });
     }
     QAction* whole = menu.addAction(tr("Show all values"), &m_axis, &IntensityAxis::reset);
     whole->setEnabled(!m_axis.isWhole());
@@ -594,6 +583,18 @@ void TfCanvas::keyPressEvent(QKeyEvent* event) {
         return selectPoint(count == 0 ? -1 : (current + 1) % count);
     case Qt::Key_PageUp:
         return selectPoint(count == 0 ? -1 : (std::max(current, 0) + count - 1) % count);
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+    case Qt::Key_Minus: {
+        const double middle = (m_axis.lo() + m_axis.hi()) / 2;
+        m_axis.zoomAbout(current >= 0
+                             ? std::clamp(tf().points[static_cast<std::size_t>(current)].x, m_axis.lo(), m_axis.hi())
+                             : middle,
+                         event->key() == Qt::Key_Minus ? 1 / kWheelStep : kWheelStep);
+        return;
+    }
+    case Qt::Key_Home:
+        return m_axis.reset();
     case Qt::Key_Escape:
         if (m_drag && m_drag->edits()) {
             m_drag.reset();
@@ -627,9 +628,8 @@ SeenBins TfCanvas::seenHistogram() const {
     const Scene& scene = m_store.scene();
     if (!scene.histogram || !scene.volume) return {};
     const Histogram* fine = m_axis.isWhole() ? nullptr : m_counts.fine(true);
-    return fine == nullptr
-               ? wholeBins(scene.histogram->counts)
-               : seenBins(fine->counts, m_axis.lo(), m_axis.hi(), VolumeCounts::valueStep(*scene.volume));
+    return fine == nullptr ? wholeBins(scene.histogram->counts)
+                           : seenBins(fine->counts, m_axis.lo(), m_axis.hi(), VolumeCounts::valueStep(*scene.volume));
 }
 
 QString TfCanvas::readout() const {

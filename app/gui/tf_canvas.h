@@ -140,7 +140,6 @@ private:
     void dragPoints(const QPointF& to, bool alongAxis);
     void dragFeature(const QPointF& to);
     void selectBand(const QRectF& band);
-    void showRange(double lo, double hi);
     void fillMenu(QMenu& menu, const QPointF& position);
 
     struct Ink;

@@ -57,7 +57,7 @@ QLinearGradient colorsAlong(const TransferFunction& tf, const IntensityAxis& axi
 struct TfCanvas::Ink {
     QColor ground = theme::kWindow, plot = theme::kPanel, line = theme::kLine, text = theme::kText,
            faint = theme::kFaint, accent = theme::kAccent;
-    QColor voxels = mixed(plot, text, 0.22), visible = mixed(text, accent, 0.35), curve = mixed(plot, text, 0.92);
+    QColor voxels = theme::kHistogram, curve = theme::kCurve, ring = theme::kKnob, visible = mixed(curve, accent, 0.6);
     QFont small;
 };
 
@@ -195,7 +195,7 @@ void TfCanvas::paintVisibility(QPainter& painter, const Ink& ink) const {
     painter.setPen(Qt::NoPen);
     painter.setBrush(translucent(ink.visible, current ? 0.12 : 0.05));
     painter.drawPolygon(area);
-    painter.setPen(QPen(translucent(ink.visible, current ? 0.8 : 0.3), 1.2));
+    painter.setPen(QPen(translucent(ink.visible, current ? 0.9 : 0.35), 1.2));
     painter.drawPolyline(line);
 }
 
@@ -263,8 +263,9 @@ void TfCanvas::paintFeatures(QPainter& painter, const Ink& ink) const {
         const QColor color = colorFromRgb(f.color);
         const bool selected = f.id != 0 && f.id == m_selection.feature();
         const bool hovered = m_hoveredBar && m_hoveredBar->feature == static_cast<int>(i);
-        painter.fillRect(QRectF(bar.left(), r.top(), bar.width(), r.height()),
-                         translucent(color, f.hidden ? 0.02 : selected ? 0.15 : 0.07));
+        painter.fillRect(QRectF(bar.left(), r.top(), bar.width(), r.height()), translucent(color, f.hidden   ? 0.02
+                                                                                                  : selected ? 0.15
+                                                                                                             : 0.07));
         painter.setPen(selected  ? QPen(ink.text, 1.8)
                        : hovered ? QPen(ink.text, 1)
                                  : (f.hidden ? QPen(color, 1, Qt::DashLine) : QPen(Qt::NoPen)));
@@ -292,8 +293,7 @@ void TfCanvas::paintCurve(QPainter& painter, const Ink& ink) const {
     painter.fillPath(area, colorsAlong(tf(), m_axis, r, 0.3));
     painter.strokePath(line, QPen(ink.curve, 1.6));
     painter.setClipping(false);
-    painter.fillRect(QRectF(r.left(), r.bottom() + 3, r.width(), layout::kStrip - 2),
-                     colorsAlong(tf(), m_axis, r, 1));
+    painter.fillRect(QRectF(r.left(), r.bottom() + 3, r.width(), layout::kStrip - 2), colorsAlong(tf(), m_axis, r, 1));
 }
 
 void TfCanvas::paintHair(QPainter& painter, const Ink& ink) const {
@@ -333,7 +333,7 @@ void TfCanvas::paintPoints(QPainter& painter, const Ink& ink) const {
         painter.setPen(Qt::NoPen); // a rim of the ground: seen on the curve and on whatever lies under it
         painter.setBrush(ink.plot);
         shape(2);
-        painter.setPen(QPen(m_readOnly ? ink.faint : ink.text, 1.6));
+        painter.setPen(QPen(m_readOnly ? ink.faint : ink.ring, 1.6));
         painter.setBrush(color);
         shape(0);
         if (p.fixed) { // and are nailed down
@@ -379,9 +379,8 @@ void TfCanvas::paintTopLine(QPainter& painter, const Ink& ink) const {
     const double left = layout::kLeft + 14;
     const QString told = readout();
     painter.setPen(told.isEmpty() ? ink.faint : ink.text);
-    const QString text = told.isEmpty() && m_points.isEmpty()
-                             ? tr("double-click: add a point  ·  drag: select  ·  wheel: zoom")
-                             : told;
+    const QString text =
+        told.isEmpty() && m_points.isEmpty() ? tr("double-click: add a point  ·  drag: select  ·  wheel: zoom") : told;
     painter.drawText(QRectF(left, 1, std::max(0.0, right - left), layout::kTopLine), Qt::AlignLeft | Qt::AlignVCenter,
                      metrics.elidedText(text, Qt::ElideRight, right - left));
 }

@@ -165,8 +165,8 @@ void TfEditorWidget::addRow(QWidget* row) { m_column->insertWidget(++m_rows, row
 void TfEditorWidget::showPoints() {
     const PointSelection& chosen = m_canvas->selectedPoints();
     const auto& points = m_store.scene().tf.points;
-    const bool any = m_store.hasVolume() && !chosen.isEmpty() &&
-                     static_cast<std::size_t>(chosen.indices().back()) < points.size();
+    const bool any =
+        m_store.hasVolume() && !chosen.isEmpty() && static_cast<std::size_t>(chosen.indices().back()) < points.size();
     for (QWidget* widget : std::initializer_list<QWidget*>{m_value, m_opacity, m_color, m_fixed, m_remove}) {
         widget->setEnabled(any && !m_readOnly);
     }

@@ -41,7 +41,7 @@ private:
     QToolButton* m_remove;
     bool m_readOnly = false, m_showing = false;
     const QDoubleSpinBox* m_typed = nullptr; ///< typed into, not yet taken
-    int m_editSession = 0; ///< so that the steps of one stay at a point become one undo step
+    int m_editSession = 0;                   ///< so that the steps of one stay at a point become one undo step
 };
 
 } // namespace pellucid::gui

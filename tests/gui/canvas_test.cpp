@@ -3,11 +3,14 @@
 
 #include <numeric>
 
-#include <QComboBox>
+#include <QApplication>
 #include <QCheckBox>
+#include <QComboBox>
+#include <QContextMenuEvent>
 #include <QDoubleSpinBox>
 #include <QLineEdit>
 #include <QMenu>
+#include <QTimer>
 #include <QWheelEvent>
 
 #include "histogram_bars.h"
@@ -211,8 +214,8 @@ TEST_CASE("the wheel zooms about the mouse, and a point moved there gets the val
     CHECK(axis.hi() - axis.lo() == Approx(part));
     CHECK(w.canvas().positionOf(0.45, 0).x() == Approx(cursor.x()));
     CHECK(w.document().tf() == start);
+    CHECK(image(w) != canvas); // what is seen is counted
     REQUIRE(waitFor([&] { return !w.canvas().isCounting(); }));
-    CHECK(image(w) != canvas);
     CHECK(w.picture() == before);
 
     drag(w.canvas(), at(w, 4), at(w, 4) + QPointF(25, 0));
@@ -347,6 +350,53 @@ TEST_CASE("a feature's bar selects it, moves it and widens it", "[canvas]") {
     CHECK(w.document().tf() == start);
 }
 
+TEST_CASE("the context menu zooms to a feature, selects all, and tells others where it opens", "[canvas]") {
+    OpenWindow w;
+    const TransferFunction start = w.document().tf();
+    const QImage picture = w.picture(), canvas = image(w);
+    double where = -1;
+    FeatureId feature = 0;
+    QObject::connect(&w.canvas(), &TfCanvas::menuOpening, [&](QMenu& menu, double intensity, FeatureId id) {
+        menu.addAction("Of another");
+        where = intensity;
+        feature = id;
+    });
+    const QPoint place = w.canvas().positionOf(0.45, 0.9).toPoint();
+    const auto choose = [&](const QString& text) {
+        bool found = false;
+        QTimer timer;
+        QObject::connect(&timer, &QTimer::timeout, [&] {
+            auto* menu = qobject_cast<QMenu*>(QApplication::activePopupWidget());
+            if (menu == nullptr) return;
+            timer.stop();
+            for (QAction* action : menu->actions()) {
+                if (action->text() != text) continue;
+                found = true;
+                action->trigger();
+            }
+            menu->close();
+        });
+        timer.start(10);
+        QContextMenuEvent event(QContextMenuEvent::Mouse, place, w.canvas().mapToGlobal(place));
+        QCoreApplication::sendEvent(&w.canvas(), &event);
+        return found;
+    };
+    CHECK(choose("Of another"));
+    CHECK(where == Approx(0.45).margin(perPixel(w)));
+    CHECK(feature == w.document().tf().features[1].id);
+    CHECK(choose("Select all points"));
+    CHECK(w.canvas().selectedPoints().size() == start.points.size());
+    CHECK(choose("Zoom to " + QString::fromStdString(start.features[1].name)));
+    const Feature f = start.features[1]; // with a quarter of its width on both sides
+    CHECK(w.canvas().axis().lo() == Approx(f.a - (f.b - f.a) / 4));
+    CHECK(w.canvas().axis().hi() == Approx(f.b + (f.b - f.a) / 4));
+    CHECK(image(w) != canvas);
+    CHECK(choose("Show all values"));
+    CHECK(w.canvas().axis().isWhole());
+    CHECK(w.document().tf() == start);
+    CHECK(w.picture() == picture);
+}
+
 TEST_CASE("each of two points in one place can be reached", "[canvas]") {
     OpenWindow w;
     TransferFunction tf = w.document().tf();
@@ -458,7 +508,8 @@ TEST_CASE("the fine axis of opacities has room for small ones, and is undone exa
     CHECK(axis.isFine());
     CHECK(axis.height(0.001) == Approx(0.1)); // ∛
     CHECK(axis.height(1) == 1);
-    for (const double opacity : {0.0, 0.001, 0.05, 0.5, 1.0}) CHECK(axis.opacity(axis.height(opacity)) == Approx(opacity));
+    for (const double opacity : {0.0, 0.001, 0.05, 0.5, 1.0})
+        CHECK(axis.opacity(axis.height(opacity)) == Approx(opacity));
     CHECK(axis.opacity(1.5) == 1);
     axis.setFine(false);
     CHECK(axis.height(0.3) == 0.3);
