@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <QPainter>
 
@@ -113,14 +114,19 @@ void TfCanvas::paintJointHistogram(QPainter& painter, const Ink& ink) {
         return;
     }
     if (m_jointImage.isNull()) {
+        // Logarithmic up to a count that few cells exceed: air alone would be the end of the scale.
+        std::vector<std::uint32_t> filled;
+        std::copy_if(joint->counts.begin(), joint->counts.end(), std::back_inserter(filled),
+                     [](std::uint32_t count) { return count > 0; });
+        std::sort(filled.begin(), filled.end());
+        const double most = filled.empty() ? 1 : std::log1p(filled[(filled.size() - 1) * 99 / 100]);
+        const QColor sparse = mixed(ink.plot, ink.faint, 0.7);
         QImage image(joint->bins, joint->gradientBins, QImage::Format_ARGB32_Premultiplied);
-        const double most = std::log1p(*std::max_element(joint->counts.begin(), joint->counts.end()));
         for (int g = 0; g < joint->gradientBins; ++g) {
             auto* line = reinterpret_cast<QRgb*>(image.scanLine(joint->gradientBins - 1 - g));
             for (int b = 0; b < joint->bins; ++b) {
-                const double share = most > 0 ? std::log1p(joint->at(b, g)) / most : 0;
-                const QColor color = mixed(ink.faint, ink.accent, share);
-                line[b] = qPremultiply(translucent(color, share == 0 ? 0 : 0.08 + 0.72 * share).rgba());
+                const double share = std::min(1.0, std::log1p(joint->at(b, g)) / most);
+                line[b] = qPremultiply(translucent(mixed(sparse, ink.accent, share), share).rgba());
             }
         }
         m_jointImage = image;
@@ -290,7 +296,7 @@ void TfCanvas::paintCurve(QPainter& painter, const Ink& ink) const {
     area.lineTo(r.bottomRight());
     area.lineTo(r.bottomLeft());
     area.closeSubpath();
-    painter.fillPath(area, colorsAlong(tf(), m_axis, r, 0.3));
+    painter.fillPath(area, colorsAlong(tf(), m_axis, r, m_showJoint ? 0.15 : 0.3));
     painter.strokePath(line, QPen(ink.curve, 1.6));
     painter.setClipping(false);
     painter.fillRect(QRectF(r.left(), r.bottom() + 3, r.width(), layout::kStrip - 2), colorsAlong(tf(), m_axis, r, 1));
@@ -327,7 +333,7 @@ void TfCanvas::paintPoints(QPainter& painter, const Ink& ink) const {
         if (selected || hovered) {
             painter.setPen(Qt::NoPen);
             painter.setBrush(translucent(ink.accent, selected ? (current ? 0.75 : 0.5) : 0.3));
-            shape(4);
+            shape(5);
         }
         const QColor color = colorFromRgb(p.color);
         painter.setPen(Qt::NoPen); // a rim of the ground: seen on the curve and on whatever lies under it
@@ -368,7 +374,7 @@ void TfCanvas::paintTopLine(QPainter& painter, const Ink& ink) const {
         if (m_showJoint) {
             QLinearGradient heat(0, 0, 1, 0);
             heat.setCoordinateMode(QGradient::ObjectMode);
-            heat.setColorAt(0, ink.faint);
+            heat.setColorAt(0, ink.plot);
             heat.setColorAt(1, ink.accent);
             entry(tr("value × gradient"), heat, false);
         }

@@ -1,5 +1,8 @@
 #include "tf_editor_widget.h"
 
+#include <algorithm>
+#include <utility>
+
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
@@ -7,6 +10,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPainter>
+#include <QSettings>
 #include <QSignalBlocker>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -21,6 +25,8 @@
 
 namespace pellucid::gui {
 namespace {
+
+constexpr const char *kScaleKey = "editor/histogramScale", *kFineKey = "editor/fineOpacity"; // as chosen last
 
 QIcon swatch(const QColor& color, const QSize& size = {22, 14}) {
     QPixmap pixmap(size);
@@ -124,6 +130,8 @@ QHBoxLayout* TfEditorWidget::makeRow() {
                          "or the number up to the 99.5th percentile, so that one huge bin does not flatten the rest"));
     connect(scale, &QComboBox::currentIndexChanged, m_canvas,
             [this](int index) { m_canvas->setHistogramScale(static_cast<HistogramScale>(index)); });
+    connect(scale, &QComboBox::activated, this, [](int index) { QSettings().setValue(kScaleKey, index); });
+    scale->setCurrentIndex(std::clamp(QSettings().value(kScaleKey, 0).toInt(), 0, scale->count() - 1));
     auto* gradients = new QCheckBox(tr("Gradients"), this);
     gradients->setObjectName("jointHistogram");
     gradients->setToolTip(tr("Behind the curve: how often values (to the right) meet gradient magnitudes (up).\n"
@@ -131,10 +139,12 @@ QHBoxLayout* TfEditorWidget::makeRow() {
     connect(gradients, &QCheckBox::toggled, m_canvas, &TfCanvas::setJointHistogramShown);
     auto* fine = new QCheckBox(tr("Fine opacity"), this);
     fine->setObjectName("fineOpacityAxis");
-    fine->setChecked(m_canvas->isFineOpacityAxis());
     fine->setToolTip(tr("Height shows the cube root of the opacity: fine control near zero, where\n"
                         "most of the effect lies (opacity of a path one voxel long, d0)"));
     connect(fine, &QCheckBox::toggled, m_canvas, &TfCanvas::setFineOpacityAxis);
+    connect(fine, &QCheckBox::clicked, this, [](bool on) { QSettings().setValue(kFineKey, on); });
+    m_canvas->setFineOpacityAxis(QSettings().value(kFineKey, true).toBool());
+    fine->setChecked(m_canvas->isFineOpacityAxis());
 
     auto* row = new QHBoxLayout;
     row->setContentsMargins(10, 0, 10, 0);

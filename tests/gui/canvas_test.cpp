@@ -263,17 +263,37 @@ TEST_CASE("the joint histogram appears behind the curve, with its axis of gradie
     const QImage before = image(w), picture = w.picture();
     auto& box = w.child<QCheckBox>("jointHistogram");
     box.click();
-    image(w); // what is seen is counted
+    const QImage counting = image(w); // laid out already; what is seen is counted
     REQUIRE(waitFor([&] { return !w.canvas().isCounting(); }));
     const QImage after = image(w);
-    const auto bluish = [](const QColor& c) { return c.blue() > c.red() + 25 && c.blue() > c.green(); };
-    // The third of the plot where no tent has a blue colour.
-    QRectF where = w.canvas().plot().adjusted(2, 2, -2, -2);
-    where.setWidth(where.width() / 3);
-    CHECK(countPixels(after, where, bluish) > countPixels(before, where, bluish) + 500);
-    const QRectF axis(w.canvas().plot().right() + 6, w.canvas().plot().top(), 40, w.canvas().plot().height());
+    // The picture has changed where gradients are, not where none are. Only the upper half: below, the histogram is an
+    // outline now.
+    const JointHistogram joint = makeJointHistogram(*w.bench().scene().volume, 64, 16);
+    const QRectF plot = w.canvas().plot();
+    double changedFull = 0, changedEmpty = 0;
+    int full = 0, empty = 0;
+    for (int g = 8; g < 15; ++g) {
+        for (int b = 0; b < 64; ++b) {
+            const QPoint at(static_cast<int>(plot.left() + (b + 0.5) / 64 * plot.width()),
+                            static_cast<int>(plot.bottom() - (g + 0.5) / 16 * plot.height()));
+            const QColor one(counting.pixel(at)), other(after.pixel(at));
+            const int change = std::abs(one.red() - other.red()) + std::abs(one.green() - other.green()) +
+                               std::abs(one.blue() - other.blue());
+            if (joint.at(b, g) > 8) {
+                changedFull += change;
+                ++full;
+            } else if (joint.at(b, g) == 0) {
+                changedEmpty += change;
+                ++empty;
+            }
+        }
+    }
+    REQUIRE(full > 10);
+    REQUIRE(empty > 10);
+    CHECK(changedFull / full > 3 * changedEmpty / empty + 10);
+    const QRectF axis(plot.right() + 6, plot.top(), 40, plot.height());
     const auto light = [](const QColor& c) { return c.lightness() > 110; };
-    CHECK(countPixels(after, axis, light) > 20); // labels
+    CHECK(countPixels(after, axis, light) > countPixels(counting, axis, light) + 20); // labels
     CHECK(w.document().tf() == start);
     CHECK(w.picture() == picture);
     box.click();
@@ -436,6 +456,26 @@ TEST_CASE("while nothing may be edited the canvas shows and selects, and nothing
     CHECK_FALSE(w.canvas().axis().isWhole());
     CHECK(image(w) != canvas);
     w.canvas().setReadOnly(false);
+}
+
+TEST_CASE("the editor comes back with the axis that was chosen", "[canvas]") {
+    const auto height = [](OpenWindow& w) {
+        return w.canvas().positionOf(0, 0).y() - w.canvas().positionOf(0, 0.2).y();
+    };
+    double fine = 0;
+    {
+        OpenWindow w;
+        fine = height(w);
+        const QImage before = image(w);
+        w.child<QCheckBox>("fineOpacityAxis").click();
+        CHECK(height(w) < fine / 2); // 0.2 of the plot, in place of ∛0.2 = 0.58
+        CHECK(image(w) != before);
+    }
+    OpenWindow w;
+    CHECK(height(w) < fine / 2);
+    w.child<QCheckBox>("fineOpacityAxis").click();
+    CHECK(height(w) == fine);
+    CHECK(rangeless(w.document().tf()) == tents(3));
 }
 
 TEST_CASE("heights of bars: log, linear, and cut at the 99.5th percentile", "[histogram]") {
