@@ -3,10 +3,12 @@
 #include "gui_support.h"
 
 #include <QAction>
+#include <QCheckBox>
 #include <QDoubleSpinBox>
 #include <QSignalSpy>
 
 #include "render/camera_motion.h"
+#include "selection.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -21,6 +23,30 @@ void grab(OpenWindow& w, const char* name) {
 }
 
 } // namespace
+
+TEST_CASE("a picture of the transfer-function editor", "[.pictures]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.child<QCheckBox>("jointHistogram").click();
+    const Feature feature = w.document().tf().features.at(1);
+    w.canvas().axis().setVisible(0, 0.8);
+    w.bench().selection().setFeature(feature.id);
+    w.bench().selection().setHoveredIntensity(feature.a + 0.3 * (feature.b - feature.a));
+    std::vector<int> points;
+    for (std::size_t i = 0; i < w.document().tf().points.size(); ++i)
+        if (feature.contains(w.document().tf().points[i].x)) points.push_back(static_cast<int>(i));
+    w.canvas().selectPoints(PointSelection(points));
+    w.canvas().grab(); // what is seen is counted
+    REQUIRE(waitFor([&] { return !w.canvas().isCounting(); }));
+    w.settle();
+    REQUIRE(w.child<QWidget>("tfEditor").grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + "/tf_editor.png"));
+}
 
 TEST_CASE("pictures for the guide", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
