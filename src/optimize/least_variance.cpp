@@ -242,7 +242,7 @@ private:
 } // namespace
 
 std::vector<double> nearestOfTotal(std::vector<double> x, double total) {
-    total = std::clamp(total, 0.0, static_cast<double>(x.size()));
+    if (total <= 0 || total >= static_cast<double>(x.size())) return Vector(x.size(), total <= 0 ? 0.0 : 1.0);
     const auto shifted = [&](double by) {
         Vector y = x;
         for (double& v : y) v = std::clamp(v + by, 0.0, 1.0);

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLeast = 0.01; ///< a change below this part of the opacity is not told
 constexpr double kNone = 1e-9;  ///< an opacity below this is none
+constexpr double kGone = 1e-3;  ///< nor is one that is this part of what it was
 constexpr std::size_t kMost = 4;
 
 /// Mean of α over [a, b): exact, since α is linear between points.
@@ -31,8 +32,9 @@ double meanOpacity(const TransferFunction& tf, double a, double b) {
 
 std::string shortNumber(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
+    const double size = std::abs(value);
+    std::snprintf(text, sizeof text, size >= 100 && size < 1e6 ? "%.0f" : "%.3g", size);
+    return (value < 0 ? "−" : "") + std::string(text);
 }
 
 std::string placeName(const TransferFunction& tf, double x) {
@@ -48,13 +50,14 @@ double sizeOf(const OpacityChange& c) {
 
 std::string wordsOf(const OpacityChange& c) {
     if (!(c.before > kNone)) return c.feature + " appears";
-    if (!(c.after > kNone)) return c.feature + " disappears";
     const double ratio = c.after / c.before;
+    if (!(c.after > kNone && ratio >= kGone)) return c.feature + " disappears";
     char text[32];
     if (ratio >= 2)
         std::snprintf(text, sizeof text, ratio < 9.95 ? " × %.2g" : " × %.0f", ratio);
     else
-        std::snprintf(text, sizeof text, " %s%.0f %%", ratio < 1 ? "−" : "+", 100 * std::abs(ratio - 1));
+        std::snprintf(text, sizeof text, ratio < 0.005 ? " %s%.1f %%" : " %s%.0f %%", ratio < 1 ? "−" : "+",
+                      100 * std::abs(ratio - 1));
     return c.feature + text;
 }
 
