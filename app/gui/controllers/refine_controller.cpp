@@ -337,9 +337,7 @@ void RefineController::look(const ImageRegion& region, const QString& text) {
     m_pending = region;
     const double longer = std::max({m_viewSize.width(), m_viewSize.height(), 1});
     const auto pixels = [&](int side) { return std::max(1, static_cast<int>(side * kLookSize / longer + 0.5)); };
-    PictureInput picture = pictureInput(m_bench.scene(), pixels(m_viewSize.width()), pixels(m_viewSize.height()), true);
-    picture.settings.light = {}; // the colours of the transfer function, not of light
-    picture.settings.mode = RenderMode::Composite;
+    PictureInput picture = plainPictureInput(m_bench.scene(), pixels(m_viewSize.width()), pixels(m_viewSize.height()));
     m_look.start({std::move(picture), region, text}, tr("the region"));
     Q_EMIT busyChanged();
 }
