@@ -24,10 +24,13 @@ _pellucid_cli() {
         --engine) choices="auto gl cpu slices reference" ;;
         --quality) choices="normal high" ;;
         --kernel) choices="thesis narrow" ;;
-        --method) choices="fixed line parallel" ;;
+        --method)
+            choices="fixed line parallel"
+            [[ $command == refine ]] && choices="greedy exact"
+            ;;
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
-        --only) choices="setup saliency saliency-direct sweep slices jacobian optimize refine render" ;;
+        --only) choices="setup saliency saliency-direct sweep slices jacobian optimize refine refine-500 refine-direct render" ;;
         --mode) choices="composite mip minip average surface" ;;
         --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
@@ -45,7 +48,7 @@ _pellucid_cli() {
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
-            --saliency-background | --step-down | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
+            --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
             --tolerance)
             return
             ;;

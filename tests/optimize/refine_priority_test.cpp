@@ -12,6 +12,7 @@
 #include "optimize/region_colors.h"
 #include "render/camera_motion.h"
 #include "render/image_renderer.h"
+#include "render/standard_view.h"
 #include "support/refine_cases.h"
 #include "volume/loader.h"
 
@@ -86,8 +87,8 @@ double pictureShare(VisibilityEngine& engine, const View& view, TransferFunction
 
 struct RealCase {
     const char* file;
-    View view; ///< of the region; camera not set
-    ViewAngles angles;
+    View view;          ///< of the region; camera not set
+    ViewAngles angles;  ///< of the camera
     int x0, y0, x1, y1; ///< region, of 300 x 300 pixels
     double a, b;        ///< intensities of what is seen there
 };
@@ -170,7 +171,8 @@ TEST_CASE("the intensity of a hue is where the transfer function has it", "[refi
     // tents:3: hues 60, 180, 300 at 1/6, ½, 5/6; each tent has one colour, so that its peak is the most opaque of them.
     CHECK(intensityOfHue(tents(3), 60) == Approx(1.0 / 6));
     CHECK(intensityOfHue(tents(3), 180) == Approx(0.5));
-    // Hue 170 lies in the gap from yellow at 0.3 to cyan at 11/30: (1 − t, 1, t) has it at 120 + 60 (2t − 1)/t, t = 6/7.
+    // Hue 170 lies in the gap from yellow at 0.3 to cyan at 11/30: (1 − t, 1, t) has it at 120 + 60 (2t − 1)/t, t =
+    // 6/7.
     CHECK(intensityOfHue(tents(3), 170) == Approx(0.3 + 6.0 / 7 / 15).margin(1.0 / 4096));
     CHECK(intensityOfHue(tents(3), -60) == Approx(5.0 / 6));
     // Between red and yellow, linear in sRGB, hue 30 is where green is ½.
@@ -221,13 +223,14 @@ TEST_CASE("what is chosen becomes more opaque than global refinement leaves it, 
         WARN("SKIPPED: there is no folder " << folder);
         return;
     }
-    // The skull as a ring on a cut through the head, seen from above; enamel on a cut through the tooth. Their
-    // intensities are those of the tents and ramp points whose colours are seen there.
+    // The skull as a ring on a cut through the head, seen from above; enamel and its border on a cut through the tooth.
+    // The intensities are those of the tents, and of the ramp's points, whose colours are seen there.
     View headCut, toothCut;
     headCut.clipping.hi.z = 0.6;
     toothCut.clipping.lo.y = 0.5;
-    const RealCase cases[] = {{"cranium_ct/cranium_ct.nrrd", headCut, {0, 90, 1}, 96, 110, 101, 150, 2.0 / 6, 4.0 / 6},
-                              {"tooth/tooth.mhd", toothCut, {0, 0, 1}, 105, 190, 115, 215, 5.0 / 6, 1}};
+    const RealCase cases[] = {{"cranium_ct/cranium_ct.nrrd", headCut, anglesOf(StandardView::Top, Frame::Patient), 96,
+                               110, 101, 150, 2.0 / 6, 4.0 / 6},
+                              {"tooth/tooth.mhd", toothCut, {0, 0, 1}, 105, 190, 115, 215, 4.0 / 6, 1}};
     for (const RealCase& c : cases) {
         VolumeSource source;
         source.path = folder + c.file;
