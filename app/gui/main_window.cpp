@@ -83,7 +83,11 @@ void MainWindow::addPanels() {
         dock->setWidget(panel.make(*m_bench, dock));
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
-        if (panel.tabOf != nullptr) tabifyDockWidget(findChild<QDockWidget*>(QString(panel.tabOf) + "Dock"), dock);
+        if (panel.tabOf != nullptr) {
+            auto* first = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
+            tabifyDockWidget(first, dock);
+            first->raise();
+        }
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
         if (panel.shown)

@@ -76,6 +76,11 @@ void PaletteBar::paintEvent(QPaintEvent*) {
         painter.fillRect(QRectF(x, r.top(), width, r.height()),
                          colorFromRgb(sampler.color(m_canvas.axis().toIntensity(x + width / 2, r))));
     }
+    QFont small = font();
+    small.setPointSizeF(small.pointSizeF() * 0.85);
+    painter.setFont(small);
+    painter.setPen(theme::kFaint);
+    painter.drawText(QRectF(0, r.top(), r.left() - 5, r.height()), Qt::AlignRight | Qt::AlignVCenter, tr("palette"));
     painter.setRenderHint(QPainter::Antialiasing);
     painter.setPen(QPen(hasFocus() ? theme::kAccent : theme::kLine, 1));
     painter.setBrush(Qt::NoBrush);
@@ -99,8 +104,8 @@ void PaletteBar::paintEvent(QPaintEvent*) {
         painter.drawLine(QPointF(at.x(), r.top()), QPointF(at.x(), r.bottom()));
         painter.setPen(QPen(QColor(0, 0, 0, 200), 1));
         painter.setBrush(QColor(Qt::white));
-        painter.drawPolygon(QPolygonF({QPointF(at.x() - kHead, 0.5), QPointF(at.x() + kHead, 0.5),
-                                       QPointF(at.x(), r.top() + 1)}));
+        painter.drawPolygon(
+            QPolygonF({QPointF(at.x() - kHead, 0.5), QPointF(at.x() + kHead, 0.5), QPointF(at.x(), r.top() + 1)}));
     }
 }
 
@@ -129,8 +134,8 @@ void PaletteBar::mouseReleaseEvent(QMouseEvent* event) {
 
 void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
     if (!isReady() || m_dragging) return;
-    const double x = event->reason() == QContextMenuEvent::Keyboard ? marked().value_or(0.5)
-                                                                    : intensityAt(QPointF(event->pos()));
+    const double x =
+        event->reason() == QContextMenuEvent::Keyboard ? marked().value_or(0.5) : intensityAt(QPointF(event->pos()));
     QMenu menu(this);
     menu.setObjectName("paletteMenu");
     menu.addAction(tr("Refine for %1").arg(valueText(x)), this, [this, x] { m_bench.refining().prioritize(x); });

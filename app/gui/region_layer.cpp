@@ -26,7 +26,8 @@ glm::dvec2 fractionOf(const QPointF& point, const QSizeF& size) {
 
 QPolygonF polygonOf(const ImageRegion& region, const QSizeF& size) {
     QPolygonF polygon;
-    for (const glm::dvec2& corner : region.outline) polygon << QPointF(corner.x * size.width(), corner.y * size.height());
+    for (const glm::dvec2& corner : region.outline)
+        polygon << QPointF(corner.x * size.width(), corner.y * size.height());
     return polygon;
 }
 
@@ -131,7 +132,8 @@ void RegionLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const Overla
         }
         break;
     case Grip::Move:
-        m_region = moved(m_start, {(point.x() - m_from.x()) / m_size.width(), (point.y() - m_from.y()) / m_size.height()});
+        m_region =
+            moved(m_start, {(point.x() - m_from.x()) / m_size.width(), (point.y() - m_from.y()) / m_size.height()});
         break;
     case Grip::Resize: {
         const glm::dvec2 by = to - from;
@@ -158,7 +160,8 @@ void RegionLayer::release() {
     const bool click = region->outline.size() < 3 || bounds.width() < kSmallest || bounds.height() < kSmallest;
     if (click || *region == m_start) return;
     RefineController& refining = m_bench.refining();
-    refining.prioritize(*region, grip == Grip::Draw ? QObject::tr("Refine for a region") : QObject::tr("Change region"));
+    refining.prioritize(*region,
+                        grip == Grip::Draw ? QObject::tr("Refine for a region") : QObject::tr("Change region"));
     if (grip == Grip::Draw) refining.setSelecting(Selecting::Nothing); // the mouse turns the volume again
 }
 

@@ -13,7 +13,7 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr std::size_t kMostKept = 64;   // refinements that undo and redo find again
+constexpr std::size_t kMostKept = 64;    // refinements that undo and redo find again
 constexpr std::size_t kMostRegions = 16; // whose colours are kept
 constexpr int kLookSize = 320;           // pixels along the longer side of the picture that a region is taken from
 
@@ -30,7 +30,9 @@ Run runOf(const Refinement& refinement) {
 
 /// What an edit has moved, but for one that has moved everything: the hand that holds a point keeps it.
 std::vector<std::size_t> heldPoints(const TransferFunction& before, const TransferFunction& after) {
-    const auto isSame = [](const ControlPoint& a, const ControlPoint& b) { return a.x == b.x && a.opacity == b.opacity; };
+    const auto isSame = [](const ControlPoint& a, const ControlPoint& b) {
+        return a.x == b.x && a.opacity == b.opacity;
+    };
     std::vector<std::size_t> held;
     std::size_t movable = 0;
     for (std::size_t i = 0; i < after.points.size(); ++i) {
@@ -74,9 +76,8 @@ RefineController::RefineController(Workbench& bench)
               m_pending.reset();
               refineForRegion(look);
           }) {
-    bench.store().setConsequence([this](const Scene& before, const Scene& after, Session& session) {
-        return follow(before, after, session);
-    });
+    bench.store().setConsequence(
+        [this](const Scene& before, const Scene& after, Session& session) { return follow(before, after, session); });
     connect(&m_look, &JobBase::busyChanged, this, &RefineController::busyChanged);
     connect(&m_look, &JobBase::cancelled, this, [this] { m_pending.reset(); });
     connect(&m_look, &JobBase::failed, this, [this](const Error& error) {
@@ -404,7 +405,8 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
     if (!edited && before.session.refine == after.session.refine) return {};
     const auto priority = priorityOf(settings);
     if (!priority) {
-        QMetaObject::invokeMethod(this, [this] { refine(); }, Qt::QueuedConnection);
+        QMetaObject::invokeMethod(
+            this, [this] { refine(); }, Qt::QueuedConnection);
         return {};
     }
     try {
@@ -414,7 +416,8 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
         by.maxIterations = settings.maxIterations;
         by.method = settings.method;
         by.priority = *priority;
-        Refinement r = refineFrom(after.tf, after, by, edited ? heldPoints(before.tf, after.tf) : std::vector<std::size_t>());
+        Refinement r =
+            refineFrom(after.tf, after, by, edited ? heldPoints(before.tf, after.tf) : std::vector<std::size_t>());
         if (r.after == r.before) return {};
         session.setTf(r.after);
         keep(std::move(r));

@@ -74,8 +74,8 @@ public:
     void setGhostShown(bool shown);
 
 Q_SIGNALS:
-    void refined();          ///< current() and latest() have changed
-    void busyChanged();      ///< isBusy() or region() may have changed
+    void refined();     ///< current() and latest() have changed
+    void busyChanged(); ///< isBusy() or region() may have changed
     void selectingChanged();
     void ghostChanged();
 
@@ -102,9 +102,9 @@ private:
     void say(const QString& text);
 
     Workbench& m_bench;
-    std::deque<Refinement> m_kept;      ///< the latest last
-    bool m_latestIsPreview = false;     ///< the next one of the same preview takes its place
-    bool m_quiet = false;               ///< what happens is refinement: nothing follows of it
+    std::deque<Refinement> m_kept;  ///< the latest last
+    bool m_latestIsPreview = false; ///< the next one of the same preview takes its place
+    bool m_quiet = false;           ///< what happens is refinement: nothing follows of it
     std::optional<TransferFunction> m_dragStart;
     std::deque<std::pair<ImageRegion, std::vector<RegionColor>>> m_colors; ///< the latest last
     std::optional<ImageRegion> m_pending;

@@ -151,8 +151,8 @@ void EnergyPlot::paintEvent(QPaintEvent*) {
     painter.drawLine(plot.bottomLeft(), plot.bottomRight());
     QPolygonF line;
     for (std::size_t i = 0; i < logs.size(); ++i)
-        line << QPointF(plot.left() + static_cast<double>(i) / std::max<double>(1, static_cast<double>(logs.size()) - 1) *
-                                          plot.width(),
+        line << QPointF(plot.left() + static_cast<double>(i) /
+                                          std::max<double>(1, static_cast<double>(logs.size()) - 1) * plot.width(),
                         plot.bottom() - (logs[i] - bottom) / span * plot.height());
     painter.setPen(QPen(m_current ? theme::kAccent : theme::kFaint, 1.5));
     painter.drawPolyline(line);
@@ -168,24 +168,22 @@ void EnergyPlot::paintEvent(QPaintEvent*) {
 RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_refine(new QPushButton(tr("&Refine"), this)),
       m_pair(new QPushButton(tr("&Side by side…"), this)), m_live(new QCheckBox(tr("Li&ve"), this)),
-      m_auto(new QCheckBox(tr("auto"), this)), m_ghost(new QCheckBox(tr("&Ghost of the curve before"), this)),
+      m_auto(new QCheckBox(tr("auto"), this)), m_ghost(new QCheckBox(tr("&Ghost of the curve"), this)),
       m_priority(new QLabel(this)), m_nothing(new QToolButton(this)), m_method(new QComboBox(this)),
       m_down(new QDoubleSpinBox(this)), m_up(new QDoubleSpinBox(this)), m_limit(new QSpinBox(this)),
       m_words(new QLabel(this)), m_figures(new QLabel(this)), m_comparison(new QLabel(this)),
       m_edges(new EdgeBars(this)), m_plot(new EnergyPlot(this)),
-      m_compare(
-          [](const Comparing& task, const JobControl& job) {
-              return compareMethods(*task.histogram, task.start, task.options, job);
-          },
-          [this](const Comparing&, RefineComparison& answer) {
-              const double greedy = answer.greedyEnergy, exact = answer.exactEnergy;
-              const double less = greedy > 0 ? 100 * (1 - exact / greedy) : 0;
-              m_comparison->setText(less < 0.01 ? tr("Exact and greedy come to the same at equal total opacity.")
-                                                : tr("At equal total opacity the exact energy is %1 % lower than "
-                                                     "greedy's: %2, not %3.")
-                                                      .arg(QString::number(less, 'g', 3), shortNumber(exact),
-                                                           shortNumber(greedy)));
-          }) {
+      m_compare([](const Comparing& task,
+                   const JobControl& job) { return compareMethods(*task.histogram, task.start, task.options, job); },
+                [this](const Comparing&, RefineComparison& answer) {
+                    const double greedy = answer.greedyEnergy, exact = answer.exactEnergy;
+                    const double less = greedy > 0 ? 100 * (1 - exact / greedy) : 0;
+                    m_comparison->setText(
+                        less < 0.01 ? tr("Exact and greedy come to the same at equal total opacity.")
+                                    : tr("At equal total opacity the exact energy is %1 % lower than "
+                                         "greedy's: %2, not %3.")
+                                          .arg(QString::number(less, 'g', 3), shortNumber(exact), shortNumber(greedy)));
+                }) {
     setObjectName("refinePanel");
     m_refine->setObjectName("refineNowButton");
     m_refine->setToolTip(tr("Refine the opacities with these settings (Ctrl+R)"));
@@ -251,35 +249,37 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     auto* head = new QHBoxLayout;
     head->addWidget(m_refine, 1);
     head->addWidget(m_live);
-    head->addWidget(m_pair, 1);
     column->addLayout(head);
     auto* priority = new QHBoxLayout;
     priority->addWidget(m_priority, 1);
-    for (const auto& [id, text] : {std::pair{"rectangleAction", tr("Rectangle")}, std::pair{"lassoAction", tr("Lasso")}}) {
+    priority->addWidget(m_nothing);
+    column->addLayout(priority);
+    auto* selecting = new QHBoxLayout;
+    for (const auto& [id, text] :
+         {std::pair{"rectangleAction", tr("Select rectangle")}, std::pair{"lassoAction", tr("Select with lasso")}}) {
         QAction* action = m_bench.actions().find(id);
         auto* button = new QToolButton(this);
         button->setObjectName(QString(id).replace("Action", "Button"));
         button->setText(text);
         button->setToolTip(action->toolTip());
         button->setCheckable(true);
+        button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
         connect(button, &QToolButton::clicked, action, &QAction::trigger);
         connect(action, &QAction::changed, button, [button, action] {
             button->setChecked(action->isChecked());
             button->setEnabled(action->isEnabled());
         });
-        priority->addWidget(button);
+        selecting->addWidget(button, 1);
     }
-    priority->addWidget(m_nothing);
-    column->addLayout(priority);
+    column->addLayout(selecting);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(5);
     form->addRow(tr("&Method"), m_method);
-    auto* steps = new QHBoxLayout;
-    steps->addWidget(m_down, 1);
-    steps->addWidget(new QLabel(tr("up"), this));
-    steps->addWidget(m_up, 1);
-    steps->addWidget(m_auto);
-    form->addRow(tr("Step down"), steps);
+    auto* up = new QHBoxLayout;
+    up->addWidget(m_up, 1);
+    up->addWidget(m_auto);
+    form->addRow(tr("Step &down"), m_down);
+    form->addRow(tr("Step up"), up);
     form->addRow(tr("At most"), m_limit);
     column->addLayout(form);
     column->addWidget(m_words);
@@ -287,7 +287,10 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     column->addWidget(m_edges);
     column->addWidget(m_plot);
     column->addWidget(m_comparison);
-    column->addWidget(m_ghost);
+    auto* foot = new QHBoxLayout;
+    foot->addWidget(m_ghost, 1);
+    foot->addWidget(m_pair);
+    column->addLayout(foot);
     column->addStretch(1);
     fillScrolled(this, content);
 
@@ -307,9 +310,7 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     connect(&m_wait, &QTimer::timeout, this, &RefinePanel::compare);
     RefineController& refining = m_bench.refining();
     connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.volume != after.volume || !(before.tf == after.tf) ||
-            !before.session.refine.isSame(after.session.refine))
-            follow();
+        if (before.volume != after.volume || !before.session.refine.isSame(after.session.refine)) follow();
     });
     connect(&refining, &RefineController::refined, this, &RefinePanel::follow);
     connect(&refining, &RefineController::busyChanged, this, &RefinePanel::showPriority);
