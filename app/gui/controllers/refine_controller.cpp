@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostKept = 64;    // refinements that undo and redo find again
 constexpr std::size_t kMostRegions = 16; // whose colours are kept
+constexpr double kMostGivenWay = 4;      // factor between an opacity and what one live edit makes of it
 constexpr int kLookSize = 320;           // pixels along the longer side of the picture that a region is taken from
 
 Run runOf(const Refinement& refinement) {
@@ -28,23 +29,39 @@ Run runOf(const Refinement& refinement) {
     return run;
 }
 
-/// What an edit has moved, but for one that has moved everything: the hand that holds a point keeps it.
+/// The points whose opacity an edit has set, but for an edit that has set all of them: who holds a point keeps it.
 std::vector<std::size_t> heldPoints(const TransferFunction& before, const TransferFunction& after) {
-    const auto isSame = [](const ControlPoint& a, const ControlPoint& b) {
-        return a.x == b.x && a.opacity == b.opacity;
-    };
+    const bool sameCount = before.points.size() == after.points.size();
     std::vector<std::size_t> held;
     std::size_t movable = 0;
     for (std::size_t i = 0; i < after.points.size(); ++i) {
-        if (after.points[i].fixed) continue;
+        const ControlPoint& point = after.points[i];
+        if (point.fixed) continue;
         ++movable;
-        const bool same = before.points.size() == after.points.size()
-                              ? isSame(before.points[i], after.points[i])
-                              : std::any_of(before.points.begin(), before.points.end(),
-                                            [&](const ControlPoint& p) { return isSame(p, after.points[i]); });
+        const auto isSame = [&](const ControlPoint& p) { return p.x == point.x && p.opacity == point.opacity; };
+        const bool same = sameCount ? before.points[i].opacity == point.opacity
+                                    : std::any_of(before.points.begin(), before.points.end(), isSame);
         if (!same) held.push_back(i);
     }
     return held.size() == movable ? std::vector<std::size_t>() : held;
+}
+
+/// What live refinement of an edit starts from: held points are fixed, and the others have given way, or filled up, so
+/// that the total opacity is as it was; equal steps up and down keep it.
+TransferFunction liveStart(const TransferFunction& before, const TransferFunction& after,
+                           const std::vector<std::size_t>& held) {
+    TransferFunction start = after;
+    for (const std::size_t i : held) start.points[i].fixed = true;
+    if (held.empty() || before.points.size() != after.points.size()) return start;
+    double given = 0, others = 0;
+    for (const std::size_t i : held) given += after.points[i].opacity - before.points[i].opacity;
+    for (const ControlPoint& point : start.points)
+        if (!point.fixed) others += point.opacity;
+    if (!(others > 0)) return start;
+    const double factor = std::clamp((others - given) / others, 1 / kMostGivenWay, kMostGivenWay);
+    for (ControlPoint& point : start.points)
+        if (!point.fixed) point.opacity = std::min(1.0, factor * point.opacity);
+    return start;
 }
 
 /// Whether refinement may come out another way.
@@ -122,7 +139,7 @@ void RefineController::addActions() {
     actions.add({.id = "liveRefineAction",
                  .menu = menu,
                  .text = tr("Refine &live"),
-                 .tip = tr("Refine after every edit; what you move stays where you put it, the other points follow"),
+                 .tip = tr("Refine after every edit; what you move stays where you put it, the other points give way"),
                  .trigger =
                      [this] {
                          m_bench.store().edit(tr("Live refinement"), {}, [](Session& session) {
@@ -220,14 +237,13 @@ TransferFunction RefineController::startOfPriority() const {
     return now != nullptr && now->options.priority.any() ? now->before : m_bench.scene().tf;
 }
 
-Refinement RefineController::refineFrom(const TransferFunction& start, const Scene& scene, RefineOptions options,
-                                        const std::vector<std::size_t>& held) {
-    Refinement r{scene.volume, start, {}, start, std::move(options), {}, {}};
-    for (const std::size_t i : held) r.start.points[i].fixed = true;
+Refinement RefineController::refineFrom(const TransferFunction& before, const TransferFunction& start,
+                                        const Scene& scene, RefineOptions options) const {
+    Refinement r{scene.volume, before, {}, start, std::move(options), {}, {}};
     // A few milliseconds, of the histogram alone: no reason to go to another thread.
     r.result = pellucid::refine(*scene.histogram, r.start, r.options);
     r.after = r.result.tf;
-    for (const std::size_t i : held) r.after.points[i].fixed = false;
+    for (std::size_t i = 0; i < r.after.points.size(); ++i) r.after.points[i].fixed = before.points[i].fixed;
     r.words = QString::fromStdString(changeText(opacityChanges(r.before, r.after)));
     return r;
 }
@@ -258,7 +274,7 @@ void RefineController::refine() {
     const RefineSettings& settings = *store.session().refine;
     if (!priorityOf(settings)) return look(*settings.region, tr("Refine"));
     try {
-        Refinement r = refineFrom(store.scene().tf, store.scene(), options());
+        Refinement r = refineFrom(store.scene().tf, store.scene().tf, store.scene(), options());
         if (r.after == r.before) return sayRefined(r);
         const QScopedValueRollback quiet(m_quiet, true);
         keep(r);
@@ -291,7 +307,7 @@ void RefineController::dragPriority(double x) {
         RefineOptions by = options();
         by.priority = {};
         by.priority.intensity = std::clamp(x, 0.0, 1.0);
-        Refinement r = refineFrom(*m_dragStart, store.scene(), by);
+        Refinement r = refineFrom(*m_dragStart, *m_dragStart, store.scene(), by);
         const QScopedValueRollback quiet(m_quiet, true);
         store.preview(tr("Refine for an intensity"), [&](Session& session) {
             session.refine.edit([&](RefineSettings& s) {
@@ -351,7 +367,8 @@ void RefineController::refineForRegion(const Look& look) {
         RefineOptions by = options();
         by.priority = {};
         by.priority.region = *colorsOf(look.region);
-        Refinement r = refineFrom(startOfPriority(), store.scene(), by);
+        const TransferFunction start = startOfPriority();
+        Refinement r = refineFrom(start, start, store.scene(), by);
         const QScopedValueRollback quiet(m_quiet, true);
         keep(r);
         store.edit(look.text, {}, [&](Session& session) {
@@ -416,8 +433,8 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
         by.maxIterations = settings.maxIterations;
         by.method = settings.method;
         by.priority = *priority;
-        Refinement r =
-            refineFrom(after.tf, after, by, edited ? heldPoints(before.tf, after.tf) : std::vector<std::size_t>());
+        const auto held = edited ? heldPoints(before.tf, after.tf) : std::vector<std::size_t>();
+        Refinement r = refineFrom(after.tf, liveStart(before.tf, after.tf, held), after, by);
         if (r.after == r.before) return {};
         session.setTf(r.after);
         keep(std::move(r));

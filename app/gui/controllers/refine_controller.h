@@ -22,8 +22,8 @@ class Workbench;
 struct Refinement {
     std::shared_ptr<const Volume> volume;
     TransferFunction before, after; ///< written for the volume's window
-    TransferFunction start;         ///< `before` with what an edit holds fixed
-    RefineOptions options;          ///< with what was prioritized
+    TransferFunction start; ///< `before`; of a live one with what the edit holds fixed, and the others given way
+    RefineOptions options;  ///< with what was prioritized
     RefineResult result;
     QString words; ///< "air −40 %, enamel × 3"
 };
@@ -92,9 +92,9 @@ private:
     const std::vector<RegionColor>* colorsOf(const ImageRegion& region) const;
     /// Empty: the colours of the region are not known yet.
     std::optional<RefinePriority> priorityOf(const RefineSettings& settings) const;
-    /// Refines `start`, in which the points `held` stay, and keeps what came of it.
-    Refinement refineFrom(const TransferFunction& start, const Scene& scene, RefineOptions options,
-                          const std::vector<std::size_t>& held = {});
+    /// Refines `start`, which is `before` but for what an edit holds fixed and makes give way.
+    Refinement refineFrom(const TransferFunction& before, const TransferFunction& start, const Scene& scene,
+                          RefineOptions options) const;
     void keep(Refinement refinement);
     void look(const ImageRegion& region, const QString& text);
     void refineForRegion(const Look& look);

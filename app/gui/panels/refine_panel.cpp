@@ -191,7 +191,7 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     m_pair->setToolTip(tr("The picture before and after the latest refinement"));
     m_live->setObjectName("liveRefineCheck");
     m_live->setToolTip(tr("Refine after every edit: what you move stays where you put it,\n"
-                          "the other points that are not fixed follow"));
+                          "the other points give way evenly, so that the total opacity stays"));
     m_auto->setObjectName("refineStepUpAuto");
     m_auto->setToolTip(tr("From the step down and the ratio of the two points' significances (thesis 3.4.2)"));
     m_ghost->setObjectName("ghostCheck");
