@@ -1,6 +1,7 @@
 #include "controllers/refine_controller.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <QScopedValueRollback>
 
@@ -77,7 +78,9 @@ bool hasMoved(const TransferFunction& before, const TransferFunction& after, boo
 
 QString evennessText(double energyBefore, double energyAfter) {
     if (!(energyAfter > 0) || energyBefore / energyAfter > 1e6) return QObject::tr("edge weights all but equal");
-    return QObject::tr("edge weights %1 × more even").arg(QString::number(energyBefore / energyAfter, 'g', 3));
+    const double ratio = energyBefore / energyAfter;
+    return QObject::tr("edge weights %1 × more even")
+        .arg(ratio < 100 ? QString::number(ratio, 'g', 3) : QStringLiteral("%L1").arg(std::lround(ratio)));
 }
 
 RefineController::RefineController(Workbench& bench)

@@ -423,11 +423,13 @@ void RefinePanel::showOutcome() {
     }
     m_words->setText(any->words);
     const RefineResult& result = any->result;
-    m_figures->setText(tr("%1: energy %2, from %3, in %L4 iterations%5")
-                           .arg(evennessText(result.energyMovableBefore, result.energyMovableAfter),
-                                shortNumber(result.energyMovableAfter), shortNumber(result.energyMovableBefore))
-                           .arg(result.iterations)
-                           .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")));
+    QString evenness = evennessText(result.energyMovableBefore, result.energyMovableAfter);
+    evenness[0] = evenness[0].toUpper();
+    m_figures->setText(
+        tr("%1: energy %2, from %3, in %L4 iterations%5")
+            .arg(evenness, shortNumber(result.energyMovableAfter), shortNumber(result.energyMovableBefore))
+            .arg(result.iterations)
+            .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")));
     m_plot->setCurve(result.energyCurve, result.iterations, now != nullptr);
     if (now != nullptr) m_wait.start();
 }
