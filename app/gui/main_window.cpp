@@ -84,9 +84,9 @@ void MainWindow::addPanels() {
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
         if (panel.tabOf != nullptr) {
-            auto* first = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
-            tabifyDockWidget(first, dock);
-            first->raise();
+            auto* beside = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
+            tabifyDockWidget(beside, dock);
+            beside->raise();
         }
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
