@@ -20,10 +20,12 @@ struct Command {
 
 Command addInfo(CLI::App& program);
 Command addSamples(CLI::App& program);
+Command addPresets(CLI::App& program);
 Command addGenerate(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addMeasure(CLI::App& program);
 Command addFields(CLI::App& program);
+Command addPropose(CLI::App& program);
 Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
 Command addBench(CLI::App& program);

@@ -89,7 +89,7 @@ double intensityOfHue(const TransferFunction& tf, double hueDegrees) {
         bestOpacity = opacity;
     }
     if (best < 0)
-        throw Error("no colour of the transfer function has a hue", "", "prioritize an intensity, or give it colours");
+        throw Error("no colour has a hue", "transfer function", "prioritize an intensity, or give it colours");
     return best;
 }
 

@@ -16,7 +16,8 @@ std::vector<RegionColor> regionColors(const Image& picture, const ImageRegion& r
                 pixels.push_back({p[0], p[1], p[2]});
         }
     if (pixels.empty())
-        throw Error("nothing is to be seen in the region", "", "choose a part of the picture that shows something");
+        throw Error("nothing is to be seen", "region of the picture",
+                    "choose a part of the picture that shows something");
     std::sort(pixels.begin(), pixels.end());
     std::vector<RegionColor> colors;
     for (std::size_t i = 0; i < pixels.size(); ++i) {

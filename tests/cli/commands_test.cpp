@@ -554,10 +554,12 @@ TEST_CASE("refine prioritizes an intensity, a hue, or what a region shows", "[cl
     for (std::size_t i = 1; i <= 9; ++i) sum += cut["factors"][i].get<double>();
     CHECK(sum == Approx(1));
     // Three intervals are voxels of the data, as in all commands.
-    const json part =
-        w.json({"refine", "sample:shells", "--size", "24", "--tf", "tents:3", "--region", "0:12,0:24,0:24"});
-    CHECK(part["edges_before"] != w.json(base)["edges_before"]);
-    CHECK(part["priority"]["kind"] == "none");
+    const Outcome part =
+        w.run({"refine", "sample:shells", "--size", "24", "--tf", "tents:3", "--region", "0:12,0:24,0:24", "--json"});
+    CHECK(part.err.find("12 x 24 x 24") != std::string::npos);
+    const json halved = json::parse(part.out);
+    CHECK(halved["edges_before"] != w.json(base)["edges_before"]);
+    CHECK(halved["priority"]["kind"] == "none");
 }
 
 TEST_CASE("refine leaves fixed control points alone", "[cli]") {

@@ -6,7 +6,7 @@ namespace pellucid::cli {
 
 void TfOptions::add(CLI::App& app) {
     addValue(
-        app, "--tf", "FILE|tents:N[:PEAK]|ramp:N",
+        app, "--tf", "FILE|tents:N[:PEAK]|ramp:N|preset:NAME",
         [this](const std::string& text, const std::string& option) {
             if (text.empty()) throw UsageError("the name is empty", option, "give a file, tents:N[:PEAK] or ramp:N");
             spec = text;

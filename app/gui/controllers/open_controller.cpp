@@ -13,6 +13,7 @@
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
 #include "tf/formats/tf_json.h"
+#include "tf/presets.h"
 #include "volume/excerpt.h"
 #include "volume/procedural.h"
 #include "workbench.h"
@@ -55,6 +56,11 @@ VolumeSource recentSource(const QString& entry) {
     }
     const nlohmann::json document = nlohmann::json::parse(entry.toStdString(), nullptr, false);
     return sessionFromJson({document, "recent files"}, "").session.variable().source;
+}
+
+/// Whether what names a transfer function names a file.
+bool isTfFile(const QString& specOrPath) {
+    return !tfFromSpec(specOrPath.toStdString()) && !tfFromPresetSpec(specOrPath.toStdString());
 }
 
 } // namespace
@@ -211,7 +217,7 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 }
 
 void OpenController::show(const Request& request, Opened& opened) {
-    const bool ownTf = opened.tfError || request.tfPath.isEmpty() || tfFromSpec(request.tfPath.toStdString());
+    const bool ownTf = opened.tfError || request.tfPath.isEmpty() || !isTfFile(request.tfPath);
     m_tfPath = ownTf ? QString() : request.tfPath;
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
@@ -269,7 +275,7 @@ void OpenController::openTf(const QString& specOrPath) {
     if (m_bench.isReadOnly() || !store.hasVolume()) return;
     try {
         const TransferFunction tf = loadTf(specOrPath.toStdString());
-        const bool isFile = !tfFromSpec(specOrPath.toStdString());
+        const bool isFile = isTfFile(specOrPath);
         const auto change = [tf](Session& session) {
             TransferFunction placed = tf;
             session.variables.edit([&](std::vector<Variable>& all) {
