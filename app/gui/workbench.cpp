@@ -5,6 +5,7 @@
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
+#include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
 #include "controllers/slice_actions.h"
 #include "controllers/tf_actions.h"
@@ -16,6 +17,7 @@ namespace pellucid::gui {
 
 Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
     m_optimizing = std::make_unique<OptimizeController>(*this);
+    m_refining = std::make_unique<RefineController>(*this);
     m_saving = std::make_unique<SaveController>(*this);
     m_opening = std::make_unique<OpenController>(*this);
     m_recovery = std::make_unique<RecoveryController>(*this);
@@ -26,6 +28,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     addEditActions();
     addTfActions(*this);
     addFeatureActions(*this);
+    m_refining->addActions();
     m_optimizing->addActions();
     addViewActions(*this);
     addFrameActions(*this);
@@ -49,6 +52,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
         Q_EMIT idleChanged();
     });
     connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
 }
 
@@ -58,6 +62,7 @@ Workbench::~Workbench() {
     m_recovery.reset();
     m_opening.reset();
     m_saving.reset();
+    m_refining.reset();
     m_optimizing.reset();
 }
 
@@ -85,7 +90,7 @@ bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_saving->isBusy() && !m_optimizing->isRunning() &&
-           !m_results.isBusy();
+           !m_refining->isBusy() && !m_results.isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

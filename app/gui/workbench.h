@@ -18,6 +18,7 @@ namespace pellucid::gui {
 class OpenController;
 class OptimizeController;
 class RecoveryController;
+class RefineController;
 class SaveController;
 
 /// The services of one window. Panels and controllers get it, and know nothing of each other.
@@ -50,6 +51,7 @@ public:
     SaveController& saving() { return *m_saving; }
     OptimizeController& optimizing() { return *m_optimizing; }
     RecoveryController& recovery() { return *m_recovery; }
+    RefineController& refining() { return *m_refining; }
 
     /// Nothing may be edited: an optimization shows its moves.
     bool isReadOnly() const;
@@ -69,6 +71,7 @@ private:
 
     QWidget* m_window;
     std::unique_ptr<OptimizeController> m_optimizing;
+    std::unique_ptr<RefineController> m_refining;
     std::unique_ptr<SaveController> m_saving;
     std::unique_ptr<OpenController> m_opening;
     std::unique_ptr<RecoveryController> m_recovery;
