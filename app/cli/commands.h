@@ -24,6 +24,7 @@ Command addGenerate(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addMeasure(CLI::App& program);
 Command addFields(CLI::App& program);
+Command addPropose(CLI::App& program);
 Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
 Command addBench(CLI::App& program);

@@ -205,7 +205,7 @@ int run(const std::vector<std::string>& arguments) {
 
     const std::array commands{addInfo(program),   addSamples(program),  addGenerate(program),
                               addRender(program), addMeasure(program),  addFields(program),
-                              addRefine(program), addOptimize(program), addBench(program)};
+                              addPropose(program), addRefine(program),  addOptimize(program), addBench(program)};
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);
 
