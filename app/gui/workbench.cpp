@@ -5,6 +5,7 @@
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
 #include "controllers/save_controller.h"
+#include "controllers/start_controller.h"
 #include "controllers/tf_actions.h"
 #include "controllers/view_actions.h"
 #include "error_dialog.h"
@@ -15,12 +16,14 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     m_optimizing = std::make_unique<OptimizeController>(*this);
     m_saving = std::make_unique<SaveController>(*this);
     m_opening = std::make_unique<OpenController>(*this);
+    m_start = std::make_unique<StartController>(*this);
     m_recovery = std::make_unique<RecoveryController>(*this);
 
     // The menus stand in the order in which their first actions come.
     m_opening->addActions();
     m_saving->addActions();
     addEditActions();
+    m_start->addActions();
     addTfActions(*this);
     m_optimizing->addActions();
     addViewActions(*this);
@@ -42,6 +45,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
         Q_EMIT idleChanged();
     });
     connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
 }
 
@@ -49,6 +53,7 @@ Workbench::~Workbench() {
     m_store.disconnect(); // what ends below must not be heard by what has ended already
     m_results.disconnect();
     m_recovery.reset();
+    m_start.reset();
     m_opening.reset();
     m_saving.reset();
     m_optimizing.reset();
@@ -77,7 +82,7 @@ void Workbench::addEditActions() {
 bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
-    return m_store.hasVolume() && !m_opening->isBusy() && !m_saving->isBusy() && !m_optimizing->isRunning() &&
+    return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() && !m_optimizing->isRunning() &&
            !m_results.isBusy();
 }
 

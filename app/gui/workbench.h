@@ -19,6 +19,7 @@ class OpenController;
 class OptimizeController;
 class RecoveryController;
 class SaveController;
+class StartController;
 
 /// The services of one window. Panels and controllers get it, and know nothing of each other.
 class Workbench : public QObject {
@@ -49,6 +50,7 @@ public:
     OpenController& opening() { return *m_opening; }
     SaveController& saving() { return *m_saving; }
     OptimizeController& optimizing() { return *m_optimizing; }
+    StartController& start() { return *m_start; }
     RecoveryController& recovery() { return *m_recovery; }
 
     /// Nothing may be edited: an optimization shows its moves.
@@ -71,6 +73,7 @@ private:
     std::unique_ptr<OptimizeController> m_optimizing;
     std::unique_ptr<SaveController> m_saving;
     std::unique_ptr<OpenController> m_opening;
+    std::unique_ptr<StartController> m_start;
     std::unique_ptr<RecoveryController> m_recovery;
 };
 

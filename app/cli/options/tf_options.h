@@ -11,7 +11,7 @@
 namespace pellucid::cli {
 
 struct TfOptions {
-    std::optional<std::string> spec; ///< a file, tents:N[:PEAK] or ramp:N
+    std::optional<std::string> spec; ///< a file, auto, tents:N[:PEAK] or ramp:N
 
     void add(CLI::App& app);
     void applyTo(SceneInputs& inputs) const { inputs.tf = spec; }
