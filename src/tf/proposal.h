@@ -7,22 +7,11 @@
 #include <vector>
 
 #include "base/job.h"
+#include "tf/data_kind.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
 
 namespace pellucid {
-
-enum class DataKind {
-    Continuous, ///< intensities without further meaning
-    Ct,         ///< Hounsfield units
-    Signed,     ///< values of both signs about 0: differences, t-maps
-    Labels,     ///< few whole numbers, each a thing of its own
-    Binary,     ///< two values
-    Constant,   ///< one value
-    Empty       ///< no valid voxel
-};
-/// "continuous", "ct", "signed", "labels", "binary", "constant", "empty".
-const char* name(DataKind kind);
 
 struct ProposedFeature {
     std::string name;

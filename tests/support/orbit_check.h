@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/visibility.h"
+#include "support/sample_tf.h"
 #include "volume/loader.h"
 #include "volume/procedural.h"
 
