@@ -192,16 +192,22 @@ std::vector<RayBundle::Appearance> RayBundle::appearances(const std::vector<Tran
 }
 
 std::vector<double> importanceOf(const Proposal& proposal) {
-    double common = 0, rare = 1;
+    double common = 0, rare = 1, farthest = 0;
     for (const ProposedFeature& f : proposal.features) {
         common = std::max(common, f.share);
         rare = std::min(rare, std::max(f.share, 1e-6));
+        farthest = std::max(farthest, std::abs(f.mode));
     }
     std::vector<double> importance;
     for (const ProposedFeature& f : proposal.features) {
         const double rarity =
-            common > rare ? std::log(common / std::max(f.share, 1e-6)) / std::log(common / rare) : 0;
-        importance.push_back(0.7 * f.inside + 0.3 * rarity);
+            common > 1.5 * rare ? std::log(common / std::max(f.share, 1e-6)) / std::log(common / rare) : 0.5;
+        if (proposal.kind == DataKind::Ct) // soft tissue in front of bone
+            importance.push_back(f.mode < -20 ? 0.05 : f.mode < 150 ? 0.15 : f.mode < 700 ? 0.9 : 1);
+        else if (proposal.kind == DataKind::Signed) // the more, the farther from 0
+            importance.push_back(farthest > 0 ? std::abs(f.mode) / farthest : 0);
+        else
+            importance.push_back(proposal.background ? 0.5 * f.inside + 0.5 * rarity : rarity * rarity);
     }
     return importance;
 }
@@ -231,20 +237,26 @@ namespace {
 
 constexpr double kLeast = 1e-4, kMost = 0.98; // of a peak
 
-/// `tf` with other peaks. Where two features meet in one point it takes the lower of the two: withFeatureOpacities()
-/// alone would make a step of it.
+/// `tf` with other peaks. Where two features meet without a step it stays without one, at the lower of the two
+/// opacities: withFeatureOpacities() alone would put one there.
 TransferFunction withPeaks(const TransferFunction& tf, const std::vector<double>& peaks) {
     TransferFunction scaled = withFeatureOpacities(tf, peaks);
     for (std::size_t f = 0; f + 1 < tf.features.size(); ++f) {
         const double x = tf.features[f].b;
-        const auto here = [x](const ControlPoint& p) { return p.x == x; };
-        if (tf.features[f + 1].a != x || std::count_if(tf.points.begin(), tf.points.end(), here) != 1) continue;
-        const auto begin = std::find_if(scaled.points.begin(), scaled.points.end(), here);
-        const auto end = std::find_if_not(begin, scaled.points.end(), here);
-        ControlPoint joined = *std::find_if(tf.points.begin(), tf.points.end(), here);
-        joined.opacity = std::min(begin->opacity, std::prev(end)->opacity);
-        *begin = joined;
-        scaled.points.erase(std::next(begin), end);
+        if (tf.features[f + 1].a != x) continue;
+        const auto pointsAt = [x](auto& points) {
+            const auto begin = std::find_if(points.begin(), points.end(), [x](const auto& p) { return p.x == x; });
+            const auto end = std::find_if(begin, points.end(), [x](const auto& p) { return p.x != x; });
+            return std::pair(begin, end);
+        };
+        const auto [first, end] = pointsAt(tf.points);
+        if (first == end || first->opacity != std::prev(end)->opacity) continue;
+        const auto [scaledFirst, scaledEnd] = pointsAt(scaled.points);
+        const double opacity = std::min(scaledFirst->opacity, std::prev(scaledEnd)->opacity);
+        std::vector<ControlPoint> joined(first, end);
+        for (ControlPoint& p : joined) p.opacity = opacity;
+        const auto at = scaled.points.erase(scaledFirst, scaledEnd);
+        scaled.points.insert(at, joined.begin(), joined.end());
     }
     return scaled;
 }

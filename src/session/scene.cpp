@@ -47,7 +47,9 @@ void proposeStart(Scene& scene, const JobControl& job) {
             scene.histogram.reset();
             scene.codes.reset();
         }
-    scene.session.setTf(proposal->tf);
+    TransferFunction tf = proposal->tf;
+    if (!isWindow(scene.volume->range())) tf.range.reset(); // one value: no two for 0 and 1
+    scene.session.setTf(std::move(tf));
     scene.proposal = std::move(proposal);
 }
 
