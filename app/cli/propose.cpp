@@ -63,7 +63,7 @@ Json jsonOf(const Proposal& p, double seconds) {
 
 Answer run(const Options& o, Progress& progress) {
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
-    Opened opened = resolve(o.scene, progress, {.needsTf = false});
+    Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Stopwatch looking;
     const Volume& volume = *opened.scene.volume;
     Proposal proposal = propose(volume, progress.phase("looking at the data"));
