@@ -1,6 +1,7 @@
 // `propose`: the automatic start.
 #include "tf/proposal.h"
 
+#include "base/round_numbers.h"
 #include "commands.h"
 #include "optimize/first_sight.h"
 #include "output_files.h"
@@ -18,18 +19,21 @@ struct Options {
 };
 
 std::string textOf(const Proposal& p, double seconds) {
-    const std::string unit = p.unit.empty() ? "" : " " + p.unit;
-    std::vector<std::pair<std::string, std::string>> lines{
-        {"kind", name(p.kind)},
-        {"window", rangeText(p.window.lo, p.window.hi) + unit},
-        {"background", p.background ? rangeText(p.background->lo, p.background->hi) + unit : "none found"},
-        {"time", secondsText(seconds)}};
+    // As many digits as the window needs: it may be 1e-9 wide about 1.
+    const auto number = [&](double value) { return numberText(value, p.window.hi - p.window.lo); };
+    const auto range = [&](const ValueRange& r) {
+        return number(r.lo) + " .. " + number(r.hi) + (p.unit.empty() ? "" : " " + p.unit);
+    };
+    std::vector<std::pair<std::string, std::string>> lines{{"kind", name(p.kind)},
+                                                           {"window", range(p.window)},
+                                                           {"background", p.background ? range(*p.background) : "none"},
+                                                           {"time", secondsText(seconds)}};
     for (const std::string& sentence : p.why) lines.emplace_back("why", sentence);
     const std::vector<double> opacities = featureOpacities(p.tf);
     Table features({"feature", "from", "to", "typical", "share %", "inside", "opacity", "colour"});
     for (std::size_t f = 0; f < p.features.size(); ++f) {
         const ProposedFeature& feature = p.features[f];
-        features.add({feature.name, plainText(feature.lo), plainText(feature.hi), plainText(feature.mode),
+        features.add({feature.name, number(feature.lo), number(feature.hi), number(feature.mode),
                       fixedText(100 * feature.share, 2), fixedText(feature.inside, 2), fixedText(opacities[f], 4),
                       hexFromRgb(p.tf.features[f].color)});
     }

@@ -98,7 +98,6 @@ double quantile(const std::vector<double>& sorted, double q) {
 bool isCt(const std::vector<double>& sorted) {
     constexpr double kLeastAir = 0.03, kLeastTissue = 0.03;
     if (quantile(sorted, 0.0005) < -3100 || quantile(sorted, 0.999) > 5000) return false;
-    if (sorted.back() <= 100) return false;
     return shareIn(sorted, kAirHounsfield.lo, kAirHounsfield.hi) >= kLeastAir &&
            shareIn(sorted, -200, 200) >= kLeastTissue;
 }
@@ -107,7 +106,7 @@ bool isCt(const std::vector<double>& sorted) {
 double signedSpread(const std::vector<double>& sorted) {
     constexpr double kBalance = 5;   // how many times farther one side may reach
     constexpr double kCentred = 0.2; // the median's distance from 0, of the farther side
-    std::vector<double> values; // that say something: 0 fills what was masked
+    std::vector<double> values;      // that say something: 0 fills what was masked
     for (const double v : sorted)
         if (v != 0) values.push_back(v);
     if (values.size() < 16) return 0;

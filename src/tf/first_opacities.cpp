@@ -104,9 +104,9 @@ std::vector<double> insideOf(const std::vector<FeatureExtent>& extents) {
 }
 
 std::vector<double> coversOf(const std::vector<FeatureExtent>& extents, bool hasBackground) {
-    constexpr double kOne = 0.8;                                // the only feature
-    constexpr double kLeast = 0.25, kMost = 0.92;               // between features before a background
-    constexpr double kLeastEverywhere = 0.06, kMostEverywhere = 0.85; // where matter is everywhere
+    constexpr double kOne = 0.9;                                     // the only feature
+    constexpr double kLeast = 0.4, kMost = 0.96;                     // between features before a background
+    constexpr double kLeastEverywhere = 0.08, kMostEverywhere = 0.9; // where matter is everywhere
     constexpr double kLeastShare = 1e-6;
     if (extents.size() == 1) return {kOne};
     double common = 0, rare = 1;
@@ -119,12 +119,11 @@ std::vector<double> coversOf(const std::vector<FeatureExtent>& extents, bool has
     for (std::size_t f = 0; f < extents.size(); ++f) {
         const double share = std::max(extents[f].share, kLeastShare);
         // No rarity to speak of where shares are within a factor of 1½.
-        const double rarity =
-            common > 1.5 * rare ? std::log(common / share) / std::log(common / rare) : 0.5;
-        if (hasBackground)
-            covers.push_back(kLeast + (kMost - kLeast) * (0.5 * inside[f] + 0.5 * rarity));
-        else
-            covers.push_back(kLeastEverywhere + (kMostEverywhere - kLeastEverywhere) * rarity * rarity);
+        const double rarity = common > 1.5 * rare ? std::log(common / share) / std::log(common / rare) : 0.5;
+        const double height = static_cast<double>(f) / static_cast<double>(extents.size() - 1);
+        const double weight = hasBackground ? (inside[f] + rarity) / 2 : (height + rarity) / 2;
+        covers.push_back(hasBackground ? kLeast + (kMost - kLeast) * weight
+                                       : kLeastEverywhere + (kMostEverywhere - kLeastEverywhere) * weight * weight);
     }
     return covers;
 }

@@ -26,7 +26,8 @@ double opacityFor(double cover, const FeatureExtent& extent);
 /// How deep each lies among them: 0 the outermost, 1 the innermost; all 0 where there is no difference.
 std::vector<double> insideOf(const std::vector<FeatureExtent>& extents);
 
-/// The alphas that features begin with: the more, the deeper and the rarer. Without a background depth says nothing.
+/// The alphas that features begin with: the more, the deeper and the rarer. Without a background depth says nothing:
+/// the higher the values and the rarer.
 std::vector<double> coversOf(const std::vector<FeatureExtent>& extents, bool hasBackground);
 
 } // namespace pellucid

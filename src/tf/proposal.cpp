@@ -15,16 +15,15 @@ namespace pellucid {
 
 namespace {
 
+constexpr double kMostValue = std::numeric_limits<double>::max() / 4;
+
 /// What all steps look at. Values are clamped to the window, as renderers do.
 struct Evidence {
     const Volume& data;
     VoxelSurvey survey;
     ValueRange window;
 
-    // The ends may lie further apart than the largest double; halves of them do not.
-    double intensity(double value) const {
-        return std::clamp((value / 2 - window.lo / 2) / (window.hi / 2 - window.lo / 2), 0.0, 1.0);
-    }
+    double intensity(double value) const { return std::clamp((value - window.lo) / (window.hi - window.lo), 0.0, 1.0); }
     double value(double intensity) const {
         if (intensity <= 0) return window.lo;
         if (intensity >= 1) return window.hi;
@@ -59,9 +58,9 @@ double median(std::vector<double>& values) {
 /// The most common value of the volume's faces, where it is common there and in the whole. Empty otherwise: matter
 /// fills the volume.
 std::optional<Background> findBackground(const Evidence& e) {
-    constexpr double kNear = 0.04;       // of the window: as far as its values spread
+    constexpr double kNear = 0.04; // of the window: as far as its values spread
     constexpr double kLeastOfFaces = 0.4, kLeastOfAll = 0.05;
-    constexpr double kNoise = 4;         // standard deviations
+    constexpr double kNoise = 4; // standard deviations
     std::vector<double> faces, all, histogram(kClassBins, 0);
     for (std::size_t i = 0; i < e.survey.size(); ++i) {
         const double v = e.survey.values[i];
@@ -96,13 +95,13 @@ std::optional<Background> findBackground(const Evidence& e) {
 /// Voxels per bin; and where materials are, by voxels in no boundary and by the ends of boundaries. What is flat, the
 /// data's own gradients tell: those of the calmer third of what is not background.
 ClassEvidence classEvidence(const Evidence& e, const std::optional<Background>& background, const JobControl& job) {
-    constexpr double kCalm = 0.3;                 // quantile of the gradients that are noise
-    constexpr double kLeastNoise = 0.01;          // of the window per d0
+    constexpr double kCalm = 0.3;        // quantile of the gradients that are noise
+    constexpr double kLeastNoise = 0.01; // of the window per d0
     constexpr double kSteep = 2, kLeastSteep = 0.03;
     const auto isBackground = [&](double v) {
         return background && e.intensity(v) >= background->values.lo && e.intensity(v) <= background->values.hi;
     };
-    const double span = std::min(e.window.hi - e.window.lo, std::numeric_limits<double>::max());
+    const double span = e.window.hi - e.window.lo;
     std::vector<double> gradients;
     for (std::size_t i = 0; i < e.survey.size(); ++i)
         if (!std::isnan(e.survey.values[i]) && !isBackground(e.survey.values[i]))
@@ -168,8 +167,8 @@ TransferFunction trapezoids(const Evidence& e, const std::vector<Part>& parts, c
         const double before = meetsBefore ? std::min(opacities[f - 1], own) : a <= 0 ? own : 0;
         const double after = meetsAfter ? std::min(own, opacities[f + 1]) : b >= 1 ? own : 0;
         const auto add = [&](double x, double opacity) {
-            tf.points.push_back({std::clamp(x, tf.points.empty() ? 0.0 : tf.points.back().x, 1.0), opacity,
-                                 parts[f].color, false, {}});
+            tf.points.push_back(
+                {std::clamp(x, tf.points.empty() ? 0.0 : tf.points.back().x, 1.0), opacity, parts[f].color, false, {}});
         };
         add(a, before);
         if (before < own) add(a + kSlope * (m - a), own);
@@ -204,10 +203,9 @@ void sayBackground(Proposal& result, const Evidence& e, const Background& b) {
 
 /// Nothing to tell apart: one feature over everything.
 Proposal proposeUniform(const Volume& data, VoxelSurvey survey, DataKind kind) {
-    constexpr double kMost = std::numeric_limits<double>::max() / 4;
     Proposal result;
     result.kind = kind;
-    const double value = std::clamp(data.dataRange().lo, -kMost, kMost);
+    const double value = std::clamp(data.dataRange().lo, -kMostValue, kMostValue);
     const double half = std::max(0.5, std::abs(value) * 1e-3);
     Evidence e{data, std::move(survey), {value - half, value + half}};
     result.window = e.window;
@@ -250,8 +248,8 @@ void proposeValues(Proposal& result, const Evidence& e, const std::vector<double
         }
         std::size_t end = std::min(v + each, values.size());
         if (hasBackground && v < most) end = std::min(end, most);
-        const std::string text = end - v == 1 ? "value " + e.text(values[v])
-                                              : "values " + e.text(values[v], values[end - 1]);
+        const std::string text =
+            end - v == 1 ? "value " + e.text(values[v]) : "values " + e.text(values[v], values[end - 1]);
         parts.push_back({{text, border(v), border(end), (values[v] + values[end - 1]) / 2, 0, 0}, {}, 0});
         v = end;
     }
@@ -321,7 +319,7 @@ void proposeCt(Proposal& result, const Evidence& e, const JobControl& job) {
 
     std::vector<Part> parts;
     if (lung) parts.push_back({{"lung", -950, skinBorder, -850, 0, 0}, colors.lung, 0.25});
-    parts.push_back({{"skin and fat", skinBorder, softBorder, fatMode, 0, 0}, colors.fat, 0.3});
+    parts.push_back({{"skin and fat", skinBorder, softBorder, fatMode, 0, 0}, colors.fat, 0.6});
     parts.push_back({{"soft tissue", softBorder, boneBorder, softMode, 0, 0}, colors.soft, 0.35});
     parts.push_back({{"bone", boneBorder, denseBorder, bone.value_or(400), 0, 0}, colors.bone, 0.85});
     parts.push_back({{"dense bone", denseBorder, e.window.hi, dense.value_or(1200), 0, 0}, colors.dense, 0.92});
@@ -342,7 +340,8 @@ void proposeCt(Proposal& result, const Evidence& e, const JobControl& job) {
     result.why.emplace_back("CT in Hounsfield units: air about -1000 and tissue about 0");
     if (found) sayBackground(result, e, *found);
     std::string peaks;
-    for (const auto& [text, mode] : {std::pair("fat", fat), {"soft tissue", soft}, {"bone", bone}, {"dense bone", dense}})
+    for (const auto& [text, mode] :
+         {std::pair("fat", fat), {"soft tissue", soft}, {"bone", bone}, {"dense bone", dense}})
         if (mode) peaks += (peaks.empty() ? "" : ", ") + std::string(text) + " " + e.text(*mode);
     result.why.push_back(peaks.empty() ? "tissues by their usual densities"
                                        : "typical densities: " + peaks + " HU; borders half-way between them");
@@ -352,8 +351,7 @@ void proposeCt(Proposal& result, const Evidence& e, const JobControl& job) {
 void proposeClasses(Proposal& result, const Evidence& e, const JobControl& job) {
     const std::optional<Background> background = findBackground(e);
     const ClassEvidence evidence = classEvidence(e, background, job);
-    const ValueClasses found =
-        findClasses(evidence, background ? std::optional(background->values) : std::nullopt);
+    const ValueClasses found = findClasses(evidence, background ? std::optional(background->values) : std::nullopt);
     if (background) {
         result.background = ValueRange{e.value(found.backgroundLo), e.value(found.backgroundHi)};
         sayBackground(result, e, *background);
@@ -397,7 +395,9 @@ ValueRange windowFor(const Volume& data, const VoxelSurvey& survey, const Recogn
         const double filler = *robust.filler;
         result.why.push_back(numberText(filler, std::abs(filler)) + " is far from all other values: a filler");
     }
-    return window.lo < window.hi ? window : whole;
+    if (!(window.lo < window.hi)) window = whole;
+    // A window's width is a number.
+    return {std::max(window.lo, -kMostValue), std::min(window.hi, kMostValue)};
 }
 
 } // namespace

@@ -45,8 +45,7 @@ std::vector<int> prominentPeaks(const std::vector<double>& density, double promi
                 sum += at(j);
                 if (at(j) < lowest) lowest = at(j), sumToLowest = sum;
             }
-            if (j < 0 || j >= n)
-                lowest = 0, sumToLowest = sum;
+            if (j < 0 || j >= n) lowest = 0, sumToLowest = sum;
             own += sumToLowest;
             saddle = std::max(saddle, lowest);
         }
@@ -100,8 +99,9 @@ constexpr double kProminence = 0.2;      // a peak's fall on both sides, of its 
 constexpr double kLeastMass = 0.01;      // of `matter`
 constexpr double kAbsorbed = 0.08;       // of the window: a peak so near to the background belongs to it
 constexpr double kNearPeak = 0.06;       // of the window: as far as a material's values spread
-constexpr double kLeastFit = 0.5;        // share of `matter` near peaks from which on they are materials
-constexpr double kLeastExplained = 0.92; // of the variance, by as few classes as do it
+constexpr double kLeastFit = 0.6;        // share of `matter` near peaks from which on they are materials
+constexpr double kMostLeftOut = 0.5;     // voxels between the background and the first material, of the materials'
+constexpr double kLeastExplained = 0.95; // of the variance, by as few classes as do it
 constexpr double kClippedMass = 0.05;    // a lesser peak at an end of the window is of values that were cut off there
 
 double middle(int bin) { return (bin + 0.5) / kClassBins; }
@@ -192,9 +192,22 @@ ValueClasses classesByOtsu(const std::vector<double>& all, const std::optional<B
         otsu = multiOtsu(all, 0, kClassBins, k);
         if (otsu.explained >= kLeastExplained) break;
     }
-    std::vector<double> borders{0};
-    for (const int b : otsu.borders) borders.push_back(begin(b));
-    borders.push_back(1);
+    const auto withEnds = [&] {
+        std::vector<double> borders{0};
+        for (const int b : otsu.borders) borders.push_back(begin(b));
+        borders.push_back(1);
+        return borders;
+    };
+    std::vector<double> borders = withEnds();
+    const auto hasEmptyClass = [&] {
+        for (std::size_t k = 0; k + 1 < borders.size(); ++k)
+            if (massBetween(all, borders[k], borders[k + 1]) == 0) return true;
+        return false;
+    };
+    while (borders.size() > 2 && hasEmptyClass()) { // fewer values than classes
+        otsu = multiOtsu(all, 0, kClassBins, static_cast<int>(borders.size()) - 2);
+        borders = withEnds();
+    }
     ValueClasses result;
     result.fit = otsu.explained;
     for (std::size_t k = 0; k + 1 < borders.size(); ++k) {
@@ -219,6 +232,17 @@ ValueClasses classesByOtsu(const std::vector<double>& all, const std::optional<B
     return result;
 }
 
+/// Whether the classes hold most of what is not background. Where values rise gradually from the background, half-way
+/// to the first peak is too far.
+bool coverMatter(const ValueClasses& found, const ClassEvidence& evidence, const BackgroundValues& background) {
+    double held = 0;
+    for (const ValueClass& c : found.classes) held += massBetween(evidence.all, c.lo, c.hi);
+    const double noise = std::max(kNearPeak, background.hi - background.mode);
+    const double leftOut = massBetween(evidence.all, found.backgroundLo, background.mode - noise) +
+                           massBetween(evidence.all, background.mode + noise, found.backgroundHi);
+    return leftOut <= kMostLeftOut * held;
+}
+
 } // namespace
 
 std::vector<double> materialModes(const ClassEvidence& evidence, const std::optional<BackgroundValues>& background) {
@@ -237,7 +261,7 @@ ValueClasses findClasses(const ClassEvidence& evidence, const std::optional<Back
         ValueClasses result = classesAbout(modes, background);
         result.byPeaks = true;
         result.fit = fit;
-        return result;
+        if (!background || coverMatter(result, evidence, *background)) return result;
     }
     ValueClasses result = classesByOtsu(evidence.all, background);
     if (result.classes.empty()) { // the background is all there is: what stands out from it, however little

@@ -29,8 +29,8 @@ struct ValueClass {
 struct ValueClasses {
     std::vector<ValueClass> classes; ///< ascending, 1 to kMostClasses; neighbours meet except about the background
     double backgroundLo = 0, backgroundHi = 0; ///< where one was given
-    bool byPeaks = false; ///< each class is a peak of `matter`; else multi-Otsu
-    double fit = 0;       ///< peaks: share of `matter` near a peak; Otsu: variance that the classes explain; [0,1]
+    bool byPeaks = false;                      ///< each class is a peak of `matter`; else multi-Otsu
+    double fit = 0; ///< peaks: share of `matter` near a peak; Otsu: variance that the classes explain; [0,1]
 };
 
 /// Peaks where most of `matter` lies near them, borders half-way between them; else multi-Otsu.

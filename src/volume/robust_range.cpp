@@ -29,8 +29,9 @@ RobustRange robustRange(std::vector<double> values, const ValueRange& data) {
     }
     const double common = values[begin];
     const bool manyAlike = static_cast<double>(length) >= kCommon * static_cast<double>(values.size());
-    if (manyAlike) values.erase(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                                values.begin() + static_cast<std::ptrdiff_t>(begin + length));
+    if (manyAlike)
+        values.erase(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                     values.begin() + static_cast<std::ptrdiff_t>(begin + length));
     if (values.empty()) return {data, {}};
 
     ValueRange core{quantile(values, kTail), quantile(values, 1 - kTail)};
