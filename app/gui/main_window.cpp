@@ -22,9 +22,10 @@
 #include "notice_bar.h"
 #include "panel.h"
 #include "panels/probe_panel.h"
-#include "slice_layer.h"
 #include "region_layer.h"
+#include "slice_layer.h"
 #include "status_line.h"
+#include "welcome_card.h"
 
 namespace pellucid::gui {
 
@@ -154,6 +155,15 @@ void MainWindow::restoreLayout() {
     const QSettings settings;
     restoreGeometry(settings.value("geometry").toByteArray());
     restoreState(settings.value("windowState").toByteArray());
+}
+
+void MainWindow::welcome() {
+    if (!WelcomeCard::isWanted()) return;
+    auto* card = new WelcomeCard(m_view);
+    // Another volume: it is no sample any more, and the first thing to try has been done.
+    connect(&m_bench->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
+        if (before.data && before.data != after.data) card->dismiss();
+    });
 }
 
 bool MainWindow::isSettled() const { return m_bench->isIdle() && m_views->isComplete(); }

@@ -8,6 +8,7 @@
 #include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
 #include "controllers/slice_actions.h"
+#include "controllers/start_controller.h"
 #include "controllers/tf_actions.h"
 #include "controllers/theme_actions.h"
 #include "controllers/view_actions.h"
@@ -20,12 +21,14 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     m_refining = std::make_unique<RefineController>(*this);
     m_saving = std::make_unique<SaveController>(*this);
     m_opening = std::make_unique<OpenController>(*this);
+    m_start = std::make_unique<StartController>(*this);
     m_recovery = std::make_unique<RecoveryController>(*this);
 
     // The menus stand in the order in which their first actions come.
     m_opening->addActions();
     m_saving->addActions();
     addEditActions();
+    m_start->addActions();
     addTfActions(*this);
     addFeatureActions(*this);
     m_refining->addActions();
@@ -53,6 +56,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     });
     connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
     connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
 }
 
@@ -60,6 +64,7 @@ Workbench::~Workbench() {
     m_store.disconnect(); // what ends below must not be heard by what has ended already
     m_results.disconnect();
     m_recovery.reset();
+    m_start.reset();
     m_opening.reset();
     m_saving.reset();
     m_refining.reset();
@@ -89,8 +94,8 @@ void Workbench::addEditActions() {
 bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
-    return m_store.hasVolume() && !m_opening->isBusy() && !m_saving->isBusy() && !m_optimizing->isRunning() &&
-           !m_refining->isBusy() && !m_results.isBusy();
+    return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
+           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_results.isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

@@ -20,6 +20,7 @@ class OptimizeController;
 class RecoveryController;
 class RefineController;
 class SaveController;
+class StartController;
 
 /// The services of one window. Panels and controllers get it, and know nothing of each other.
 class Workbench : public QObject {
@@ -50,6 +51,7 @@ public:
     OpenController& opening() { return *m_opening; }
     SaveController& saving() { return *m_saving; }
     OptimizeController& optimizing() { return *m_optimizing; }
+    StartController& start() { return *m_start; }
     RecoveryController& recovery() { return *m_recovery; }
     RefineController& refining() { return *m_refining; }
 
@@ -74,6 +76,7 @@ private:
     std::unique_ptr<RefineController> m_refining;
     std::unique_ptr<SaveController> m_saving;
     std::unique_ptr<OpenController> m_opening;
+    std::unique_ptr<StartController> m_start;
     std::unique_ptr<RecoveryController> m_recovery;
 };
 

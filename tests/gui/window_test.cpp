@@ -31,7 +31,6 @@
 #include "render/camera_motion.h"
 #include "image_io/image_file.h"
 #include "tf/formats/tf_json.h"
-#include "tf/sample_tf.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -45,11 +44,11 @@ std::vector<double> shownVws(const Document& document) {
     return vws;
 }
 
-/// What a volume opens with, written for its window.
-TransferFunction defaultOf(const Document& document) {
-    TransferFunction tf = defaultTf(*document.volume());
-    tf.range = document.volume()->range();
-    return tf;
+/// What a volume opens with where nothing else is said.
+TransferFunction automaticOf(const VolumeSource& source) {
+    SceneInputs inputs;
+    inputs.session = sessionOf(source);
+    return openScene(inputs).tf;
 }
 
 QDialog* errorDialog(MainWindow& window) { return window.findChild<QDialog*>("errorDialog"); }
@@ -246,7 +245,8 @@ TEST_CASE("a wrong transfer function at the start does not keep the volume from 
     REQUIRE(errorDialog(w.window) != nullptr);
     errorDialog(w.window)->accept();
     CHECK(w.document().volume()->title.find("disks") != std::string::npos);
-    CHECK(w.document().tf() == defaultOf(w.document()));
+    w.settle();
+    CHECK(w.document().tf() == automaticOf(source));
 }
 
 TEST_CASE("files that are dropped on the window are opened", "[window]") {
@@ -493,10 +493,10 @@ TEST_CASE("opening another volume ends an optimization and starts afresh", "[win
     VolumeSource source;
     source.path = "sample:disks";
     source.sampleSize = 20;
-    w.opening().openVolume(source);
+    w.opening().openVolume(source, "tents:3");
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     const TransferFunction tf = w.document().tf();
-    CHECK(tf == defaultOf(w.document()));
+    CHECK(tf.points == tents(3).points);
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     w.settle();
     CHECK(w.document().tf() == tf); // nothing of the old run came after it
