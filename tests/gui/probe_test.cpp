@@ -209,6 +209,23 @@ TEST_CASE("the probe follows edits, clips and the camera", "[probe]") {
     CHECK_FALSE(probe.isActive());
 }
 
+TEST_CASE("slices beside the picture meet where it was probed", "[probe]") {
+    OpenWindow w(32);
+    w.bench().store().edit("Layout", {}, [](Session& session) {
+        session.slices.edit([](SliceViews& s) { s.layout = SliceViews::Layout::Four; });
+    });
+    w.settle();
+    const int steps = w.document().stepCount();
+    click(w.view(), middle(w));
+    REQUIRE(probeOf(w).isActive());
+    const Vec3 voxel = w.document().volume()->geometry().voxelFromWorld(probeOf(w).place());
+    const auto crosshair = w.bench().store().session().slices->crosshair;
+    REQUIRE(crosshair);
+    for (int a = 0; a < 3; ++a) CHECK(std::abs((*crosshair)[a] - voxel[a]) <= 0.5 + 1e-9);
+    CHECK(w.document().stepCount() == steps);
+    CHECK(std::abs(sumOf(probeOf(w).ray()) - alphaOfPicture(w, middle(w))) < 1.0 / 255);
+}
+
 TEST_CASE("the plot is read under the mouse", "[probe]") {
     OpenWindow w(32);
     click(w.view(), middle(w));

@@ -23,7 +23,7 @@ public:
     void addActions();
 
     /// Probes the pixel under `point` of a view of `size`, both logical; clears where nothing is visible there. The
-    /// feature that adds most becomes the selected one.
+    /// feature that adds most becomes the selected one, and the slices that are shown meet where it does.
     void probeAt(const QPointF& point, const QSizeF& size, double pixelsPerPoint);
     void clear();
     bool isActive() const { return m_ray.has_value(); }

@@ -155,8 +155,14 @@ void ProbePanel::refresh() {
     m_plot->update();
     m_shares->update();
     for (QPushButton* b : {m_more, m_less}) b->setEnabled(m_probe.canEmphasize());
-    layout()->activate();
-    resize(kWidth, layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(kWidth) : sizeHint().height());
+    // In a small view, such as beside slices, there is no room for the plot.
+    for (const bool withPlot : {true, false}) {
+        m_plot->setVisible(withPlot);
+        m_readout->setVisible(withPlot);
+        layout()->activate();
+        resize(kWidth, layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(kWidth) : sizeHint().height());
+        if (height() <= m_view.height() - 2 * kMargin) break;
+    }
     if (!wasShown) move(m_clicked.x() > m_view.width() / 2.0 ? kMargin : m_view.width() - kWidth - kMargin, kMargin);
     keepInView();
     raise();
@@ -219,7 +225,7 @@ void ProbePanel::keyPressEvent(QKeyEvent* event) {
 
 bool ProbePanel::eventFilter(QObject* watched, QEvent* event) {
     if (m_probe.isActive()) {
-        if (event->type() == QEvent::Resize) keepInView();
+        if (event->type() == QEvent::Resize) refresh();
         if (event->type() == QEvent::MouseButtonDblClick) m_probe.clear(); // it fits the view
         if (event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape &&
             !m_view.overlay().isDragging()) {
