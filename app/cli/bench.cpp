@@ -286,7 +286,7 @@ Command addBench(CLI::App& program) {
         "what to measure on, as in other commands; without it sample:knee under tents:3, and cubes of 128 and 256 "
         "voxels along each side");
     o->scene.session.add(*app);
-    o->scene.tf.add(*app);
+    o->scene.tf.addSource(*app);
     app->get_option("--tf")->description("transfer function; without it that of the volume, one that gives every voxel "
                                          "a little opacity (dense), and one that gives it to 3 % of them (sparse)");
     o->scene.camera.add(*app);

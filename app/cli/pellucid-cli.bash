@@ -27,7 +27,11 @@ _pellucid_cli() {
         --method) choices="fixed line parallel" ;;
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
-        --only) choices="setup saliency saliency-direct sweep slices jacobian optimize refine render" ;;
+        --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
+        --only)
+            [[ $command == bench ]] || return
+            choices="setup saliency saliency-direct sweep slices jacobian optimize refine render"
+            ;;
         --mode) choices="composite mip minip average surface" ;;
         --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
@@ -44,7 +48,7 @@ _pellucid_cli() {
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
-            --silhouettes | --feature | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
+            --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
             --tolerance)
             return

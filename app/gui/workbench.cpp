@@ -1,5 +1,6 @@
 #include "workbench.h"
 
+#include "controllers/feature_actions.h"
 #include "controllers/frame_actions.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
@@ -24,6 +25,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     m_saving->addActions();
     addEditActions();
     addTfActions(*this);
+    addFeatureActions(*this);
     m_optimizing->addActions();
     addViewActions(*this);
     addFrameActions(*this);

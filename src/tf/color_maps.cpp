@@ -21,24 +21,24 @@ Rgb grey(double t) { return srgbFromLch({100 * t, 0, 0}); }
 
 // Lightness rises evenly; hue turns meanwhile; chroma swells towards the middle, where sRGB has room for it.
 Rgb spiral(double t) {
-    return srgbFromLch({between(14, 94, t), 22 + 34 * std::sin(std::numbers::pi * t), between(300, 100, t)});
+    return srgbFromLch({between(16, 92, t), 28 + 16 * std::sin(std::numbers::pi * t) + 8 * t, between(305, 100, t)});
 }
 Rgb ember(double t) {
-    return srgbFromLch({between(10, 95, t), 16 + 54 * std::sin(std::numbers::pi * t), between(285, 455, t)});
+    return srgbFromLch({between(10, 95, t), 18 + 48 * std::sin(std::numbers::pi * t), between(285, 455, t)});
 }
 // Eyes without red or green cones tell blue from yellow, and lightness: nothing else changes here.
 Rgb sand(double t) {
-    const double aStar = between(6, 0, t), bStar = between(-38, 52, t);
+    const double aStar = between(8, -4, t), bStar = between(-36, 52, t);
     return srgbFromLch(
         {between(16, 92, t), std::hypot(aStar, bStar), std::atan2(bStar, aStar) * 180 / std::numbers::pi});
 }
 
 Rgb diverging(double t, double hueBelow, double hueAbove, double chroma) {
     const double away = std::abs(2 * t - 1);
-    return srgbFromLch({between(95, 38, away), chroma * away, t < 0.5 ? hueBelow : hueAbove});
+    return srgbFromLch({between(95, 42, away), chroma * away, t < 0.5 ? hueBelow : hueAbove});
 }
-Rgb blueOrange(double t) { return diverging(t, 265, 58, 52); }
-Rgb blueRed(double t) { return diverging(t, 270, 30, 56); }
+Rgb blueOrange(double t) { return diverging(t, 265, 60, 42); }
+Rgb blueRed(double t) { return diverging(t, 272, 28, 46); }
 
 /// Linear light as eyes without one kind of cone have it (Machado, Oliveira and Fernandes 2009, severity 1).
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -62,21 +62,28 @@ double safeDifference(const Rgb& a, const Rgb& b) {
 }
 
 constexpr std::size_t kCategories = 8;
+constexpr double kWholeEyes = 0.5;
 
-/// Each colour is the one of a grid of calm ones that is farthest from those before it, for all eyes; the first is a
-/// blue.
+/// Each colour is the one of a grid of calm ones that is farthest from those before it; the first is a blue. Eyes that
+/// see all colours expect more of a difference than those to whom lightness and blue or yellow are all there is.
 const std::vector<Rgb>& categories() {
     static const std::vector<Rgb> kColors = [] {
+        constexpr double kChroma = 46;
         std::vector<Rgb> candidates;
-        for (const double lightness : {42.0, 52.0, 62.0, 72.0, 82.0, 92.0})
-            for (int hue = 0; hue < 360; hue += 15) candidates.push_back(srgbFromLch({lightness, 48, 1.0 * hue}));
-        std::vector<Rgb> chosen{srgbFromLch({52, 48, 270})};
+        for (const double lightness : {44.0, 53.0, 62.0, 71.0, 80.0})
+            for (int hue = 0; hue < 360; hue += 10) {
+                const Rgb color = srgbFromLch({lightness, kChroma, 1.0 * hue});
+                if (lchFromSrgb(color).chroma > 0.9 * kChroma) candidates.push_back(color); // sRGB has it
+            }
+        std::vector<Rgb> chosen{srgbFromLch({53, kChroma, 270})};
         while (chosen.size() < kCategories) {
             double most = -1;
             Rgb best;
             for (const Rgb& candidate : candidates) {
                 double least = 1e9;
-                for (const Rgb& other : chosen) least = std::min(least, safeDifference(candidate, other));
+                for (const Rgb& other : chosen)
+                    least = std::min(
+                        {least, safeDifference(candidate, other), kWholeEyes * colorDifference(candidate, other)});
                 if (least <= most) continue;
                 most = least;
                 best = candidate;
