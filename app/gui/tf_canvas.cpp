@@ -500,7 +500,10 @@ void TfCanvas::contextMenuEvent(QContextMenuEvent* event) {
     QMenu menu(this);
     menu.setObjectName("tfContextMenu");
     fillMenu(menu, position);
+    m_menuOpen = true; // the mouse leaves, and what it pointed at stays what the menu is about
     menu.exec(mapToGlobal(position.toPoint()));
+    m_menuOpen = false;
+    if (!underMouse()) m_selection.setHoveredIntensity({});
 }
 
 void TfCanvas::fillMenu(QMenu& menu, const QPointF& position) {
@@ -519,7 +522,7 @@ void TfCanvas::fillMenu(QMenu& menu, const QPointF& position) {
         menu.addSeparator();
         menu.addAction(one ? tr("Remove point") : tr("Remove %1 points").arg(m_points.size()), this,
                        &TfCanvas::removeSelected);
-    } else if (!m_readOnly) {
+    } else if (!m_readOnly && zoneAt(position) == Zone::Plot) {
         const double opacity = opacityAt(position.y());
         menu.addAction(tr("Add point here"), this, [this, x, opacity] { addPoint(x, opacity); });
         menu.addAction(tr("Select all points"), QKeySequence(QKeySequence::SelectAll), this, [this] {
@@ -528,6 +531,7 @@ void TfCanvas::fillMenu(QMenu& menu, const QPointF& position) {
             selectPoints(PointSelection(std::move(all)));
         });
     }
+    m_selection.setHoveredIntensity(x);
     if (index < 0) Q_EMIT menuOpening(menu, x, feature);
     menu.addSeparator();
     if (here >= 0) {
@@ -613,7 +617,7 @@ void TfCanvas::keyPressEvent(QKeyEvent* event) {
 void TfCanvas::leaveEvent(QEvent*) {
     m_hovered = -1;
     m_hoveredBar.reset();
-    m_selection.setHoveredIntensity({});
+    if (!m_menuOpen) m_selection.setHoveredIntensity({});
     update();
 }
 

@@ -85,7 +85,8 @@ public:
 Q_SIGNALS:
     /// The selected points, or which of them is the current one.
     void selectionChanged(int current);
-    /// A context menu is about to open at an intensity; `feature` 0: no feature is there. Others may add to it.
+    /// A context menu is about to open at an intensity, which is the hovered one while it is open; `feature` 0: none
+    /// is there. Others may add to it; on a feature's bar it is empty so far.
     void menuOpening(QMenu& menu, double intensity, pellucid::FeatureId feature);
 
 protected:
@@ -163,7 +164,7 @@ private:
     mutable VolumeCounts m_counts; // counts when asked
     std::vector<std::unique_ptr<CanvasLayer>> m_layers;
     HistogramScale m_scale = HistogramScale::Log;
-    bool m_showJoint = false, m_readOnly = false;
+    bool m_showJoint = false, m_readOnly = false, m_menuOpen = false;
     QString m_unit;
     PointSelection m_points;
     int m_hovered = -1;                 // a point

@@ -9,6 +9,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
+#include <QMenu>
 #include <QPainter>
 #include <QSettings>
 #include <QSignalBlocker>
@@ -16,12 +17,13 @@
 #include <QVBoxLayout>
 
 #include "ghost_layer.h"
+#include "controllers/feature_actions.h"
 #include "number_box.h"
 #include "number_text.h"
 #include "palette_bar.h"
 #include "panel.h"
 #include "store/edits.h"
-#include "tf/edit.h"
+#include "tf/shapes.h"
 #include "theme.h"
 #include "workbench.h"
 
@@ -41,6 +43,20 @@ QIcon swatch(const QColor& color, const QSize& size = {22, 14}) {
 
 } // namespace
 
+namespace {
+
+/// What can be done to the feature under the mouse, which is selected for it.
+void addFeatureMenu(QMenu& menu, Workbench& bench, FeatureId id) {
+    const int feature = featureWithId(bench.scene().tf, id);
+    if (feature < 0) return fillShapeMenu(*menu.addMenu(QObject::tr("Add feature")), bench);
+    bench.selection().setFeature(id);
+    const std::string& name = bench.scene().tf.features[static_cast<std::size_t>(feature)].name;
+    const bool onBar = menu.isEmpty();
+    fillFeatureMenu(onBar ? menu : *menu.addMenu(QObject::tr("Feature %1").arg(QString::fromStdString(name))), bench);
+}
+
+} // namespace
+
 PanelInfo transferFunctionPanel() {
     return {.id = "tf",
             .title = QObject::tr("Transfer function"),
@@ -55,6 +71,8 @@ PanelInfo transferFunctionPanel() {
                                  [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
                 addGhostLayer(bench, editor->canvas());
                 editor->addRow(new PaletteBar(bench, editor->canvas(), editor));
+                QObject::connect(&editor->canvas(), &TfCanvas::menuOpening, editor,
+                                 [&bench](QMenu& menu, double, FeatureId id) { addFeatureMenu(menu, bench, id); });
                 const QString place = QObject::tr("Transfer function");
                 bench.actions().addGestures(
                     {{place, QObject::tr("Drag a point (Shift: along one axis, Ctrl: finely)"),

@@ -417,6 +417,39 @@ TEST_CASE("the context menu zooms to a feature, selects all, and tells others wh
     CHECK(w.picture() == picture);
 }
 
+TEST_CASE("the menu of a feature's bar splits the feature where the mouse is", "[canvas]") {
+    OpenWindow w;
+    const TransferFunction start = w.document().tf();
+    const QImage canvas = image(w);
+    const double x = 0.45;
+    const QPoint place(static_cast<int>(w.canvas().positionOf(x, 0).x()),
+                       static_cast<int>(w.canvas().barOf(start.features[1]).center().y()));
+    moveTo(w.canvas(), place);
+    QTimer timer;
+    QObject::connect(&timer, &QTimer::timeout, [&] {
+        auto* menu = qobject_cast<QMenu*>(QApplication::activePopupWidget());
+        if (menu == nullptr) return;
+        timer.stop();
+        QEvent leave(QEvent::Leave); // the mouse is over the menu now
+        QCoreApplication::sendEvent(&w.canvas(), &leave);
+        w.child<QAction>("featureSplit").trigger();
+        menu->close();
+    });
+    timer.start(10);
+    QContextMenuEvent event(QContextMenuEvent::Mouse, place, w.canvas().mapToGlobal(place));
+    QCoreApplication::sendEvent(&w.canvas(), &event);
+    REQUIRE(w.document().tf().features.size() == 4);
+    const Feature* lower = nullptr;
+    for (const Feature& f : w.document().tf().features)
+        if (f.a == start.features[1].a) lower = &f;
+    REQUIRE(lower != nullptr);
+    CHECK(lower->b == Approx(x).margin(1.5 * perPixel(w)));
+    CHECK(w.bench().selection().feature() == lower->id);
+    CHECK(image(w) != canvas);
+    w.document().undo();
+    CHECK(w.document().tf() == start);
+}
+
 TEST_CASE("each of two points in one place can be reached", "[canvas]") {
     OpenWindow w;
     TransferFunction tf = w.document().tf();
