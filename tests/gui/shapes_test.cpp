@@ -194,7 +194,7 @@ TEST_CASE("a feature is renamed in its row", "[shapes]") {
     editor->selectAll();
     QTest::keyClicks(editor, "enamel");
     QTest::keyClick(editor, Qt::Key_Return);
-    CHECK(w.document().tf().features[1].name == "enamel");
+    CHECK(waitFor([&] { return w.document().tf().features[1].name == "enamel"; }));
     CHECK(w.picture() == picture);
     w.document().undo();
     CHECK(w.document().tf().features[1].name == "f2");
