@@ -407,6 +407,7 @@ AddedFeature withFeatureDuplicated(const TransferFunction& tf, int feature) {
     AddedFeature added{withSetIn(tf, std::move(shape), room.lo, room.hi), 0};
     Feature copy = f;
     copy.id = 0;
+    copy.hidden = false; // one wants to see what one has made
     copy.extraJson.clear();
     copy.name = freshName(tf, f.name);
     copy.a = room.lo;

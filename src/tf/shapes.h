@@ -59,8 +59,8 @@ TransferFunction withFeatureWidened(const TransferFunction& tf, int feature, dou
 /// The shape `kind` in place of the feature's own: same interval, peak, place of the peak, colour.
 TransferFunction withFeatureKind(const TransferFunction& tf, int feature, ShapeKind kind);
 
-/// A copy of the same shape in the nearest gap that is as wide, else narrowed to the widest gap. Throws Error where
-/// there is none of at least 1/64.
+/// A copy of the same shape, shown, in the nearest gap that is as wide, else narrowed to the widest gap. Throws Error
+/// where there is none of at least 1/64.
 AddedFeature withFeatureDuplicated(const TransferFunction& tf, int feature);
 /// A gap between features in which a new one of `width` would stand, centred as near as can be to `near`; where none is
 /// as wide, the widest whole. Throws Error where there is none of at least 1/64.

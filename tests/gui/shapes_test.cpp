@@ -34,7 +34,9 @@ void clickInMenu(QToolButton& button, const QString& action) {
         for (QAction* entry : menu->actions())
             if (entry->objectName() == action) {
                 clicked = true;
-                QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(entry).center());
+                const QPoint at = menu->actionGeometry(entry).center();
+                QWidget* const inside = menu->childAt(at); // an entry may be a widget of its own
+                QTest::mouseClick(inside ? inside : menu, Qt::LeftButton, {}, inside ? inside->mapFrom(menu, at) : at);
                 return;
             }
         menu->close();
@@ -194,7 +196,7 @@ TEST_CASE("a feature is renamed in its row", "[shapes]") {
     editor->selectAll();
     QTest::keyClicks(editor, "enamel");
     QTest::keyClick(editor, Qt::Key_Return);
-    CHECK(w.document().tf().features[1].name == "enamel");
+    CHECK(waitFor([&] { return w.document().tf().features[1].name == "enamel"; }));
     CHECK(w.picture() == picture);
     w.document().undo();
     CHECK(w.document().tf().features[1].name == "f2");

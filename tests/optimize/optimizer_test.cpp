@@ -4,6 +4,7 @@
 #include "optimize/measure.h"
 #include "optimize/optimizer.h"
 #include "support/volumes.h"
+#include "tf/shown_tf.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -113,6 +114,27 @@ TEST_CASE("every method reaches the targets, searches in fewer moves", "[optimiz
     }
     CHECK(moves[1] < moves[0]);
     CHECK(moves[2] <= moves[1]);
+}
+
+TEST_CASE("a hidden feature is aimed at nothing and keeps its opacity", "[optimize]") {
+    TransferFunction tf = tents(3, 0.5);
+    tf.features[1].hidden = true;
+    for (const auto method : {SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel}) {
+        ProportionalEngine engine({20, 3, 1});
+        const VwsFunction f(engine, {}, shownTf(tf), kNoWeights);
+        const OptimizeResult r = optimize(f, shownShares(tf, {0.1, 0.6, 0.3}), with(method));
+        INFO(name(method));
+        CHECK(r.converged());
+        for (const OptimizeState& state : r.history) {
+            CHECK(state.opacity[1] == 0);
+            CHECK(state.vws[1] == 0);
+        }
+        // Shares of 0.1 and 0.3 among the two that are shown: 1/4 and 3/4.
+        CHECK(r.history[r.best].vws[2] == Approx(0.75).margin(0.06)); // F < 0.03 over three features
+        const TransferFunction found = withShownOpacities(tf, r.history[r.best].opacity);
+        CHECK(featureOpacities(found)[1] == 0.5);
+        CHECK(found.features[1].hidden);
+    }
 }
 
 TEST_CASE("the parallel search asks for its eight steps in one engine call", "[optimize]") {

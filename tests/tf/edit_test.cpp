@@ -58,3 +58,36 @@ TEST_CASE("the opacity of one feature leaves the others alone", "[edit]") {
     const TransferFunction changed = withFeatureOpacity(tents(3, 0.5), 2, 0.125);
     CHECK(featureOpacities(changed) == std::vector<double>{0.5, 0.5, 0.125});
 }
+
+TEST_CASE("a border that two features share goes with its point for both", "[edit]") {
+    const Rgb grey{0.5, 0.5, 0.5};
+    TransferFunction tf;
+    tf.points = {{0.2, 0, grey, true, {}}, {0.5, 0.4, grey, false, {}}, {0.8, 0, grey, true, {}}};
+    tf.features = {{"low", 0.2, 0.5, grey, {}}, {"high", 0.5, 0.8, grey, {}}};
+    const TransferFunction moved = withPointMoved(tf, 1, 0.6, 0.4);
+    CHECK(moved.features[0].b == 0.6);
+    CHECK(moved.features[1].a == 0.6);
+    CHECK_NOTHROW(moved.validate());
+    // Neither loses its width.
+    const TransferFunction far = withPointMoved(tf, 1, 0.8, 0.4);
+    CHECK(far.features[0].b == far.features[1].a);
+    CHECK(far.features[1].b - far.features[1].a > 0);
+    CHECK_NOTHROW(far.validate());
+}
+
+TEST_CASE("of a step each side takes its own feature along, a bottom that stays keeps it", "[edit]") {
+    const Rgb grey{0.5, 0.5, 0.5};
+    TransferFunction tf; // a step up at 0.2, one between the features at 0.5, one down at 0.8
+    tf.points = {{0.2, 0, grey, true, {}},    {0.2, 0.4, grey, false, {}}, {0.5, 0.4, grey, false, {}},
+                 {0.5, 0.6, grey, false, {}}, {0.8, 0.6, grey, false, {}}, {0.8, 0, grey, true, {}}};
+    tf.features = {{"low", 0.2, 0.5, grey, {}}, {"high", 0.5, 0.8, grey, {}}};
+    const TransferFunction lower = withPointMoved(tf, 2, 0.4, 0.4), upper = withPointMoved(tf, 3, 0.6, 0.6);
+    CHECK(lower.features[0].b == 0.4);
+    CHECK(lower.features[1] == tf.features[1]);
+    CHECK(upper.features[1].a == 0.6);
+    CHECK(upper.features[0] == tf.features[0]);
+    CHECK(withPointMoved(tf, 0, 0.1, 0).features[0].a == 0.1);
+    CHECK(withPointMoved(tf, 1, 0.3, 0.4).features[0].a == 0.2);
+    CHECK(withPointMoved(tf, 4, 0.7, 0.6).features[1].b == 0.8);
+    CHECK(withPointMoved(tf, 5, 0.9, 0).features[1].b == 0.9);
+}

@@ -4,6 +4,8 @@
 
 #include <QMenu>
 #include <QPainter>
+#include <QToolButton>
+#include <QWidgetAction>
 
 #include "store/edits.h"
 #include "tf/shapes.h"
@@ -13,8 +15,8 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr double kNewWidth = 1.0 / 8; // of a shape that is added
-constexpr QSize kStrip{72, 12};
+constexpr double kNewWidth = 1.0 / 8;            // of a shape that is added
+constexpr QSize kStrip{84, 14}, kSwatch{16, 16}; // of a map: beside its name; in a menu of the bar
 
 struct ShapeText {
     ShapeKind kind;
@@ -143,7 +145,7 @@ void addColorActions(Workbench& bench) {
                              });
                  },
              .enabled = editable});
-        action->setIcon(colorStrip(map, kStrip));
+        action->setIcon(colorStrip(map, kSwatch));
         action->setIconVisibleInMenu(true);
     }
     actions.add({.id = "colorsOverFeatures",
@@ -332,7 +334,26 @@ void fillFeatureMenu(QMenu& menu, Workbench& bench) {
 
 void fillColorMenu(QMenu& menu, Workbench& bench) {
     menu.setToolTipsVisible(true);
-    for (const ColorMap& map : colorMaps()) menu.addAction(bench.actions().find(mapId(map)));
+    for (const ColorMap& map : colorMaps()) { // menus draw icons as small squares; these are strips
+        QAction* const action = bench.actions().find(mapId(map));
+        auto* entry = new QWidgetAction(&menu);
+        entry->setObjectName(action->objectName());
+        auto* strip = new QToolButton(&menu);
+        strip->setIcon(colorStrip(map, kStrip));
+        strip->setIconSize(kStrip);
+        strip->setText(QStringLiteral("  ") + action->text());
+        strip->setToolTip(action->toolTip());
+        strip->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+        strip->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+        strip->setAutoRaise(true);
+        entry->setDefaultWidget(strip);
+        QObject::connect(strip, &QToolButton::clicked, &menu, [&menu, entry] {
+            menu.close();
+            entry->trigger();
+        });
+        QObject::connect(entry, &QAction::triggered, action, &QAction::trigger);
+        menu.addAction(entry);
+    }
     menu.addSeparator();
     for (const char* id : {"colorsOverFeatures", "colorsReverse", "colorsInvert"})
         menu.addAction(bench.actions().find(id));
