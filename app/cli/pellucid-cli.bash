@@ -42,7 +42,7 @@ _pellucid_cli() {
         --annotate) choices="all cube letters axes scale legend title" ;;
         --view) choices="anterior posterior left right superior inferior front back top bottom" ;;
         --tf)
-            COMPREPLY=($(compgen -W "tents: ramp: $("$program" presets 2>/dev/null | sed -n 's/^\(preset:[^ ]*\) .*/\1/p')" -- "$current") $(compgen -f -- "$current"))
+            COMPREPLY=($(compgen -W "auto tents: ramp: $("$program" presets 2>/dev/null | sed -n 's/^\(preset:[^ ]*\) .*/\1/p')" -- "$current") $(compgen -f -- "$current"))
             compopt -o filenames -o nospace 2>/dev/null
             ;;
         --camera | --session | --out | --out-tf)

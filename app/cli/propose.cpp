@@ -3,6 +3,7 @@
 
 #include "base/round_numbers.h"
 #include "commands.h"
+#include "optimize/first_sight.h"
 #include "output_files.h"
 #include "parse.h"
 #include "resolve.h"
@@ -66,9 +67,13 @@ Json jsonOf(const Proposal& p, double seconds) {
 
 Answer run(const Options& o, Progress& progress) {
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
-    const Opened opened = resolve(o.scene, progress);
+    Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Stopwatch looking;
-    const Proposal proposal = propose(*opened.scene.volume, progress.phase("looking at the data"));
+    const Volume& volume = *opened.scene.volume;
+    Proposal proposal = propose(volume, progress.phase("looking at the data"));
+    const Volume seen = proposal.window == volume.range() ? volume : volume.withRange(proposal.window);
+    const View home(homeCamera(volume.geometry(), Projection::Perspective));
+    proposal.tf = withOpacitiesForView(seen, proposal, proposal.tf, home);
     const double seconds = looking.seconds();
     if (o.outTf) writeTf(proposal.tf, *o.outTf);
     return {textOf(proposal, seconds), jsonOf(proposal, seconds), opened.notices(), {}};

@@ -56,7 +56,10 @@ void describe(QCommandLineParser& parser) {
     parser.addPositionalArgument(
         "FILE", "volumes or sessions, a window each: NRRD, MetaImage, NIfTI, raw data, *.pellucid.json, or sample:NAME",
         "[FILE…]");
-    parser.addOption({"tf", "Transfer function: a *.tf.json file, tents:N[:PEAK] or ramp:N.", "SPEC"});
+    parser.addOption({"tf",
+                      "Transfer function: a *.tf.json file, auto (what the data propose, the default), tents:N[:PEAK], "
+                      "ramp:N or preset:NAME.",
+                      "SPEC"});
     parser.addOption({"session", "Go on with a saved session, a *.pellucid.json file.", "FILE"});
     parser.addOption({"renderer", "What draws the picture: auto, gl or cpu.", "NAME", "auto"});
     parser.addOption({"theme", "Colours of the window: dark, light or system; without it, as chosen last.", "NAME"});
@@ -130,7 +133,8 @@ int main(int argc, char** argv) {
         }
     }
     if (parser.isSet("session")) volumes.prepend(parser.value("session"));
-    if (volumes.isEmpty()) volumes << "sample:shells";
+    const bool onSample = volumes.isEmpty();
+    if (onSample) volumes << "sample:shells";
     if (!screenshot.isEmpty() && volumes.size() > 1)
         return complain("--screenshot takes one window, " + volumes.join(" ") + ", give one FILE", kUsage);
 
@@ -145,6 +149,7 @@ int main(int argc, char** argv) {
             OpenController& opening = window.workbench().opening();
             if (screenshot.isEmpty()) {
                 window.workbench().recovery().start();
+                if (onSample) window.welcome();
                 if (windows.size() == 1) window.workbench().recovery().offerWhenOpen();
             } else {
                 QObject::connect(

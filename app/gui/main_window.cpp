@@ -2,6 +2,7 @@
 
 #include <QApplication>
 #include <QCloseEvent>
+#include <QDialog>
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QFileInfo>
@@ -15,13 +16,16 @@
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
+#include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
 #include "light_layer.h"
 #include "notice_bar.h"
 #include "panel.h"
 #include "panels/probe_panel.h"
+#include "region_layer.h"
 #include "slice_layer.h"
 #include "status_line.h"
+#include "welcome_card.h"
 
 namespace pellucid::gui {
 
@@ -43,6 +47,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     addClipHandles(*m_bench, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_bench, m_view->overlay()));
     addProbe(*m_bench, *m_view);
+    m_view->overlay().add(std::make_unique<RegionLayer>(*m_bench, m_view->overlay()));
     addPanels();
     addHelpActions();
     m_bench->actions().build(*this);
@@ -51,6 +56,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
 
     connect(m_view, &VolumeView::frameShown, this, [this] {
         m_bench->saving().setSeenSize({m_view->frame().width, m_view->frame().height});
+        m_bench->refining().setViewSize({m_view->frame().width, m_view->frame().height});
         Q_EMIT settledChanged();
     });
     connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
@@ -68,6 +74,7 @@ MainWindow::~MainWindow() {
     // Widgets refer to the workbench, its jobs to nothing of theirs: so widgets go first.
     m_bench->disconnect();
     delete takeCentralWidget();
+    for (QDialog* dialog : findChildren<QDialog*>(QString(), Qt::FindDirectChildrenOnly)) delete dialog;
     for (QDockWidget* dock : findChildren<QDockWidget*>()) delete dock;
     for (StatusLine* line : statusBar()->findChildren<StatusLine*>()) delete line;
 }
@@ -82,7 +89,11 @@ void MainWindow::addPanels() {
         dock->setWidget(panel.make(*m_bench, dock));
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
-        if (panel.tabOf != nullptr) tabifyDockWidget(findChild<QDockWidget*>(QString(panel.tabOf) + "Dock"), dock);
+        if (panel.tabOf != nullptr) {
+            auto* beside = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
+            tabifyDockWidget(beside, dock);
+            beside->raise();
+        }
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
         if (panel.shown)
@@ -144,6 +155,15 @@ void MainWindow::restoreLayout() {
     const QSettings settings;
     restoreGeometry(settings.value("geometry").toByteArray());
     restoreState(settings.value("windowState").toByteArray());
+}
+
+void MainWindow::welcome() {
+    if (!WelcomeCard::isWanted()) return;
+    auto* card = new WelcomeCard(m_view);
+    // Another volume: it is no sample any more, and the first thing to try has been done.
+    connect(&m_bench->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
+        if (before.data && before.data != after.data) card->dismiss();
+    });
 }
 
 bool MainWindow::isSettled() const { return m_bench->isIdle() && m_views->isComplete(); }

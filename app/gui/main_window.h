@@ -23,6 +23,8 @@ public:
 
     /// Size, place and docks as the last window was closed with.
     void restoreLayout();
+    /// A card over the picture, if nobody has dismissed it: for a start on a sample.
+    void welcome();
     /// The picture is as good as it gets, the figures are of the present state, and nothing is under way.
     bool isSettled() const;
 

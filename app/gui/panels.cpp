@@ -5,6 +5,7 @@
 #define PELLUCID_PANELS(PANEL) \
     PANEL(transferFunctionPanel) \
     PANEL(featuresPanel) \
+    PANEL(refinePanel) \
     PANEL(influencePanel) \
     PANEL(displayPanel) \
     PANEL(lightPanel) \

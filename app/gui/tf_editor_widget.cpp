@@ -15,8 +15,10 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "ghost_layer.h"
 #include "number_box.h"
 #include "number_text.h"
+#include "palette_bar.h"
 #include "panel.h"
 #include "store/edits.h"
 #include "tf/edit.h"
@@ -51,6 +53,8 @@ PanelInfo transferFunctionPanel() {
                 auto* editor = new TfEditorWidget(bench.store(), bench.results(), bench.selection(), parent);
                 QObject::connect(&bench, &Workbench::readOnlyChanged, editor,
                                  [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
+                addGhostLayer(bench, editor->canvas());
+                editor->addRow(new PaletteBar(bench, editor->canvas(), editor));
                 const QString place = QObject::tr("Transfer function");
                 bench.actions().addGestures(
                     {{place, QObject::tr("Drag a point (Shift: along one axis, Ctrl: finely)"),

@@ -4,11 +4,13 @@
 
 #include <QAction>
 #include <QCheckBox>
+#include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QSignalSpy>
 
 #include "render/camera_motion.h"
 #include "selection.h"
+#include "render/clip_handles.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -93,4 +95,30 @@ TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
     w.settle();
     QTest::mouseClick(&w.view(), Qt::LeftButton, {}, w.view().rect().center() + QPoint(20, 10));
     grab(w, "probe.png");
+}
+
+TEST_CASE("the refiner for the guide", "[.pictures]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 860);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    VolumeSource source;
+    source.path = "sample:knee";
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.bench().store().edit(
+        "Clip", {}, [](Session& session) { session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; }); });
+    w.child<QDockWidget>("refineDock").raise();
+    w.settle();
+    // The femur above the joint, cut open.
+    const Vec3 bone = w.document().volume()->geometry().boxCenter() + Vec3(0, 0, 25);
+    const PictureView seen{w.document().camera(), w.view().overlay().width(), w.view().overlay().height()};
+    const auto pixel = pixelOf(seen, bone);
+    REQUIRE(pixel);
+    const QPointF middle(pixel->x, pixel->y);
+    w.child<QAction>("rectangleAction").trigger();
+    drag(w.view(), middle - QPointF(26, 14), middle + QPointF(26, 14));
+    REQUIRE(waitFor([&] { return !w.refining().isBusy(); }));
+    QTest::qWait(1500); // the methods are compared
+    grab(w, "refiner.png");
 }

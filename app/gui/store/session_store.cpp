@@ -42,11 +42,18 @@ void SessionStore::show(Scene next) {
     Q_EMIT changed(before, after);
 }
 
-Scene SessionStore::changedBy(const Change& change, const Scene& from, const Scene& basis) const {
+Scene SessionStore::changedBy(const Change& change, const Scene& from, const Scene& basis, QString& text) const {
     Session session = from.session;
     change(session);
     PELLUCID_CHECK(!needsData(session, basis));
-    return resolve(std::move(session), basis);
+    Scene next = resolve(std::move(session), basis);
+    if (!m_consequence || next.session == from.session) return next;
+    session = next.session;
+    const QString consequence = m_consequence(from, next, session);
+    if (consequence.isEmpty()) return next;
+    PELLUCID_CHECK(!needsData(session, basis));
+    text = tr("%1, %2").arg(text, consequence);
+    return resolve(std::move(session), next);
 }
 
 Scene SessionStore::withPresentGaze(Scene scene) const {
@@ -105,11 +112,12 @@ void SessionStore::edit(const QString& text, const QString& mergeKey, const Chan
 void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change, const Scene& basis) {
     if (!hasVolume()) return;
     commit();
-    Scene next = changedBy(change, m_scene, basis);
+    QString name = text;
+    Scene next = changedBy(change, m_scene, basis, name);
     if (next.session == m_scene.session) return;
     Scene before = m_scene;
     show(std::move(next));
-    push(text, mergeKey, std::move(before));
+    push(name, mergeKey, std::move(before));
     Q_EMIT historyChanged();
 }
 
@@ -119,7 +127,7 @@ void SessionStore::preview(const QString& text, const Change& change) {
     if (first) m_committed = m_scene;
     m_previewText = text;
     const Scene from = withPresentGaze(*m_committed); // the view may turn meanwhile
-    Scene next = changedBy(change, from, from);
+    Scene next = changedBy(change, from, from, m_previewText);
     if (!(next.session == m_scene.session)) show(std::move(next));
     if (first) Q_EMIT historyChanged();
 }

@@ -22,6 +22,9 @@ class SessionStore : public QObject {
     Q_OBJECT
 public:
     using Change = std::function<void(Session&)>;
+    /// What follows of an edit or preview by itself: may alter `session`, which is that of `after`, and says what it
+    /// has done to it; empty: nothing.
+    using Consequence = std::function<QString(const Scene& before, const Scene& after, Session& session)>;
 
     explicit SessionStore(QObject* parent = nullptr);
 
@@ -44,6 +47,9 @@ public:
     const Scene& committed() const { return m_committed ? *m_committed : m_scene; }
     void commit(const QString& mergeKey = {});
     void cancel();
+
+    /// Asked at every edit and preview before anybody hears of it: both are one change and one step, named by both.
+    void setConsequence(Consequence consequence) { m_consequence = std::move(consequence); }
 
     bool canUndo() const { return isPreviewing() || m_index > 0; }
     bool canRedo() const { return m_index < m_steps.size(); }
@@ -84,12 +90,14 @@ private:
     void show(Scene next);
     void push(const QString& text, const QString& mergeKey, Scene before);
     void forgetOldData();
-    Scene changedBy(const Change& change, const Scene& from, const Scene& basis) const;
+    /// Adds to `text` what followed.
+    Scene changedBy(const Change& change, const Scene& from, const Scene& basis, QString& text) const;
     Scene withPresentGaze(Scene scene) const;
 
     Scene m_scene;
     std::optional<Scene> m_committed; // while previewing
     QString m_previewText;
+    Consequence m_consequence;
     std::vector<Step> m_steps;
     std::size_t m_index = 0;        // steps that are done
     std::optional<Session> m_clean; // empty: it was never saved
