@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controllers/slice_actions.h"
 #include "render/clip_handles.h"
 #include "render/slice.h"
 #include "store/edits.h"
@@ -62,6 +63,7 @@ void ProbeController::probeAt(const QPointF& point, const QSizeF& size, double p
     m_tf = shown;
     const int main = ray.feature;
     m_ray = std::move(ray);
+    if (scene.session.slices->layout != SliceViews::Layout::Volume) moveCrosshairToWorld(m_bench.store(), m_place);
     if (main >= 0) m_bench.selection().setFeature(scene.tf.features[static_cast<std::size_t>(main)].id);
     Q_EMIT changed();
 }
