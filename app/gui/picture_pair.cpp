@@ -5,7 +5,6 @@
 
 #include "controllers/refine_controller.h"
 #include "image_convert.h"
-#include "theme.h"
 #include "workbench.h"
 
 namespace pellucid::gui {
@@ -41,7 +40,8 @@ PicturePair::PicturePair(Workbench& bench, QWidget* parent)
         picture->setAlignment(Qt::AlignCenter);
         picture->setMinimumSize(200, 150);
         picture->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored); // it must not follow what it shows
-        picture->setStyleSheet(QStringLiteral("background: %1").arg(theme::kPanel.name()));
+        picture->setAutoFillBackground(true);
+        picture->setBackgroundRole(QPalette::Base);
         auto* caption = m_captions[static_cast<std::size_t>(i)] = new QLabel(this);
         caption->setObjectName(QStringLiteral("caption%1").arg(names[i]));
         caption->setAlignment(Qt::AlignCenter);

@@ -449,7 +449,7 @@ QString SlicePane::titleText() const {
 
 void SlicePane::paintEvent(QPaintEvent*) {
     QPainter painter(this);
-    painter.fillRect(rect(), QColor(0x0b, 0x0c, 0x0d)); // in any theme: grey is judged against black
+    painter.fillRect(rect(), QColor(0x0c, 0x0c, 0x0c)); // in any theme: grey is judged against black
     if (!m_bench.store().hasVolume()) return;
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
     if (!m_image.isNull()) painter.drawImage(QRectF(rect()), m_image);

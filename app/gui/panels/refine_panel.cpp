@@ -240,7 +240,7 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     QFont bold = font();
     bold.setBold(true);
     m_words->setFont(bold);
-    m_comparison->setStyleSheet(QStringLiteral("color: %1").arg(theme::kFaint.name()));
+    makeFaint(*m_comparison);
 
     auto* content = new QWidget;
     auto* column = new QVBoxLayout(content);
