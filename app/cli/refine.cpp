@@ -2,6 +2,7 @@
 #include "optimize/refine.h"
 
 #include <cmath>
+#include <functional>
 
 #include "commands.h"
 #include "optimize/refine_words.h"
@@ -25,7 +26,8 @@ struct PixelRectangle {
 
 struct Options {
     SceneOptions scene;
-    RefineOptions refine;
+    std::vector<std::function<void(RefineOptions&)>> given; ///< over what the session says
+    std::optional<double> intensity;
     std::optional<double> hue; ///< degrees
     std::optional<PixelRectangle> region;
     std::optional<ImageSize> size;
@@ -64,8 +66,7 @@ PixelRectangle parseRectangle(const std::string& text, const std::string& option
 /// What can be told before the volume is read.
 void check(const Options& o) {
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
-    o.refine.validate();
-    if ((o.refine.priority.intensity ? 1 : 0) + (o.hue ? 1 : 0) + (o.region ? 1 : 0) > 1)
+    if ((o.intensity ? 1 : 0) + (o.hue ? 1 : 0) + (o.region ? 1 : 0) > 1)
         throw UsageError("more than one priority is given", "--intensity, --hue and --region", "leave one of them");
     const ImageSize size = o.size.value_or(ImageSize{});
     if (o.region && (o.region->x1 > size.width || o.region->y1 > size.height))
@@ -88,7 +89,9 @@ void check(const Options& o) {
 /// The priority that the options ask for, and in `said` what it is.
 RefinePriority priorityOf(const Options& o, const Scene& scene, const TransferFunction& tf, Progress& progress,
                           Json& said) {
-    RefinePriority priority = o.refine.priority;
+    RefinePriority priority;
+    priority.intensity = o.intensity;
+    if (!o.intensity && !o.hue && !o.region) priority.intensity = scene.session.refine->intensity;
     if (o.hue) priority.intensity = intensityOfHue(tf, *o.hue);
     if (priority.intensity) {
         said = {{"kind", "intensity"}, {"intensity", *priority.intensity}};
@@ -130,7 +133,7 @@ std::string textOfComparison(const RefineComparison& c) {
            " % less energy than greedy at the same total opacity";
 }
 
-std::string textOf(const Options& o, const TransferFunction& before, const RefineResult& r,
+std::string textOf(const RefineOptions& options, const TransferFunction& before, const RefineResult& r,
                    const RefineComparison& comparison, const Json& priority, double seconds) {
     const auto change = [](double from, double to) {
         const std::string share = from > 0 ? " (" + fixedText(100 * (to / from - 1), 1) + " %)" : "";
@@ -142,7 +145,7 @@ std::string textOf(const Options& o, const TransferFunction& before, const Refin
                     fixedText(r.tf.points[i].opacity, 4), r.tf.points[i].fixed ? "yes" : "no"});
     return listing({{"changes", changeText(opacityChanges(before, r.tf))},
                     {"priority", textOfPriority(priority)},
-                    {"method", name(o.refine.method)},
+                    {"method", name(options.method)},
                     {"iterations", std::to_string(r.iterations)},
                     {"energy", change(r.energyBefore, r.energyAfter)},
                     {"energy of movable edges", change(r.energyMovableBefore, r.energyMovableAfter)},
@@ -151,13 +154,24 @@ std::string textOf(const Options& o, const TransferFunction& before, const Refin
            points.text();
 }
 
+/// Without the priority.
+RefineOptions optionsOf(const Options& o, const RefineSettings& session) {
+    RefineOptions options;
+    options.stepDown = session.stepDown;
+    options.stepUp = session.stepUp;
+    options.maxIterations = session.maxIterations;
+    options.method = session.method;
+    for (const auto& set : o.given) set(options);
+    return options;
+}
+
 Answer run(const Options& o, Progress& progress) {
     check(o);
     const Opened opened = resolve(o.scene, progress, {o.region ? toView("drawing") : MemoryUse{}});
     TransferFunction tf = opened.scene.tf;
     for (const double x : o.fixed) fixPoint(tf, x);
     Json priority;
-    RefineOptions options = o.refine;
+    RefineOptions options = optionsOf(o, *opened.scene.session.refine);
     options.priority = priorityOf(o, opened.scene, tf, progress, priority);
     const Histogram histogram = makeHistogram(*opened.scene.volume);
     const JobControl job = progress.phase("refining");
@@ -166,7 +180,7 @@ Answer run(const Options& o, Progress& progress) {
     const double seconds = refining.seconds();
     const RefineComparison comparison = compareMethods(histogram, tf, options, job);
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(o, tf, result, comparison, priority, seconds),
+    return {textOf(options, tf, result, comparison, priority, seconds),
             jsonFromRefinement(tf, result, options.method, comparison, priority),
             opened.notices(),
             {}};
@@ -175,9 +189,7 @@ Answer run(const Options& o, Progress& progress) {
 void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {
     addValue(
         app, "--intensity", "X",
-        [o](const std::string& text, const std::string& option) {
-            o->refine.priority.intensity = parseReal(text, option, 0, 1);
-        },
+        [o](const std::string& text, const std::string& option) { o->intensity = parseReal(text, option, 0, 1); },
         "prioritize what is near this intensity, from 0 to 1 (the ends of the range)");
     addValue(
         app, "--hue", "DEG",
@@ -220,7 +232,7 @@ Command addRefine(CLI::App& program) {
         [o](const std::string& text, const std::string& option) {
             const auto method = refineMethodFromName(text);
             if (!method) throw UsageError("'" + text + "' is no method", option, "use greedy or exact");
-            o->refine.method = *method;
+            o->given.emplace_back([method](RefineOptions& r) { r.method = *method; });
         },
         "greedy: one opacity down and one up while that helps (default); exact: the most even edges that the same "
         "total "
@@ -228,22 +240,22 @@ Command addRefine(CLI::App& program) {
     addValue(
         *app, "--step-down", "D",
         [o](const std::string& text, const std::string& option) {
-            o->refine.stepDown = parseRealAbove(text, option, 0, 1);
+            o->given.emplace_back([step = parseRealAbove(text, option, 0, 1)](RefineOptions& r) { r.stepDown = step; });
         },
         "opacity taken from the heaviest edge in an iteration (default 1/256)");
     addValue(
         *app, "--step-up", "D|auto",
         [o](const std::string& text, const std::string& option) {
-            if (text == "auto")
-                o->refine.stepUp.reset();
-            else
-                o->refine.stepUp = parseRealAbove(text, option, 0, 1);
+            std::optional<double> step;
+            if (text != "auto") step = parseRealAbove(text, option, 0, 1);
+            o->given.emplace_back([step](RefineOptions& r) { r.stepUp = step; });
         },
         "opacity given to the lightest one (default 1/256); auto: from --step-down and the two ends' significances");
     addValue(
         *app, "--max-iterations", "N",
         [o](const std::string& text, const std::string& option) {
-            o->refine.maxIterations = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
+            const auto most = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
+            o->given.emplace_back([most](RefineOptions& r) { r.maxIterations = most; });
         },
         "at most so many (default 5000)");
     addRepeated(

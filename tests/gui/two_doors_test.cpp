@@ -77,6 +77,12 @@ void compareDoors(OpenWindow& w, const Inputs& inputs) {
     if (inputs.range)
         named << "--range"
               << QStringLiteral("%1,%2").arg(inputs.range->lo, 0, 'g', 17).arg(inputs.range->hi, 0, 'g', 17);
+    w.bench().store().edit("Refinement", {}, [](Session& s) {
+        s.refine.edit([](RefineSettings& r) {
+            r.method = RefineMethod::Exact;
+            r.intensity = 0.4;
+        });
+    });
     const QString session = folder.filePath("s.pellucid.json");
     const Session before = w.bench().store().session();
     REQUIRE(w.saving().saveSession(session));
@@ -106,7 +112,8 @@ void compareDoors(OpenWindow& w, const Inputs& inputs) {
             QStringList{"--size", "160x120", "--annotate", "cube,letters,scale", "--out", theirs});
         CHECK(readImage(ours.toStdString()).rgba == readImage(theirs.toStdString()).rgba);
 
-        const json refined = cli(QStringList{"refine"} + door);
+        const QStringList how = door == named ? QStringList{"--method", "exact", "--intensity", "0.4"} : QStringList();
+        const json refined = cli(QStringList{"refine"} + door + how);
         const TransferFunction unrefined = w.document().tf();
         w.refining().refine();
         checkSameTf(w.document().tf(), refined["tf"]);

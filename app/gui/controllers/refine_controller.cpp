@@ -404,6 +404,8 @@ void RefineController::prioritizeNothing() {
 void RefineController::setSelecting(Selecting what) {
     if (what == m_selecting) return;
     m_selecting = what;
+    if (what == Selecting::Rectangle) Q_EMIT m_bench.message(tr("Drag a rectangle over what shall stand out; Esc: no"));
+    if (what == Selecting::Lasso) Q_EMIT m_bench.message(tr("Draw round what shall stand out; Esc: no"));
     Q_EMIT selectingChanged();
 }
 

@@ -281,7 +281,6 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     form->addRow(tr("Step &down"), m_down);
     form->addRow(tr("Step up"), up);
     form->addRow(tr("At most"), m_limit);
-    column->addLayout(form);
     column->addWidget(m_words);
     column->addWidget(m_figures);
     column->addWidget(m_edges);
@@ -291,6 +290,7 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     foot->addWidget(m_ghost, 1);
     foot->addWidget(m_pair);
     column->addLayout(foot);
+    column->addLayout(form); // what came of it is looked at more often
     column->addStretch(1);
     fillScrolled(this, content);
 
