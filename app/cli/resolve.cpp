@@ -44,6 +44,7 @@ Opened resolve(const SceneOptions& options, Progress& progress, const Work& work
     Opened opened;
     const SceneInputs inputs = inputsOf(options, work, opened.sessionNotices);
     opened.scene = openScene(inputs, progress.phase("loading"));
+    options.tf.applyTo(opened.scene);
     options.picture.applyTo(opened.scene);
     return opened;
 }

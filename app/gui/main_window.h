@@ -5,6 +5,7 @@
 
 #include <QMainWindow>
 
+#include "view_grid.h"
 #include "volume_view.h"
 #include "workbench.h"
 
@@ -18,6 +19,7 @@ public:
 
     Workbench& workbench() { return *m_bench; }
     VolumeView& view() { return *m_view; }
+    ViewGrid& views() { return *m_views; }
 
     /// Size, place and docks as the last window was closed with.
     void restoreLayout();
@@ -30,6 +32,7 @@ Q_SIGNALS:
     void settledChanged(); ///< isSettled() may have changed
 
 protected:
+    void changeEvent(QEvent* event) override;
     void closeEvent(QCloseEvent* event) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
@@ -41,6 +44,7 @@ private:
 
     std::unique_ptr<Workbench> m_bench;
     VolumeView* m_view;
+    ViewGrid* m_views; // with m_view in it
 };
 
 } // namespace pellucid::gui

@@ -52,6 +52,23 @@ void TargetBars::setReadOnly(bool on) {
 
 int TargetBars::count() const { return static_cast<int>(m_store.scene().tf.features.size()); }
 
+bool TargetBars::isHidden(int feature) const {
+    return m_store.scene().tf.features.at(static_cast<std::size_t>(feature)).hidden;
+}
+
+void TargetBars::setCurrentFeature(int feature) {
+    m_marked = feature >= 0;
+    if (m_marked) m_current = std::min(feature, std::max(0, count() - 1));
+    update();
+}
+
+void TargetBars::choose(int feature) {
+    m_current = feature;
+    m_marked = true;
+    update();
+    Q_EMIT currentChanged(feature);
+}
+
 QSize TargetBars::sizeHint() const { return {320, kHead + kRow * std::max(1, count()) + 4}; }
 QSize TargetBars::minimumSizeHint() const { return {280, kHead + kRow * std::max(1, count()) + 4}; }
 
@@ -84,10 +101,9 @@ int TargetBars::featureAtPosition(const QPointF& position) const {
 void TargetBars::mousePressEvent(QMouseEvent* event) {
     const int feature = featureAtPosition(event->position());
     if (feature < 0 || event->button() != Qt::LeftButton) return event->ignore();
-    m_current = feature;
-    update();
+    choose(feature);
     const QRectF reach = trackRect(feature).adjusted(-10, -8, 10, 8);
-    if (m_readOnly || !reach.contains(event->position())) return;
+    if (m_readOnly || isHidden(feature) || !reach.contains(event->position())) return;
     m_dragged = feature;
     m_pressed = true;
     // A press beside the handle brings it there, as a press on a slider's groove does in most people's hands.
@@ -105,7 +121,8 @@ void TargetBars::mouseMoveEvent(QMouseEvent* event) {
     }
     const int row = featureAtPosition(event->position());
     const int hovered =
-        row >= 0 && !m_readOnly && std::abs(event->position().x() - handlePosition(row).x()) < 8 ? row : -1;
+        row >= 0 && !m_readOnly && !isHidden(row) && std::abs(event->position().x() - handlePosition(row).x()) < 8 ? row
+                                                                                                                   : -1;
     setCursor(hovered >= 0 ? Qt::SizeHorCursor : Qt::ArrowCursor);
     if (hovered != m_hovered) {
         m_hovered = hovered;
@@ -129,17 +146,15 @@ void TargetBars::keyPressEvent(QKeyEvent* event) {
     const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 0.1 : 0.01;
     const double target = m_store.scene().targets().at(static_cast<std::size_t>(m_current));
     const auto move = [&](double by) {
-        if (!m_readOnly)
+        if (!m_readOnly && !isHidden(m_current))
             editTarget(m_store, m_current, target + by, tr("Target of feature"),
                        QStringLiteral("target-%1").arg(m_current));
     };
     switch (event->key()) {
     case Qt::Key_Up:
-        m_current = std::max(0, m_current - 1);
-        return update();
+        return choose(std::max(0, m_current - 1));
     case Qt::Key_Down:
-        m_current = std::min(count() - 1, m_current + 1);
-        return update();
+        return choose(std::min(count() - 1, m_current + 1));
     case Qt::Key_Left:
         return move(-step);
     case Qt::Key_Right:
@@ -194,17 +209,18 @@ void TargetBars::paintEvent(QPaintEvent*) {
         const auto f = static_cast<std::size_t>(i);
         const Feature& feature = m_store.scene().tf.features[f];
         const QRectF row = rowRect(i), track = trackRect(i);
-        if (i == m_current && hasFocus()) {
+        if (i == m_current && (m_marked || hasFocus())) {
             painter.setPen(Qt::NoPen);
-            painter.setBrush(QColor(255, 255, 255, 14));
+            painter.setBrush(theme::kHover);
             painter.drawRoundedRect(row.adjusted(3, 2, -3, -2), 4, 4);
         }
-        const QColor color = colorFromRgb(feature.color);
+        QColor color = colorFromRgb(feature.color);
+        if (feature.hidden) color.setAlphaF(0.35F);
         painter.setPen(Qt::NoPen);
         painter.setBrush(color);
         painter.drawRoundedRect(QRectF(10, track.center().y() - 5, 10, 10), 2, 2);
         painter.setFont(font());
-        painter.setPen(theme::kText);
+        painter.setPen(feature.hidden ? theme::kFaint : theme::kText);
         painter.drawText(
             QRectF(26, row.top(), kName - 32, row.height()), Qt::AlignVCenter | Qt::AlignLeft,
             QFontMetricsF(font()).elidedText(QString::fromStdString(feature.name), Qt::ElideRight, kName - 32));
@@ -232,15 +248,20 @@ void TargetBars::paintEvent(QPaintEvent*) {
             painter.setPen(theme::kFaint);
             painter.drawText(now.translated(0, half), Qt::AlignRight | Qt::AlignVCenter, share(m.visibility));
         }
+        const QRectF target(numbers.left() + numbers.width(), row.top(), numbers.width(), row.height());
+        if (feature.hidden) { // it is aimed at nothing
+            painter.setPen(theme::kFaint);
+            painter.drawText(target, Qt::AlignRight | Qt::AlignVCenter, QStringLiteral("–"));
+            continue;
+        }
         const QPointF handle = handlePosition(i);
         const bool active = i == m_dragged || i == m_hovered;
         painter.setPen(QPen(QColor(0, 0, 0, 160), 1));
-        painter.setBrush(m_readOnly ? theme::kFaint : active ? theme::kAccent.lighter(130) : QColor(Qt::white));
+        painter.setBrush(m_readOnly ? theme::kFaint : active ? theme::kAccent.lighter(130) : theme::kKnob);
         const double reach = track.height() / 2 + 1;
         painter.drawRoundedRect(QRectF(handle.x() - 2.5, handle.y() - reach, 5, 2 * reach), 2.5, 2.5);
         painter.setPen(theme::kText);
-        painter.drawText(QRectF(numbers.left() + numbers.width(), row.top(), numbers.width(), row.height()),
-                         Qt::AlignRight | Qt::AlignVCenter, share(targets[f]));
+        painter.drawText(target, Qt::AlignRight | Qt::AlignVCenter, share(targets[f]));
     }
 }
 

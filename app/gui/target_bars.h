@@ -20,9 +20,13 @@ public:
     double pixelOfShare(double share) const;
     void setReadOnly(bool on);
     int currentFeature() const { return m_current; }
+    void setCurrentFeature(int feature); ///< −1: none is marked; emits nothing
 
     QSize sizeHint() const override;
     QSize minimumSizeHint() const override;
+
+Q_SIGNALS:
+    void currentChanged(int feature); ///< by mouse or keys
 
 protected:
     void paintEvent(QPaintEvent* event) override;
@@ -39,9 +43,12 @@ private:
     QRectF trackRect(int feature) const; ///< where the bars lie
     int featureAtPosition(const QPointF& position) const;
     double shareAt(double pixelX) const;
+    bool isHidden(int feature) const;
+    void choose(int feature);
 
     SessionStore& m_store;
     Results& m_results;
+    bool m_marked = false; ///< the current feature is one that was chosen
     int m_current = 0, m_dragged = -1, m_hovered = -1;
     bool m_readOnly = false;
     bool m_pressed = false; // this widget is making a change itself

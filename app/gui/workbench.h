@@ -18,6 +18,7 @@ namespace pellucid::gui {
 class OpenController;
 class OptimizeController;
 class RecoveryController;
+class RefineController;
 class SaveController;
 class StartController;
 
@@ -52,6 +53,7 @@ public:
     OptimizeController& optimizing() { return *m_optimizing; }
     StartController& start() { return *m_start; }
     RecoveryController& recovery() { return *m_recovery; }
+    RefineController& refining() { return *m_refining; }
 
     /// Nothing may be edited: an optimization shows its moves.
     bool isReadOnly() const;
@@ -71,6 +73,7 @@ private:
 
     QWidget* m_window;
     std::unique_ptr<OptimizeController> m_optimizing;
+    std::unique_ptr<RefineController> m_refining;
     std::unique_ptr<SaveController> m_saving;
     std::unique_ptr<OpenController> m_opening;
     std::unique_ptr<StartController> m_start;

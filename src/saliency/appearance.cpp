@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "tf/lch.h"
 #include "volume/memory_use.h"
 
 namespace pellucid {
@@ -37,6 +38,11 @@ template <class T>
 constexpr bool kTabulated = sizeof(T) <= 2;
 
 } // namespace
+
+Appearance appearanceOf(const Rgb& srgb) {
+    const Lch lch = lchFromSrgb(srgb);
+    return {lch.lightness / 100, lch.chroma / 100};
+}
 
 AppearanceReader::AppearanceReader(const Volume& volume, const TransferFunction& tf, const Rgb& background)
     : m_volume(volume), m_sampler(tf), m_features(tf.features), m_background(appearanceOf(background)) {

@@ -4,10 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "saliency/lch.h"
 #include "saliency/saliency_field.h"
 
 namespace pellucid {
+
+/// The appearance attributes of a colour (docs/method.md, "Saliency").
+struct Appearance {
+    double brightness = 0; ///< O_b = L*/100, [0,1]
+    double saturation = 0; ///< O_s = C*ab/100, [0, about 1.34] for sRGB colours
+};
+Appearance appearanceOf(const Rgb& srgb);
 
 /// O_b and O_s of every voxel of a volume under a transfer function, read row by row so that no field is stored.
 class AppearanceReader {

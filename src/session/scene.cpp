@@ -222,6 +222,14 @@ PictureInput pictureInput(const Scene& scene, int width, int height, bool transp
     return input;
 }
 
+PictureInput plainPictureInput(const Scene& scene, int width, int height) {
+    PictureInput input = pictureInput(scene, width, height, true);
+    input.settings.mode = RenderMode::Composite;
+    input.settings.light = {};
+    input.settings.onlyFeature = -1;
+    return input;
+}
+
 AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density) {
     const Volume& volume = *picture.volume;
     return {show,           picture.camera, volume.geometry(), picture.tf,

@@ -107,6 +107,10 @@ struct PictureInput {
 /// Samples at half of d0 (quality high: a quarter). `transparent`: without the background.
 PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent = false);
 
+/// The same with the colours of the transfer function alone: no light, no background, no single feature. What a region
+/// is made of that someone draws in the picture (regionColors()).
+PictureInput plainPictureInput(const Scene& scene, int width, int height);
+
 /// Everything that what stands around a picture depends on; the picture has a volume. `density`: pixels of the picture
 /// in which lengths of the screen are one.
 AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density = 1);

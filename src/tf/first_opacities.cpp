@@ -105,7 +105,8 @@ std::vector<double> insideOf(const std::vector<FeatureExtent>& extents) {
 
 std::vector<double> coversOf(const std::vector<FeatureExtent>& extents, bool hasBackground) {
     constexpr double kOne = 0.9;                                     // the only feature
-    constexpr double kLeast = 0.4, kMost = 0.96;                     // between features before a background
+    constexpr double kThrough = 0.45, kLeastOuter = 0.3;             // what outer features let through, each hides
+    constexpr double kMost = 0.96;                                   // the innermost and rarest
     constexpr double kLeastEverywhere = 0.08, kMostEverywhere = 0.9; // where matter is everywhere
     constexpr double kLeastShare = 1e-6;
     if (extents.size() == 1) return {kOne};
@@ -114,15 +115,17 @@ std::vector<double> coversOf(const std::vector<FeatureExtent>& extents, bool has
         common = std::max(common, x.share);
         rare = std::min(rare, std::max(x.share, kLeastShare));
     }
+    const auto outer = static_cast<double>(extents.size() - 1);
+    const double least = std::max(kLeastOuter, 1 - std::pow(kThrough, 1 / outer));
     const std::vector<double> inside = insideOf(extents);
     std::vector<double> covers;
     for (std::size_t f = 0; f < extents.size(); ++f) {
         const double share = std::max(extents[f].share, kLeastShare);
         // No rarity to speak of where shares are within a factor of 1½.
         const double rarity = common > 1.5 * rare ? std::log(common / share) / std::log(common / rare) : 0.5;
-        const double height = static_cast<double>(f) / static_cast<double>(extents.size() - 1);
+        const double height = static_cast<double>(f) / outer;
         const double weight = hasBackground ? (inside[f] + rarity) / 2 : (height + rarity) / 2;
-        covers.push_back(hasBackground ? kLeast + (kMost - kLeast) * weight
+        covers.push_back(hasBackground ? least + (kMost - least) * weight
                                        : kLeastEverywhere + (kMostEverywhere - kLeastEverywhere) * weight * weight);
     }
     return covers;

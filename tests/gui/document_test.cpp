@@ -6,7 +6,7 @@
 #include <QSignalSpy>
 
 #include "models/features_model.h"
-#include "tf_edit.h"
+#include "tf/edit.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

@@ -23,7 +23,7 @@
 #include "input_habits.h"
 #include "render/camera_motion.h"
 #include "image_io/image_file.h"
-#include "tf_edit.h"
+#include "tf/edit.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

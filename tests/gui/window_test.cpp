@@ -472,7 +472,7 @@ TEST_CASE("a window may be closed and go while its jobs run", "[window]") {
             startEndlessOptimization(*w);
             w->bench().store().setClean(); // else it asks
         } else {
-            w->optimizing().refine(); // a measurement follows; the picture is being drawn
+            w->refining().refine(); // a measurement follows; the picture is being drawn
             w->document().undo();
             VolumeSource source;
             source.path = "sample:knee";
@@ -538,7 +538,7 @@ TEST_CASE("volumes with nothing to see open and say so", "[window]") {
     REQUIRE(waitFor([&] { return opened.count() == 2; }));
     CHECK(notice.text() == "no voxel has a valid value");
     w.settle();
-    w.optimizing().refine(); // nothing to do, and no harm
+    w.refining().refine(); // nothing to do, and no harm
     w.settle();
 }
 

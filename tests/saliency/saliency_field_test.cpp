@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "saliency/ball_plan.h"
-#include "saliency/lch.h"
+#include "saliency/appearance.h"
 #include "saliency/saliency_direct.h"
 #include "saliency/saliency_field.h"
 #include "support/volumes.h"

@@ -1,20 +1,34 @@
-// --tf: the transfer function.
+// --tf: the transfer function; and what is done to it: --colormap, --density, --hide, --only.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "session/scene.h"
+#include "tf/color_maps.h"
 
 namespace pellucid::cli {
 
 struct TfOptions {
     std::optional<std::string> spec; ///< a file, auto, tents:N[:PEAK] or ramp:N
 
-    void add(CLI::App& app);
+    const ColorMap* colorMap = nullptr;
+    ColorMapOptions colorMapOptions;
+    double density = 1;
+    std::vector<std::string> hide, only; ///< names of features
+
+    void add(CLI::App& app) {
+        addSource(app);
+        addEdits(app);
+    }
+    void addSource(CLI::App& app); ///< --tf
+    void addEdits(CLI::App& app);  ///< the others
     void applyTo(SceneInputs& inputs) const { inputs.tf = spec; }
+    /// The edits, to the transfer function that is open. Throws UsageError for a name that no feature has.
+    void applyTo(Scene& scene) const;
 };
 
 } // namespace pellucid::cli

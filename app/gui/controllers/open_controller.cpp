@@ -14,6 +14,7 @@
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
 #include "tf/formats/tf_json.h"
+#include "tf/presets.h"
 #include "volume/excerpt.h"
 #include "volume/procedural.h"
 #include "workbench.h"
@@ -27,8 +28,6 @@ constexpr auto kRecentKey = "recentFiles";
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
 bool isTf(const QString& path) { return path.endsWith(".tf.json", Qt::CaseInsensitive); }
-/// Something that --tf takes and that names no file.
-bool isNoFile(const QString& spec) { return spec == kAutomaticTf || tfFromSpec(spec.toStdString()).has_value(); }
 bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
 
 bool hasKnownSuffix(const QString& path) {
@@ -58,6 +57,11 @@ VolumeSource recentSource(const QString& entry) {
     }
     const nlohmann::json document = nlohmann::json::parse(entry.toStdString(), nullptr, false);
     return sessionFromJson({document, "recent files"}, "").session.variable().source;
+}
+
+/// Whether what names a transfer function names a file.
+bool isTfFile(const QString& specOrPath) {
+    return specOrPath != kAutomaticTf && !tfFromSpec(specOrPath.toStdString()) && !tfFromPresetSpec(specOrPath.toStdString());
 }
 
 } // namespace
@@ -215,13 +219,13 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 }
 
 void OpenController::show(const Request& request, Opened& opened) {
-    const bool ownTf = opened.tfError || request.tfPath.isEmpty() || isNoFile(request.tfPath);
+    const bool ownTf = opened.tfError || request.tfPath.isEmpty() || !isTfFile(request.tfPath);
     m_tfPath = ownTf ? QString() : request.tfPath;
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
     const VolumeSource source = opened.scene.session.variable().source;
-    const bool tfFromFile = !request.tfPath.isEmpty() && !opened.tfError && !isNoFile(request.tfPath);
+    const bool tfFromFile = !request.tfPath.isEmpty() && !opened.tfError && isTfFile(request.tfPath);
     const Scene scene = opened.scene;
     m_bench.store().open(std::move(opened.scene));
     if (request.unsaved) m_bench.store().setUnsaved();
@@ -277,7 +281,7 @@ void OpenController::openTf(const QString& specOrPath) {
     if (specOrPath == kAutomaticTf) return m_bench.start().startAgain();
     try {
         const TransferFunction tf = loadTf(specOrPath.toStdString());
-        const bool isFile = !isNoFile(specOrPath);
+        const bool isFile = isTfFile(specOrPath);
         const auto change = [tf](Session& session) {
             TransferFunction placed = tf;
             session.variables.edit([&](std::vector<Variable>& all) {

@@ -2,7 +2,8 @@
 
 #include "number_text.h"
 #include "store/edits.h"
-#include "tf_edit.h"
+#include "tf/edit.h"
+#include "tf/shapes.h"
 #include "theme.h"
 
 namespace pellucid::gui {
@@ -23,10 +24,11 @@ void FeaturesModel::follow(const Scene& before, const Scene& after) {
         endResetModel();
         return;
     }
-    if (before.volume == after.volume && before.tf == after.tf && before.session.goals.isSame(after.session.goals))
+    if (before.volume == after.volume && before.tf == after.tf && before.session.goals.isSame(after.session.goals) &&
+        before.onlyFeature() == after.onlyFeature())
         return;
     m_opacities = featureOpacities(after.tf);
-    refresh(Name, Target);
+    refresh(Eye, Target);
 }
 
 void FeaturesModel::refresh(Column first, Column last) {
@@ -47,12 +49,15 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
     const bool measured = measures && f < measures->features.size();
 
     if (role == Qt::TextAlignmentRole && index.column() > Range) return QVariant(Qt::AlignRight | Qt::AlignVCenter);
+    if (role == Qt::ForegroundRole && !isDrawn(index.row())) return theme::kFaint;
     if (role == Qt::DecorationRole && index.column() == Name) return colorFromRgb(feature.color);
     if (role == Qt::ToolTipRole) return headerData(index.column(), Qt::Horizontal, Qt::ToolTipRole);
     if (role != Qt::DisplayRole && role != Qt::EditRole) return {};
 
     double number = 0;
     switch (index.column()) {
+    case Eye:
+        return role == Qt::EditRole ? QVariant(!feature.hidden) : QVariant();
     case Name:
         return QString::fromStdString(feature.name);
     case Range: {
@@ -74,6 +79,7 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
         number = measures->features[f].vws;
         break;
     case Target:
+        if (feature.hidden && role == Qt::DisplayRole) return QStringLiteral("–");
         number = scene.targets().at(f);
         break;
     default:
@@ -87,15 +93,23 @@ QVariant FeaturesModel::headerData(int section, Qt::Orientation orientation, int
     if (orientation != Qt::Horizontal || section < 0 || section >= ColumnCount)
         return QAbstractTableModel::headerData(section, orientation, role);
     if (role == Qt::DisplayRole) {
-        static const std::array<const char*, ColumnCount> names{QT_TR_NOOP("Feature"), QT_TR_NOOP("Values"),
-                                                                QT_TR_NOOP("Opacity"), QT_TR_NOOP("Visibility"),
-                                                                QT_TR_NOOP("VWS"),     QT_TR_NOOP("Target")};
-        return tr(names[static_cast<std::size_t>(section)]);
+        static const std::array<const char*, ColumnCount> names{"",
+                                                                QT_TR_NOOP("Feature"),
+                                                                QT_TR_NOOP("Values"),
+                                                                QT_TR_NOOP("Opacity"),
+                                                                QT_TR_NOOP("Visibility"),
+                                                                QT_TR_NOOP("VWS"),
+                                                                QT_TR_NOOP("Target")};
+        const char* const text = names[static_cast<std::size_t>(section)];
+        return *text == 0 ? QString() : tr(text);
     }
     if (role == Qt::ToolTipRole) {
         switch (section) {
+        case Eye:
+            return tr("Show or hide the feature; hidden, it is neither drawn nor measured, and has no target.\n"
+                      "Alt+click or Ctrl+click: draw only this one, or all again");
         case Name:
-            return tr("Name and colour of the feature; double-click to change either");
+            return tr("Name and colour of the feature; click the colour to change it, double-click the name");
         case Range:
             return tr("Values of the feature's voxels, in the units of the data");
         case Opacity:
@@ -116,7 +130,10 @@ QVariant FeaturesModel::headerData(int section, Qt::Orientation orientation, int
 Qt::ItemFlags FeaturesModel::flags(const QModelIndex& index) const {
     Qt::ItemFlags flags = QAbstractTableModel::flags(index);
     if (!index.isValid() || m_readOnly) return flags;
-    if (index.column() == Name || index.column() == Opacity || index.column() == Target) flags |= Qt::ItemIsEditable;
+    if (index.column() == Target && m_store.scene().tf.features.at(static_cast<std::size_t>(index.row())).hidden)
+        return flags;
+    if (index.column() == Eye || index.column() == Name || index.column() == Opacity || index.column() == Target)
+        flags |= Qt::ItemIsEditable;
     return flags;
 }
 
@@ -131,6 +148,13 @@ bool FeaturesModel::setData(const QModelIndex& index, const QVariant& value, int
         return true;
     }
     if (role != Qt::EditRole) return false;
+    if (index.column() == Eye) {
+        const bool shown = value.toBool();
+        m_store.commit();
+        editTf(m_store, withFeatureHidden(m_store.scene().tf, index.row(), !shown),
+               shown ? tr("Show feature") : tr("Hide feature"));
+        return true;
+    }
     if (index.column() == Name) {
         const QString name = value.toString().trimmed();
         if (name.isEmpty()) return false;
@@ -141,6 +165,7 @@ bool FeaturesModel::setData(const QModelIndex& index, const QVariant& value, int
     bool isNumber = false;
     const double number = value.toDouble(&isNumber);
     if (!isNumber || !(number >= 0 && number <= 1)) return false;
+    if (!flags(index).testFlag(Qt::ItemIsEditable)) return false;
     if (index.column() == Target) {
         editTarget(m_store, index.row(), number, tr("Target of feature"), QStringLiteral("target-%1").arg(index.row()));
         return true;
@@ -162,9 +187,17 @@ void FeaturesModel::previewOpacity(int row, double opacity) {
 
 void FeaturesModel::endPreview() { m_store.commit(); }
 
+bool FeaturesModel::isDrawn(int row) const {
+    const Scene& scene = m_store.scene();
+    const auto f = static_cast<std::size_t>(row);
+    if (f >= scene.tf.features.size() || scene.tf.features[f].hidden) return false;
+    const int only = scene.onlyFeature();
+    return only < 0 || only == row;
+}
+
 void FeaturesModel::setReadOnly(bool on) {
     m_readOnly = on;
-    refresh(Name, Target);
+    refresh(Eye, Target);
 }
 
 } // namespace pellucid::gui

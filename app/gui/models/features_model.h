@@ -1,4 +1,4 @@
-// The features as a table: colour and name, range, opacity, visibility, VWS, target.
+// The features as a table: eye, colour and name, range, opacity, visibility, VWS, target.
 #pragma once
 
 #include <QAbstractTableModel>
@@ -10,17 +10,19 @@
 
 namespace pellucid::gui {
 
-/// One row per feature of the scene's transfer function. Name, opacity and target can be edited; each is an undo step.
+/// One row per feature of the scene's transfer function. Eye, name, opacity and target can be edited; each is an undo
+/// step.
 class FeaturesModel : public QAbstractTableModel {
     Q_OBJECT
 public:
-    enum Column { Name, Range, Opacity, Visibility, Vws, Target, ColumnCount };
+    enum Column { Eye, Name, Range, Opacity, Visibility, Vws, Target, ColumnCount };
 
     FeaturesModel(SessionStore& store, Results& results, QObject* parent = nullptr);
 
     int rowCount(const QModelIndex& parent = {}) const override;
     int columnCount(const QModelIndex& parent = {}) const override;
-    /// EditRole gives numbers in [0,1] for Opacity, Visibility, Vws and Target; DecorationRole of Name the colour.
+    /// EditRole gives numbers in [0,1] for Opacity, Visibility, Vws and Target, and whether the eye is open;
+    /// DecorationRole of Name the colour.
     QVariant data(const QModelIndex& index, int role = Qt::DisplayRole) const override;
     QVariant headerData(int section, Qt::Orientation orientation, int role = Qt::DisplayRole) const override;
     Qt::ItemFlags flags(const QModelIndex& index) const override;
@@ -30,6 +32,9 @@ public:
     void previewOpacity(int row, double opacity);
     void endPreview();
     void setReadOnly(bool on);
+    bool isReadOnly() const { return m_readOnly; }
+    /// Whether the picture shows the feature: its eye is open, and no other one is drawn alone.
+    bool isDrawn(int row) const;
 
 private:
     void follow(const Scene& before, const Scene& after);

@@ -8,16 +8,24 @@
 #include <QDoubleSpinBox>
 #include <QGridLayout>
 #include <QHeaderView>
+#include <QItemSelectionModel>
 #include <QLabel>
+#include <QMenu>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QPainterPath>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSignalBlocker>
 #include <QStyledItemDelegate>
 #include <QTableView>
+#include <QToolButton>
 #include <QVBoxLayout>
 
+#include "controllers/feature_actions.h"
 #include "controllers/optimize_controller.h"
+#include "density_slider.h"
 #include "number_box.h"
 #include "opacity_editor.h"
 #include "panel.h"
@@ -29,6 +37,45 @@ namespace {
 
 constexpr int kRowHeight = 26;
 constexpr int kSwatch = 26; // width of the colour in the name's cell
+constexpr int kEye = 30;    // width of the eyes' column
+
+constexpr const char* kNoIndicator = "QToolButton::menu-indicator { image: none; }"; // the text has an arrow
+
+/// An eye in each cell of its column: open, closed, or faint where another feature is drawn alone.
+class EyeDelegate : public QStyledItemDelegate {
+public:
+    EyeDelegate(const FeaturesModel& model, QObject* parent) : QStyledItemDelegate(parent), m_model(model) {}
+
+    void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override {
+        QStyleOptionViewItem plain = option;
+        plain.state &= ~QStyle::State_HasFocus;
+        QStyledItemDelegate::paint(painter, plain, index);
+        const bool open = index.data(Qt::EditRole).toBool();
+        painter->save();
+        painter->setRenderHint(QPainter::Antialiasing);
+        const QPointF c = QRectF(option.rect).center();
+        painter->setPen(QPen(m_model.isDrawn(index.row()) ? theme::kText : theme::kFaint, 1.4));
+        QPainterPath lid(c - QPointF(7, 0));
+        if (open)
+            lid.quadTo(c - QPointF(0, 8), c + QPointF(7, 0));
+        else
+            lid.moveTo(c + QPointF(7, 0));
+        lid.quadTo(c + QPointF(0, 8), c - QPointF(7, 0));
+        painter->drawPath(lid);
+        if (open) {
+            painter->setBrush(painter->pen().color());
+            painter->drawEllipse(c, 2, 2);
+        } else {
+            for (const double dx : {-4.0, 0.0, 4.0}) // lashes
+                painter->drawLine(c + QPointF(dx, dx == 0 ? 4.2 : 3), c + QPointF(dx * 1.3, dx == 0 ? 7 : 5.6));
+        }
+        painter->restore();
+    }
+    QWidget* createEditor(QWidget*, const QStyleOptionViewItem&, const QModelIndex&) const override { return nullptr; }
+
+private:
+    const FeaturesModel& m_model;
+};
 
 /// A slider in each cell of the opacity column.
 class OpacityDelegate : public QStyledItemDelegate {
@@ -72,6 +119,7 @@ QPushButton* button(const QString& text, const char* name, const QString& tip, Q
 FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_model(new FeaturesModel(bench.store(), bench.results(), this)),
       m_table(new QTableView(this)), m_bars(new TargetBars(bench.store(), bench.results())),
+      m_density(new DensitySlider(bench.store(), this)), m_add(new QToolButton(this)), m_colors(new QToolButton(this)),
       m_method(new QComboBox(this)), m_tolerance(new QDoubleSpinBox(this)),
       m_refine(button(tr("&Refine"), "refineButton",
                       tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this)),
@@ -88,28 +136,38 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     m_table->setObjectName("featuresTable");
     m_table->setModel(m_model);
     m_table->setItemDelegateForColumn(FeaturesModel::Opacity, new OpacityDelegate(*m_model, m_table));
+    m_table->setItemDelegateForColumn(FeaturesModel::Eye, new EyeDelegate(*m_model, m_table));
     for (const auto column : {FeaturesModel::Visibility, FeaturesModel::Vws, FeaturesModel::Target}) {
         m_table->setColumnHidden(column, true); // the bars below show them
     }
     m_table->verticalHeader()->hide();
     m_table->verticalHeader()->setDefaultSectionSize(kRowHeight);
     m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+    m_table->horizontalHeader()->setMinimumSectionSize(kEye);
+    m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Eye, QHeaderView::Fixed);
+    m_table->setColumnWidth(FeaturesModel::Eye, kEye);
     m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Range, QHeaderView::ResizeToContents);
     m_table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
     m_table->horizontalHeader()->setHighlightSections(false);
     m_table->setShowGrid(false);
-    m_table->setSelectionMode(QAbstractItemView::NoSelection);
+    m_table->setSelectionMode(QAbstractItemView::SingleSelection);
+    m_table->setSelectionBehavior(QAbstractItemView::SelectRows);
     m_table->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     m_table->setEditTriggers(QAbstractItemView::EditKeyPressed);
-    connect(m_table, &QTableView::doubleClicked, this, [this](const QModelIndex& index) {
-        if (index.column() != FeaturesModel::Name || m_bench.isReadOnly()) return;
-        // The swatch at the left of the cell, or the name in the rest of it.
-        const QPoint mouse = m_table->viewport()->mapFromGlobal(QCursor::pos());
-        if (mouse.x() > m_table->columnViewportPosition(FeaturesModel::Name) + kSwatch) return m_table->edit(index);
-        const QColor color =
-            QColorDialog::getColor(index.data(Qt::DecorationRole).value<QColor>(), this, tr("Colour of the feature"));
-        if (color.isValid()) m_model->setData(index, color, Qt::DecorationRole);
+    m_table->viewport()->installEventFilter(this);
+    m_table->setContextMenuPolicy(Qt::CustomContextMenu);
+    connect(m_table, &QTableView::customContextMenuRequested, this, [this](const QPoint& at) {
+        select(m_table->rowAt(at.y()));
+        QMenu menu(this);
+        menu.setObjectName("featureContextMenu");
+        fillFeatureMenu(menu, m_bench);
+        menu.exec(m_table->viewport()->mapToGlobal(at));
     });
+    connect(m_table->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this](const QModelIndex& now) {
+        if (!m_showingSelection && now.isValid()) select(now.row());
+    });
+    connect(m_bars, &TargetBars::currentChanged, this, &FeaturesPanel::select);
+    connect(&m_bench.selection(), &Selection::featureChanged, this, &FeaturesPanel::followSelection);
     connect(m_model, &QAbstractItemModel::modelReset, this, &FeaturesPanel::adjustTable);
 
     auto* scroll = new QScrollArea(this);
@@ -142,7 +200,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     m_message->setObjectName("panelMessage");
     m_message->setWordWrap(true);
-    m_message->setStyleSheet(QStringLiteral("color: %1").arg(theme::kFaint.name()));
+    makeFaint(*m_message);
 
     auto* choices = new QGridLayout;
     choices->setContentsMargins(10, 0, 10, 0);
@@ -177,7 +235,9 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     column->setContentsMargins(0, 0, 0, 8);
     column->setSpacing(8);
     column->addWidget(m_table);
+    column->addWidget(makeShapeRow());
     column->addWidget(scroll, 1);
+    column->addWidget(makeColorRow());
     column->addLayout(status);
     column->addLayout(choices);
     column->addLayout(buttons);
@@ -204,6 +264,107 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     showMessage();
 }
 
+QWidget* FeaturesPanel::makeShapeRow() {
+    auto* widget = new QWidget(this);
+    auto* row = new QHBoxLayout(widget);
+    row->setContentsMargins(10, 0, 10, 0);
+    row->setSpacing(4);
+    m_add->setObjectName("addShapeButton");
+    m_add->setText(tr("Add ▾"));
+    m_add->setStyleSheet(kNoIndicator);
+    m_add->setToolTip(tr("A new feature of some shape, in a gap between the others"));
+    m_add->setPopupMode(QToolButton::InstantPopup);
+    auto* shapes = new QMenu(m_add);
+    shapes->setToolTipsVisible(true);
+    fillShapeMenu(*shapes, m_bench);
+    m_add->setMenu(shapes);
+    row->addWidget(m_add);
+    for (const auto& [id, text] :
+         {std::pair{"featureSplit", tr("Split")}, std::pair{"featureMerge", tr("Merge")},
+          std::pair{"featureDuplicate", tr("Duplicate")}, std::pair{"featureRemove", tr("Remove")}}) {
+        QAction* const action = m_bench.actions().find(id);
+        action->setIconText(text); // what buttons say
+        auto* b = new QToolButton(widget);
+        b->setDefaultAction(action);
+        b->setObjectName(QString::fromLatin1(id) + "Button");
+        row->addWidget(b);
+    }
+    row->addStretch(1);
+    return widget;
+}
+
+QWidget* FeaturesPanel::makeColorRow() {
+    auto* widget = new QWidget(this);
+    auto* row = new QHBoxLayout(widget);
+    row->setContentsMargins(10, 0, 10, 0);
+    row->setSpacing(10);
+    m_colors->setObjectName("colorMapButton");
+    m_colors->setText(tr("Colours ▾"));
+    m_colors->setStyleSheet(kNoIndicator);
+    m_colors->setToolTip(tr("Colours by value from a map; opacities stay"));
+    m_colors->setPopupMode(QToolButton::InstantPopup);
+    auto* maps = new QMenu(m_colors);
+    fillColorMenu(*maps, m_bench);
+    m_colors->setMenu(maps);
+    row->addWidget(m_density, 1);
+    row->addWidget(m_colors);
+    return widget;
+}
+
+bool FeaturesPanel::eventFilter(QObject* watched, QEvent* event) {
+    if (watched == m_table->viewport() &&
+        (event->type() == QEvent::MouseButtonPress || event->type() == QEvent::MouseButtonDblClick)) {
+        const auto* mouse = static_cast<QMouseEvent*>(event);
+        if (pressTable(*mouse)) return true;
+    }
+    return QWidget::eventFilter(watched, event);
+}
+
+bool FeaturesPanel::pressTable(const QMouseEvent& mouse) {
+    const QPoint at = mouse.position().toPoint();
+    const QModelIndex index = m_table->indexAt(at);
+    if (!index.isValid() || mouse.button() != Qt::LeftButton || m_bench.isReadOnly()) return false;
+    if (index.column() == FeaturesModel::Eye) {
+        if (mouse.modifiers() & (Qt::AltModifier | Qt::ControlModifier))
+            toggleOnlyFeature(m_bench, index.row());
+        else
+            m_model->setData(index, !index.data(Qt::EditRole).toBool());
+        return true;
+    }
+    if (index.column() != FeaturesModel::Name) return false;
+    const bool second = mouse.type() == QEvent::MouseButtonDblClick;
+    if (at.x() > m_table->columnViewportPosition(FeaturesModel::Name) + kSwatch) {
+        if (second) m_table->edit(index);
+        return second;
+    }
+    if (second) return true;
+    select(index.row());
+    const QPersistentModelIndex place(index);
+    const QColor color =
+        QColorDialog::getColor(index.data(Qt::DecorationRole).value<QColor>(), this, tr("Colour of the feature"));
+    if (color.isValid() && place.isValid()) m_model->setData(place, color, Qt::DecorationRole);
+    return true;
+}
+
+void FeaturesPanel::select(int row) {
+    const auto& features = m_bench.scene().tf.features;
+    if (row >= 0 && static_cast<std::size_t>(row) < features.size())
+        m_bench.selection().setFeature(features[static_cast<std::size_t>(row)].id);
+}
+
+void FeaturesPanel::followSelection() {
+    const int row = selectedFeature(m_bench);
+    m_showingSelection = true;
+    if (row >= 0 && row < m_model->rowCount()) {
+        if (m_table->currentIndex().row() != row) m_table->setCurrentIndex(m_model->index(row, FeaturesModel::Name));
+        if (!m_table->selectionModel()->isRowSelected(row)) m_table->selectRow(row);
+    } else {
+        m_table->clearSelection();
+    }
+    m_showingSelection = false;
+    m_bars->setCurrentFeature(row);
+}
+
 void FeaturesPanel::editOptions() {
     const auto method = static_cast<SearchMethod>(m_method->currentData().toInt());
     const double tolerance = m_tolerance->value();
@@ -219,6 +380,7 @@ void FeaturesPanel::adjustTable() {
     for (int row = 0; row < m_model->rowCount(); ++row) {
         m_table->openPersistentEditor(m_model->index(row, FeaturesModel::Opacity));
     }
+    followSelection();
     const int shown = std::clamp(m_model->rowCount(), 1, 6);
     m_table->setFixedHeight(m_table->horizontalHeader()->sizeHint().height() + shown * kRowHeight + 2);
 }
@@ -247,7 +409,8 @@ void FeaturesPanel::followRun() {
     m_cancel->setVisible(on);
     m_progress->setVisible(on);
     m_distance->setVisible(!on);
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_table, m_method, m_tolerance}) widget->setEnabled(!on);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_table, m_density, m_colors, m_add, m_method, m_tolerance})
+        widget->setEnabled(!on);
     follow();
 }
 
@@ -270,6 +433,8 @@ void FeaturesPanel::follow() {
     m_optimize->setEnabled(ready && features);
     m_undo->setEnabled(ready && store.canUndo());
     m_redo->setEnabled(ready && store.canRedo());
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_density, m_colors, m_add}) widget->setEnabled(ready);
+    followSelection();
 
     const Results& results = m_bench.results();
     m_distance->setEnabled(results.vwsIsCurrent());
@@ -291,6 +456,12 @@ PanelInfo featuresPanel() {
             .keys = QKeySequence("Ctrl+2"),
             .tip = QObject::tr("What each feature shows and what it should show"),
             .make = [](Workbench& bench, QWidget* parent) {
+                const QString place = QObject::tr("Features");
+                bench.actions().addGestures(
+                    {{place, QObject::tr("Click on an eye"), QObject::tr("show or hide the feature")},
+                     {place, QObject::tr("Alt or Ctrl+click on an eye"), QObject::tr("draw only this feature, or all")},
+                     {place, QObject::tr("Click on a colour"), QObject::tr("change it")},
+                     {place, QObject::tr("Double-click on a name, F2"), QObject::tr("rename the feature")}});
                 auto* panel = new FeaturesPanel(bench, parent);
                 panel->setMinimumWidth(340);
                 return panel;

@@ -9,12 +9,15 @@
 class QComboBox;
 class QDoubleSpinBox;
 class QLabel;
+class QMouseEvent;
 class QProgressBar;
 class QPushButton;
 class QTableView;
+class QToolButton;
 
 namespace pellucid::gui {
 
+class DensitySlider;
 class Workbench;
 
 class FeaturesPanel : public QWidget {
@@ -22,7 +25,15 @@ class FeaturesPanel : public QWidget {
 public:
     explicit FeaturesPanel(Workbench& bench, QWidget* parent = nullptr);
 
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override; ///< the mouse on eyes and colours
+
 private:
+    QWidget* makeShapeRow();
+    QWidget* makeColorRow();
+    bool pressTable(const QMouseEvent& mouse);
+    void select(int row);
+    void followSelection();
     void editOptions();
     void follow(); ///< the state, and what is computed of it
     void followRun();
@@ -33,11 +44,14 @@ private:
     FeaturesModel* m_model;
     QTableView* m_table;
     TargetBars* m_bars;
+    DensitySlider* m_density;
+    QToolButton *m_add, *m_colors;
     QComboBox* m_method;
     QDoubleSpinBox* m_tolerance;
     QPushButton *m_refine, *m_optimize, *m_cancel, *m_undo, *m_redo;
     QProgressBar* m_progress;
     QLabel *m_distance, *m_message;
+    bool m_showingSelection = false; ///< the table shows what is selected; it selects nothing
 };
 
 } // namespace pellucid::gui

@@ -1,10 +1,8 @@
-#include "gui_support.h"
+#include <catch2/catch.hpp>
 
-#include "raw_dialog.h"
-#include "tf_edit.h"
+#include "tf/edit.h"
 
 using namespace pellucid;
-using namespace pellucid::gui;
 
 // tents(3): centres 1/6, 1/2, 5/6, bottoms at centre ± 0.4/3; points 0..8, each tent bottom, peak, bottom.
 
@@ -59,18 +57,4 @@ TEST_CASE("the colour of a feature is the colour of its points, and of its peak"
 TEST_CASE("the opacity of one feature leaves the others alone", "[edit]") {
     const TransferFunction changed = withFeatureOpacity(tents(3, 0.5), 2, 0.125);
     CHECK(featureOpacities(changed) == std::vector<double>{0.5, 0.5, 0.125});
-}
-
-TEST_CASE("the layout of raw data is guessed from name and size", "[raw]") {
-    const RawLayout nucleon = guessRawLayout("/a/nucleon_41x41x41_uint8.raw", 41 * 41 * 41);
-    CHECK(nucleon.dims == Int3(41, 41, 41));
-    CHECK(nucleon.type == SampleType::U8);
-    const RawLayout foot = guessRawLayout("foot_16x8x4_int16.raw", 1024);
-    CHECK(foot.dims == Int3(16, 8, 4));
-    CHECK(foot.type == SampleType::I16);
-    CHECK(guessRawLayout("x_4x4x4_float32.raw", 256).type == SampleType::F32);
-    CHECK(guessRawLayout("x_4x4x4.raw", 256).type == SampleType::F32); // four bytes each
-    CHECK(guessRawLayout("cube.dat", 64 * 64 * 64).dims == Int3(64, 64, 64));
-    CHECK(isHeaderless("a.RAW"));
-    CHECK_FALSE(isHeaderless("a.nrrd"));
 }

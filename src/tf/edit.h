@@ -3,7 +3,7 @@
 
 #include "tf/transfer_function.h"
 
-namespace pellucid::gui {
+namespace pellucid {
 
 /// Point `index` moved to (x, opacity), kept between its neighbours and in [0,1]. A feature's end that lies at the
 /// point goes along, as far as the feature keeps a width and overlaps no other.
@@ -23,7 +23,11 @@ TransferFunction withPointFixed(const TransferFunction& tf, int index, bool fixe
 /// The feature, and all points that belong to it alone.
 TransferFunction withFeatureColor(const TransferFunction& tf, int feature, const Rgb& color);
 TransferFunction withFeatureName(const TransferFunction& tf, int feature, const std::string& name);
+/// Everything `factor` > 0 times as dense: α of each point becomes 1 − (1 − α)^factor, which multiplies its extinction.
+TransferFunction withDensity(const TransferFunction& tf, double factor);
+inline constexpr double kMostDensity = 16, kLeastDensity = 1 / kMostDensity; ///< what one asks for at a time
+
 /// The peak of one feature; see withFeatureOpacities().
 TransferFunction withFeatureOpacity(const TransferFunction& tf, int feature, double opacity);
 
-} // namespace pellucid::gui
+} // namespace pellucid

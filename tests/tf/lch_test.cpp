@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "saliency/lch.h"
+#include "tf/lch.h"
 
 using namespace pellucid;
 

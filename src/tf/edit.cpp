@@ -1,41 +1,39 @@
-#include "tf_edit.h"
+#include "tf/edit.h"
 
 #include <algorithm>
+#include <cmath>
 
-namespace pellucid::gui {
+#include "base/check.h"
+#include "tf/shapes.h"
+
+namespace pellucid {
 namespace {
-
-constexpr double kSmallestFeature = 1.0 / 4096; // a feature of no width holds no voxel and cannot be seen or grabbed
 
 bool holds(const TransferFunction& tf, int index) {
     return index >= 0 && static_cast<std::size_t>(index) < tf.points.size();
 }
 
-// Whether the point belongs to the feature's shape; its upper bottom lies at b, where no voxel of it is.
-bool shapes(const TransferFunction& tf, const ControlPoint& point, std::size_t feature) {
-    const Feature& f = tf.features[feature];
-    if (f.contains(point.x)) return true;
-    return point.x == f.b && featureAt(tf.features, point.x) < 0;
-}
-
-void moveFeatureEnds(TransferFunction& tf, double from, double to) {
-    for (std::size_t i = 0; i < tf.features.size(); ++i) {
-        Feature& f = tf.features[i];
-        if (f.a == from && f.b > to + kSmallestFeature) {
-            double lowest = 0;
-            for (std::size_t j = 0; j < tf.features.size(); ++j) {
-                if (j != i && tf.features[j].b <= f.a) lowest = std::max(lowest, tf.features[j].b);
-            }
-            f.a = std::max(to, lowest);
-        }
-        if (f.b == from && f.a + kSmallestFeature < to) {
-            double highest = 1;
-            for (std::size_t j = 0; j < tf.features.size(); ++j) {
-                if (j != i && tf.features[j].a >= f.b) highest = std::min(highest, tf.features[j].a);
-            }
-            f.b = std::min(to, highest);
-        }
+/// The ends of features that lie at `from` go to `to` with a point that has gone there: the first or the last of those
+/// that shared the place, or both where it was alone.
+void moveFeatureEnds(TransferFunction& tf, double from, double to, bool wasFirst, bool wasLast) {
+    Feature *below = nullptr, *above = nullptr; // that end and start there
+    double lowest = 0, highest = 1;             // ends of the others
+    for (Feature& f : tf.features) {
+        if (f.b == from) below = &f;
+        if (f.a == from) above = &f;
+        if (f.b < from) lowest = std::max(lowest, f.b);
+        if (f.a > from) highest = std::min(highest, f.a);
     }
+    if (below != nullptr) lowest = below->a + kSmallestFeature;
+    if (above != nullptr) highest = above->b - kSmallestFeature;
+    const bool touching = below != nullptr && above != nullptr;
+    if (lowest > highest) return;
+    to = std::clamp(to, lowest, highest);
+    // Of a step, the side that a feature owns takes the end along; a bottom that stays keeps it.
+    if (below != nullptr && (touching ? wasFirst : wasLast))
+        below->b = touching ? std::min(to, wasLast ? 1.0 : from) : to;
+    if (above != nullptr && (touching ? wasLast : wasFirst))
+        above->a = touching ? std::max(to, wasFirst ? 0.0 : from) : to;
 }
 
 } // namespace
@@ -50,7 +48,10 @@ TransferFunction withPointMoved(const TransferFunction& tf, int index, double x,
     const double from = point.x;
     point.x = std::clamp(x, lowest, highest);
     point.opacity = std::clamp(opacity, 0.0, 1.0);
-    if (point.x != from) moveFeatureEnds(result, from, point.x);
+    if (point.x == from) return result;
+    const bool isFirst = i == 0 || tf.points[i - 1].x != from;
+    const bool isLast = i + 1 == tf.points.size() || tf.points[i + 1].x != from;
+    moveFeatureEnds(result, from, point.x, isFirst, isLast);
     return result;
 }
 
@@ -83,9 +84,9 @@ TransferFunction withPointColor(const TransferFunction& tf, int index, const Rgb
     const int feature = featureAt(tf.features, point.x);
     if (feature < 0) return result;
     const auto f = static_cast<std::size_t>(feature);
-    const bool highest = std::none_of(tf.points.begin(), tf.points.end(), [&](const ControlPoint& other) {
-        return shapes(tf, other, f) && other.opacity > point.opacity;
-    });
+    const std::vector<int> own = pointsOfFeature(tf, feature);
+    const bool highest = std::none_of(
+        own.begin(), own.end(), [&](int i) { return tf.points[static_cast<std::size_t>(i)].opacity > point.opacity; });
     if (highest) result.features[f].color = color;
     return result;
 }
@@ -101,9 +102,7 @@ TransferFunction withFeatureColor(const TransferFunction& tf, int feature, const
     TransferFunction result = tf;
     const auto f = static_cast<std::size_t>(feature);
     result.features.at(f).color = color;
-    for (ControlPoint& point : result.points) {
-        if (shapes(tf, point, f)) point.color = color;
-    }
+    for (const int i : pointsOfFeature(tf, feature)) result.points[static_cast<std::size_t>(i)].color = color;
     return result;
 }
 
@@ -113,10 +112,19 @@ TransferFunction withFeatureName(const TransferFunction& tf, int feature, const 
     return result;
 }
 
+TransferFunction withDensity(const TransferFunction& tf, double factor) {
+    PELLUCID_CHECK(factor > 0 && std::isfinite(factor));
+    if (factor == 1) return tf;
+    TransferFunction result = tf;
+    for (ControlPoint& p : result.points)
+        p.opacity = std::clamp(-std::expm1(factor * std::log1p(-p.opacity)), 0.0, 1.0);
+    return result;
+}
+
 TransferFunction withFeatureOpacity(const TransferFunction& tf, int feature, double opacity) {
     std::vector<double> opacities = featureOpacities(tf);
     opacities.at(static_cast<std::size_t>(feature)) = std::clamp(opacity, 0.0, 1.0);
     return withFeatureOpacities(tf, opacities);
 }
 
-} // namespace pellucid::gui
+} // namespace pellucid
