@@ -141,15 +141,15 @@ def grey_entropy(rgba):
 def look(cli, name, volume, scratch):
     tf = scratch / "auto.tf.json"
     kind = run(cli, "propose", *volume, "--out-tf", str(tf), "--json")
-    lit = picture(cli, volume, scratch, "--shading")
-    alpha = picture(cli, volume, scratch, "--background", "transparent")[..., 3] / 255
+    auto = ("--tf", str(tf))
+    lit = picture(cli, volume, scratch, "--shading", *auto)
+    alpha = picture(cli, volume, scratch, "--background", "transparent", *auto)[..., 3] / 255
     solid = json.loads(tf.read_text())
     for point in solid["points"]:
         point["opacity"] = 1.0 if point["opacity"] > 0 else 0.0
     (scratch / "solid.tf.json").write_text(json.dumps(solid))
-    # A file's range is a window; of a constant volume there is none.
     inside = picture(cli, volume, scratch, "--background", "transparent", "--tf", str(scratch / "solid.tf.json"))[..., 3] > 127
-    unlit = picture(cli, volume, scratch)
+    unlit = picture(cli, volume, scratch, *auto)
     tents = picture(cli, volume, scratch, "--tf", "tents:3")
     lit_tents = picture(cli, volume, scratch, "--shading", "--tf", "tents:3")
     seen = run(cli, "measure", *volume, "--engine", "cpu", "--json")["features"]

@@ -203,7 +203,7 @@ std::vector<double> importanceOf(const Proposal& proposal) {
         const double rarity =
             common > 1.5 * rare ? std::log(common / std::max(f.share, 1e-6)) / std::log(common / rare) : 0.5;
         if (proposal.kind == DataKind::Ct) // soft tissue in front of bone
-            importance.push_back(f.mode < -20 ? 0.05 : f.mode < 150 ? 0.15 : f.mode < 700 ? 0.9 : 1);
+            importance.push_back(f.mode < 150 ? 0.08 : f.mode < 700 ? 0.9 : 1);
         else if (proposal.kind == DataKind::Signed) // the more, the farther from 0
             importance.push_back(farthest > 0 ? std::abs(f.mode) / farthest : 0);
         else if (proposal.background)

@@ -160,15 +160,15 @@ TEST_CASE("real volumes show what they hold", "[first sight][files]") {
     // The ratio of entropies: 1.3 is wanted, and lower ones are what these reach (docs/method.md says why).
     for (const auto& [path, leastRatio] : std::initializer_list<std::pair<const char*, double>>{
              {"nucleon/nucleon.mhd", 1.3},
-             {"tooth/tooth.mhd", 1.0},
+             {"tooth/tooth.mhd", 1.05},
              {"vortex/vorts1.mhd", 1.3},
              {"walnut/walnut.mhd", 1.0},
-             {"viscous_fingers/density_045.mhd", 1.0},
+             {"viscous_fingers/density_045.mhd", 1.3},
              {"cranium_ct/cranium_ct.nrrd", 1.3},
              {"nifti/ch2.nii.gz", 1.3},
-             {"nifti/mpld_asl_4d.nii.gz", 1.0},
-             {"nrrd/FLAIR.nrrd", 1.0},
-             {"mha/epi_short.mha", 1.0}}) {
+             {"nifti/mpld_asl_4d.nii.gz", 1.3},
+             {"nrrd/FLAIR.nrrd", 1.3},
+             {"mha/epi_short.mha", 1.3}}) {
         VolumeSource source;
         source.path = folder + path;
         if (std::filesystem::exists(source.path)) checkLook(path, loadVolume(source), leastRatio);
