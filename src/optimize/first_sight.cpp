@@ -203,31 +203,39 @@ std::vector<double> importanceOf(const Proposal& proposal) {
         const double rarity =
             common > 1.5 * rare ? std::log(common / std::max(f.share, 1e-6)) / std::log(common / rare) : 0.5;
         if (proposal.kind == DataKind::Ct) // soft tissue in front of bone
-            importance.push_back(f.mode < -20 ? 0.05 : f.mode < 150 ? 0.15 : f.mode < 700 ? 0.9 : 1);
+            importance.push_back(f.mode < 150 ? 0.08 : f.mode < 700 ? 0.9 : 1);
         else if (proposal.kind == DataKind::Signed) // the more, the farther from 0
             importance.push_back(farthest > 0 ? std::abs(f.mode) / farthest : 0);
-        else
-            importance.push_back(proposal.background ? 0.5 * f.inside + 0.5 * rarity : rarity * rarity);
+        else if (proposal.background)
+            importance.push_back(0.5 * f.inside + 0.5 * rarity);
+        else { // matter everywhere, where depth says nothing
+            const double height =
+                proposal.features.size() < 2
+                    ? 0.5
+                    : static_cast<double>(importance.size()) / static_cast<double>(proposal.features.size() - 1);
+            importance.push_back(std::pow((height + rarity) / 2, 2));
+        }
     }
     return importance;
 }
 
-std::vector<double> wantedCovers(const RayBundle& rays, const std::vector<double>& importance) {
+std::vector<double> wantedCovers(const RayBundle& rays, const std::vector<double>& importance, bool everywhere) {
     const auto features = static_cast<int>(importance.size());
-    constexpr double kOuterAlpha = 0.4, kInnerAlpha = 0.95, kOuterWeight = 0.15;
+    constexpr double kOneAlpha = 0.8, kInnerAlpha = 0.95;
+    const double outerAlpha = everywhere ? 0.2 : 0.55, outerWeight = everywhere ? 0.04 : 0.12;
     std::vector<double> wanted(importance.size(), 0.0);
     for (int r = 0; r < rays.rays(); ++r) {
         double deepest = 0, weights = 0;
         for (int f = 0; f < features; ++f)
             if (rays.meets(r, f)) {
                 deepest = std::max(deepest, importance[static_cast<std::size_t>(f)]);
-                weights += kOuterWeight + importance[static_cast<std::size_t>(f)];
+                weights += outerWeight + importance[static_cast<std::size_t>(f)];
             }
-        const double alpha = features == 1 ? 0.8 : kOuterAlpha + (kInnerAlpha - kOuterAlpha) * deepest;
+        const double alpha = features == 1 ? kOneAlpha : outerAlpha + (kInnerAlpha - outerAlpha) * deepest;
         for (int f = 0; f < features; ++f)
             if (rays.meets(r, f))
                 wanted[static_cast<std::size_t>(f)] +=
-                    alpha * (kOuterWeight + importance[static_cast<std::size_t>(f)]) / weights;
+                    alpha * (outerWeight + importance[static_cast<std::size_t>(f)]) / weights;
     }
     for (int f = 0; f < features; ++f) wanted[static_cast<std::size_t>(f)] /= std::max(1, rays.raysOf(f));
     return wanted;
@@ -236,6 +244,7 @@ std::vector<double> wantedCovers(const RayBundle& rays, const std::vector<double
 namespace {
 
 constexpr double kLeast = 1e-4, kMost = 0.98; // of a peak
+constexpr double kLeastWeight = 0.2;          // what a feature of no importance counts, to 1.2 of the most important
 
 /// `tf` with other peaks. Where two features meet without a step it stays without one, at the lower of the two
 /// opacities: withFeatureOpacities() alone would put one there.
@@ -263,8 +272,9 @@ TransferFunction withPeaks(const TransferFunction& tf, const std::vector<double>
 
 class Search {
 public:
-    Search(const RayBundle& rays, const TransferFunction& tf, const std::vector<double>& wanted, const JobControl& job)
-        : m_rays(rays), m_tf(tf), m_wanted(wanted), m_job(job), m_peaks(featureOpacities(tf)) {
+    Search(const RayBundle& rays, const TransferFunction& tf, const std::vector<double>& importance,
+           bool everywhere, const JobControl& job)
+        : m_rays(rays), m_tf(tf), m_importance(importance), m_wanted(wantedCovers(rays, importance, everywhere)), m_job(job), m_peaks(featureOpacities(tf)) {
         for (double& p : m_peaks) p = std::clamp(p, kLeast, kMost);
         consider({m_peaks});
     }
@@ -296,15 +306,17 @@ private:
     }
 
     double objective(const RayBundle::Appearance& a) const {
-        double sum = 0;
+        double sum = 0, weights = 0;
         std::size_t seen = 0;
         for (std::size_t f = 0; f < m_wanted.size(); ++f)
             if (m_wanted[f] > 0) {
                 const double l = lack(a, f);
-                sum += l * l;
+                const double weight = kLeastWeight + m_importance[f];
+                sum += weight * l * l;
+                weights += weight;
                 ++seen;
             }
-        if (seen > 0) sum /= static_cast<double>(seen);
+        if (seen > 0) sum /= weights;
         const double oneSided = std::max(0.0, std::abs(a.translucent - 0.5) - 0.44);
         sum += 400 * oneSided * oneSided;
         if (seen > 1) {
@@ -343,7 +355,8 @@ private:
 
     const RayBundle& m_rays;
     const TransferFunction& m_tf;
-    const std::vector<double>& m_wanted;
+    const std::vector<double>& m_importance;
+    const std::vector<double> m_wanted;
     const JobControl& m_job;
     std::vector<double> m_peaks;
     RayBundle::Appearance m_appearance;
@@ -357,7 +370,8 @@ TransferFunction withOpacitiesForView(const Volume& volume, const Proposal& prop
     if (tf.features.empty() || tf.features.size() != proposal.features.size()) return tf;
     const RayBundle rays(volume, tf, view, 72, job);
     if (rays.rays() == 0) return tf;
-    return withPeaks(tf, Search(rays, tf, wantedCovers(rays, importanceOf(proposal)), job).run());
+    const std::vector<double> importance = importanceOf(proposal);
+    return withPeaks(tf, Search(rays, tf, importance, !proposal.background, job).run());
 }
 
 } // namespace pellucid

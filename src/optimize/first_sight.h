@@ -45,9 +45,10 @@ private:
     std::vector<int> m_featureOfBin;    ///< −1: none
 };
 
-/// Covers that an automatic start wants: a ray's alpha grows with the innermost feature that it meets, and is divided
-/// among those it meets by `weights`. Per feature the mean over the rays that meet it; 0 where none does.
-std::vector<double> wantedCovers(const RayBundle& rays, const std::vector<double>& importance);
+/// Covers that an automatic start wants: a ray's alpha grows with the importance of what it meets, and is divided among
+/// that by importance. Per feature the mean over the rays that meet it; 0 where none does. `everywhere`: there is no
+/// background, so that what is unimportant is a haze before all else.
+std::vector<double> wantedCovers(const RayBundle& rays, const std::vector<double>& importance, bool everywhere);
 
 /// How much a feature should be seen, [0,1]: deep and rare ones more.
 std::vector<double> importanceOf(const Proposal& proposal);

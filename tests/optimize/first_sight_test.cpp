@@ -99,12 +99,12 @@ TEST_CASE("what is wanted grows with what a ray meets, and favours the inside", 
         volumeFrom(geometryOf({8, 12, 8}), [](int i, int j, int) { return i < 4 || j < 5 ? 0.3 : 0.7; });
     View view(lookingAlong(volume->geometry(), {0, 1, 0}));
     const RayBundle rays(*volume, frontAndBack(0.1, 0.2), view);
-    const std::vector<double> wanted = wantedCovers(rays, {0.0, 1.0});
-    // Half of the rays meet the front alone, and want 0.4 of it; the others 0.95 of both, 0.15 parts to 1.15.
+    const std::vector<double> wanted = wantedCovers(rays, {0.0, 1.0}, false);
+    // Half of the rays meet the front alone, and want 0.55 of it; the others 0.95 of both, 0.12 parts to 1.12.
     const double both = rays.raysOf(1), all = rays.rays();
     CHECK(both / all == Approx(0.5).margin(0.1));
-    CHECK(wanted[1] == Approx(0.95 * 1.15 / 1.3));
-    CHECK(wanted[0] == Approx(((all - both) * 0.4 + both * 0.95 * 0.15 / 1.3) / all));
+    CHECK(wanted[1] == Approx(0.95 * 1.12 / 1.24));
+    CHECK(wanted[0] == Approx(((all - both) * 0.55 + both * 0.95 * 0.12 / 1.24) / all));
 }
 
 TEST_CASE("the inner one of two balls is seen through the outer one", "[first sight]") {
