@@ -88,7 +88,7 @@ void TfCanvas::follow(const Scene& before, const Scene& after) {
         selectPoints({});
         m_selection.setHoveredIntensity({});
         m_axis.reset();
-        update();
+        setUnit(QString::fromStdString(after.unit.value_or("")));
         return;
     }
     // Through another window the same values stay in sight.

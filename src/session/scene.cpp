@@ -113,6 +113,7 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     scene.data = sameData ? basis.data : read(variable.source, then, job);
     const bool sameWindow = sameData && windowOf(variable, *basis.data) == basis.volume->range();
     scene.volume = sameWindow ? basis.volume : throughWindow(scene.data, variable.window);
+    if (sameData) scene.unit = basis.unit;
     if (sameWindow) {
         scene.histogram = basis.histogram;
         scene.codes = basis.codes;
@@ -193,6 +194,8 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
 
 void prepareToShow(Scene& scene, const JobControl& job) {
     if (!scene.volume) return;
+    job.throwIfStopped();
+    if (!scene.unit) scene.unit = scene.proposal ? scene.proposal->unit : propose(*scene.data, {job.stop, {}}).unit;
     job.throwIfStopped();
     if (!scene.histogram) scene.histogram = std::make_shared<const Histogram>(makeHistogram(*scene.volume));
     job.throwIfStopped();
