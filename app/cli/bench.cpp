@@ -187,6 +187,9 @@ private:
         add("jacobian_over_sweep8", find(BenchRow::Jacobian, m_mainVolume, kNineTents, threads), sweep8, 1, "<= 2");
         add("saliency_over_sweep8", saliency, sweep8, 1, "<= 3");
         add("saliency_direct_over_saliency", main(BenchRow::SaliencyDirect, threads), saliency, 1, ">= 3");
+        const BenchResult* const refined = main(BenchRow::Refine500, threads);
+        add("refine_direct_over_refine500", main(BenchRow::RefineDirect, threads), refined, 1, ">= 20");
+        add("refine500_over_render", refined, main(BenchRow::Render, threads), 1, "<= 0.05");
         if (const BenchResult* const optimized = main(BenchRow::Optimize, threads, 8))
             add("optimize_over_sweeps", optimized, sweep8, optimized->extra.at("iterations").get<double>(), "<= 3");
         if (const auto flat = flatness(threads)) all.push_back({"flatness", *flat, "<= 1.25"});
@@ -234,7 +237,8 @@ private:
         Table table({"ratio", "value", "wanted"});
         const auto all = ratios();
         if (all.empty()) return {};
-        for (const Ratio& r : all) table.add({r.key, fixedText(r.value, 3), r.wanted});
+        for (const Ratio& r : all)
+            table.add({r.key, r.value < 0.01 ? plainText(r.value) : fixedText(r.value, 3), r.wanted});
         return "\n" + table.text();
     }
 
@@ -296,7 +300,7 @@ Command addBench(CLI::App& program) {
         *app, "--only", "ROW,...",
         [o](const std::string& text, const std::string& option) { o->only = parseRows(text, option); },
         "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, refine, "
-        "render");
+        "refine-500, refine-direct, render");
     addValue(
         *app, "--repeat", "N",
         [o](const std::string& text, const std::string& option) {

@@ -20,12 +20,15 @@ struct Command {
 
 Command addInfo(CLI::App& program);
 Command addSamples(CLI::App& program);
+Command addPresets(CLI::App& program);
 Command addGenerate(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addMeasure(CLI::App& program);
 Command addFields(CLI::App& program);
+Command addPropose(CLI::App& program);
 Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
+Command addProbe(CLI::App& program);
 Command addBench(CLI::App& program);
 
 } // namespace pellucid::cli

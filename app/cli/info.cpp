@@ -72,7 +72,7 @@ Command addInfo(CLI::App& program) {
     options->volume.add(*app);
     options->session.add(*app);
     return {app, [options](Progress& progress) {
-                const Opened opened = resolve(*options, progress);
+                const Opened opened = resolve(*options, progress, {.use = {}, .byEngine = false, .needsTf = false});
                 const Volume& volume = *opened.scene.volume;
                 return Answer{textOf(volume), jsonOf(volume), opened.sessionNotices, {}};
             }};

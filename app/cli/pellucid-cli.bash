@@ -24,21 +24,25 @@ _pellucid_cli() {
         --engine) choices="auto gl cpu slices reference" ;;
         --quality) choices="normal high" ;;
         --kernel) choices="thesis narrow" ;;
-        --method) choices="fixed line parallel" ;;
+        --method)
+            choices="fixed line parallel"
+            [[ $command == refine ]] && choices="greedy exact"
+            ;;
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
-            choices="setup saliency saliency-direct sweep slices jacobian optimize refine render"
+            choices="setup saliency saliency-direct sweep slices jacobian optimize refine refine-500 refine-direct render"
             ;;
         --mode) choices="composite mip minip average surface" ;;
+        --slice) choices="x: y: z:" ;;
         --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
         --annotate) choices="all cube letters axes scale legend title" ;;
         --view) choices="anterior posterior left right superior inferior front back top bottom" ;;
         --tf)
-            COMPREPLY=($(compgen -W "tents: ramp:" -- "$current") $(compgen -f -- "$current"))
+            COMPREPLY=($(compgen -W "auto tents: ramp: $("$program" presets 2>/dev/null | sed -n 's/^\(preset:[^ ]*\) .*/\1/p')" -- "$current") $(compgen -f -- "$current"))
             compopt -o filenames -o nospace 2>/dev/null
             ;;
         --camera | --session | --out | --out-tf)
@@ -49,8 +53,8 @@ _pellucid_cli() {
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
-            --saliency-background | --step-down | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
-            --tolerance)
+            --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
+            --tolerance | --window | --tf-strength)
             return
             ;;
     esac

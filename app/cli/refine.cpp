@@ -4,8 +4,12 @@
 #include <cmath>
 
 #include "commands.h"
+#include "optimize/refine_words.h"
+#include "optimize/region_colors.h"
 #include "output_files.h"
 #include "parse.h"
+#include "render/image_renderer.h"
+#include "render/memory_needs.h"
 #include "resolve.h"
 #include "results_json.h"
 #include "tf/formats/tf_json.h"
@@ -14,9 +18,17 @@ namespace pellucid::cli {
 
 namespace {
 
+/// Pixels of a picture: [x0, x1) × [y0, y1).
+struct PixelRectangle {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
 struct Options {
     SceneOptions scene;
     RefineOptions refine;
+    std::optional<double> hue; ///< degrees
+    std::optional<PixelRectangle> region;
+    std::optional<ImageSize> size;
     std::vector<double> fixed;
     std::optional<std::string> outTf;
 };
@@ -36,31 +48,160 @@ void fixPoint(TransferFunction& tf, double x) {
     throw UsageError("no control point is at intensity " + plainText(x), "--fix", "known: " + known);
 }
 
-std::string textOf(const RefineResult& r, double seconds) {
-    const auto change = [](double before, double after) { return plainText(before) + " -> " + plainText(after); };
-    Table points({"point", "intensity", "opacity", "fixed"});
+PixelRectangle parseRectangle(const std::string& text, const std::string& option) {
+    const std::vector<double> v = parseReals(text, option, 4, "X0,Y0,X1,Y1 in pixels");
+    for (const double pixel : v)
+        if (!(pixel >= 0 && pixel <= 16384 && pixel == std::floor(pixel)))
+            throw UsageError("'" + text + "' is no region of a picture", option, "give whole numbers of pixels");
+    const PixelRectangle r{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]),
+                           static_cast<int>(v[3])};
+    if (r.x0 >= r.x1 || r.y0 >= r.y1)
+        throw UsageError("the region '" + text + "' holds no pixel", option,
+                         "give X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1, y down");
+    return r;
+}
+
+/// What can be told before the volume is read.
+void check(const Options& o) {
+    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
+    o.refine.validate();
+    if ((o.refine.priority.intensity ? 1 : 0) + (o.hue ? 1 : 0) + (o.region ? 1 : 0) > 1)
+        throw UsageError("more than one priority is given", "--intensity, --hue and --region", "leave one of them");
+    const ImageSize size = o.size.value_or(ImageSize{});
+    if (o.region && (o.region->x1 > size.width || o.region->y1 > size.height))
+        throw UsageError("the region lies outside the picture of " + std::to_string(size.width) + " x " +
+                             std::to_string(size.height) + " pixels",
+                         "--region", "correct it, or give the picture's --size WxH");
+    if (o.region) return;
+    const CameraOptions& camera = o.scene.camera;
+    const char* of = o.size                            ? "--size WxH"
+                     : camera.file                     ? "--camera"
+                     : camera.view || camera.namedView ? "--view"
+                     : camera.orthographic             ? "--orthographic"
+                     : !o.scene.clip.clips.empty()     ? "--clip"
+                                                       : nullptr;
+    if (of)
+        throw UsageError("refinement looks at a picture only where a region of it is prioritized", of,
+                         "leave it out, or give --region X0,Y0,X1,Y1");
+}
+
+/// The priority that the options ask for, and in `said` what it is.
+RefinePriority priorityOf(const Options& o, const Scene& scene, const TransferFunction& tf, Progress& progress,
+                          Json& said) {
+    RefinePriority priority = o.refine.priority;
+    if (o.hue) priority.intensity = intensityOfHue(tf, *o.hue);
+    if (priority.intensity) {
+        said = {{"kind", "intensity"}, {"intensity", *priority.intensity}};
+        if (o.hue) said["hue"] = *o.hue;
+    } else if (o.region) {
+        const ImageSize size = o.size.value_or(ImageSize{});
+        const PixelRectangle& r = *o.region;
+        // Always by the cpu renderer: the same answer on every machine.
+        const PictureInput picture = plainPictureInput(scene, size.width, size.height);
+        const Image image = makeCpuRenderer(picture.volume)
+                                ->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
+        const double w = size.width, h = size.height;
+        const ImageRegion region{
+            {{r.x0 / w, r.y0 / h}, {r.x1 / w, r.y0 / h}, {r.x1 / w, r.y1 / h}, {r.x0 / w, r.y1 / h}}};
+        priority.region = regionColors(image, region);
+        double pixels = 0;
+        for (const RegionColor& c : priority.region) pixels += c.count;
+        said = {{"kind", "region"},
+                {"region", {r.x0, r.y0, r.x1, r.y1}},
+                {"size", {size.width, size.height}},
+                {"pixels", static_cast<long long>(pixels)}};
+    } else {
+        said = {{"kind", "none"}};
+    }
+    return priority;
+}
+
+std::string textOfPriority(const Json& said) {
+    if (said["kind"] == "region") return countText(said["pixels"].get<std::size_t>()) + " pixels of a region";
+    if (said["kind"] == "none") return "none";
+    const std::string intensity = "intensity " + plainText(said["intensity"].get<double>());
+    return said.contains("hue") ? intensity + ", hue " + plainText(said["hue"].get<double>()) : intensity;
+}
+
+/// "12 % above the least at the same total opacity", of greedy.
+std::string textOfComparison(const RefineComparison& c) {
+    if (!(c.exactEnergy < c.greedyEnergy)) return "as even as it gets at the same total opacity";
+    return "exact has " + fixedText(100 * (1 - c.exactEnergy / c.greedyEnergy), 1) +
+           " % less energy than greedy at the same total opacity";
+}
+
+std::string textOf(const Options& o, const TransferFunction& before, const RefineResult& r,
+                   const RefineComparison& comparison, const Json& priority, double seconds) {
+    const auto change = [](double from, double to) {
+        const std::string share = from > 0 ? " (" + fixedText(100 * (to / from - 1), 1) + " %)" : "";
+        return plainText(from) + " -> " + plainText(to) + share;
+    };
+    Table points({"point", "intensity", "opacity before", "after", "fixed"});
     for (std::size_t i = 0; i < r.tf.points.size(); ++i)
-        points.add({std::to_string(i + 1), fixedText(r.tf.points[i].x, 4), fixedText(r.tf.points[i].opacity, 4),
-                    r.tf.points[i].fixed ? "yes" : "no"});
-    return listing({{"iterations", std::to_string(r.iterations)},
+        points.add({std::to_string(i + 1), fixedText(r.tf.points[i].x, 4), fixedText(before.points[i].opacity, 4),
+                    fixedText(r.tf.points[i].opacity, 4), r.tf.points[i].fixed ? "yes" : "no"});
+    return listing({{"changes", changeText(opacityChanges(before, r.tf))},
+                    {"priority", textOfPriority(priority)},
+                    {"method", name(o.refine.method)},
+                    {"iterations", std::to_string(r.iterations)},
                     {"energy", change(r.energyBefore, r.energyAfter)},
                     {"energy of movable edges", change(r.energyMovableBefore, r.energyMovableAfter)},
+                    {"methods", textOfComparison(comparison)},
                     {"time", secondsText(seconds)}}) +
            points.text();
 }
 
 Answer run(const Options& o, Progress& progress) {
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
-    o.refine.validate();
-    const Opened opened = resolve(o.scene, progress);
+    check(o);
+    const Opened opened = resolve(o.scene, progress, {o.region ? toView("drawing") : MemoryUse{}});
     TransferFunction tf = opened.scene.tf;
     for (const double x : o.fixed) fixPoint(tf, x);
+    Json priority;
+    RefineOptions options = o.refine;
+    options.priority = priorityOf(o, opened.scene, tf, progress, priority);
     const Histogram histogram = makeHistogram(*opened.scene.volume);
+    const JobControl job = progress.phase("refining");
     const Stopwatch refining;
-    const RefineResult result = refine(histogram, tf, o.refine, progress.phase("refining"));
+    const RefineResult result = refine(histogram, tf, options, job);
     const double seconds = refining.seconds();
+    const RefineComparison comparison = compareMethods(histogram, tf, options, job);
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(result, seconds), jsonFromRefinement(result), opened.notices(), {}};
+    return {textOf(o, tf, result, comparison, priority, seconds),
+            jsonFromRefinement(tf, result, options.method, comparison, priority),
+            opened.notices(),
+            {}};
+}
+
+void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {
+    addValue(
+        app, "--intensity", "X",
+        [o](const std::string& text, const std::string& option) {
+            o->refine.priority.intensity = parseReal(text, option, 0, 1);
+        },
+        "prioritize what is near this intensity, from 0 to 1 (the ends of the range)");
+    addValue(
+        app, "--hue", "DEG",
+        [o](const std::string& text, const std::string& option) { o->hue = parseReal(text, option); },
+        "prioritize the intensity whose colour is nearest in hue, in degrees: a click on the palette");
+    addValue(
+        app, "--region", "X0,Y0,X1,Y1|X0:X1,Y0:Y1,Z0:Z1",
+        [o](const std::string& text, const std::string& option) {
+            if (text.find(':') != std::string::npos)
+                o->scene.volume.takeRegion(text, option);
+            else
+                o->region = parseRectangle(text, option);
+        },
+        "four numbers: prioritize what has the colours of these pixels of the picture, y down, the last ones not "
+        "included; three intervals: only these voxels of the data");
+    addValue(
+        app, "--size", "WxH|N",
+        [o](const std::string& text, const std::string& option) {
+            if (text.find('x') != std::string::npos)
+                o->size = parseImageSize(text, option);
+            else
+                o->scene.volume.takeSampleSize(text, option);
+        },
+        "WxH: pixels of the picture that --region is of (default 512x512); N: as --sample-size");
 }
 
 } // namespace
@@ -68,9 +209,22 @@ Answer run(const Options& o, Progress& progress) {
 Command addRefine(CLI::App& program) {
     CLI::App* app = program.add_subcommand("refine", "Evens out the information along the transfer function (entropy)");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app);
+    o->scene.volume.add(*app, VolumeOptions::SizeIs::Both);
     o->scene.session.add(*app);
     o->scene.tf.add(*app);
+    o->scene.camera.add(*app);
+    o->scene.clip.add(*app);
+    addPriority(*app, o);
+    addValue(
+        *app, "--method", "greedy|exact",
+        [o](const std::string& text, const std::string& option) {
+            const auto method = refineMethodFromName(text);
+            if (!method) throw UsageError("'" + text + "' is no method", option, "use greedy or exact");
+            o->refine.method = *method;
+        },
+        "greedy: one opacity down and one up while that helps (default); exact: the most even edges that the same "
+        "total "
+        "opacity allows");
     addValue(
         *app, "--step-down", "D",
         [o](const std::string& text, const std::string& option) {

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
+#include "options/slice_options.h"
 #include "output_files.h"
 #include "parse.h"
 #include "render/annotation_raster.h"
@@ -19,6 +20,7 @@ namespace {
 
 struct Options {
     SceneOptions scene;
+    SliceOptions slice;
     std::string out;
     FrameOfReference annotate = FrameOfReference::none();
 };
@@ -54,6 +56,60 @@ void check(const Options& o) {
         throw UsageError("a JPEG file holds no transparency", "--background transparent",
                          "write a PNG, TIFF or EXR file");
     checkOutputFile(o.out, "--out", inputFiles(o.scene));
+    o.slice.check();
+    if (o.slice.at && o.annotate.any())
+        throw UsageError("a slice has no frame of reference", "--annotate", "leave it out");
+    if (o.slice.at && o.scene.picture.feature)
+        throw UsageError("a slice shows all features", "--feature", "leave it out");
+}
+
+/// What shows where the picture is transparent.
+void paintBackground(Image& image, const RenderSettings& settings) {
+    if (!settings.background) return;
+    const Rgb bottom = *settings.background, top = settings.backgroundTop.value_or(bottom);
+    for (int y = 0; y < image.height; ++y) {
+        const double up = 1 - (y + 0.5) / image.height;
+        const double behind[3] = {bottom.r + up * (top.r - bottom.r), bottom.g + up * (top.g - bottom.g),
+                                  bottom.b + up * (top.b - bottom.b)};
+        for (int x = 0; x < image.width; ++x) {
+            float* pixel = image.pixel(x, y);
+            const auto alpha = static_cast<double>(pixel[3]);
+            for (int c = 0; c < 3; ++c)
+                pixel[c] = static_cast<float>(alpha * static_cast<double>(pixel[c]) + (1 - alpha) * behind[c]);
+            pixel[3] = 1;
+        }
+    }
+}
+
+Answer drawSlice(const Options& o, const Opened& opened, const PictureInput& picture, const Stopwatch& total,
+                 Progress& progress) {
+    const Geometry& g = picture.volume->geometry();
+    const SlicePlane plane = o.slice.planeOf(g, picture.settings.width, picture.settings.height);
+    SliceSettings settings = o.slice.settingsOf(opened.scene);
+    settings.clipping = picture.settings.clipping;
+    const Stopwatch drawing;
+    Image image = renderSlice(*picture.volume, picture.tf, plane, settings);
+    paintBackground(image, picture.settings);
+    const double renderSeconds = drawing.seconds();
+    progress.phase("writing");
+    writeImage(image, o.out);
+    Json json{{"command", "render"},
+              {"volume", jsonFromVolume(*picture.volume)},
+              {"file", o.out},
+              {"size", {image.width, image.height}},
+              {"slice",
+               {{"axis", std::string(1, "xyz"[plane.axis])},
+                {"name", sliceName(g, plane.axis)},
+                {"position", o.slice.at->fraction},
+                {"voxel", plane.position},
+                {"window", jsonFromRange(settings.window)},
+                {"tf_strength", settings.tfStrength}}},
+              {"seconds", {{"render", renderSeconds}, {"total", total.seconds()}}}};
+    return {"wrote " + o.out + ": " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                " pixels, slice " + sliceName(g, plane.axis) + ", " + secondsText(renderSeconds) + "\n",
+            std::move(json),
+            opened.notices(),
+            {}};
 }
 
 Answer run(const Options& o, Progress& progress) {
@@ -61,6 +117,7 @@ Answer run(const Options& o, Progress& progress) {
     check(o);
     const Opened opened = resolve(o.scene, progress, {toView("drawing")});
     const PictureInput picture = o.scene.picture.pictureOf(opened.scene);
+    if (o.slice.at) return drawSlice(o, opened, picture, total, progress);
     const auto renderer = makeRenderer(opened.scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;
     Image image = renderer->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
@@ -98,6 +155,7 @@ Command addRender(CLI::App& program) {
         "the picture to write: .png, .tif, .exr or .jpg")
         ->required();
     o->scene.picture.add(*app);
+    o->slice.add(*app);
     addValue(
         *app, "--annotate", "PARTS",
         [o](const std::string& text, const std::string& option) { o->annotate = parseParts(text, option); },

@@ -28,6 +28,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.picture.applyTo(inputs);
     const bool reference = work.byEngine && inputs.session.measure->engine == EngineChoice::Reference;
     inputs.then = reference ? byReference(work.use) : work.use;
+    if (!work.needsTf) inputs.start = SceneInputs::Start::Tents;
     return inputs;
 }
 

@@ -35,6 +35,7 @@ struct SceneOptions {
 struct Work {
     MemoryUse use;
     bool byEngine = false; ///< the reference engine takes more
+    bool needsTf = true;   ///< false: an automatic start would be for nothing
 };
 
 /// Everything that can be told before a transfer function or volume is read. Throws UsageError for options that do not

@@ -1,19 +1,35 @@
 #include "results_json.h"
 
+#include "optimize/refine_words.h"
 #include "tf/formats/tf_json.h"
 
 namespace pellucid::cli {
 
-Json jsonFromRefinement(const RefineResult& r) {
-    return {{"command", "refine"},
-            {"iterations", r.iterations},
-            {"energy_before", r.energyBefore},
-            {"energy_after", r.energyAfter},
-            {"energy_movable_before", r.energyMovableBefore},
-            {"energy_movable_after", r.energyMovableAfter},
-            {"edges_before", r.edgesBefore},
-            {"edges_after", r.edgesAfter},
-            {"tf", Json(jsonFromTf(r.tf))}};
+Json jsonFromRefinement(const TransferFunction& before, const RefineResult& r, RefineMethod method,
+                        const RefineComparison& comparison, Json priority) {
+    const auto changes = opacityChanges(before, r.tf);
+    Json told = Json::array();
+    for (const OpacityChange& c : changes)
+        told.push_back({{"feature", c.feature}, {"before", c.before}, {"after", c.after}});
+    return {
+        {"command", "refine"},
+        {"method", name(method)},
+        {"priority", std::move(priority)},
+        {"iterations", r.iterations},
+        {"energy_before", r.energyBefore},
+        {"energy_after", r.energyAfter},
+        {"energy_movable_before", r.energyMovableBefore},
+        {"energy_movable_after", r.energyMovableAfter},
+        {"edges_before", r.edgesBefore},
+        {"edges_after", r.edgesAfter},
+        {"factors", r.factors},
+        {"energy_curve", r.energyCurve},
+        {"energy_curve_stride", r.energyCurveStride},
+        {"comparison",
+         {{"total_opacity", comparison.total}, {"greedy", comparison.greedyEnergy}, {"exact", comparison.exactEnergy}}},
+        {"changes", told},
+        {"text", changeText(changes)},
+        {"tf", Json(jsonFromTf(r.tf))}};
 }
 
 Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& options) {

@@ -8,7 +8,9 @@
 namespace pellucid::cli {
 
 /// The objects of `refine --json` and `optimize --json`, without what the commands add ("engine", "seconds").
-Json jsonFromRefinement(const RefineResult& result);
+/// `before`: the transfer function that was refined. `priority`: an object that says what was asked for.
+Json jsonFromRefinement(const TransferFunction& before, const RefineResult& result, RefineMethod method,
+                        const RefineComparison& comparison, Json priority);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
 
 } // namespace pellucid::cli

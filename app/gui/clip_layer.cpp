@@ -138,7 +138,7 @@ void ClipLayer::paint(QPainter& painter, const OverlayView& view) {
     for (const Placed& h : handles(view)) {
         const bool face = h.handle.kind == Kind::Face;
         const bool behind = face && !facesViewer(view.scene.camera, geometry, clipping, h.handle.index, h.handle.upper);
-        drawHandle(painter, h.at, face ? theme::kAccent : kPlane, behind, h.handle == active);
+        drawHandle(painter, h.at, face ? theme::kMarkAccent : kPlane, behind, h.handle == active);
     }
     if (active.kind != Kind::Face) return;
     // Which of the six it is.
@@ -148,7 +148,7 @@ void ClipLayer::paint(QPainter& painter, const OverlayView& view) {
     for (const int n : {first, first | 1 << across, first | 1 << across | 1 << along, first | 1 << along})
         corners.push_back(cornerOfPart(clipping, geometry, n));
     painter.setPen(Qt::NoPen);
-    painter.setBrush(QColor(theme::kAccent.red(), theme::kAccent.green(), theme::kAccent.blue(), 50));
+    painter.setBrush(QColor(theme::kMarkAccent.red(), theme::kMarkAccent.green(), theme::kMarkAccent.blue(), 50));
     painter.drawPolygon(outlineOf(pictureOf(view), corners));
 }
 
@@ -173,7 +173,7 @@ void ClipLayer::paintBox(QPainter& painter, const OverlayView& view) const {
                 if (onSeenFace == hidden) continue;
                 const auto a = pointOf(picture, cornerOfPart(part, geometry, n));
                 const auto b = pointOf(picture, cornerOfPart(part, geometry, n | 1 << axis));
-                if (a && b) drawLine(painter, {*a, *b}, theme::kText, hidden);
+                if (a && b) drawLine(painter, {*a, *b}, theme::kMark, hidden);
             }
 }
 

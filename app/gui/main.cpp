@@ -12,6 +12,7 @@
 
 #include "controllers/open_controller.h"
 #include "controllers/recovery_controller.h"
+#include "controllers/theme_actions.h"
 #include "input_habits.h"
 #include "main_window.h"
 #include "theme.h"
@@ -55,9 +56,13 @@ void describe(QCommandLineParser& parser) {
     parser.addPositionalArgument(
         "FILE", "volumes or sessions, a window each: NRRD, MetaImage, NIfTI, raw data, *.pellucid.json, or sample:NAME",
         "[FILE…]");
-    parser.addOption({"tf", "Transfer function: a *.tf.json file, tents:N[:PEAK] or ramp:N.", "SPEC"});
+    parser.addOption({"tf",
+                      "Transfer function: a *.tf.json file, auto (what the data propose, the default), tents:N[:PEAK], "
+                      "ramp:N or preset:NAME.",
+                      "SPEC"});
     parser.addOption({"session", "Go on with a saved session, a *.pellucid.json file.", "FILE"});
     parser.addOption({"renderer", "What draws the picture: auto, gl or cpu.", "NAME", "auto"});
+    parser.addOption({"theme", "Colours of the window: dark, light or system; without it, as chosen last.", "NAME"});
     parser.addOption({"size", "Size of the window in pixels.", "WxH"});
     parser.addOption(
         {"screenshot", "Wait until picture and figures are complete, save the window as PNG FILE, and quit.", "FILE"});
@@ -84,11 +89,21 @@ int main(int argc, char** argv) {
                         kFailed);
 
     QApplication application(argc, argv);
-    applyTheme(application);
     InputHabits habits;
     application.installEventFilter(&habits);
     if (!parser.parse(QApplication::arguments()))
         return complain("wrong option, " + parser.errorText().chopped(1) + ", see pellucid --help", kUsage);
+
+    const QString screenshot = parser.value("screenshot");
+    // A picture is the same on every machine.
+    Theme theme = screenshot.isEmpty() ? keptTheme() : Theme::Dark;
+    if (parser.isSet("theme")) {
+        const auto named = themeFromName(parser.value("theme").toStdString());
+        if (!named)
+            return complain("no theme \"" + parser.value("theme") + "\", --theme, use dark, light or system", kUsage);
+        theme = *named;
+    }
+    applyTheme(application, theme);
 
     const QString rendererName = parser.value("renderer");
     ViewRenderer renderer = ViewRenderer::Auto;
@@ -118,8 +133,8 @@ int main(int argc, char** argv) {
         }
     }
     if (parser.isSet("session")) volumes.prepend(parser.value("session"));
-    if (volumes.isEmpty()) volumes << "sample:shells";
-    const QString screenshot = parser.value("screenshot");
+    const bool onSample = volumes.isEmpty();
+    if (onSample) volumes << "sample:shells";
     if (!screenshot.isEmpty() && volumes.size() > 1)
         return complain("--screenshot takes one window, " + volumes.join(" ") + ", give one FILE", kUsage);
 
@@ -128,12 +143,13 @@ int main(int argc, char** argv) {
         for (const QString& volume : volumes) {
             windows.push_back(std::make_unique<MainWindow>(renderer));
             MainWindow& window = *windows.back();
-            if (screenshot.isEmpty()) window.restoreLayout(); // a picture is the same on every machine
+            if (screenshot.isEmpty()) window.restoreLayout();
             if (!size.isEmpty()) window.resize(size);
             window.show();
             OpenController& opening = window.workbench().opening();
             if (screenshot.isEmpty()) {
                 window.workbench().recovery().start();
+                if (onSample) window.welcome();
                 if (windows.size() == 1) window.workbench().recovery().offerWhenOpen();
             } else {
                 QObject::connect(

@@ -2,6 +2,7 @@
 
 #include <QApplication>
 #include <QCloseEvent>
+#include <QDialog>
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QFileInfo>
@@ -15,17 +16,22 @@
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
+#include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
 #include "light_layer.h"
 #include "notice_bar.h"
 #include "panel.h"
+#include "panels/probe_panel.h"
+#include "region_layer.h"
+#include "slice_layer.h"
 #include "status_line.h"
+#include "welcome_card.h"
 
 namespace pellucid::gui {
 
 MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_bench(std::make_unique<Workbench>(this)),
-      m_view(new VolumeView(m_bench->store(), renderer, this)) {
+      m_view(new VolumeView(m_bench->store(), renderer, this)), m_views(new ViewGrid(*m_bench, *m_view, this)) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setDockNestingEnabled(true);
@@ -34,11 +40,14 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(0);
     column->addWidget(new NoticeBar(m_bench->notices(), middle));
-    column->addWidget(m_view, 1);
+    column->addWidget(m_views, 1);
     setCentralWidget(middle);
 
+    m_view->overlay().add(std::make_unique<SliceLayer>());
     addClipHandles(*m_bench, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_bench, m_view->overlay()));
+    addProbe(*m_bench, *m_view);
+    m_view->overlay().add(std::make_unique<RegionLayer>(*m_bench, m_view->overlay()));
     addPanels();
     addHelpActions();
     m_bench->actions().build(*this);
@@ -47,8 +56,10 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
 
     connect(m_view, &VolumeView::frameShown, this, [this] {
         m_bench->saving().setSeenSize({m_view->frame().width, m_view->frame().height});
+        m_bench->refining().setViewSize({m_view->frame().width, m_view->frame().height});
         Q_EMIT settledChanged();
     });
+    connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
     connect(m_view, &VolumeView::rendererFailed, this, [this](const Error& error) {
         m_bench->notices().add({QString::fromUtf8(error.what()), {}});
     });
@@ -63,6 +74,7 @@ MainWindow::~MainWindow() {
     // Widgets refer to the workbench, its jobs to nothing of theirs: so widgets go first.
     m_bench->disconnect();
     delete takeCentralWidget();
+    for (QDialog* dialog : findChildren<QDialog*>(QString(), Qt::FindDirectChildrenOnly)) delete dialog;
     for (QDockWidget* dock : findChildren<QDockWidget*>()) delete dock;
     for (StatusLine* line : statusBar()->findChildren<StatusLine*>()) delete line;
 }
@@ -77,7 +89,11 @@ void MainWindow::addPanels() {
         dock->setWidget(panel.make(*m_bench, dock));
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
-        if (panel.tabOf != nullptr) tabifyDockWidget(findChild<QDockWidget*>(QString(panel.tabOf) + "Dock"), dock);
+        if (panel.tabOf != nullptr) {
+            auto* beside = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
+            tabifyDockWidget(beside, dock);
+            beside->raise();
+        }
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
         if (panel.shown)
@@ -141,7 +157,16 @@ void MainWindow::restoreLayout() {
     restoreState(settings.value("windowState").toByteArray());
 }
 
-bool MainWindow::isSettled() const { return m_bench->isIdle() && m_view->isComplete(); }
+void MainWindow::welcome() {
+    if (!WelcomeCard::isWanted()) return;
+    auto* card = new WelcomeCard(m_view);
+    // Another volume: it is no sample any more, and the first thing to try has been done.
+    connect(&m_bench->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
+        if (before.data && before.data != after.data) card->dismiss();
+    });
+}
+
+bool MainWindow::isSettled() const { return m_bench->isIdle() && m_views->isComplete(); }
 
 void MainWindow::updateTitle() {
     SessionStore& store = m_bench->store();
@@ -150,6 +175,11 @@ void MainWindow::updateTitle() {
     setWindowTitle(file.isEmpty() ? tr("%1[*] – Pellucid").arg(title)
                                   : tr("%1 – %2[*] – Pellucid").arg(title, QFileInfo(file).fileName()));
     setWindowModified(!store.isClean());
+}
+
+void MainWindow::changeEvent(QEvent* event) {
+    QMainWindow::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange) m_bench->actions().refresh(); // the theme, perhaps by another window
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

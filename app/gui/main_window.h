@@ -5,6 +5,7 @@
 
 #include <QMainWindow>
 
+#include "view_grid.h"
 #include "volume_view.h"
 #include "workbench.h"
 
@@ -18,9 +19,12 @@ public:
 
     Workbench& workbench() { return *m_bench; }
     VolumeView& view() { return *m_view; }
+    ViewGrid& views() { return *m_views; }
 
     /// Size, place and docks as the last window was closed with.
     void restoreLayout();
+    /// A card over the picture, if nobody has dismissed it: for a start on a sample.
+    void welcome();
     /// The picture is as good as it gets, the figures are of the present state, and nothing is under way.
     bool isSettled() const;
 
@@ -28,6 +32,7 @@ Q_SIGNALS:
     void settledChanged(); ///< isSettled() may have changed
 
 protected:
+    void changeEvent(QEvent* event) override;
     void closeEvent(QCloseEvent* event) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
@@ -39,6 +44,7 @@ private:
 
     std::unique_ptr<Workbench> m_bench;
     VolumeView* m_view;
+    ViewGrid* m_views; // with m_view in it
 };
 
 } // namespace pellucid::gui

@@ -5,10 +5,12 @@
 #define PELLUCID_PANELS(PANEL) \
     PANEL(transferFunctionPanel) \
     PANEL(featuresPanel) \
+    PANEL(refinePanel) \
     PANEL(influencePanel) \
     PANEL(displayPanel) \
     PANEL(lightPanel) \
     PANEL(clipPanel) \
+    PANEL(galleryPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

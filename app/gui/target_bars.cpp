@@ -211,7 +211,7 @@ void TargetBars::paintEvent(QPaintEvent*) {
         const QRectF row = rowRect(i), track = trackRect(i);
         if (i == m_current && (m_marked || hasFocus())) {
             painter.setPen(Qt::NoPen);
-            painter.setBrush(QColor(255, 255, 255, 14));
+            painter.setBrush(theme::kHover);
             painter.drawRoundedRect(row.adjusted(3, 2, -3, -2), 4, 4);
         }
         QColor color = colorFromRgb(feature.color);
@@ -257,7 +257,7 @@ void TargetBars::paintEvent(QPaintEvent*) {
         const QPointF handle = handlePosition(i);
         const bool active = i == m_dragged || i == m_hovered;
         painter.setPen(QPen(QColor(0, 0, 0, 160), 1));
-        painter.setBrush(m_readOnly ? theme::kFaint : active ? theme::kAccent.lighter(130) : QColor(Qt::white));
+        painter.setBrush(m_readOnly ? theme::kFaint : active ? theme::kAccent.lighter(130) : theme::kKnob);
         const double reach = track.height() / 2 + 1;
         painter.drawRoundedRect(QRectF(handle.x() - 2.5, handle.y() - reach, 5, 2 * reach), 2.5, 2.5);
         painter.setPen(theme::kText);

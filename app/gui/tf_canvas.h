@@ -5,11 +5,20 @@
 #include <optional>
 #include <vector>
 
+#include <QImage>
+#include <QPainterPath>
 #include <QWidget>
 
+#include "histogram_bars.h"
 #include "intensity_axis.h"
+#include "opacity_axis.h"
+#include "point_selection.h"
 #include "results.h"
+#include "selection.h"
 #include "store/session_store.h"
+#include "volume_counts.h"
+
+class QMenu;
 
 namespace pellucid::gui {
 
@@ -19,9 +28,11 @@ public:
     virtual ~CanvasGeometry() = default;
     virtual QRectF plot() const = 0;
     virtual QPointF positionOf(double x, double opacity) const = 0;
+    /// The curve of a transfer function: what is straight in opacity is bent where the axis is.
+    virtual QPainterPath curveOf(const TransferFunction& tf) const = 0;
 };
 
-/// Something drawn behind the curve and over the histogram, by whoever knows of it.
+/// Something drawn behind the curve and over the histogram, by whoever knows of it. The painter is clipped to the plot.
 class CanvasLayer {
 public:
     virtual ~CanvasLayer() = default;
@@ -32,32 +43,50 @@ public:
 class TfCanvas : public QWidget, public CanvasGeometry {
     Q_OBJECT
 public:
-    TfCanvas(SessionStore& store, Results& results, QWidget* parent = nullptr);
+    TfCanvas(SessionStore& store, Results& results, Selection& selection, QWidget* parent = nullptr);
 
-    void setLogHistogram(bool on);
-    /// The opacity axis shows √α: room for the small opacities that matter most in a volume.
-    void setRootOpacityAxis(bool on);
+    void setHistogramScale(HistogramScale scale);
+    HistogramScale histogramScale() const { return m_scale; }
+    /// Behind the curve: how often intensities meet gradient magnitudes.
+    void setJointHistogramShown(bool on);
+    bool isJointHistogramShown() const { return m_showJoint; }
+    /// See OpacityAxis; on at first.
+    void setFineOpacityAxis(bool on);
+    bool isFineOpacityAxis() const { return m_opacityAxis.isFine(); }
     void setReadOnly(bool on);
+    /// What values are in, such as "HU"; empty: not known.
+    void setUnit(const QString& unit);
 
-    int selectedPoint() const { return m_selected; } ///< −1: none
-    void selectPoint(int index);
+    const PointSelection& selectedPoints() const { return m_points; }
+    void selectPoints(const PointSelection& points);
+    int selectedPoint() const { return m_points.current(); } ///< −1: none
+    void selectPoint(int index);                             ///< alone
     void addPoint(double x, double opacity);
     void removeSelected();
     void toggleFixed();
     void chooseColor();
 
-    /// Where a point of the plane (intensity, opacity) is drawn, widget pixels.
     QPointF positionOf(double x, double opacity) const override;
     QRectF plot() const override;
+    QPainterPath curveOf(const TransferFunction& tf) const override;
     IntensityAxis& axis() { return m_axis; }
     /// In the order of adding; who adds calls update() when it looks different.
     void addLayer(std::unique_ptr<CanvasLayer> layer) { m_layers.push_back(std::move(layer)); }
+    QRectF barOf(const Feature& feature) const; ///< above the plot, as far as it is seen; empty: not at all
+
+    /// What is at the hovered intensity: value, opacity, voxels, feature. Empty where nothing is hovered.
+    QString readout() const;
+    /// A histogram is being counted that will be shown.
+    bool isCounting() const { return m_counts.isBusy(); }
 
     QSize sizeHint() const override { return {640, 190}; }
     QSize minimumSizeHint() const override { return {300, 130}; }
 
 Q_SIGNALS:
-    void selectionChanged(int index);
+    /// The selected points, or which of them is the current one.
+    void selectionChanged(int current);
+    /// A context menu is about to open at an intensity; `feature` 0: no feature is there. Others may add to it.
+    void menuOpening(QMenu& menu, double intensity, pellucid::FeatureId feature);
 
 protected:
     void paintEvent(QPaintEvent* event) override;
@@ -65,44 +94,82 @@ protected:
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
     void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
     void contextMenuEvent(QContextMenuEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
     void leaveEvent(QEvent* event) override;
+    void changeEvent(QEvent* event) override;
     bool event(QEvent* event) override;
 
 private:
+    enum class Zone { None, Plot, Bars, Axis, Overview };
+    enum class Part { Middle, Lower, Upper }; // of a feature's bar
+    struct BarHit {
+        int feature = 0;
+        Part part = Part::Middle;
+    };
     struct Drag {
-        TransferFunction start;
-        int index = 0;
-        QPointF pressed, grip; ///< grip: from the mouse to the point's centre
+        enum class Kind { Points, Band, Pan, Overview, Feature };
+        Kind kind = Kind::Points;
+        QPointF pressed, last; // the mouse
+        QPointF at;            // the mouse, had it moved as slowly as Ctrl makes it
         bool moved = false;
+        TransferFunction start = {};
+        int index = 0;              // of the point or feature
+        Part part = Part::Middle;   // of the feature's bar
+        PointSelection before = {}; // of Band: what was selected; of Points: what a click without motion selects
+        double lo = 0;              // of Pan, Overview: the axis then
+
+        bool edits() const { return kind == Kind::Points || kind == Kind::Feature; }
     };
 
-    double heightOfOpacity(double opacity) const; ///< [0,1] up the axis
-    double opacityOfHeight(double height) const;
+    Zone zoneAt(const QPointF& position) const;
+    QRectF overviewTrack() const;
     double intensityAt(double pixelX) const;
     double opacityAt(double pixelY) const;
-    int pointAt(const QPointF& position) const; ///< −1: none
-    int featureBarAt(const QPointF& position) const;
-    QString valueText(double x) const;
+    std::vector<int> pointsAt(const QPointF& position) const; ///< the nearest first
+    int pointAt(const QPointF& position) const;               ///< −1: none
+    std::optional<BarHit> barAt(const QPointF& position) const;
+    QString valueText(double x) const; ///< with its unit
+    QString toolTipAt(const QPointF& position) const;
+    SeenBins seenHistogram() const;
     void follow(const Scene& before, const Scene& after);
     const TransferFunction& tf() const { return m_store.scene().tf; }
     void nudge(double dx, double dHeight);
+    void hover(const QPointF& position);
+    void dragPoints(const QPointF& to, bool alongAxis);
+    void dragFeature(const QPointF& to);
+    void selectBand(const QRectF& band);
+    void fillMenu(QMenu& menu, const QPointF& position);
 
-    void paintHistogram(QPainter& painter) const;
-    void paintVisibility(QPainter& painter) const;
-    void paintCurve(QPainter& painter) const;
-    void paintFeatures(QPainter& painter) const;
-    void paintAxes(QPainter& painter) const;
-    void paintPoints(QPainter& painter) const;
+    struct Ink;
+    void paintJointHistogram(QPainter& painter, const Ink& ink);
+    void paintHistogram(QPainter& painter, const Ink& ink) const;
+    void paintVisibility(QPainter& painter, const Ink& ink) const;
+    void paintGradientAxis(QPainter& painter, const Ink& ink) const;
+    void paintAxes(QPainter& painter, const Ink& ink) const;
+    void paintOverview(QPainter& painter, const Ink& ink) const;
+    void paintFeatures(QPainter& painter, const Ink& ink) const;
+    void paintCurve(QPainter& painter, const Ink& ink) const;
+    void paintHair(QPainter& painter, const Ink& ink) const;
+    void paintPoints(QPainter& painter, const Ink& ink) const;
+    void paintTopLine(QPainter& painter, const Ink& ink) const;
 
     SessionStore& m_store;
     Results& m_results;
+    Selection& m_selection;
     IntensityAxis m_axis;
+    OpacityAxis m_opacityAxis;
+    mutable VolumeCounts m_counts; // counts when asked
     std::vector<std::unique_ptr<CanvasLayer>> m_layers;
-    bool m_logHistogram = true, m_rootOpacity = false, m_readOnly = false;
-    int m_selected = -1, m_hovered = -1;
+    HistogramScale m_scale = HistogramScale::Log;
+    bool m_showJoint = false, m_readOnly = false;
+    QString m_unit;
+    PointSelection m_points;
+    int m_hovered = -1;                 // a point
+    std::optional<BarHit> m_hoveredBar; // a feature's
     std::optional<Drag> m_drag;
+    QImage m_jointImage; // null: to be made
 };
 
 } // namespace pellucid::gui

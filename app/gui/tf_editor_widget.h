@@ -1,4 +1,4 @@
-// The dock of the transfer function: the curve, and the selected point in numbers.
+// The dock of the transfer function: the curve, and the selected points in numbers.
 #pragma once
 
 #include <QWidget>
@@ -7,6 +7,7 @@
 
 class QCheckBox;
 class QDoubleSpinBox;
+class QHBoxLayout;
 class QLabel;
 class QToolButton;
 class QVBoxLayout;
@@ -16,7 +17,7 @@ namespace pellucid::gui {
 class TfEditorWidget : public QWidget {
     Q_OBJECT
 public:
-    TfEditorWidget(SessionStore& store, Results& results, QWidget* parent = nullptr);
+    TfEditorWidget(SessionStore& store, Results& results, Selection& selection, QWidget* parent = nullptr);
 
     TfCanvas& canvas() { return *m_canvas; }
     void setReadOnly(bool on);
@@ -24,8 +25,9 @@ public:
     void addRow(QWidget* row);
 
 private:
-    void showPoint();
-    void editPoint();
+    QHBoxLayout* makeRow();
+    void showPoints();
+    void editPoints(const QDoubleSpinBox& box);
 
     SessionStore& m_store;
     TfCanvas* m_canvas;
@@ -35,10 +37,11 @@ private:
     QDoubleSpinBox* m_value;
     QDoubleSpinBox* m_opacity;
     QToolButton* m_color;
-    QCheckBox* m_fixed;
+    QCheckBox* m_fixed; ///< partly checked: some of them are
     QToolButton* m_remove;
     bool m_readOnly = false, m_showing = false;
-    int m_editSession = 0; ///< so that the steps of one stay at a point become one undo step
+    const QDoubleSpinBox* m_typed = nullptr; ///< typed into, not yet taken
+    int m_editSession = 0;                   ///< so that the steps of one stay at a point become one undo step
 };
 
 } // namespace pellucid::gui

@@ -1,21 +1,81 @@
 #include "theme.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <QApplication>
+#include <QGuiApplication>
+#include <QLabel>
 #include <QPainter>
 #include <QPalette>
 #include <QProxyStyle>
 #include <QStyleFactory>
+#include <QStyleHints>
 #include <QStyleOption>
 
 namespace pellucid::gui {
 namespace {
 
-/// Fusion, with check boxes that can be seen on a dark ground.
-class DarkFusion : public QProxyStyle {
+struct Colors {
+    QRgb window, panel, raised, title, line, text, faint, accent, histogram, curve, knob, hover, falls, disabled,
+        shadow;
+    QRgb notice, noticeLine, noticeText;
+};
+
+constexpr Colors kDark{.window = 0xff262729,
+                       .panel = 0xff1c1d1f,
+                       .raised = 0xff35373a,
+                       .title = 0xff2e3033,
+                       .line = 0xff45474b,
+                       .text = 0xffe4e5e7,
+                       .faint = 0xff9a9da3,
+                       .accent = 0xff4c9aff,
+                       .histogram = 0xff44474c,
+                       .curve = 0xffd8dade,
+                       .knob = 0xffffffff,
+                       .hover = 0x0effffff,
+                       .falls = 0xffd97a2b,
+                       .disabled = 0xff74767a,
+                       .shadow = 0xff0a0a0b,
+                       .notice = 0xff4a3f22,
+                       .noticeLine = 0xff6b5a2d,
+                       .noticeText = 0xfff2e3b8};
+
+constexpr Colors kLight{.window = 0xfff1f2f3,
+                        .panel = 0xffffffff,
+                        .raised = 0xffe6e8ea,
+                        .title = 0xffe0e2e5,
+                        .line = 0xffb4b8be,
+                        .text = 0xff1b1d20,
+                        .faint = 0xff585c62,
+                        .accent = 0xff1667c9,
+                        .histogram = 0xffcdd1d6,
+                        .curve = 0xff2b2e33,
+                        .knob = 0xff3a3d42,
+                        .hover = 0x10000000,
+                        .falls = 0xffe08a3c,
+                        .disabled = 0xff96999e,
+                        .shadow = 0xff8a8d92,
+                        .notice = 0xfffff3cf,
+                        .noticeLine = 0xffdfc878,
+                        .noticeText = 0xff4d3c05};
+
+Theme s_applied = Theme::Dark;
+
+bool systemIsLight() {
+#if QT_VERSION >= QT_VERSION_CHECK(6, 5, 0)
+    const Qt::ColorScheme scheme = QGuiApplication::styleHints()->colorScheme();
+    if (scheme != Qt::ColorScheme::Unknown) return scheme == Qt::ColorScheme::Light;
+#endif
+    // What the desktop gives a program before it has colours of its own.
+    static const bool s_light = QGuiApplication::palette().color(QPalette::Window).lightness() >= 128;
+    return s_light;
+}
+
+/// Fusion, with check boxes that can be seen on any ground.
+class PlainFusion : public QProxyStyle {
 public:
-    DarkFusion() : QProxyStyle(QStyleFactory::create("Fusion")) {}
+    PlainFusion() : QProxyStyle(QStyleFactory::create("Fusion")) {}
 
     int styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
                   QStyleHintReturn* returned) const override {
@@ -30,7 +90,8 @@ public:
         const QRectF box = QRectF(option->rect).adjusted(1.5, 1.5, -1.5, -1.5);
         painter->save();
         painter->setRenderHint(QPainter::Antialiasing);
-        const QColor line = option->state.testFlag(State_MouseOver) ? theme::kAccent : QColor(0x7a, 0x7d, 0x83);
+        const QColor line =
+            option->state.testFlag(State_MouseOver) ? theme::kAccent : QColor(0x7a, 0x7d, 0x83); // seen on both
         painter->setPen(QPen(enabled ? line : theme::kLine, 1));
         painter->setBrush(on && enabled ? theme::kAccent.darker(130) : theme::kPanel);
         painter->drawRoundedRect(box, 2.5, 2.5);
@@ -48,8 +109,37 @@ public:
 
 } // namespace
 
-void applyTheme(QApplication& application) {
-    QApplication::setStyle(new DarkFusion); // the application owns it
+void applyTheme(QApplication& application, Theme theme) {
+    const bool systemLight = systemIsLight(); // before the first palette of ours
+    s_applied = theme;
+    const bool light = theme == Theme::Light || (theme == Theme::System && systemLight);
+    const Colors& c = light ? kLight : kDark;
+    using Pair = std::pair<QColor&, QRgb>;
+    for (const auto& [color, value] : {Pair{theme::kWindow, c.window},
+                                       {theme::kPanel, c.panel},
+                                       {theme::kRaised, c.raised},
+                                       {theme::kTitle, c.title},
+                                       {theme::kLine, c.line},
+                                       {theme::kText, c.text},
+                                       {theme::kFaint, c.faint},
+                                       {theme::kAccent, c.accent},
+                                       {theme::kHistogram, c.histogram},
+                                       {theme::kCurve, c.curve},
+                                       {theme::kKnob, c.knob},
+                                       {theme::kHover, c.hover},
+                                       {theme::kFalls, c.falls}})
+        color = QColor::fromRgba(value);
+
+    static bool s_styled = false;
+    if (!std::exchange(s_styled, true)) {
+        QApplication::setStyle(new PlainFusion); // the application owns it
+#if QT_VERSION >= QT_VERSION_CHECK(6, 5, 0)
+        QObject::connect(QGuiApplication::styleHints(), &QStyleHints::colorSchemeChanged, &application, [&application] {
+            if (s_applied == Theme::System) applyTheme(application, Theme::System);
+        });
+#endif
+    }
+    const QColor highlight = light ? theme::kAccent : theme::kAccent.darker(130); // under white
     QPalette p;
     p.setColor(QPalette::Window, theme::kWindow);
     p.setColor(QPalette::WindowText, theme::kText);
@@ -63,30 +153,55 @@ void applyTheme(QApplication& application) {
     p.setColor(QPalette::ButtonText, theme::kText);
     p.setColor(QPalette::BrightText, Qt::white);
     p.setColor(QPalette::Link, theme::kAccent);
-    p.setColor(QPalette::Highlight, theme::kAccent.darker(130));
+    p.setColor(QPalette::Highlight, highlight);
     p.setColor(QPalette::HighlightedText, Qt::white);
-    p.setColor(QPalette::Light, theme::kRaised.lighter(115));
+    p.setColor(QPalette::Light, theme::kRaised.lighter(light ? 106 : 115));
     p.setColor(QPalette::Midlight, theme::kRaised);
     p.setColor(QPalette::Mid, theme::kLine);
-    p.setColor(QPalette::Dark, theme::kPanel.darker(130));
-    p.setColor(QPalette::Shadow, QColor(10, 10, 11));
+    p.setColor(QPalette::Dark, light ? theme::kLine.darker(115) : theme::kPanel.darker(130));
+    p.setColor(QPalette::Shadow, QColor::fromRgba(c.shadow));
     for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText}) {
-        p.setColor(QPalette::Disabled, role, QColor(0x74, 0x76, 0x7a));
+        p.setColor(QPalette::Disabled, role, QColor::fromRgba(c.disabled));
     }
     p.setColor(QPalette::Disabled, QPalette::Highlight, theme::kLine);
     QApplication::setPalette(p);
+    const auto hex = [](QRgb value) { return QColor::fromRgb(value).name(); };
     application.setStyleSheet(
-        QStringLiteral("QToolTip { color: #e4e5e7; background: #35373a; border: 1px solid #55575b; padding: 3px; }"
-                       "QDockWidget::title { background: #2e3033; padding: 5px 8px; }"
-                       "QMainWindow::separator { background: #1c1d1f; width: 4px; height: 4px; }"
-                       "QMainWindow::separator:hover { background: #4c9aff; }"
-                       "QStatusBar::item { border: none; }"
-                       "QStatusBar QLabel { color: #9a9da3; padding: 0 6px; }"
-                       "#noticeBar { background: #4a3f22; border: none; border-bottom: 1px solid #6b5a2d; }"
-                       "#noticeBar QLabel { color: #f2e3b8; }"
-                       "QHeaderView::section { background: #2e3033; color: #b8bbc0; border: none; padding: 3px 6px; }"
-                       "QTableView { border: none; gridline-color: #2e3033; }"));
+        QStringLiteral("QToolTip { color: %1; background: %2; border: 1px solid %3; padding: 3px; }"
+                       "QDockWidget::title { background: %4; padding: 5px 8px; }"
+                       "QMainWindow::separator { background: %5; width: 4px; height: 4px; }"
+                       "QMainWindow::separator:hover { background: %6; }")
+            .arg(hex(c.text), hex(c.raised), hex(c.line), hex(c.title), hex(light ? c.title : c.panel), hex(c.accent)) +
+        QStringLiteral("QStatusBar::item { border: none; }"
+                       "QStatusBar QLabel { color: %1; padding: 0 6px; }"
+                       "#noticeBar { background: %2; border: none; border-bottom: 1px solid %3; }"
+                       "#noticeBar QLabel { color: %4; }"
+                       "QHeaderView::section { background: %5; color: %1; border: none; padding: 3px 6px; }"
+                       "QTableView { border: none; gridline-color: %5; }")
+            .arg(hex(c.faint), hex(c.notice), hex(c.noticeLine), hex(c.noticeText), hex(c.title)));
 }
+
+Theme appliedTheme() { return s_applied; }
+
+const char* name(Theme theme) {
+    switch (theme) {
+    case Theme::Dark:
+        return "dark";
+    case Theme::Light:
+        return "light";
+    case Theme::System:
+        return "system";
+    }
+    return "";
+}
+
+std::optional<Theme> themeFromName(std::string_view text) {
+    for (const Theme theme : {Theme::Dark, Theme::Light, Theme::System})
+        if (text == name(theme)) return theme;
+    return {};
+}
+
+void makeFaint(QLabel& label) { label.setForegroundRole(QPalette::PlaceholderText); }
 
 QColor colorFromRgb(const Rgb& rgb) {
     const auto component = [](double v) { return static_cast<float>(std::clamp(v, 0.0, 1.0)); };

@@ -1,25 +1,45 @@
-// The look of the window: dark and neutral, so that only the data has colour.
+// The look of the window: neutral, dark or light, so that only the data has colour.
 #pragma once
+
+#include <optional>
+#include <string_view>
 
 #include <QColor>
 
 #include "tf/color.h"
 
 class QApplication;
+class QLabel;
 
 namespace pellucid::gui {
 
+enum class Theme { Dark, Light, System }; ///< the last: what the desktop is set to
+
+/// The colours of the present theme: who paints reads them when he paints. Those of marks over the picture belong to no
+/// theme, since the background of the picture is the user's.
 namespace theme {
-inline const QColor kWindow{0x26, 0x27, 0x29};
-inline const QColor kPanel{0x1c, 0x1d, 0x1f};
-inline const QColor kRaised{0x35, 0x37, 0x3a};
-inline const QColor kLine{0x45, 0x47, 0x4b};
-inline const QColor kText{0xe4, 0xe5, 0xe7};
-inline const QColor kFaint{0x9a, 0x9d, 0xa3};
-inline const QColor kAccent{0x4c, 0x9a, 0xff};
+inline QColor kWindow, kPanel; ///< behind controls; behind what is painted or typed
+inline QColor kRaised;         ///< buttons
+inline QColor kTitle;          ///< bars of docks and tables
+inline QColor kLine, kText, kFaint, kAccent;
+inline QColor kHistogram; ///< the area of a histogram on kPanel
+inline QColor kCurve;     ///< a line that stands out from kPanel and kHistogram
+inline QColor kKnob;      ///< what can be taken hold of: rings of points, handles
+inline QColor kHover;     ///< translucent, over a row that has the focus
+inline QColor kFalls;     ///< with kAccent a pair that everyone can tell apart
+inline const QColor kMark{0xe4, 0xe5, 0xe7}, kMarkAccent{0x4c, 0x9a, 0xff}; ///< over the picture, with dark edges
 } // namespace theme
 
-void applyTheme(QApplication& application);
+/// Style, palette and colours. At any time again: every widget is painted anew, with QEvent::PaletteChange before.
+void applyTheme(QApplication& application, Theme theme = Theme::Dark);
+Theme appliedTheme();
+/// Words of settings and command lines.
+const char* name(Theme theme); ///< "dark", "light", "system"
+std::optional<Theme> themeFromName(std::string_view name);
+
+/// For a remark beside what matters: the label's text is kFaint in every theme.
+void makeFaint(QLabel& label);
+
 QColor colorFromRgb(const Rgb& rgb);
 Rgb rgbFromColor(const QColor& color);
 

@@ -44,6 +44,13 @@ void ViewOverlay::cancel() {
     m_holder = nullptr;
 }
 
+bool ViewOverlay::key(int key) {
+    if (!m_store.hasVolume() || isDragging()) return false;
+    for (auto layer = m_layers.rbegin(); layer != m_layers.rend(); ++layer)
+        if ((*layer)->key(key, overlayView())) return true;
+    return false;
+}
+
 Qt::CursorShape ViewOverlay::cursorAt(const QPointF& point) {
     if (!m_store.hasVolume()) return Qt::ArrowCursor;
     for (auto layer = m_layers.rbegin(); layer != m_layers.rend(); ++layer)

@@ -31,6 +31,8 @@ public:
     virtual void drag(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const OverlayView& /*view*/) {}
     virtual void release() {}
     virtual void cancel() { release(); } ///< in place of the release: as if it had not been pressed
+    /// A key that the view has got (Qt::Key); true: it is taken.
+    virtual bool key(int /*key*/, const OverlayView& /*view*/) { return false; }
 };
 
 /// A transparent widget over the view that holds layers, the last one on top. The view hands it the mouse.
@@ -45,6 +47,7 @@ public:
     void drag(const QPointF& point, Qt::KeyboardModifiers keys);
     void release();
     void cancel();
+    bool key(int key);
     Qt::CursorShape cursorAt(const QPointF& point);
 
 protected:

@@ -246,6 +246,7 @@ void VolumeView::resizeEvent(QResizeEvent* event) {
 }
 
 void VolumeView::keyPressEvent(QKeyEvent* event) {
+    if (m_overlay->key(event->key())) return;
     double yaw = 0, pitch = 0;
     switch (event->key()) {
     case Qt::Key_Left:

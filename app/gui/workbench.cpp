@@ -5,8 +5,12 @@
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
+#include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
+#include "controllers/slice_actions.h"
+#include "controllers/start_controller.h"
 #include "controllers/tf_actions.h"
+#include "controllers/theme_actions.h"
 #include "controllers/view_actions.h"
 #include "error_dialog.h"
 
@@ -14,24 +18,31 @@ namespace pellucid::gui {
 
 Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
     m_optimizing = std::make_unique<OptimizeController>(*this);
+    m_refining = std::make_unique<RefineController>(*this);
     m_saving = std::make_unique<SaveController>(*this);
     m_opening = std::make_unique<OpenController>(*this);
+    m_start = std::make_unique<StartController>(*this);
     m_recovery = std::make_unique<RecoveryController>(*this);
 
     // The menus stand in the order in which their first actions come.
     m_opening->addActions();
     m_saving->addActions();
     addEditActions();
+    m_start->addActions();
     addTfActions(*this);
     addFeatureActions(*this);
+    m_refining->addActions();
     m_optimizing->addActions();
     addViewActions(*this);
     addFrameActions(*this);
+    addSliceActions(*this);
+    addThemeActions(*this);
 
     connect(&m_store, &SessionStore::historyChanged, &m_actions, &Actions::refresh);
     connect(&m_store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features.empty() != after.tf.features.empty() ||
-            before.camera.projection != after.camera.projection || before.session.reference != after.session.reference)
+            before.camera.projection != after.camera.projection ||
+            before.session.reference != after.session.reference || !before.session.slices.isSame(after.session.slices))
             m_actions.refresh();
     });
     connect(&m_results, &Results::changed, this, &Workbench::idleChanged);
@@ -44,6 +55,8 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
         Q_EMIT idleChanged();
     });
     connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
 }
 
@@ -51,8 +64,10 @@ Workbench::~Workbench() {
     m_store.disconnect(); // what ends below must not be heard by what has ended already
     m_results.disconnect();
     m_recovery.reset();
+    m_start.reset();
     m_opening.reset();
     m_saving.reset();
+    m_refining.reset();
     m_optimizing.reset();
 }
 
@@ -79,8 +94,8 @@ void Workbench::addEditActions() {
 bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
-    return m_store.hasVolume() && !m_opening->isBusy() && !m_saving->isBusy() && !m_optimizing->isRunning() &&
-           !m_results.isBusy();
+    return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
+           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_results.isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

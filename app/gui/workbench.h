@@ -18,7 +18,9 @@ namespace pellucid::gui {
 class OpenController;
 class OptimizeController;
 class RecoveryController;
+class RefineController;
 class SaveController;
+class StartController;
 
 /// The services of one window. Panels and controllers get it, and know nothing of each other.
 class Workbench : public QObject {
@@ -49,7 +51,9 @@ public:
     OpenController& opening() { return *m_opening; }
     SaveController& saving() { return *m_saving; }
     OptimizeController& optimizing() { return *m_optimizing; }
+    StartController& start() { return *m_start; }
     RecoveryController& recovery() { return *m_recovery; }
+    RefineController& refining() { return *m_refining; }
 
     /// Nothing may be edited: an optimization shows its moves.
     bool isReadOnly() const;
@@ -69,8 +73,10 @@ private:
 
     QWidget* m_window;
     std::unique_ptr<OptimizeController> m_optimizing;
+    std::unique_ptr<RefineController> m_refining;
     std::unique_ptr<SaveController> m_saving;
     std::unique_ptr<OpenController> m_opening;
+    std::unique_ptr<StartController> m_start;
     std::unique_ptr<RecoveryController> m_recovery;
 };
 

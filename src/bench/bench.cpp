@@ -24,6 +24,7 @@ constexpr double kBytesPerCode = 2; ///< what engines and renderers read of a vo
 constexpr double kDensePeak = 0.001;
 constexpr double kDenseStepScale = 0.002; ///< steps in proportion to kDensePeak
 constexpr double kSparseShare = 0.03;
+constexpr int kClickIterations = 500; ///< as in table 3.2 of the thesis
 /// Without a number of repetitions: rounds over all rows, and how long each row at least repeats in every round.
 /// Seconds; what else a machine does comes and goes in tenths of them.
 constexpr int kRounds = 3;
@@ -105,6 +106,8 @@ public:
         if (wanted(BenchRow::Jacobian)) addJacobians(job);
         if (wanted(BenchRow::Optimize)) addOptimize();
         if (wanted(BenchRow::Refine)) addRefine();
+        if (wanted(BenchRow::Refine500)) addPaletteClick(BenchRow::Refine500, refine);
+        if (wanted(BenchRow::RefineDirect)) addPaletteClick(BenchRow::RefineDirect, refineReference);
         if (wanted(BenchRow::Render)) addRender();
     }
     CaseBench(const CaseBench&) = delete; // the measurements refer to it
@@ -227,6 +230,19 @@ private:
         });
     }
 
+    /// What follows a click on the palette: the histogram is there, an intensity is prioritized.
+    void addPaletteClick(BenchRow which, decltype(refine)* by) {
+        if (!m_histogram) m_histogram = makeHistogram(*m_case.volume);
+        add(row(which, "cpu"), 0, [this, by](BenchResult& r, const JobControl& j) {
+            RefineOptions options;
+            options.priority.intensity = 0.25;
+            options.untilStable = false;
+            options.maxIterations = kClickIterations;
+            const RefineResult refined = by(*m_histogram, m_case.tf, options, j);
+            r.extra = {{"iterations", refined.iterations}, {"energy", refined.energyMovableAfter}};
+        });
+    }
+
     void addRender() {
         const std::shared_ptr<ImageRenderer> renderer = makeRenderer(m_options.engine, m_case.volume);
         for (RenderSettings settings : m_options.pictures) {
@@ -256,6 +272,7 @@ private:
     const BenchOptions& m_options;
     std::unique_ptr<VisibilityEngine> m_engine; ///< null where no row needs one
     std::unique_ptr<VisibilityEngine> m_slices; ///< made when first needed
+    std::optional<Histogram> m_histogram;
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;
     std::vector<TransferFunction> m_candidates; ///< the eight of a search
@@ -307,6 +324,10 @@ const char* name(BenchRow row) {
         return "optimize";
     case BenchRow::Refine:
         return "refine";
+    case BenchRow::Refine500:
+        return "refine-500";
+    case BenchRow::RefineDirect:
+        return "refine-direct";
     case BenchRow::Render:
         return "render";
     }

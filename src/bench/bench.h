@@ -20,10 +20,23 @@
 
 namespace pellucid {
 
-enum class BenchRow { Setup, Saliency, SaliencyDirect, Sweep, Slices, Jacobian, Optimize, Refine, Render };
-inline constexpr std::array kBenchRows{BenchRow::Setup,    BenchRow::Saliency, BenchRow::SaliencyDirect,
-                                       BenchRow::Sweep,    BenchRow::Slices,   BenchRow::Jacobian,
-                                       BenchRow::Optimize, BenchRow::Refine,   BenchRow::Render};
+enum class BenchRow {
+    Setup,
+    Saliency,
+    SaliencyDirect,
+    Sweep,
+    Slices,
+    Jacobian,
+    Optimize,
+    Refine,
+    Refine500,
+    RefineDirect,
+    Render
+};
+inline constexpr std::array kBenchRows{BenchRow::Setup,        BenchRow::Saliency, BenchRow::SaliencyDirect,
+                                       BenchRow::Sweep,        BenchRow::Slices,   BenchRow::Jacobian,
+                                       BenchRow::Optimize,     BenchRow::Refine,   BenchRow::Refine500,
+                                       BenchRow::RefineDirect, BenchRow::Render};
 const char* name(BenchRow row); ///< "setup" … "render"
 /// Throws UsageError that names `where`.
 BenchRow benchRowFromName(const std::string& name, const std::string& where);

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "render/gl/gl_engines.h"
 #include "render/image_renderer.h"
-#include "tf/sample_tf.h"
 #include "volume/procedural.h"
 
 namespace pellucid {
@@ -17,7 +16,7 @@ constexpr int kVoxels = 64, kPixels = 320;
 
 /// The better of two pictures of a turning volume; a first one, which prepares, does not count.
 double secondsOf(ImageRenderer& renderer, const Volume& volume, const JobControl& job) {
-    const TransferFunction tf = defaultTf(volume);
+    const TransferFunction tf = tents(3, 0.25);
     RenderSettings settings;
     settings.width = settings.height = kPixels;
     settings.stepInD0 = 1;

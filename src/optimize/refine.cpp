@@ -4,167 +4,123 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "optimize/refine_edges.h"
 
 namespace pellucid {
 
 namespace {
 
-/// −p ln p of each bin: significance per unit of opacity (3.2).
-std::vector<double> informationOf(const Histogram& histogram) {
-    std::vector<double> g;
-    for (std::size_t b = 0; b < histogram.counts.size(); ++b) {
-        const double p = histogram.p(b);
-        g.push_back(p > 0 ? -p * std::log(p) : 0.0);
-    }
-    return g;
-}
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// e(i) is linear in the opacities at its two ends: e = left·α_i + right·α_{i+1}.
-struct EdgeCoefficients {
-    double left = 0, right = 0;
-};
+/// The greedy search (3.4.2). A move changes two edges at most, and nothing else is computed anew.
+RefineResult refineGreedy(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
+                          const JobControl& job) {
+    EdgeLine line(histogram, tf, options.priority);
+    RefineResult result = startOf(line, tf);
+    EnergyCurve curve;
+    curve.add(result.energyMovableBefore);
 
-/// Exact integrals of the two hat functions over [x0, x1] against the piecewise constant g.
-EdgeCoefficients coefficients(const std::vector<double>& g, double x0, double x1) {
-    EdgeCoefficients e;
-    if (!(x1 > x0)) return e;
-    const int bins = static_cast<int>(g.size());
-    for (int b = histogramBin(x0, bins); b < bins && static_cast<double>(b) / bins < x1; ++b) {
-        const double lo = std::max(x0, static_cast<double>(b) / bins), hi = std::min(x1, (b + 1.0) / bins);
-        if (!(hi > lo)) continue;
-        const double whole = g[static_cast<std::size_t>(b)] * (hi - lo);
-        const double right = whole * ((lo + hi) / 2 - x0) / (x1 - x0); // the mean of a linear function is its midpoint
-        e.right += right;
-        e.left += whole - right;
-    }
-    return e;
-}
+    // Weights of the participating edges side by side, and where each edge is among them.
+    const std::vector<std::size_t>& which = line.participating;
+    std::vector<double> weights = line.participatingWeights();
+    std::vector<std::size_t> slot(line.edges(), kNone);
+    for (std::size_t i = 0; i < which.size(); ++i) slot[which[i]] = i;
+    const auto updateEdge = [&](std::size_t edge) {
+        if (slot[edge] != kNone)
+            weights[slot[edge]] = line.coefficients[edge].weight(line.opacity[edge], line.opacity[edge + 1]);
+    };
+    const auto move = [&](std::size_t point, double by) {
+        line.opacity[point] = std::clamp(line.opacity[point] + by, 0.0, 1.0);
+        if (point > 0) updateEdge(point - 1);
+        if (point < slot.size()) updateEdge(point);
+    };
 
-double energyOver(const std::vector<double>& edges, const std::vector<std::size_t>& which) {
-    if (which.empty()) return 0;
-    double mean = 0, energy = 0;
-    for (const std::size_t i : which) mean += edges[i];
-    mean /= static_cast<double>(which.size());
-    for (const std::size_t i : which) energy += (edges[i] - mean) * (edges[i] - mean);
-    return energy;
-}
-
-/// The polyline of a transfer function with everything that greedy steps ask for.
-class Polyline {
-public:
-    Polyline(const Histogram& histogram, const TransferFunction& tf) : points(tf.pointsWithEnds()) {
-        const auto g = informationOf(histogram);
-        for (const ControlPoint& p : points)
-            m_information.push_back(g[static_cast<std::size_t>(histogramBin(p.x, static_cast<int>(g.size())))]);
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-            m_coefficients.push_back(coefficients(g, points[i].x, points[i + 1].x));
-            edges.push_back(0);
-            updateEdge(i);
-            if (!points[i].fixed || !points[i + 1].fixed) participating.push_back(i);
+    constexpr int kAskEvery = 64; // iterations, each well below a microsecond
+    std::vector<double> best = line.opacity;
+    double bestEnergy = result.energyMovableBefore;
+    const int patience = 2 * static_cast<int>(line.edges());
+    int sinceBest = 0;
+    while (!which.empty() && result.iterations < options.maxIterations &&
+           !(options.untilStable && sinceBest >= patience)) {
+        if (result.iterations % kAskEvery == 0) job.throwIfStopped();
+        std::size_t heaviest = 0, lightest = 0; // of equals the lower index
+        for (std::size_t i = 1; i < weights.size(); ++i) {
+            if (weights[i] > weights[heaviest]) heaviest = i;
+            if (weights[i] < weights[lightest]) lightest = i;
+        }
+        const std::size_t down = line.endToMove(which[heaviest], true), up = line.endToMove(which[lightest], false);
+        const double rise = line.stepUp(options, down, up);
+        move(down, -options.stepDown);
+        move(up, rise);
+        ++result.iterations;
+        ++sinceBest;
+        const double energy = energyOf(weights);
+        curve.add(energy);
+        if (energy < bestEnergy) {
+            bestEnergy = energy;
+            best = line.opacity;
+            sinceBest = 0;
         }
     }
-
-    double significance(std::size_t point) const { return points[point].opacity * m_information[point]; }
-
-    void move(std::size_t point, double by) {
-        points[point].opacity = std::clamp(points[point].opacity + by, 0.0, 1.0);
-        if (point > 0) updateEdge(point - 1);
-        if (point < edges.size()) updateEdge(point);
-    }
-
-    /// The end of an edge that a step moves: the one of larger (or smaller) significance, of equals the lower one; a
-    /// fixed end gives way to the other.
-    std::size_t endToMove(std::size_t edge, bool larger) const {
-        const std::size_t a = edge, b = edge + 1;
-        if (points[a].fixed) return b;
-        if (points[b].fixed) return a;
-        const double sa = significance(a), sb = significance(b);
-        return (larger ? sb > sa : sb < sa) ? b : a;
-    }
-
-    std::vector<ControlPoint> points;
-    std::vector<double> edges;
-    std::vector<std::size_t> participating; ///< edges with a movable end
-
-private:
-    void updateEdge(std::size_t i) {
-        edges[i] = m_coefficients[i].left * points[i].opacity + m_coefficients[i].right * points[i + 1].opacity;
-    }
-    std::vector<double> m_information;
-    std::vector<EdgeCoefficients> m_coefficients;
-};
-
-constexpr double kLargestStepRatio =
-    16; ///< of a derived step_up to step_down, where the raised end weighs next to nothing
-
-double stepUp(const RefineOptions& options, double loweredSignificance, double raisedSignificance) {
-    if (options.stepUp) return *options.stepUp;
-    const double ratio = raisedSignificance > 0 ? loweredSignificance / raisedSignificance : kLargestStepRatio;
-    return options.stepDown * std::min(ratio, kLargestStepRatio);
+    line.opacity = best;
+    finish(result, line, tf);
+    curve.moveInto(result);
+    return result;
 }
 
 } // namespace
 
+const char* name(RefineMethod method) { return method == RefineMethod::Greedy ? "greedy" : "exact"; }
+
+std::optional<RefineMethod> refineMethodFromName(const std::string& text) {
+    for (const RefineMethod method : {RefineMethod::Greedy, RefineMethod::Exact})
+        if (text == name(method)) return method;
+    return {};
+}
+
 void RefineOptions::validate() const {
-    if (!(stepDown > 0 && stepDown <= 1))
-        throw UsageError("the step down lies in (0,1]", "refine", "correct the step");
+    if (!(stepDown > 0 && stepDown <= 1)) throw UsageError("the step down lies in (0,1]", "refine", "correct the step");
     if (stepUp && !(*stepUp > 0 && *stepUp <= 1))
         throw UsageError("the step up lies in (0,1]", "refine", "correct the step");
-    if (maxIterations < 0)
-        throw UsageError("the number of iterations is not negative", "refine", "correct it");
+    if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "refine", "correct it");
+    if (priority.intensity && !priority.region.empty())
+        throw UsageError("an intensity and a region are prioritized at once", "refine", "choose one of them");
+    if (priority.intensity && !(*priority.intensity >= 0 && *priority.intensity <= 1))
+        throw UsageError("the prioritized intensity lies in [0,1]", "refine",
+                         "normalise it to the range of intensities");
+    if (total && !(*total >= 0)) throw UsageError("the total opacity is not negative", "refine", "correct it");
 }
 
-std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf) {
-    return Polyline(histogram, tf).edges;
+std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf,
+                                const RefinePriority& priority) {
+    return EdgeLine(histogram, tf, priority).weights();
 }
 
-double edgeEnergy(const std::vector<double>& edges) {
-    std::vector<std::size_t> all(edges.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-    return energyOver(edges, all);
+double edgeEnergy(const std::vector<double>& edges) { return energyOf(edges); }
+
+double movableOpacity(const TransferFunction& tf) {
+    double sum = 0;
+    for (const ControlPoint& p : tf.points)
+        if (!p.fixed) sum += p.opacity;
+    return sum;
 }
 
 RefineResult refine(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
                     const JobControl& job) {
     options.validate();
-    Polyline line(histogram, tf);
-    const auto& which = line.participating;
+    return options.method == RefineMethod::Exact ? refineExact(histogram, tf, options, job)
+                                                 : refineGreedy(histogram, tf, options, job);
+}
 
-    RefineResult result;
-    result.tf = tf;
-    result.edgesBefore = result.edgesAfter = line.edges;
-    result.energyBefore = result.energyAfter = edgeEnergy(line.edges);
-    result.energyMovableBefore = result.energyMovableAfter = energyOver(line.edges, which);
-    std::vector<ControlPoint> best = line.points;
-
-    const int patience = 2 * static_cast<int>(line.edges.size());
-    int sinceBest = 0;
-    while (!which.empty() && result.iterations < options.maxIterations && sinceBest < patience) {
-        job.throwIfStopped();
-        const auto lighter = [&](std::size_t a, std::size_t b) { return line.edges[a] < line.edges[b]; };
-        // Of equal edges the lower index: max_element and min_element both keep the first.
-        const std::size_t heaviest = *std::max_element(which.begin(), which.end(), lighter);
-        const std::size_t lightest = *std::min_element(which.begin(), which.end(), lighter);
-        const std::size_t down = line.endToMove(heaviest, true), up = line.endToMove(lightest, false);
-        const double rise = stepUp(options, line.significance(down), line.significance(up));
-        line.move(down, -options.stepDown);
-        line.move(up, rise);
-        ++result.iterations;
-        ++sinceBest;
-        const double energy = energyOver(line.edges, which);
-        if (energy < result.energyMovableAfter) {
-            result.energyMovableAfter = energy;
-            result.edgesAfter = line.edges;
-            best = line.points;
-            sinceBest = 0;
-        }
-    }
-
-    result.energyAfter = edgeEnergy(result.edgesAfter);
-    const std::size_t firstOwn =
-        best.size() > tf.points.size() && (tf.points.empty() || tf.points.front().x > 0) ? 1 : 0;
-    for (std::size_t i = 0; i < tf.points.size(); ++i) result.tf.points[i].opacity = best[i + firstOwn].opacity;
-    return result;
+RefineComparison compareMethods(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
+                                const JobControl& job) {
+    RefineOptions by = options;
+    by.method = RefineMethod::Greedy;
+    const RefineResult greedy = refine(histogram, tf, by, job);
+    by.method = RefineMethod::Exact;
+    by.total = movableOpacity(greedy.tf);
+    const RefineResult exact = refine(histogram, greedy.tf, by, job); // from there, so that it is never worse
+    return {*by.total, greedy.energyMovableAfter, exact.energyMovableAfter, exact.tf};
 }
 
 } // namespace pellucid

@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "optimize/first_sight.h"
 #include "tf/formats/tf_json.h"
-#include "tf/sample_tf.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 
@@ -30,14 +30,32 @@ std::shared_ptr<const Volume> read(VolumeSource source, const MemoryUse& then, c
     return std::make_shared<const Volume>(loadVolume(source, job));
 }
 
-/// The session's transfer function in the window; the default one, which the session gets, where it has none.
+/// The window of a proposal, where it is another one than that of the data.
+std::optional<ValueRange> windowToSet(const Proposal& proposal, const Volume& data) {
+    if (!isWindow(data.range()) || proposal.window == data.range()) return {};
+    return proposal.window;
+}
+
+/// Window and transfer function from the data, where the session has none.
+void proposeStart(Scene& scene, const JobControl& job) {
+    if (scene.session.tf() != nullptr) return;
+    auto proposal = std::make_shared<const Proposal>(propose(*scene.volume, {job.stop, {}}));
+    if (!scene.session.variable().window)
+        if (const std::optional<ValueRange> window = windowToSet(*proposal, *scene.data)) {
+            scene.session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
+            scene.volume = throughWindow(scene.data, window);
+            scene.histogram.reset();
+            scene.codes.reset();
+        }
+    TransferFunction tf = proposal->tf;
+    if (!isWindow(scene.volume->range())) tf.range.reset(); // one value: no two for 0 and 1
+    scene.session.setTf(std::move(tf));
+    scene.proposal = std::move(proposal);
+}
+
+/// The session's transfer function in the window.
 void resolveTf(Scene& scene) {
     const ValueRange& window = scene.volume->range();
-    if (scene.session.tf() == nullptr) {
-        TransferFunction tf = defaultTf(*scene.volume);
-        if (isWindow(window)) tf.range = window;
-        scene.session.setTf(std::move(tf));
-    }
     const TransferFunction& tf = *scene.session.tf();
     if (!isWindow(window)) {
         scene.tf = tf;
@@ -49,6 +67,14 @@ void resolveTf(Scene& scene) {
         scene.session.setTf(placed);
         scene.tf = *scene.session.tf();
     }
+}
+
+/// So that both come from the data.
+void forgetStart(Session& session) {
+    session.variables.edit([](std::vector<Variable>& all) {
+        all.front().window.reset();
+        all.front().track.keys.clear();
+    });
 }
 
 } // namespace
@@ -91,7 +117,8 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
         scene.histogram = basis.histogram;
         scene.codes = basis.codes;
     }
-    if (sameWindow && scene.session.tf() != nullptr && scene.session.tf() == basis.session.tf()) {
+    proposeStart(scene, job);
+    if (sameWindow && !scene.proposal && scene.session.tf() == basis.session.tf()) {
         scene.tf = basis.tf; // the very same
     } else {
         resolveTf(scene);
@@ -102,6 +129,20 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
         scene.camera = homeCamera(scene.volume->geometry(), Projection::Perspective);
     }
     return scene;
+}
+
+TransferFunction tunedTf(const Scene& scene, const JobControl& job) {
+    const View home(homeCamera(scene.volume->geometry(), Projection::Perspective));
+    return withOpacitiesForView(*scene.volume, *scene.proposal, scene.tf, home, {job.stop, {}});
+}
+
+AutomaticStart automaticStart(const Scene& scene, const View& view, const JobControl& job) {
+    AutomaticStart start;
+    start.proposal = propose(*scene.data, {job.stop, {}});
+    start.window = windowToSet(start.proposal, *scene.data);
+    const auto volume = throughWindow(scene.data, start.window);
+    start.tf = withOpacitiesForView(*volume, start.proposal, start.proposal.tf, view, {job.stop, {}});
+    return start;
 }
 
 Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry) {
@@ -131,12 +172,20 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     Session session = inputs.session;
     // The transfer function first: it is small, and an error in it should not wait for a large volume.
     std::optional<TransferFunction> tf;
-    if (inputs.tf) tf = loadTf(*inputs.tf);
+    if (inputs.tf == kAutomaticTf)
+        forgetStart(session);
+    else if (inputs.tf)
+        tf = loadTf(*inputs.tf);
     std::optional<ValueRange> window = inputs.range;
     if (!window && tf && tf->range) window = tf->range;
     if (window) session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
+    if (!tf && session.tf() == nullptr && inputs.start == SceneInputs::Start::Tents) tf = tents(3);
     if (tf) session.setTf(std::move(*tf));
     Scene scene = resolve(std::move(session), {}, inputs.then, job);
+    if (inputs.start == SceneInputs::Start::Tuned && scene.proposal) {
+        scene.session.setTf(tunedTf(scene, job));
+        resolveTf(scene);
+    }
     scene.camera = cameraOf(inputs, scene.volume->geometry());
     if (inputs.camera || inputs.view || inputs.namedView || inputs.projection) scene.session.camera = scene.camera;
     return scene;
@@ -170,6 +219,14 @@ PictureInput pictureInput(const Scene& scene, int width, int height, bool transp
     s.light = display.light;
     s.clipping = *scene.session.clipping;
     s.onlyFeature = scene.onlyFeature();
+    return input;
+}
+
+PictureInput plainPictureInput(const Scene& scene, int width, int height) {
+    PictureInput input = pictureInput(scene, width, height, true);
+    input.settings.mode = RenderMode::Composite;
+    input.settings.light = {};
+    input.settings.onlyFeature = -1;
     return input;
 }
 

@@ -8,6 +8,7 @@
 #include "render/annotation.h"
 #include "render/standard_view.h"
 #include "session/session.h"
+#include "tf/proposal.h"
 #include "volume/histogram.h"
 #include "volume/intensity_grid.h"
 
@@ -23,6 +24,7 @@ struct Scene {
     Camera camera;                              ///< the session's, else the home view
     std::shared_ptr<const Histogram> histogram; ///< 256 bins of `volume`; null before prepareToShow()
     std::shared_ptr<const IntensityGrid> codes; ///< of `volume`, kept for those who draw and measure; likewise
+    std::shared_ptr<const Proposal> proposal;   ///< where this resolving proposed window and transfer function; else null
 
     /// Wanted shares of the features, in their order; 0 of hidden ones.
     std::vector<double> targets() const { return targetsOf(tf, *session.goals); }
@@ -30,10 +32,13 @@ struct Scene {
     int onlyFeature() const;
 };
 
+/// In place of a transfer function: what the data themselves propose (docs/method.md, "The automatic start").
+inline constexpr const char* kAutomaticTf = "auto";
+
 /// What a user may name beside a session, or in place of one. Everything given overrides the session.
 struct SceneInputs {
     Session session;                 ///< what to start from: its variable's source is what is opened
-    std::optional<std::string> tf;   ///< a file, tents:N[:PEAK] or ramp:N
+    std::optional<std::string> tf;   ///< a file, tents:N[:PEAK], ramp:N or kAutomaticTf
     std::optional<ValueRange> range; ///< intensity window, data units
     std::optional<Camera> camera;
     std::string cameraName;               ///< of `camera` in messages, such as its file
@@ -41,6 +46,9 @@ struct SceneInputs {
     std::optional<NamedView> namedView;   ///< in place of both
     std::optional<Projection> projection; ///< of `view`, else of the session's camera, else of the home view
     MemoryUse then;                       ///< what is done with the volume, see VolumeSource
+    /// What a volume without transfer function gets: the automatic start; the same before its opacities are tuned, for
+    /// those who show it first (see tunedTf()); or tents:3 over all values, for those who need none.
+    enum class Start { Tuned, Proposed, Tents } start = Start::Tuned;
 };
 
 /// From where the inputs look at a volume: `namedView`, else `camera`, else `view`, else the session's camera, else the
@@ -48,11 +56,25 @@ struct SceneInputs {
 Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry);
 
 /// Opens everything. The intensity window is `range`, else that of the named transfer-function file, else the
-/// session's, else the range of the values. A transfer function keeps its data values whatever the window is. Throws
+/// session's (unless kAutomaticTf is asked for), else what the data propose where the transfer function comes from them
+/// too, else the range of the values. A transfer function keeps its data values whatever the window is. Throws
 /// FileError, Error (a camera inside the box), UsageError (no source), Cancelled.
 Scene openScene(const SceneInputs& inputs, const JobControl& job = {});
 
-/// The scene of a session. Data that `basis` has is taken from there: where source and window are the same this costs
+/// The transfer function of a scene that has a proposal, with opacities for the home view, whatever its camera is: a
+/// volume has one automatic start. Throws Cancelled.
+TransferFunction tunedTf(const Scene& scene, const JobControl& job = {});
+
+/// The automatic start of a scene's data, whatever its window and transfer function are.
+struct AutomaticStart {
+    Proposal proposal;
+    std::optional<ValueRange> window; ///< as Variable::window
+    TransferFunction tf;              ///< opacities for the view that was asked for
+};
+/// Throws Cancelled.
+AutomaticStart automaticStart(const Scene& scene, const View& view, const JobControl& job = {});
+
+/// The scene of a session; a session without transfer function gets what the data propose, not tuned. Data that `basis` has is taken from there: where source and window are the same this costs
 /// next to nothing, where only the window differs no file is read.
 Scene resolve(Session session, const Scene& basis, const MemoryUse& then = {}, const JobControl& job = {});
 /// Whether resolve() would read a file or go over all voxels.
@@ -84,6 +106,10 @@ struct PictureInput {
 };
 /// Samples at half of d0 (quality high: a quarter). `transparent`: without the background.
 PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent = false);
+
+/// The same with the colours of the transfer function alone: no light, no background, no single feature. What a region
+/// is made of that someone draws in the picture (regionColors()).
+PictureInput plainPictureInput(const Scene& scene, int width, int height);
 
 /// Everything that what stands around a picture depends on; the picture has a volume. `density`: pixels of the picture
 /// in which lengths of the screen are one.

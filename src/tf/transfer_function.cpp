@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "tf/change_opacities.h"
 
 namespace pellucid {
 
@@ -57,20 +58,7 @@ void splitAt(TransferFunction& tf, double x) {
 }
 
 void scaleFeature(TransferFunction& tf, const Feature& f, double factor) {
-    const bool stepAtA = f.a > 0.0 && tf.opacity(f.a) != 0.0;
-    const bool stepAtB = f.b < 1.0 && opacityBefore(tf, f.b) != 0.0;
-    if (stepAtA) splitAt(tf, f.a);
-    if (stepAtB) splitAt(tf, f.b);
-    auto& points = tf.points;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double x = points[i].x;
-        const bool lastOfX = i + 1 == points.size() || points[i + 1].x != x;
-        const bool firstOfX = i == 0 || points[i - 1].x != x;
-        const bool inside = x > f.a && x < f.b;
-        const bool startsIt = x == f.a && (lastOfX || f.a == 0.0);
-        const bool endsIt = x == f.b && ((f.b >= 1.0) || (stepAtB && firstOfX));
-        if (inside || startsIt || endsIt) points[i].opacity = std::min(1.0, points[i].opacity * factor);
-    }
+    changeOpacities(tf, f, [factor](const ControlPoint& p) { return std::min(1.0, p.opacity * factor); });
 }
 
 void raiseFlatFeature(TransferFunction& tf, const Feature& f, double opacity) {
@@ -230,6 +218,23 @@ std::vector<double> featureOpacities(const TransferFunction& tf) {
     std::vector<double> opacities;
     for (const Feature& f : tf.features) opacities.push_back(peakOf(tf, f));
     return opacities;
+}
+
+void changeOpacities(TransferFunction& tf, const Feature& f, const std::function<double(const ControlPoint&)>& change) {
+    const bool stepAtA = f.a > 0.0 && tf.opacity(f.a) != 0.0;
+    const bool stepAtB = f.b < 1.0 && opacityBefore(tf, f.b) != 0.0;
+    if (stepAtA) splitAt(tf, f.a);
+    if (stepAtB) splitAt(tf, f.b);
+    auto& points = tf.points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double x = points[i].x;
+        const bool lastOfX = i + 1 == points.size() || points[i + 1].x != x;
+        const bool firstOfX = i == 0 || points[i - 1].x != x;
+        const bool inside = x > f.a && x < f.b;
+        const bool startsIt = x == f.a && (lastOfX || f.a == 0.0);
+        const bool endsIt = x == f.b && ((f.b >= 1.0) || (stepAtB && firstOfX));
+        if (inside || startsIt || endsIt) points[i].opacity = change(points[i]);
+    }
 }
 
 TransferFunction withFeatureOpacities(const TransferFunction& tf, const std::vector<double>& x) {

@@ -59,7 +59,7 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
         CHECK(row["memcpy_share"].get<double>() == Approx(rate / memcpyRate));
     }
     CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
-                                         "refine", "render"});
+                                         "refine", "refine-500", "refine-direct", "render"});
 
     // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.
     const auto sweeps = rowsNamed(j, "sweep");
@@ -106,6 +106,22 @@ TEST_CASE("bench optimizes and refines as the commands of that name do", "[cli][
     const json refined = w.json({"refine", "sample:shells", "--size", "24", "--tf", "tents:3:0.2"});
     CHECK(j["rows"][1]["name"] == "refine");
     CHECK(j["rows"][1]["iterations"] == refined["iterations"]);
+}
+
+TEST_CASE("bench refines after a click 500 times, fast and by integrating every edge anew", "[cli][bench]") {
+    const Workshop w;
+    const json j = bench(w, {"--only", "refine-500,refine-direct,render", "--tf", "tents:3", "--threads", "2"});
+    REQUIRE(j["rows"].size() == 3);
+    const json &fast = j["rows"][0], &direct = j["rows"][1], &render = j["rows"][2];
+    CHECK(fast["name"] == "refine-500");
+    CHECK(direct["name"] == "refine-direct");
+    CHECK(fast["iterations"] == 500);
+    CHECK(direct["iterations"] == 500);
+    CHECK(fast["energy"] == direct["energy"]); // the same answer
+    const double seconds = fast["seconds"];
+    CHECK(j["ratios"]["refine_direct_over_refine500"].get<double>() ==
+          Approx(direct["seconds"].get<double>() / seconds));
+    CHECK(j["ratios"]["refine500_over_render"].get<double>() == Approx(seconds / render["seconds"].get<double>()));
 }
 
 TEST_CASE("bench measures only the rows and threads that are asked for", "[cli][bench]") {

@@ -13,6 +13,8 @@
 using namespace pellucid;
 using nlohmann::json;
 using pellucid::test::Outcome;
+using pellucid::test::operator+;
+using pellucid::test::Words;
 using pellucid::test::Workshop;
 
 namespace {
@@ -483,6 +485,81 @@ TEST_CASE("refine lowers the energy and tells the edges it is made of", "[cli]")
     };
     CHECK(moves(refined({"--step-down", "0.125", "--step-up", "0.25"})) == std::vector<double>{-0.125, 0.0, 0.25});
     CHECK(moves(refined({"--step-down", "0.125", "--step-up", "auto"}))[0] == -0.125);
+}
+
+TEST_CASE("refine says what it was asked for, how the methods compare, and what it did", "[cli]") {
+    const Workshop w;
+    const Words base{"refine", "sample:shells", "--sample-size", "24", "--tf", "tents:3"};
+    const json plain = w.json(base);
+    CHECK(plain["method"] == "greedy");
+    CHECK(plain["priority"] == json{{"kind", "none"}});
+    for (const json& d : plain["factors"]) CHECK(d == 1.0);
+    CHECK(plain["energy_curve"][0] == plain["energy_movable_before"]);
+    CHECK(plain["energy_curve"].size() == plain["iterations"].get<std::size_t>() + 1);
+    const json& both = plain["comparison"];
+    CHECK(both["greedy"] == plain["energy_movable_after"]);
+    CHECK(both["exact"].get<double>() <= both["greedy"].get<double>());
+    double total = 0; // of the peaks, which are movable
+    for (const std::size_t peak : {1, 4, 7}) total += plain["tf"]["points"][peak]["opacity"].get<double>();
+    CHECK(both["total_opacity"].get<double>() == Approx(total));
+    REQUIRE(plain["changes"].size() == 3);
+    for (std::size_t f = 0; f < 3; ++f) { // the mean over a tent is half its peak
+        CHECK(plain["changes"][f]["before"].get<double>() == Approx(0.25));
+        CHECK(plain["changes"][f]["after"].get<double>() ==
+              Approx(plain["tf"]["points"][3 * f + 1]["opacity"].get<double>() / 2));
+    }
+    const std::string text = w.run(base).out;
+    CHECK(text.find(plain["text"].get<std::string>()) != std::string::npos);
+
+    const json exact = w.json(base + Words{"--method", "exact"});
+    CHECK(exact["method"] == "exact");
+    double kept = 0;
+    for (const std::size_t peak : {1, 4, 7}) kept += exact["tf"]["points"][peak]["opacity"].get<double>();
+    CHECK(kept == Approx(1.5)); // as in the start
+}
+
+TEST_CASE("refine prioritizes an intensity, a hue, or what a region shows", "[cli]") {
+    const Workshop w;
+    const Words base{"refine", "sample:shells", "--sample-size", "24", "--tf", "tents:3"};
+    // tents:3: peaks at 1/6, ½, 5/6 of hues 60, 180, 300; with the added ends eleven points.
+    const json byIntensity = w.json(base + Words{"--intensity", "0.5"}), byHue = w.json(base + Words{"--hue", "180"});
+    CHECK(byIntensity["priority"]["kind"] == "intensity");
+    CHECK(byIntensity["factors"][5] == 0.0);
+    CHECK(byIntensity["factors"][0] == 0.5);
+    CHECK(byHue["priority"]["hue"] == 180.0);
+    CHECK(byHue["priority"]["intensity"] == 0.5);
+    CHECK(byHue["tf"] == byIntensity["tf"]);
+    const auto share = [](const json& answer, std::size_t peak) {
+        double all = 0;
+        for (const std::size_t i : {1, 4, 7}) all += answer["tf"]["points"][i]["opacity"].get<double>();
+        return answer["tf"]["points"][peak]["opacity"].get<double>() / all;
+    };
+    CHECK(share(byIntensity, 4) > share(w.json(base), 4));
+
+    // The middle of the picture shows the outer shell; on a cut through the middle it shows what is innermost.
+    const Words view{"--view", "0,0", "--size", "60x60", "--region", "28,28,32,32"};
+    const auto nearest = [](const json& answer) { // index of the tent that is nearest to the region
+        std::size_t best = 1;
+        for (const std::size_t peak : {4, 7})
+            if (answer["factors"][peak + 1] < answer["factors"][best + 1]) best = peak;
+        return best;
+    };
+    const json outside = w.json(base + view), cut = w.json(base + view + Words{"--clip", "y:0.5:1"});
+    CHECK(outside["priority"]["kind"] == "region");
+    CHECK(outside["priority"]["pixels"] == 16);
+    CHECK(outside["priority"]["size"] == json({60, 60}));
+    CHECK(nearest(outside) != nearest(cut));
+    CHECK(outside["tf"] != cut["tf"]);
+    double sum = 0; // W_R is normalised over the nine points of the user
+    for (std::size_t i = 1; i <= 9; ++i) sum += cut["factors"][i].get<double>();
+    CHECK(sum == Approx(1));
+    // Three intervals are voxels of the data, as in all commands.
+    const Outcome part =
+        w.run({"refine", "sample:shells", "--size", "24", "--tf", "tents:3", "--region", "0:12,0:24,0:24", "--json"});
+    CHECK(part.err.find("12 x 24 x 24") != std::string::npos);
+    const json halved = json::parse(part.out);
+    CHECK(halved["edges_before"] != w.json(base)["edges_before"]);
+    CHECK(halved["priority"]["kind"] == "none");
 }
 
 TEST_CASE("refine leaves fixed control points alone", "[cli]") {

@@ -15,8 +15,8 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const std::vector<std::string> kCommands{"info",   "samples", "generate", "render", "measure",
-                                         "fields", "refine",  "optimize", "bench"};
+const std::vector<std::string> kCommands{"info",   "samples", "presets", "generate", "render", "measure",
+                                         "fields", "propose", "refine",  "optimize", "probe",  "bench"};
 
 std::string sourceFile(const std::string& path) {
     std::ifstream in(std::string(PELLUCID_SOURCE_DIR) + "/" + path);
@@ -110,7 +110,7 @@ TEST_CASE("bash completes commands, options, values and samples", "[cli][documen
     CHECK(completions("pellucid-cli generate sh") == std::set<std::string>{"shells"});
     // Bash takes the word after the colon for the one to complete.
     CHECK(completions("pellucid-cli info sample:sh") == std::set<std::string>{"shells"});
-    CHECK(completions("pellucid-cli refine sample:shells --view").empty());
+    CHECK(completions("pellucid-cli refine sample:shells --engine").empty());
     CHECK(completions("pellucid-cli render sample:shells --view a") == std::set<std::string>{"anterior"});
     CHECK(completions("pellucid-cli render sample:shells --annotate le") == std::set<std::string>{"legend", "letters"});
     CHECK(completions("pellucid-cli bench --only s") ==

@@ -63,8 +63,8 @@ TEST_CASE("wrong words are wrong usage", "[cli][errors]") {
     checkFails(w, kMeasure + Words{"--sigma"}, 2, "--sigma has no value");
     checkFails(w, kMeasure + Words{"--sigma", "1", "--sigma", "2"}, 2, "--sigma is given more than once");
     // Options of other commands, and of later ones.
-    checkFails(w, kRefine + Words{"--view", "0,0"}, 2, "unknown option '--view'");
-    checkFails(w, kRefine + Words{"--method", "greedy"}, 2, "unknown option '--method'");
+    checkFails(w, kRefine + Words{"--engine", "cpu"}, 2, "unknown option '--engine'");
+    checkFails(w, kRefine + Words{"--target", "1,2,3"}, 2, "unknown option '--target'");
     checkFails(w, kMeasure + Words{"--variable", "y=f"}, 2, "unknown option '--variable'");
     checkFails(w, {"samples", "--size", "3"}, 2, "unknown option '--size'");
 }
@@ -140,6 +140,22 @@ TEST_CASE("wrong values of refine and optimize are wrong usage", "[cli][errors]"
     checkFails(w, kRefine + Words{"--step-up", "automatic"}, 2, "--step-up");
     checkFails(w, kRefine + Words{"--max-iterations", "-1"}, 2, "--max-iterations");
     checkFails(w, kRefine + Words{"--fix", "1.5"}, 2, "--fix");
+    checkFails(w, kRefine + Words{"--method", "best"}, 2, "use greedy or exact");
+    for (const char* x : {"-0.1", "1.1", "300", "nan"})
+        checkFails(w, kRefine + Words{"--intensity", x}, 2, "--intensity");
+    checkFails(w, kRefine + Words{"--hue", "red"}, 2, "--hue");
+    checkFails(w, kRefine + Words{"--intensity", "0.5", "--hue", "30"}, 2, "more than one priority");
+    const Words samples{"refine", "sample:shells", "--sample-size", "16"};
+    for (const char* region : {"1,2,3", "1,2,1,4", "5,6,1,2", "-1,0,4,4", "0.5,0,4,4", "0,0,4,4,5"})
+        checkFails(w, samples + Words{"--region", region}, 2, "--region");
+    checkFails(w, samples + Words{"--region", "0,0,40,4", "--size", "32x32"}, 2, "outside the picture of 32 x 32");
+    checkFails(w, samples + Words{"--region", "0:4,0:4"}, 2, "--region"); // voxels: three intervals
+    // The picture is looked at for a region alone.
+    const std::vector<Words> ofPictures{
+        {"--view", "0,0"}, {"--orthographic"}, {"--clip", "x:0:0.5"}, {"--size", "32x32"}};
+    for (const Words& words : ofPictures) checkFails(w, samples + words, 2, words[0]);
+    // Its corner shows nothing.
+    checkFails(w, samples + Words{"--region", "0,0,2,2", "--size", "32x32"}, 1, "nothing is to be seen");
     checkFails(w, kRefine + Words{"--fix", "0.4"}, 2, "0.366667"); // lists the points there are
     checkFails(w, kOptimize, 2, "--target is required");
     for (const char* target : {"1,1", "1,1,1,1", "0,0,0", "-1,1,1", "1,nan,1", "1,,1"})

@@ -46,10 +46,21 @@ TEST_CASE("refinements have their keys in the order of the manual", "[cli][json]
     r.energyBefore = 2;
     r.energyMovableAfter = 0.5;
     r.edgesBefore = {1, 2, 3, 4};
-    const cli::Json j = cli::jsonFromRefinement(r);
-    CHECK(keysOf(j) == std::vector<std::string>{"command", "iterations", "energy_before", "energy_after",
-                                                "energy_movable_before", "energy_movable_after", "edges_before",
-                                                "edges_after", "tf"});
+    r.factors = {1, 1, 1, 1, 1};
+    r.energyCurve = {2, 1, 0.5};
+    TransferFunction before = r.tf;
+    before.points[1].opacity = 0.25;
+    const cli::Json j =
+        cli::jsonFromRefinement(before, r, RefineMethod::Exact, {0.5, 0.2, 0.1, r.tf}, {{"kind", "none"}});
+    CHECK(keysOf(j) == std::vector<std::string>{"command", "method", "priority", "iterations", "energy_before",
+                                                "energy_after", "energy_movable_before", "energy_movable_after",
+                                                "edges_before", "edges_after", "factors", "energy_curve",
+                                                "energy_curve_stride", "comparison", "changes", "text", "tf"});
+    CHECK(j["method"] == "exact");
+    CHECK(j["priority"]["kind"] == "none");
+    CHECK(j["comparison"] == cli::Json({{"total_opacity", 0.5}, {"greedy", 0.2}, {"exact", 0.1}}));
+    CHECK(j["changes"][0]["before"] == 0.25);
+    CHECK(j["text"] == "at 0.5 × 2"); // one feature is told by its points
     CHECK(j["iterations"] == 4);
     CHECK(j["energy_before"] == 2.0);
     CHECK(j["energy_movable_after"] == 0.5);

@@ -9,6 +9,7 @@
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
+#include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
 #include "main_window.h"
 #include "panels/features_panel.h"
@@ -117,6 +118,7 @@ struct OpenWindow {
     OpenController& opening() { return bench().opening(); }
     SaveController& saving() { return bench().saving(); }
     OptimizeController& optimizing() { return bench().optimizing(); }
+    RefineController& refining() { return bench().refining(); }
     Document document() { return {bench().store(), bench().results()}; }
     VolumeView& view() { return window.view(); }
     TfCanvas& canvas() { return child<TfCanvas>("tfCanvas"); }

@@ -3,10 +3,14 @@
 #include "gui_support.h"
 
 #include <QAction>
+#include <QCheckBox>
+#include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QSignalSpy>
 
 #include "render/camera_motion.h"
+#include "selection.h"
+#include "render/clip_handles.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -21,6 +25,30 @@ void grab(OpenWindow& w, const char* name) {
 }
 
 } // namespace
+
+TEST_CASE("a picture of the transfer-function editor", "[.pictures]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.child<QCheckBox>("jointHistogram").click();
+    const Feature feature = w.document().tf().features.at(1);
+    w.canvas().axis().setVisible(0, 0.8);
+    w.bench().selection().setFeature(feature.id);
+    w.bench().selection().setHoveredIntensity(feature.a + 0.3 * (feature.b - feature.a));
+    std::vector<int> points;
+    for (std::size_t i = 0; i < w.document().tf().points.size(); ++i)
+        if (feature.contains(w.document().tf().points[i].x)) points.push_back(static_cast<int>(i));
+    w.canvas().selectPoints(PointSelection(points));
+    w.canvas().grab(); // what is seen is counted
+    REQUIRE(waitFor([&] { return !w.canvas().isCounting(); }));
+    w.settle();
+    REQUIRE(w.child<QWidget>("tfEditor").grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + "/tf_editor.png"));
+}
 
 TEST_CASE("pictures for the guide", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
@@ -52,4 +80,45 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     grab(w, "window_optimized.png");
     w.child<QAction>("influenceAction").trigger();
     grab(w, "window_influence.png");
+}
+
+TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
+    if (source.isSample()) source.sampleSize = 160;
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.settle();
+    QTest::mouseClick(&w.view(), Qt::LeftButton, {}, w.view().rect().center() + QPoint(20, 10));
+    grab(w, "probe.png");
+}
+
+TEST_CASE("the refiner for the guide", "[.pictures]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 860);
+    QSignalSpy opened(&w.opening(), &OpenController::opened);
+    VolumeSource source;
+    source.path = "sample:knee";
+    w.opening().openVolume(source);
+    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.bench().store().edit(
+        "Clip", {}, [](Session& session) { session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; }); });
+    w.child<QDockWidget>("refineDock").raise();
+    w.settle();
+    // The femur above the joint, cut open.
+    const Vec3 bone = w.document().volume()->geometry().boxCenter() + Vec3(0, 0, 25);
+    const PictureView seen{w.document().camera(), w.view().overlay().width(), w.view().overlay().height()};
+    const auto pixel = pixelOf(seen, bone);
+    REQUIRE(pixel);
+    const QPointF middle(pixel->x, pixel->y);
+    w.child<QAction>("rectangleAction").trigger();
+    drag(w.view(), middle - QPointF(26, 14), middle + QPointF(26, 14));
+    REQUIRE(waitFor([&] { return !w.refining().isBusy(); }));
+    QTest::qWait(1500); // the methods are compared
+    grab(w, "refiner.png");
 }

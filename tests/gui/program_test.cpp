@@ -52,6 +52,24 @@ TEST_CASE("a screenshot shows the window with picture and figures", "[program]")
     CHECK(colors.size() > 10); // the view, in the upper left part, is not empty
 }
 
+TEST_CASE("a theme can be named", "[program][theme]") {
+    const QTemporaryDir folder;
+    const auto corner = [&](const QStringList& options) { // the middle of the menu bar
+        const QString path = folder.filePath("window.png");
+        const Outcome run = start(QStringList{"sample:disks", "--size", "1000x700", "--screenshot", path} + options);
+        INFO(run.err.toStdString());
+        REQUIRE(run.status == 0);
+        const QImage image(path);
+        return qGray(image.pixel(image.width() / 2, 8));
+    };
+    CHECK(corner({}) < 80);
+    CHECK(corner({"--theme", "dark"}) < 80);
+    CHECK(corner({"--theme", "light"}) > 200);
+    const Outcome wrong = start({"--theme", "pink"});
+    CHECK(wrong.status == 2);
+    CHECK(wrong.err.contains("no theme \"pink\""));
+}
+
 TEST_CASE("help and version need no display, a window does", "[program]") {
     const Outcome help = start({"--help"}, false);
     CHECK(help.status == 0);

@@ -108,7 +108,7 @@ void compareDoors(OpenWindow& w, const Inputs& inputs) {
 
         const json refined = cli(QStringList{"refine"} + door);
         const TransferFunction unrefined = w.document().tf();
-        w.optimizing().refine();
+        w.refining().refine();
         checkSameTf(w.document().tf(), refined["tf"]);
         if (!(w.document().tf() == unrefined)) w.document().undo();
 

@@ -27,7 +27,8 @@ namespace {
 struct Canvas {
     StoreAlone alone;
     Document& document = alone.document;
-    TfCanvas canvas{alone.store, alone.results};
+    Selection selection;
+    TfCanvas canvas{alone.store, alone.results, selection};
     Canvas() {
         alone.store.open(sampleScene("shells", 12, tents(3)));
         canvas.resize(600, 200);
@@ -56,10 +57,11 @@ TEST_CASE("one drag of a point is one undo step", "[canvas]") {
 
 TEST_CASE("the fine opacity axis spreads the small opacities", "[canvas]") {
     Canvas c;
-    const double plain = c.canvas.positionOf(0.5, 0).y() - c.canvas.positionOf(0.5, 0.01).y();
-    c.canvas.setRootOpacityAxis(true);
-    const double fine = c.canvas.positionOf(0.5, 0).y() - c.canvas.positionOf(0.5, 0.01).y();
-    CHECK(fine == Approx(10 * plain)); // √0.01 = 0.1
+    c.canvas.setFineOpacityAxis(false);
+    const double plain = c.canvas.positionOf(0.5, 0).y() - c.canvas.positionOf(0.5, 0.008).y();
+    c.canvas.setFineOpacityAxis(true);
+    const double fine = c.canvas.positionOf(0.5, 0).y() - c.canvas.positionOf(0.5, 0.008).y();
+    CHECK(fine == Approx(25 * plain)); // ∛0.008 = 0.2
     drag(c.canvas, c.at(4), c.canvas.positionOf(0.5, 0.01));
     CHECK(c.document.tf().points[4].opacity == Approx(0.01).margin(0.002));
 }
@@ -90,6 +92,7 @@ TEST_CASE("points are added by a double-click and removed by Delete", "[canvas]"
 
 TEST_CASE("keys move, fix and choose points", "[canvas]") {
     Canvas c;
+    c.canvas.setFineOpacityAxis(false);
     c.canvas.selectPoint(4);
     const double before = c.document.tf().points[4].opacity;
     QTest::keyClick(&c.canvas, Qt::Key_Up);

@@ -31,7 +31,6 @@
 #include "render/camera_motion.h"
 #include "image_io/image_file.h"
 #include "tf/formats/tf_json.h"
-#include "tf/sample_tf.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -45,11 +44,11 @@ std::vector<double> shownVws(const Document& document) {
     return vws;
 }
 
-/// What a volume opens with, written for its window.
-TransferFunction defaultOf(const Document& document) {
-    TransferFunction tf = defaultTf(*document.volume());
-    tf.range = document.volume()->range();
-    return tf;
+/// What a volume opens with where nothing else is said.
+TransferFunction automaticOf(const VolumeSource& source) {
+    SceneInputs inputs;
+    inputs.session = sessionOf(source);
+    return openScene(inputs).tf;
 }
 
 QDialog* errorDialog(MainWindow& window) { return window.findChild<QDialog*>("errorDialog"); }
@@ -246,7 +245,8 @@ TEST_CASE("a wrong transfer function at the start does not keep the volume from 
     REQUIRE(errorDialog(w.window) != nullptr);
     errorDialog(w.window)->accept();
     CHECK(w.document().volume()->title.find("disks") != std::string::npos);
-    CHECK(w.document().tf() == defaultOf(w.document()));
+    w.settle();
+    CHECK(w.document().tf() == automaticOf(source));
 }
 
 TEST_CASE("files that are dropped on the window are opened", "[window]") {
@@ -472,7 +472,7 @@ TEST_CASE("a window may be closed and go while its jobs run", "[window]") {
             startEndlessOptimization(*w);
             w->bench().store().setClean(); // else it asks
         } else {
-            w->optimizing().refine(); // a measurement follows; the picture is being drawn
+            w->refining().refine(); // a measurement follows; the picture is being drawn
             w->document().undo();
             VolumeSource source;
             source.path = "sample:knee";
@@ -493,10 +493,10 @@ TEST_CASE("opening another volume ends an optimization and starts afresh", "[win
     VolumeSource source;
     source.path = "sample:disks";
     source.sampleSize = 20;
-    w.opening().openVolume(source);
+    w.opening().openVolume(source, "tents:3");
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     const TransferFunction tf = w.document().tf();
-    CHECK(tf == defaultOf(w.document()));
+    CHECK(tf.points == tents(3).points);
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     w.settle();
     CHECK(w.document().tf() == tf); // nothing of the old run came after it
@@ -538,7 +538,7 @@ TEST_CASE("volumes with nothing to see open and say so", "[window]") {
     REQUIRE(waitFor([&] { return opened.count() == 2; }));
     CHECK(notice.text() == "no voxel has a valid value");
     w.settle();
-    w.optimizing().refine(); // nothing to do, and no harm
+    w.refining().refine(); // nothing to do, and no harm
     w.settle();
 }
 

@@ -157,7 +157,7 @@ TEST_CASE("data of one value alone can be opened", "[session]") {
     in.session = sessionOf(rawSource(files.folder.write("constant.raw", std::string(216, '\7'))));
     Scene scene = openScene(in);
     CHECK(scene.volume->range() == ValueRange{7, 7});
-    CHECK(scene.tf.points == tents(3).points);
+    CHECK(scene.tf.opacity(0) > 0); // all intensities are 0, and something is to be seen
     CHECK_FALSE(scene.tf.range); // no two values for 0 and 1
     CHECK(scene.tf.features[0].id != 0);
     in.tf = files.tf;
@@ -166,6 +166,109 @@ TEST_CASE("data of one value alone can be opened", "[session]") {
     CHECK(scene.tf.points == tentInDataUnits().points);
     in.range = ValueRange{0, 10};
     CHECK(openScene(in).volume->range() == ValueRange{0, 10});
+}
+
+namespace {
+
+/// Two nested boxes of values 90 and 200 in 0, with one voxel of 1e6, as f32 of 24³.
+SceneInputs boxesWithOutlier(const TempFolder& folder) {
+    std::string bytes;
+    for (int k = 0; k < 24; ++k)
+        for (int j = 0; j < 24; ++j)
+            for (int i = 0; i < 24; ++i) {
+                const int out = std::max({std::abs(2 * i - 23), std::abs(2 * j - 23), std::abs(2 * k - 23)});
+                const float v = i + j + k == 0 ? 1e6F : out < 8 ? 200.0F : out < 18 ? 90.0F : 0.0F;
+                bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
+            }
+    VolumeSource source;
+    source.path = folder.write("boxes.raw", bytes);
+    source.raw = RawLayout{{24, 24, 24}, SampleType::F32, false, {1, 1, 1}, 0};
+    SceneInputs inputs;
+    inputs.session = sessionOf(source);
+    return inputs;
+}
+
+} // namespace
+
+TEST_CASE("a volume that brings nothing opens by what its data propose", "[session]") {
+    const TempFolder folder;
+    SceneInputs in = boxesWithOutlier(folder);
+    const Scene scene = openScene(in);
+    REQUIRE(scene.proposal);
+    // The one wild voxel does not stretch the window: 200 lies in its upper half.
+    CHECK(scene.data->range() == ValueRange{0, 1e6});
+    CHECK(scene.volume->range() == scene.proposal->window);
+    CHECK(scene.volume->range().hi < 400);
+    CHECK(scene.session.variable().window == scene.proposal->window);
+    CHECK(scene.tf.range == scene.proposal->window);
+    CHECK(scene.tf.features == scene.proposal->tf.features);
+    CHECK(scene.tf.features.front().id != 0);
+    CHECK(scene.tf.opacity(scene.volume->intensityOfValue(0)) == 0); // background
+    CHECK(scene.tf.opacity(scene.volume->intensityOfValue(90)) > 0);
+    CHECK(scene.tf.opacity(scene.volume->intensityOfValue(200)) > 0);
+
+    // Shown first, tuned afterwards: the same in the end.
+    in.start = SceneInputs::Start::Proposed;
+    const Scene first = openScene(in);
+    CHECK(first.tf.points == scene.proposal->tf.points);
+    CHECK(tunedTf(first) == scene.tf);
+    // Not from where one happens to look: a volume has one automatic start.
+    in.view = ViewAngles{120, -40, 3};
+    CHECK(tunedTf(openScene(in)) == scene.tf);
+    in.view.reset();
+    // Asked for, whatever the session has.
+    in.start = SceneInputs::Start::Tuned;
+    in.session.setTf(tents(5));
+    in.session.variables.edit([](std::vector<Variable>& all) { all[0].window = ValueRange{0, 10}; });
+    CHECK(openScene(in).tf.features.size() == 5);
+    CHECK_FALSE(openScene(in).proposal);
+    in.tf = kAutomaticTf;
+    CHECK(openScene(in).tf == scene.tf);
+    CHECK(openScene(in).volume->range() == scene.volume->range());
+    // Who needs none gets none.
+    SceneInputs bare = boxesWithOutlier(folder);
+    bare.start = SceneInputs::Start::Tents;
+    CHECK(openScene(bare).volume->range() == ValueRange{0, 1e6});
+    CHECK_FALSE(openScene(bare).proposal);
+}
+
+TEST_CASE("a range that is asked for is the window of an automatic start, too", "[session]") {
+    const TempFolder folder;
+    SceneInputs in = boxesWithOutlier(folder);
+    in.range = ValueRange{-50, 250};
+    const Scene scene = openScene(in);
+    CHECK(scene.volume->range() == ValueRange{-50, 250});
+    CHECK(scene.tf.range == ValueRange{-50, 250});
+    CHECK(scene.tf.opacity(scene.volume->intensityOfValue(200)) > 0);
+    CHECK(scene.tf.opacity(scene.volume->intensityOfValue(0)) == 0);
+}
+
+TEST_CASE("a session keeps the transfer function that was found for it", "[session]") {
+    const TempFolder folder;
+    const Scene opened = openScene(boxesWithOutlier(folder));
+    SceneInputs again;
+    again.session = opened.session;
+    const Scene scene = openScene(again);
+    CHECK(scene.tf == opened.tf);
+    CHECK(scene.volume->range() == opened.volume->range());
+    CHECK_FALSE(scene.proposal); // nothing was proposed
+    CHECK_FALSE(resolve(opened.session, opened).proposal);
+}
+
+TEST_CASE("an automatic start again is one for the view that it is asked for", "[session]") {
+    const TempFolder folder;
+    SceneInputs in = boxesWithOutlier(folder);
+    const Scene automatic = openScene(in);
+    in.tf = "tents:4";
+    const Scene other = openScene(in);
+    CHECK(other.volume->range() == ValueRange{0, 1e6});
+    const AutomaticStart home = automaticStart(other, View(automatic.camera));
+    CHECK(home.window == automatic.session.variable().window);
+    CHECK(home.tf.points == automatic.tf.points);
+    // With the outer box cut away in front, the inner one needs less to be seen as much.
+    View cut(automatic.camera);
+    cut.clipping.lo = {0, 0.5, 0};
+    CHECK(automaticStart(other, cut).tf.points != automatic.tf.points);
 }
 
 TEST_CASE("nothing to open is wrong usage", "[session]") {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "render/visibility.h"
-#include "tf/sample_tf.h"
+#include "support/sample_tf.h"
 #include "volume/loader.h"
 #include "volume/procedural.h"
 
@@ -48,8 +48,8 @@ inline std::vector<OrbitScene> orbitScenes(const std::string& sharedDir) {
         }
     };
     const Volume knee = makeSample("knee", 72), disks = makeSample("disks", 36);
-    add("knee", knee, 2, defaultTf(knee));
-    add("disks", disks, 1, defaultTf(disks));
+    add("knee", knee, 2, kneeTf(knee));
+    add("disks", disks, 1, disksTf());
     const std::string tooth = sharedDir + "/data/real/tooth/tooth.mhd";
     if (std::filesystem::exists(tooth)) {
         VolumeSource source;

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "tf/opacity.h"
-#include "tf/sample_tf.h"
 #include "tf/tf_table.h"
 #include "tf/transfer_function.h"
 

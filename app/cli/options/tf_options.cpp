@@ -32,14 +32,14 @@ std::vector<int> featuresNamed(const TransferFunction& tf, const std::string& na
 
 void TfOptions::addSource(CLI::App& app) {
     addValue(
-        app, "--tf", "FILE|tents:N[:PEAK]|ramp:N",
+        app, "--tf", "FILE|auto|tents:N[:PEAK]|ramp:N|preset:NAME",
         [this](const std::string& text, const std::string& option) {
-            if (text.empty()) throw UsageError("the name is empty", option, "give a file, tents:N[:PEAK] or ramp:N");
+            if (text.empty()) throw UsageError("the name is empty", option, "give a file, auto, tents:N[:PEAK], ramp:N or preset:NAME");
             spec = text;
         },
-        "transfer function (default: the session's, else the sample's own, else tents:3); the \"range\" of a file "
-        "becomes the window unless --range says otherwise, and its points stay at their data values whatever the "
-        "window",
+        "transfer function (default: the session's, else auto: what the data propose, see propose); auto and the "
+        "\"range\" of a file set the window unless --range says otherwise; points stay at their data values whatever "
+        "the window",
         "Volume");
 }
 

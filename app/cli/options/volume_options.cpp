@@ -87,9 +87,7 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
         "component of a multi-component file, from 0", kGroup);
     addValue(
         app, size == SizeIs::Sample ? "--size,--sample-size" : "--sample-size", "N",
-        [this](const std::string& text, const std::string& option) {
-            sampleSize = static_cast<int>(parseInteger(text, option, 8, 65536));
-        },
+        [this](const std::string& text, const std::string& option) { takeSampleSize(text, option); },
         "voxels along the longest axis of a sample", kGroup);
     addValue(
         app, "--seed", "N",
@@ -103,10 +101,19 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
             downsample = static_cast<int>(parseInteger(text, option, 1, 65536));
         },
         "each voxel is the mean of N along each axis (default: 1, or the least that memory has room for)", kGroup);
-    addValue(
-        app, "--region", "X0:X1,Y0:Y1,Z0:Z1",
-        [this](const std::string& text, const std::string& option) { region = parseRegion(text, option); },
-        "only these voxels of the data, from the first to the one before the second", kGroup);
+    if (size != SizeIs::Both)
+        addValue(
+            app, "--region", "X0:X1,Y0:Y1,Z0:Z1",
+            [this](const std::string& text, const std::string& option) { takeRegion(text, option); },
+            "only these voxels of the data, from the first to the one before the second", kGroup);
+}
+
+void VolumeOptions::takeSampleSize(const std::string& text, const std::string& option) {
+    sampleSize = static_cast<int>(parseInteger(text, option, 8, 65536));
+}
+
+void VolumeOptions::takeRegion(const std::string& text, const std::string& option) {
+    region = parseRegion(text, option);
 }
 
 bool VolumeOptions::anyDetail() const {

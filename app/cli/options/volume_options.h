@@ -25,9 +25,12 @@ struct VolumeOptions {
     std::optional<VoxelRegion> region;
     std::optional<std::uint32_t> seed;
 
-    /// --size is a second name of --sample-size, except in commands whose --size is an image's.
-    enum class SizeIs { Sample, Image };
+    /// --size is a second name of --sample-size, except in commands whose --size is an image's. A command that looks at
+    /// an image only sometimes has both: it takes --size and --region itself, and hands on what is meant for a volume.
+    enum class SizeIs { Sample, Image, Both };
     void add(CLI::App& app, SizeIs size = SizeIs::Sample);
+    void takeSampleSize(const std::string& text, const std::string& option); ///< "N"
+    void takeRegion(const std::string& text, const std::string& option);     ///< "X0:X1,Y0:Y1,Z0:Z1"
     /// Whether any of them but VOLUME is given.
     bool anyDetail() const;
     /// VOLUME replaces the source of the session; the others change it. Throws UsageError where there is none, and for

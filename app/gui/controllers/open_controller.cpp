@@ -9,10 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "controllers/save_controller.h"
+#include "controllers/start_controller.h"
 #include "number_text.h"
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
 #include "tf/formats/tf_json.h"
+#include "tf/presets.h"
 #include "volume/excerpt.h"
 #include "volume/procedural.h"
 #include "workbench.h"
@@ -55,6 +57,11 @@ VolumeSource recentSource(const QString& entry) {
     }
     const nlohmann::json document = nlohmann::json::parse(entry.toStdString(), nullptr, false);
     return sessionFromJson({document, "recent files"}, "").session.variable().source;
+}
+
+/// Whether what names a transfer function names a file.
+bool isTfFile(const QString& specOrPath) {
+    return specOrPath != kAutomaticTf && !tfFromSpec(specOrPath.toStdString()) && !tfFromPresetSpec(specOrPath.toStdString());
 }
 
 } // namespace
@@ -197,7 +204,8 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
     Opened opened;
     SceneInputs inputs = request.inputs;
     inputs.then = toView("showing");
-    if (request.tfIsOptional) {
+    inputs.start = SceneInputs::Start::Proposed; // the first picture does not wait for opacities
+    if (request.tfIsOptional && inputs.tf != kAutomaticTf) {
         try {
             static_cast<void>(loadTf(*inputs.tf));
         } catch (const Error& error) {
@@ -211,12 +219,14 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 }
 
 void OpenController::show(const Request& request, Opened& opened) {
-    const bool ownTf = opened.tfError || request.tfPath.isEmpty() || tfFromSpec(request.tfPath.toStdString());
+    const bool ownTf = opened.tfError || request.tfPath.isEmpty() || !isTfFile(request.tfPath);
     m_tfPath = ownTf ? QString() : request.tfPath;
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
     const VolumeSource source = opened.scene.session.variable().source;
+    const bool tfFromFile = !request.tfPath.isEmpty() && !opened.tfError && isTfFile(request.tfPath);
+    const Scene scene = opened.scene;
     m_bench.store().open(std::move(opened.scene));
     if (request.unsaved) m_bench.store().setUnsaved();
     setSessionPath(request.sessionPath);
@@ -225,7 +235,8 @@ void OpenController::show(const Request& request, Opened& opened) {
     } else if (!source.isSample() && !request.unsaved) {
         addRecent(source);
     }
-    if (!request.tfPath.isEmpty() && !opened.tfError) noteWindow(*m_bench.store().session().tf());
+    if (tfFromFile) noteWindow(*m_bench.store().session().tf());
+    m_bench.start().follow(scene);
     Q_EMIT this->opened();
     if (opened.tfError) {
         m_bench.showError(tr("Cannot open the transfer function"), *opened.tfError);
@@ -267,9 +278,10 @@ void OpenController::openWhole() {
 void OpenController::openTf(const QString& specOrPath) {
     SessionStore& store = m_bench.store();
     if (m_bench.isReadOnly() || !store.hasVolume()) return;
+    if (specOrPath == kAutomaticTf) return m_bench.start().startAgain();
     try {
         const TransferFunction tf = loadTf(specOrPath.toStdString());
-        const bool isFile = !tfFromSpec(specOrPath.toStdString());
+        const bool isFile = isTfFile(specOrPath);
         const auto change = [tf](Session& session) {
             TransferFunction placed = tf;
             session.variables.edit([&](std::vector<Variable>& all) {

@@ -1,6 +1,5 @@
 #include "controllers/optimize_controller.h"
 
-#include "optimize/refine.h"
 #include "tf/shown_tf.h"
 #include "workbench.h"
 
@@ -66,18 +65,9 @@ OptimizeController::OptimizeController(Workbench& bench)
 OptimizeController::~OptimizeController() { ++m_number; }
 
 void OptimizeController::addActions() {
-    const QString menu = tr("&Transfer function");
-    m_bench.actions().add({.id = "refineAction",
-                           .menu = menu,
-                           .text = tr("&Refine by entropy"),
-                           .keys = {QKeySequence("Ctrl+R")},
-                           .tip = tr("Opacities by entropy: values that are common get less, rare ones more"),
-                           .trigger = [this] { refine(); },
-                           .enabled = [this] { return m_bench.store().hasVolume() && !isRunning(); },
-                           .separatorBefore = true});
     m_bench.actions().add(
         {.id = "optimizeAction",
-         .menu = menu,
+         .menu = tr("&Transfer function"),
          .text = tr("&Optimize to the targets"),
          .keys = {QKeySequence("Ctrl+Return")},
          .tip = tr("Opacities until the features' saliency (VWS) meets the targets, from this camera"),
@@ -153,33 +143,6 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
         return say(tr("As near as it gets from this camera: %1.").arg(figures));
     default:
         return say(tr("Stopped at the most moves allowed: %1.").arg(figures));
-    }
-}
-
-void OptimizeController::refine() {
-    SessionStore& store = m_bench.store();
-    if (!store.hasVolume() || isRunning()) return;
-    store.commit();
-    try {
-        // A few milliseconds, of the histogram alone: no reason to go to another thread.
-        const RefineResult result = pellucid::refine(*m_bench.scene().histogram, m_bench.scene().tf);
-        if (result.tf == m_bench.scene().tf) return say(tr("Refinement found nothing to improve."));
-        Run run;
-        run.kind = "refine";
-        run.ended = "done";
-        for (const Feature& f : result.tf.features) run.features.push_back(f.name);
-        run.before = result.energyMovableBefore;
-        run.after = result.energyMovableAfter;
-        run.iterations = result.iterations;
-        store.edit(tr("Refine"), {}, [&](Session& session) {
-            session.setTf(result.tf);
-            session.addRun(run);
-        });
-        say(tr("Refined in %1: energy %2, from %3.")
-                .arg(counted(result.iterations, tr("step"), tr("steps")), QString::number(run.after, 'g', 3),
-                     QString::number(run.before, 'g', 3)));
-    } catch (const Error& error) {
-        m_bench.showError(tr("Refinement failed"), error);
     }
 }
 

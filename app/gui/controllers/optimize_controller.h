@@ -1,4 +1,4 @@
-// Optimization and refinement: start, watch, stop, and what is said of them.
+// Optimization: start, watch, stop, and what is said of them.
 #pragma once
 
 #include <QObject>
@@ -23,15 +23,16 @@ public:
     void start();
     void cancel();
     bool isRunning() const { return m_job.isRunning(); }
-    void refine();
 
     /// Of the run under way: its latest move (0 is the start; −1 before), and the distance F there.
     int move() const { return m_move; }
     double objective() const { return m_objective; }
     double firstObjective() const { return m_firstObjective; }
 
-    /// What came of the latest run; empty as soon as it is not true of the present state any more.
+    /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present state
+    /// any more.
     const QString& message() const { return m_message; }
+    void say(const QString& text);
 
 Q_SIGNALS:
     void runningChanged();
@@ -54,7 +55,6 @@ private:
     };
 
     About present() const;
-    void say(const QString& text);
     void showMove(const Task& task, int move, const OptimizeState& state);
     void finish(const Task& task, const OptimizeResult& result);
 

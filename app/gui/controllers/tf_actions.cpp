@@ -1,7 +1,7 @@
 #include "controllers/tf_actions.h"
 
 #include "store/edits.h"
-#include "tf/sample_tf.h"
+#include "tf/transfer_function.h"
 #include "workbench.h"
 
 namespace pellucid::gui {
@@ -25,8 +25,6 @@ void addTfActions(Workbench& bench) {
                      .separatorBefore = separator});
     };
     const QString presets = menuName() + "/" + QObject::tr("&Presets");
-    add("presetDefault", presets, QObject::tr("Default of this volume"), {}, false,
-        [&bench] { editTf(bench.store(), defaultTf(*bench.scene().volume), QObject::tr("Default")); });
     for (const char* spec : {"tents:1", "tents:2", "tents:3", "tents:4", "tents:6", "tents:8", "ramp:6", "ramp:12"}) {
         const QString name = QString::fromLatin1(spec);
         const QString number = name.section(':', 1);
@@ -34,7 +32,7 @@ void addTfActions(Workbench& bench) {
                                  ? (number == "1" ? QObject::tr("One tent, one feature")
                                                   : QObject::tr("%1 tents, one feature each").arg(number))
                                  : QObject::tr("Ramp of %1 points, one feature").arg(number);
-        add(name, presets, text, {}, name == "tents:1",
+        add(name, presets, text, {}, false,
             [&bench, name] { editTf(bench.store(), *tfFromSpec(name.toStdString()), name); });
     }
     add("deriveFeaturesAction", menuName(), QObject::tr("&Features from the curve"),

@@ -81,7 +81,7 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     m_lo->setToolTip(tr("Value of intensity 0, in the units of the data: what is below is drawn as if it were this"));
     m_hi->setToolTip(tr("Value of intensity 1, in the units of the data: what is above is drawn as if it were this"));
     m_note->setWordWrap(true);
-    m_note->setStyleSheet(QStringLiteral("color: %1").arg(theme::kFaint.name()));
+    makeFaint(*m_note);
 
     auto* content = new QWidget;
     auto* form = new QFormLayout(content);

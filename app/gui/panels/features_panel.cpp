@@ -200,7 +200,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     m_message->setObjectName("panelMessage");
     m_message->setWordWrap(true);
-    m_message->setStyleSheet(QStringLiteral("color: %1").arg(theme::kFaint.name()));
+    makeFaint(*m_message);
 
     auto* choices = new QGridLayout;
     choices->setContentsMargins(10, 0, 10, 0);

@@ -6,6 +6,7 @@
 #include <QAction>
 #include <QApplication>
 #include <QClipboard>
+#include <QEvent>
 #include <QHeaderView>
 #include <QLabel>
 #include <QTableWidget>
@@ -82,6 +83,11 @@ void InfluencePanel::showEvent(QShowEvent* event) {
     rebuild(); // while hidden it has followed nothing
 }
 
+void InfluencePanel::changeEvent(QEvent* event) {
+    QWidget::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange) refresh(); // cells keep their colours
+}
+
 void InfluencePanel::rebuild() {
     if (!isVisible()) return;
     const std::vector<Feature>& features = m_store.scene().tf.features;
@@ -117,7 +123,6 @@ void InfluencePanel::refresh() {
     if (known)
         for (const auto& row : *influence)
             for (const double value : row) largest = std::max(largest, std::abs(value));
-    static const QColor kFalls{0xd9, 0x7a, 0x2b}; // with the accent a pair that everyone can tell apart
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
             QTableWidgetItem* const cell = m_table->item(i, j);
@@ -135,7 +140,7 @@ void InfluencePanel::refresh() {
                                                 m_table->verticalHeaderItem(i)->text(), signedText(0.01 * value))
                                      : tr("Of an older state; being measured"));
             cell->setBackground(
-                blend(theme::kPanel, value < 0 ? kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
+                blend(theme::kPanel, value < 0 ? theme::kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
             cell->setForeground(current ? theme::kText : theme::kFaint);
         }
 }

@@ -20,6 +20,7 @@ public:
 
 private:
     void showEvent(QShowEvent* event) override;
+    void changeEvent(QEvent* event) override;
     void rebuild();
     /// Values and colours, in the cells that are there.
     void refresh();

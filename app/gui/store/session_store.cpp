@@ -12,9 +12,10 @@ constexpr std::size_t kMostSteps = 500;
 constexpr std::size_t kMostCameras = 200;
 constexpr std::size_t kMostData = 3; // volumes that the history keeps in memory, the present one among them
 
-// The session without what has a history of its own.
-Session withoutCamera(Session session) {
+// The session without where one looks: what has a history of its own, or none.
+Session withoutGaze(Session session) {
     session.camera.reset();
+    if (session.slices->crosshair) session.slices.edit([](SliceViews& s) { s.crosshair.reset(); });
     return session;
 }
 
@@ -41,16 +42,26 @@ void SessionStore::show(Scene next) {
     Q_EMIT changed(before, after);
 }
 
-Scene SessionStore::changedBy(const Change& change, const Scene& from, const Scene& basis) const {
+Scene SessionStore::changedBy(const Change& change, const Scene& from, const Scene& basis, QString& text) const {
     Session session = from.session;
     change(session);
     PELLUCID_CHECK(!needsData(session, basis));
-    return resolve(std::move(session), basis);
+    Scene next = resolve(std::move(session), basis);
+    if (!m_consequence || next.session == from.session) return next;
+    session = next.session;
+    const QString consequence = m_consequence(from, next, session);
+    if (consequence.isEmpty()) return next;
+    PELLUCID_CHECK(!needsData(session, basis));
+    text = tr("%1, %2").arg(text, consequence);
+    return resolve(std::move(session), next);
 }
 
-Scene SessionStore::withPresentCamera(Scene scene) const {
+Scene SessionStore::withPresentGaze(Scene scene) const {
     scene.session.camera = m_scene.session.camera;
     scene.camera = m_scene.camera;
+    const auto& crosshair = m_scene.session.slices->crosshair;
+    if (scene.session.slices->crosshair != crosshair)
+        scene.session.slices.edit([&](SliceViews& s) { s.crosshair = crosshair; });
     return scene;
 }
 
@@ -59,12 +70,12 @@ void SessionStore::push(const QString& text, const QString& mergeKey, Scene befo
     Scene after = m_scene;
     before.codes.reset();
     after.codes.reset();
-    if (withoutCamera(before.session) == withoutCamera(m_scene.session)) return;
+    if (withoutGaze(before.session) == withoutGaze(m_scene.session)) return;
     m_steps.resize(m_index);
     const bool merges = !mergeKey.isEmpty() && m_index > 0 && m_steps.back().mergeKey == mergeKey;
     if (merges) {
         m_steps.back().after = std::move(after);
-        if (withoutCamera(m_steps.back().before.session) == withoutCamera(m_scene.session)) {
+        if (withoutGaze(m_steps.back().before.session) == withoutGaze(m_scene.session)) {
             m_steps.pop_back(); // there and back again
             --m_index;
         }
@@ -101,11 +112,12 @@ void SessionStore::edit(const QString& text, const QString& mergeKey, const Chan
 void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change, const Scene& basis) {
     if (!hasVolume()) return;
     commit();
-    Scene next = changedBy(change, m_scene, basis);
+    QString name = text;
+    Scene next = changedBy(change, m_scene, basis, name);
     if (next.session == m_scene.session) return;
     Scene before = m_scene;
     show(std::move(next));
-    push(text, mergeKey, std::move(before));
+    push(name, mergeKey, std::move(before));
     Q_EMIT historyChanged();
 }
 
@@ -114,15 +126,15 @@ void SessionStore::preview(const QString& text, const Change& change) {
     const bool first = !m_committed;
     if (first) m_committed = m_scene;
     m_previewText = text;
-    const Scene from = withPresentCamera(*m_committed); // the view may turn meanwhile
-    Scene next = changedBy(change, from, from);
+    const Scene from = withPresentGaze(*m_committed); // the view may turn meanwhile
+    Scene next = changedBy(change, from, from, m_previewText);
     if (!(next.session == m_scene.session)) show(std::move(next));
     if (first) Q_EMIT historyChanged();
 }
 
 void SessionStore::commit(const QString& mergeKey) {
     if (!m_committed) return;
-    Scene before = withPresentCamera(std::move(*m_committed));
+    Scene before = withPresentGaze(std::move(*m_committed));
     m_committed.reset();
     push(m_previewText, mergeKey, std::move(before));
     Q_EMIT historyChanged();
@@ -130,7 +142,7 @@ void SessionStore::commit(const QString& mergeKey) {
 
 void SessionStore::cancel() {
     if (!m_committed) return;
-    Scene before = withPresentCamera(std::move(*m_committed));
+    Scene before = withPresentGaze(std::move(*m_committed));
     m_committed.reset();
     show(std::move(before));
     Q_EMIT historyChanged();
@@ -147,7 +159,7 @@ void SessionStore::undo() {
     if (isPreviewing()) return cancel(); // a drag under way is what is undone
     if (m_index == 0) return;
     --m_index;
-    show(withPresentCamera(m_steps[m_index].before));
+    show(withPresentGaze(m_steps[m_index].before));
     Q_EMIT historyChanged();
 }
 
@@ -155,7 +167,7 @@ void SessionStore::redo() {
     if (isPreviewing()) cancel();
     if (m_index >= m_steps.size()) return;
     ++m_index;
-    show(withPresentCamera(m_steps[m_index - 1].after));
+    show(withPresentGaze(m_steps[m_index - 1].after));
     Q_EMIT historyChanged();
 }
 
@@ -199,7 +211,14 @@ void SessionStore::redoCamera() {
     Q_EMIT historyChanged();
 }
 
-bool SessionStore::isClean() const { return m_clean && withoutCamera(*m_clean) == withoutCamera(committed().session); }
+void SessionStore::setCrosshair(const Vec3& voxel) {
+    if (!hasVolume() || m_scene.session.slices->crosshair == voxel) return;
+    Scene next = m_scene;
+    next.session.slices.edit([&](SliceViews& s) { s.crosshair = voxel; });
+    show(std::move(next));
+}
+
+bool SessionStore::isClean() const { return m_clean && withoutGaze(*m_clean) == withoutGaze(committed().session); }
 
 void SessionStore::setClean() {
     m_clean = committed().session;
@@ -228,7 +247,7 @@ void SessionStore::setTfSaved() {
             return;
     }
     other.goals = m_clean->goals; // those of new features came with them
-    if (withoutCamera(other) == withoutCamera(*m_clean)) setClean();
+    if (withoutGaze(other) == withoutGaze(*m_clean)) setClean();
 }
 
 } // namespace pellucid::gui

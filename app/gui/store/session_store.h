@@ -16,11 +16,15 @@ namespace pellucid::gui {
 ///
 /// An edit is one step of the history. A preview (while the mouse is down, while an optimization runs) is none: it
 /// shows a change of the committed session until commit() or cancel(). An edit, undo or redo during a preview ends that
-/// first: an edit commits it, undo and redo cancel it. The camera has a history of its own: undo never turns the view.
+/// first: an edit commits it, undo and redo cancel it. The camera has a history of its own, the crosshair of the slices
+/// has none: undo never turns the view.
 class SessionStore : public QObject {
     Q_OBJECT
 public:
     using Change = std::function<void(Session&)>;
+    /// What follows of an edit or preview by itself: may alter `session`, which is that of `after`, and says what it
+    /// has done to it; empty: nothing.
+    using Consequence = std::function<QString(const Scene& before, const Scene& after, Session& session)>;
 
     explicit SessionStore(QObject* parent = nullptr);
 
@@ -44,6 +48,9 @@ public:
     void commit(const QString& mergeKey = {});
     void cancel();
 
+    /// Asked at every edit and preview before anybody hears of it: both are one change and one step, named by both.
+    void setConsequence(Consequence consequence) { m_consequence = std::move(consequence); }
+
     bool canUndo() const { return isPreviewing() || m_index > 0; }
     bool canRedo() const { return m_index < m_steps.size(); }
     QString undoText() const;
@@ -59,6 +66,9 @@ public:
     bool canRedoCamera() const { return m_cameraIndex + 1 < m_cameras.size(); }
     void undoCamera();
     void redoCamera();
+
+    /// Where the slices meet, voxel coordinates. It has no history: undo leaves it where it is.
+    void setCrosshair(const Vec3& voxel);
 
     /// Nothing would be lost by closing: the present state is the one that was opened or saved.
     bool isClean() const;
@@ -80,12 +90,14 @@ private:
     void show(Scene next);
     void push(const QString& text, const QString& mergeKey, Scene before);
     void forgetOldData();
-    Scene changedBy(const Change& change, const Scene& from, const Scene& basis) const;
-    Scene withPresentCamera(Scene scene) const;
+    /// Adds to `text` what followed.
+    Scene changedBy(const Change& change, const Scene& from, const Scene& basis, QString& text) const;
+    Scene withPresentGaze(Scene scene) const;
 
     Scene m_scene;
     std::optional<Scene> m_committed; // while previewing
     QString m_previewText;
+    Consequence m_consequence;
     std::vector<Step> m_steps;
     std::size_t m_index = 0;        // steps that are done
     std::optional<Session> m_clean; // empty: it was never saved

@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_file.h"
+#include "tf/presets.h"
 
 namespace pellucid {
 
@@ -119,6 +120,7 @@ void writeTf(const TransferFunction& tf, const std::string& path) {
 
 TransferFunction loadTf(const std::string& specOrPath) {
     if (auto tf = tfFromSpec(specOrPath)) return *tf;
+    if (auto tf = tfFromPresetSpec(specOrPath)) return *tf;
     return readTf(specOrPath);
 }
 

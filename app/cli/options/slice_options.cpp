@@ -1,0 +1,63 @@
+#include "options/slice_options.h"
+
+#include "parse.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr const char* kGroup = "Slice";
+
+/// "x:P", P in [0,1].
+SliceOptions::At parseSlice(const std::string& text, const std::string& option) {
+    const std::size_t axis = text.size() > 2 && text[1] == ':' ? std::string("xyz").find(text[0]) : std::string::npos;
+    if (axis == std::string::npos)
+        throw UsageError("'" + text + "' is no slice", option,
+                         "give x:P, y:P or z:P with P from 0 to 1, a fraction of the box");
+    return {static_cast<int>(axis), parseReal(text.substr(2), option, 0, 1)};
+}
+
+} // namespace
+
+void SliceOptions::add(CLI::App& app) {
+    addValue(
+        app, "--slice", "x|y|z:P",
+        [this](const std::string& text, const std::string& option) { at = parseSlice(text, option); },
+        "a plane of the grid in place of the view: perpendicular to its axis x, y or z, at the fraction P of the box "
+        "from 0 to 1, in the colours of the transfer function over grey. Of a patient as radiologists are used to: "
+        "anterior or superior up, left at the right, in sagittal slices anterior at the left",
+        kGroup);
+    addValue(
+        app, "--window", "LO,HI",
+        [this](const std::string& text, const std::string& option) { window = parseRange(text, option); },
+        "values that are black and white in a slice (default: the session's, else the intensity range)", kGroup);
+    addValue(
+        app, "--tf-strength", "W",
+        [this](const std::string& text, const std::string& option) { tfStrength = parseReal(text, option, 0, 1); },
+        "of a slice: 0 grey alone, 1 the colours of the transfer function alone (default: the session's, else 0.5)",
+        kGroup);
+    app.add_flag("--nearest", nearest, "each pixel of a slice has the value of the nearest voxel (default: linear)")
+        ->group(kGroup);
+}
+
+void SliceOptions::check() const {
+    if (at) return;
+    const char* alone = window ? "--window" : tfStrength ? "--tf-strength" : nearest ? "--nearest" : nullptr;
+    if (alone != nullptr) throw UsageError("it is an option of slices", alone, "give --slice as well");
+}
+
+SlicePlane SliceOptions::planeOf(const Geometry& geometry, int width, int height) const {
+    return {at->axis, slicePosition(geometry, at->axis, at->fraction), fittedSlice(geometry, at->axis, width, height),
+            width, height};
+}
+
+SliceSettings SliceOptions::settingsOf(const Scene& scene) const {
+    const SliceViews& views = *scene.session.slices;
+    SliceSettings settings;
+    settings.window = window ? *window : views.window.value_or(scene.volume->range());
+    settings.tfStrength = tfStrength.value_or(views.tfStrength);
+    settings.linear = !nearest;
+    return settings;
+}
+
+} // namespace pellucid::cli

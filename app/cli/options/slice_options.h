@@ -1,0 +1,31 @@
+// --slice, --window, --tf-strength, --nearest: a plane of the grid in place of the view of the volume.
+#pragma once
+
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "render/slice.h"
+#include "session/scene.h"
+
+namespace pellucid::cli {
+
+struct SliceOptions {
+    struct At {
+        int axis = 2;        ///< of the grid
+        double fraction = 0; ///< of the box, [0,1]
+    };
+    std::optional<At> at; ///< empty: no slice
+    std::optional<ValueRange> window;
+    std::optional<double> tfStrength;
+    bool nearest = false;
+
+    void add(CLI::App& app);
+    void check() const; ///< throws UsageError for options of slices without a slice
+    /// The whole plane in a picture of this size; `at` is not empty.
+    SlicePlane planeOf(const Geometry& geometry, int width, int height) const;
+    /// The session's, changed by the options; nothing is clipped.
+    SliceSettings settingsOf(const Scene& scene) const;
+};
+
+} // namespace pellucid::cli

@@ -1,0 +1,95 @@
+// `propose`: the automatic start.
+#include "tf/proposal.h"
+
+#include "base/round_numbers.h"
+#include "commands.h"
+#include "optimize/first_sight.h"
+#include "output_files.h"
+#include "parse.h"
+#include "resolve.h"
+#include "tf/formats/tf_json.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    std::optional<std::string> outTf;
+};
+
+std::string textOf(const Proposal& p, double seconds) {
+    // As many digits as the window needs: it may be 1e-9 wide about 1.
+    const auto number = [&](double value) { return numberText(value, p.window.hi - p.window.lo); };
+    const auto range = [&](const ValueRange& r) {
+        return number(r.lo) + " .. " + number(r.hi) + (p.unit.empty() ? "" : " " + p.unit);
+    };
+    std::vector<std::pair<std::string, std::string>> lines{{"kind", name(p.kind)},
+                                                           {"window", range(p.window)},
+                                                           {"background", p.background ? range(*p.background) : "none"},
+                                                           {"time", secondsText(seconds)}};
+    for (const std::string& sentence : p.why) lines.emplace_back("why", sentence);
+    const std::vector<double> opacities = featureOpacities(p.tf);
+    Table features({"feature", "from", "to", "typical", "share %", "inside", "opacity", "colour"});
+    for (std::size_t f = 0; f < p.features.size(); ++f) {
+        const ProposedFeature& feature = p.features[f];
+        features.add({feature.name, number(feature.lo), number(feature.hi), number(feature.mode),
+                      fixedText(100 * feature.share, 2), fixedText(feature.inside, 2), fixedText(opacities[f], 4),
+                      hexFromRgb(p.tf.features[f].color)});
+    }
+    return listing(lines) + features.text();
+}
+
+Json jsonOf(const Proposal& p, double seconds) {
+    Json json{{"command", "propose"}, {"kind", name(p.kind)}};
+    if (!p.unit.empty()) json["unit"] = p.unit;
+    json["window"] = jsonFromRange(p.window);
+    json["outside"] = p.outside;
+    if (p.background) json["background"] = jsonFromRange(*p.background);
+    const std::vector<double> opacities = featureOpacities(p.tf);
+    Json features = Json::array();
+    for (std::size_t f = 0; f < p.features.size(); ++f) {
+        const ProposedFeature& feature = p.features[f];
+        features.push_back({{"name", feature.name},
+                            {"range", Json::array({feature.lo, feature.hi})},
+                            {"mode", feature.mode},
+                            {"share", feature.share},
+                            {"inside", feature.inside},
+                            {"opacity", opacities[f]},
+                            {"color", hexFromRgb(p.tf.features[f].color)}});
+    }
+    json["features"] = features;
+    json["why"] = p.why;
+    json["tf"] = jsonFromTf(p.tf);
+    json["seconds"] = seconds;
+    return json;
+}
+
+Answer run(const Options& o, Progress& progress) {
+    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
+    Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
+    const Stopwatch looking;
+    const Volume& volume = *opened.scene.volume;
+    Proposal proposal = propose(volume, progress.phase("looking at the data"));
+    const Volume seen = proposal.window == volume.range() ? volume : volume.withRange(proposal.window);
+    const View home(homeCamera(volume.geometry(), Projection::Perspective));
+    proposal.tf = withOpacitiesForView(seen, proposal, proposal.tf, home);
+    const double seconds = looking.seconds();
+    if (o.outTf) writeTf(proposal.tf, *o.outTf);
+    return {textOf(proposal, seconds), jsonOf(proposal, seconds), opened.notices(), {}};
+}
+
+} // namespace
+
+Command addPropose(CLI::App& program) {
+    CLI::App* app = program.add_subcommand("propose", "A transfer function from what the data hold, and why");
+    const auto o = std::make_shared<Options>();
+    o->scene.volume.add(*app);
+    o->scene.session.add(*app);
+    addValue(
+        *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
+        "write the proposed transfer function");
+    return {app, [o](Progress& progress) { return run(*o, progress); }};
+}
+
+} // namespace pellucid::cli

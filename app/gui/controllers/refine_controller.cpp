@@ -1,0 +1,451 @@
+#include "controllers/refine_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QScopedValueRollback>
+
+#include "controllers/optimize_controller.h"
+#include "optimize/refine_words.h"
+#include "optimize/region_colors.h"
+#include "picture_pair.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr std::size_t kMostKept = 64;    // refinements that undo and redo find again
+constexpr std::size_t kMostRegions = 16; // whose colours are kept
+constexpr double kMostGivenWay = 4;      // factor between an opacity and what one live edit makes of it
+constexpr int kLookSize = 320;           // pixels along the longer side of the picture that a region is taken from
+
+Run runOf(const Refinement& refinement) {
+    Run run;
+    run.kind = "refine";
+    run.ended = "done";
+    for (const Feature& f : refinement.after.features) run.features.push_back(f.name);
+    run.before = refinement.result.energyMovableBefore;
+    run.after = refinement.result.energyMovableAfter;
+    run.iterations = refinement.result.iterations;
+    return run;
+}
+
+/// The points whose opacity an edit has set, but for an edit that has set all of them: who holds a point keeps it.
+std::vector<std::size_t> heldPoints(const TransferFunction& before, const TransferFunction& after) {
+    const bool sameCount = before.points.size() == after.points.size();
+    std::vector<std::size_t> held;
+    std::size_t movable = 0;
+    for (std::size_t i = 0; i < after.points.size(); ++i) {
+        const ControlPoint& point = after.points[i];
+        if (point.fixed) continue;
+        ++movable;
+        const auto isSame = [&](const ControlPoint& p) { return p.x == point.x && p.opacity == point.opacity; };
+        const bool same = sameCount ? before.points[i].opacity == point.opacity
+                                    : std::any_of(before.points.begin(), before.points.end(), isSame);
+        if (!same) held.push_back(i);
+    }
+    return held.size() == movable ? std::vector<std::size_t>() : held;
+}
+
+/// What live refinement of an edit starts from: held points are fixed, and the others have given way, or filled up, so
+/// that the total opacity is as it was; equal steps up and down keep it.
+TransferFunction liveStart(const TransferFunction& before, const TransferFunction& after,
+                           const std::vector<std::size_t>& held) {
+    TransferFunction start = after;
+    for (const std::size_t i : held) start.points[i].fixed = true;
+    if (held.empty() || before.points.size() != after.points.size()) return start;
+    double given = 0, others = 0;
+    for (const std::size_t i : held) given += after.points[i].opacity - before.points[i].opacity;
+    for (const ControlPoint& point : start.points)
+        if (!point.fixed) others += point.opacity;
+    if (!(others > 0)) return start;
+    const double factor = std::clamp((others - given) / others, 1 / kMostGivenWay, kMostGivenWay);
+    for (ControlPoint& point : start.points)
+        if (!point.fixed) point.opacity = std::min(1.0, factor * point.opacity);
+    return start;
+}
+
+/// Whether refinement may come out another way.
+bool hasMoved(const TransferFunction& before, const TransferFunction& after, bool colorsCount) {
+    return !std::equal(before.points.begin(), before.points.end(), after.points.begin(), after.points.end(),
+                       [&](const ControlPoint& a, const ControlPoint& b) {
+                           return a.x == b.x && a.opacity == b.opacity && a.fixed == b.fixed &&
+                                  (!colorsCount || a.color == b.color);
+                       });
+}
+
+} // namespace
+
+QString evennessText(double energyBefore, double energyAfter) {
+    if (!(energyAfter > 0) || energyBefore / energyAfter > 1e6) return QObject::tr("edge weights all but equal");
+    const double ratio = energyBefore / energyAfter;
+    return QObject::tr("edge weights %1 × more even")
+        .arg(ratio < 100 ? QString::number(ratio, 'g', 3) : QStringLiteral("%L1").arg(std::lround(ratio)));
+}
+
+RefineController::RefineController(Workbench& bench)
+    : m_bench(bench), m_renderer(std::make_shared<KeptRenderer>()),
+      m_look(
+          [renderer = m_renderer](const Look& look, const JobControl& job) {
+              return regionColors(renderer->render(look.picture, job), look.region);
+          },
+          [this](const Look& look, std::vector<RegionColor>& colors) {
+              std::erase_if(m_colors, [&](const auto& known) { return known.first == look.region; });
+              m_colors.emplace_back(look.region, std::move(colors));
+              if (m_colors.size() > kMostRegions) m_colors.pop_front();
+              m_pending.reset();
+              refineForRegion(look);
+          }) {
+    bench.store().setConsequence(
+        [this](const Scene& before, const Scene& after, Session& session) { return follow(before, after, session); });
+    connect(&m_look, &JobBase::busyChanged, this, &RefineController::busyChanged);
+    connect(&m_look, &JobBase::cancelled, this, [this] { m_pending.reset(); });
+    connect(&m_look, &JobBase::failed, this, [this](const Error& error) {
+        m_pending.reset();
+        say(tr("The region was not taken: %1 (%2).")
+                .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.whatToDo())));
+        Q_EMIT busyChanged();
+    });
+    connect(&bench.store(), &SessionStore::historyChanged, this, [this] {
+        if (m_bench.store().isPreviewing()) return;
+        m_latestIsPreview = false;
+        m_dragStart.reset(); // whoever has ended the preview has ended the drag
+    });
+    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.volume != after.volume) {
+            m_look.cancel();
+            m_dragStart.reset();
+            m_renderer->release();
+            std::erase_if(m_kept, [&](const Refinement& r) { return r.volume != after.volume; });
+            if (before.data != after.data) m_colors.clear();
+        }
+        if (!(before.tf == after.tf)) Q_EMIT refined();
+    });
+}
+
+RefineController::~RefineController() { m_bench.store().setConsequence({}); }
+
+void RefineController::addActions() {
+    const QString menu = tr("&Transfer function");
+    Actions& actions = m_bench.actions();
+    const auto ready = [this] { return isReady(); };
+    const auto settings = [this]() -> const RefineSettings& { return *m_bench.store().session().refine; };
+    actions.add({.id = "refineAction",
+                 .menu = menu,
+                 .text = tr("&Refine by entropy"),
+                 .keys = {QKeySequence("Ctrl+R")},
+                 .tip = tr("Opacities by entropy: values that are common get less, rare ones more; with a priority, "
+                           "what is like it gets more"),
+                 .trigger = [this] { refine(); },
+                 .enabled = ready,
+                 .separatorBefore = true});
+    actions.add({.id = "liveRefineAction",
+                 .menu = menu,
+                 .text = tr("Refine &live"),
+                 .tip = tr("Refine after every edit; what you move stays where you put it, the other points give way"),
+                 .trigger =
+                     [this] {
+                         m_bench.store().edit(tr("Live refinement"), {}, [](Session& session) {
+                             session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
+                         });
+                     },
+                 .enabled = ready,
+                 .checked = [settings] { return settings().live; }});
+    const auto select = [&](const char* id, const QString& text, const char* keys, const QString& tip, Selecting what) {
+        actions.add({.id = id,
+                     .menu = menu,
+                     .text = text,
+                     .keys = {QKeySequence(keys)},
+                     .tip = tip,
+                     .trigger = [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); },
+                     .enabled = ready,
+                     .checked = [this, what] { return m_selecting == what; },
+                     .inToolBar = true});
+    };
+    select("rectangleAction", tr("Select re&ctangle"), "Shift+R",
+           tr("Draw a rectangle in the picture: what has its colours becomes more opaque, everything else less"),
+           Selecting::Rectangle);
+    select("lassoAction", tr("Select with la&sso"), "Shift+L",
+           tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
+           Selecting::Lasso);
+    actions.add({.id = "prioritizeNothingAction",
+                 .menu = menu,
+                 .text = tr("Prioritize &nothing"),
+                 .tip = tr("Forget the intensity or region that refinement brings out; opacities stay"),
+                 .trigger = [this] { prioritizeNothing(); },
+                 .enabled = [this, settings] { return isReady() && (settings().intensity || settings().region); }});
+    actions.add({.id = "ghostAction",
+                 .menu = menu,
+                 .text = tr("&Ghost of the curve before"),
+                 .tip = tr("Behind the curve: what it was before the latest refinement"),
+                 .trigger = [this] { setGhostShown(!m_ghost); },
+                 .checked = [this] { return m_ghost; }});
+    actions.add({.id = "sideBySideAction",
+                 .menu = menu,
+                 .text = tr("Before and after, side by &side…"),
+                 .tip = tr("The picture before and after the latest refinement, from the present camera"),
+                 .trigger = [this] { showPicturePair(m_bench); },
+                 .enabled = [this] { return m_bench.store().hasVolume() && latest() != nullptr; }});
+    connect(this, &RefineController::refined, &actions, &Actions::refresh);
+    connect(this, &RefineController::selectingChanged, &actions, &Actions::refresh);
+    const QString volume = tr("Volume");
+    actions.addGestures({{volume, tr("Drag a corner, an edge or the inside of a selection"), tr("change it, move it")},
+                         {volume, tr("Delete or Esc, with a selection"), tr("remove it")}});
+}
+
+bool RefineController::isReady() const { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); }
+
+const std::vector<RegionColor>* RefineController::colorsOf(const ImageRegion& region) const {
+    for (const auto& [known, colors] : m_colors)
+        if (known == region) return &colors;
+    return nullptr;
+}
+
+std::optional<RefinePriority> RefineController::priorityOf(const RefineSettings& settings) const {
+    RefinePriority priority;
+    priority.intensity = settings.intensity;
+    if (settings.region) {
+        const auto* colors = colorsOf(*settings.region);
+        if (colors == nullptr) return {};
+        priority.region = *colors;
+    }
+    return priority;
+}
+
+RefineOptions RefineController::options() const {
+    const RefineSettings& settings = *m_bench.store().session().refine;
+    RefineOptions options;
+    options.stepDown = settings.stepDown;
+    options.stepUp = settings.stepUp;
+    options.maxIterations = settings.maxIterations;
+    options.method = settings.method;
+    options.priority = priorityOf(settings).value_or(RefinePriority());
+    return options;
+}
+
+const Refinement* RefineController::current() const {
+    const Scene& scene = m_bench.scene();
+    for (auto r = m_kept.rbegin(); r != m_kept.rend(); ++r)
+        if (r->volume == scene.volume && !hasMoved(r->after, scene.tf, true)) return &*r;
+    return nullptr;
+}
+
+const Refinement* RefineController::latest() const {
+    if (const Refinement* now = current()) return now;
+    return m_kept.empty() || m_kept.back().volume != m_bench.scene().volume ? nullptr : &m_kept.back();
+}
+
+TransferFunction RefineController::startOfPriority() const {
+    const Refinement* now = current();
+    return now != nullptr && now->options.priority.any() ? now->before : m_bench.scene().tf;
+}
+
+Refinement RefineController::refineFrom(const TransferFunction& before, const TransferFunction& start,
+                                        const Scene& scene, RefineOptions options) const {
+    Refinement r{scene.volume, before, {}, start, std::move(options), {}, {}};
+    // A few milliseconds, of the histogram alone: no reason to go to another thread.
+    r.result = pellucid::refine(*scene.histogram, r.start, r.options);
+    r.after = r.result.tf;
+    for (std::size_t i = 0; i < r.after.points.size(); ++i) r.after.points[i].fixed = before.points[i].fixed;
+    r.words = QString::fromStdString(changeText(opacityChanges(r.before, r.after)));
+    return r;
+}
+
+void RefineController::keep(Refinement refinement) {
+    if (m_latestIsPreview && !m_kept.empty()) m_kept.pop_back();
+    m_latestIsPreview = m_bench.store().isPreviewing();
+    m_kept.push_back(std::move(refinement));
+    if (m_kept.size() > kMostKept) m_kept.pop_front();
+}
+
+void RefineController::say(const QString& text) {
+    m_bench.optimizing().say(text);
+    Q_EMIT m_bench.message(text);
+}
+
+void RefineController::sayRefined(const Refinement& refinement) {
+    if (refinement.after == refinement.before) return say(tr("Refinement found nothing to improve."));
+    say(tr("Refined: %1; %2.")
+            .arg(refinement.words,
+                 evennessText(refinement.result.energyMovableBefore, refinement.result.energyMovableAfter)));
+}
+
+void RefineController::refine() {
+    SessionStore& store = m_bench.store();
+    if (!isReady() || !store.scene().histogram) return;
+    store.commit();
+    const RefineSettings& settings = *store.session().refine;
+    if (!priorityOf(settings)) return look(*settings.region, tr("Refine"));
+    try {
+        Refinement r = refineFrom(store.scene().tf, store.scene().tf, store.scene(), options());
+        if (r.after == r.before) return sayRefined(r);
+        const QScopedValueRollback quiet(m_quiet, true);
+        keep(r);
+        store.edit(tr("Refine"), {}, [&](Session& session) {
+            session.setTf(r.after);
+            session.addRun(runOf(r));
+        });
+        sayRefined(r);
+    } catch (const Error& error) {
+        m_bench.showError(tr("Refinement failed"), error);
+    }
+}
+
+void RefineController::prioritize(double x, const QString& mergeKey) {
+    if (!isReady() || m_dragStart) return;
+    dragPriority(x);
+    m_dragStart.reset();
+    m_bench.store().commit(mergeKey);
+    if (const Refinement* now = current()) sayRefined(*now);
+}
+
+void RefineController::dragPriority(double x) {
+    SessionStore& store = m_bench.store();
+    if (!isReady() || !store.scene().histogram) return;
+    if (!m_dragStart) {
+        store.commit();
+        m_dragStart = startOfPriority();
+    }
+    try {
+        RefineOptions by = options();
+        by.priority = {};
+        by.priority.intensity = std::clamp(x, 0.0, 1.0);
+        Refinement r = refineFrom(*m_dragStart, *m_dragStart, store.scene(), by);
+        const QScopedValueRollback quiet(m_quiet, true);
+        store.preview(tr("Refine for an intensity"), [&](Session& session) {
+            session.refine.edit([&](RefineSettings& s) {
+                s.intensity = by.priority.intensity;
+                s.region.reset();
+            });
+            session.setTf(r.after);
+            session.addRun(runOf(r));
+        });
+        keep(std::move(r));
+        Q_EMIT refined();
+    } catch (const Error& error) {
+        cancelDrag();
+        m_bench.showError(tr("Refinement failed"), error);
+    }
+}
+
+void RefineController::endDrag() {
+    if (!m_dragStart) return;
+    m_dragStart.reset();
+    m_bench.store().commit();
+    if (const Refinement* now = current()) sayRefined(*now);
+}
+
+void RefineController::cancelDrag() {
+    if (!m_dragStart) return;
+    m_dragStart.reset();
+    if (m_latestIsPreview && !m_kept.empty()) m_kept.pop_back();
+    m_latestIsPreview = false;
+    m_bench.store().cancel();
+}
+
+std::optional<ImageRegion> RefineController::region() const {
+    return m_pending ? m_pending : m_bench.store().session().refine->region;
+}
+
+void RefineController::prioritize(const ImageRegion& region, const QString& text) {
+    if (!isReady()) return;
+    m_bench.store().commit();
+    look(region, text);
+}
+
+void RefineController::look(const ImageRegion& region, const QString& text) {
+    m_pending = region;
+    const double longer = std::max({m_viewSize.width(), m_viewSize.height(), 1});
+    const auto pixels = [&](int side) { return std::max(1, static_cast<int>(side * kLookSize / longer + 0.5)); };
+    PictureInput picture = plainPictureInput(m_bench.scene(), pixels(m_viewSize.width()), pixels(m_viewSize.height()));
+    m_look.start({std::move(picture), region, text}, tr("the region"));
+    Q_EMIT busyChanged();
+}
+
+void RefineController::refineForRegion(const Look& look) {
+    SessionStore& store = m_bench.store();
+    if (!isReady() || !store.scene().histogram) return;
+    store.commit();
+    try {
+        RefineOptions by = options();
+        by.priority = {};
+        by.priority.region = *colorsOf(look.region);
+        const TransferFunction start = startOfPriority();
+        Refinement r = refineFrom(start, start, store.scene(), by);
+        const QScopedValueRollback quiet(m_quiet, true);
+        keep(r);
+        store.edit(look.text, {}, [&](Session& session) {
+            session.refine.edit([&](RefineSettings& s) {
+                s.region = look.region;
+                s.intensity.reset();
+            });
+            session.setTf(r.after);
+            session.addRun(runOf(r));
+        });
+        sayRefined(r);
+        Q_EMIT refined();
+    } catch (const Error& error) {
+        m_bench.showError(tr("Refinement failed"), error);
+    }
+}
+
+void RefineController::prioritizeNothing() {
+    if (!isReady()) return;
+    m_look.cancel();
+    m_bench.store().edit(tr("Prioritize nothing"), {}, [](Session& session) {
+        session.refine.edit([](RefineSettings& r) {
+            r.intensity.reset();
+            r.region.reset();
+        });
+    });
+    Q_EMIT refined();
+}
+
+void RefineController::setSelecting(Selecting what) {
+    if (what == m_selecting) return;
+    m_selecting = what;
+    Q_EMIT selectingChanged();
+}
+
+void RefineController::setGhostShown(bool shown) {
+    if (shown == m_ghost) return;
+    m_ghost = shown;
+    Q_EMIT ghostChanged();
+}
+
+// Live: after every edit that refinement may answer differently, as part of it.
+QString RefineController::follow(const Scene& before, const Scene& after, Session& session) {
+    const RefineSettings& settings = *after.session.refine;
+    if (m_quiet || !settings.live || !isReady() || !after.histogram || before.data != after.data) return {};
+    // An optimization has found what it was asked for.
+    if (!(before.session.runs == after.session.runs) || before.session.frame != after.session.frame) return {};
+    const TransferFunction *was = before.session.tf(), *is = after.session.tf();
+    if (was == nullptr || is == nullptr) return {};
+    const bool edited = hasMoved(*was, *is, settings.region.has_value());
+    if (!edited && before.session.refine == after.session.refine) return {};
+    const auto priority = priorityOf(settings);
+    if (!priority) {
+        QMetaObject::invokeMethod(
+            this, [this] { refine(); }, Qt::QueuedConnection);
+        return {};
+    }
+    try {
+        RefineOptions by;
+        by.stepDown = settings.stepDown;
+        by.stepUp = settings.stepUp;
+        by.maxIterations = settings.maxIterations;
+        by.method = settings.method;
+        by.priority = *priority;
+        const auto held = edited ? heldPoints(before.tf, after.tf) : std::vector<std::size_t>();
+        Refinement r = refineFrom(after.tf, liveStart(before.tf, after.tf, held), after, by);
+        if (r.after == r.before) return {};
+        session.setTf(r.after);
+        keep(std::move(r));
+        return tr("refined live");
+    } catch (const Error& error) {
+        say(tr("Not refined: %1").arg(QString::fromUtf8(error.what())));
+        return {};
+    }
+}
+
+} // namespace pellucid::gui

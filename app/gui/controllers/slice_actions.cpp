@@ -1,0 +1,136 @@
+#include "controllers/slice_actions.h"
+
+#include <QIcon>
+#include <QPainter>
+#include <QPixmap>
+
+#include <glm/common.hpp>
+
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+using Layout = SliceViews::Layout;
+
+/// The places of the views in a small window.
+QIcon iconOf(Layout layout) {
+    QIcon icon;
+    for (const int scale : {1, 2}) {
+        QPixmap pixmap(20 * scale, 20 * scale);
+        pixmap.setDevicePixelRatio(scale);
+        pixmap.fill(Qt::transparent);
+        QPainter painter(&pixmap);
+        painter.setPen(QPen(QColor(0x84, 0x88, 0x8e), 1.2)); // is seen on dark and on light
+        const QRectF frame(2.5, 3.5, 15, 13);
+        painter.drawRect(frame);
+        painter.setBrush(QColor(0x84, 0x88, 0x8e, 150)); // where the volume is
+        const QPointF middle = frame.center();
+        switch (layout) {
+        case Layout::Volume:
+            painter.drawRect(frame);
+            break;
+        case Layout::Four:
+            painter.drawLine(QPointF(frame.left(), middle.y()), QPointF(frame.right(), middle.y()));
+            painter.drawRect(QRectF(QPointF(middle.x(), frame.top()), QPointF(frame.right(), middle.y())));
+            painter.drawLine(QPointF(middle.x(), frame.top()), QPointF(middle.x(), frame.bottom()));
+            break;
+        case Layout::VolumeLarge: {
+            const double x = frame.left() + 0.65 * frame.width();
+            painter.drawRect(QRectF(frame.topLeft(), QPointF(x, frame.bottom())));
+            for (const double share : {1 / 3.0, 2 / 3.0}) {
+                const double y = frame.top() + share * frame.height();
+                painter.drawLine(QPointF(x, y), QPointF(frame.right(), y));
+            }
+            break;
+        }
+        }
+        painter.end();
+        icon.addPixmap(pixmap);
+    }
+    return icon;
+}
+
+} // namespace
+
+Vec3 crosshairOf(const Scene& scene) {
+    const Int3 dims = scene.volume->dims();
+    return glm::clamp(scene.session.slices->crosshair.value_or(Vec3(dims / 2)), Vec3(0), Vec3(dims) - 1.0);
+}
+
+ValueRange greyWindowOf(const Scene& scene) { return scene.session.slices->window.value_or(scene.volume->range()); }
+
+void moveCrosshair(SessionStore& store, const Vec3& voxel) {
+    if (!store.hasVolume()) return;
+    store.setCrosshair(glm::clamp(glm::floor(voxel + 0.5), Vec3(0), Vec3(store.scene().volume->dims()) - 1.0));
+}
+
+void moveCrosshairToWorld(SessionStore& store, const Vec3& world) {
+    if (store.hasVolume()) moveCrosshair(store, store.scene().volume->geometry().voxelFromWorld(world));
+}
+
+void setLayout(SessionStore& store, Layout layout) {
+    store.edit(QObject::tr("Layout"), {},
+               [layout](Session& session) { session.slices.edit([layout](SliceViews& s) { s.layout = layout; }); });
+}
+
+void resetGreyWindow(SessionStore& store) {
+    store.edit(QObject::tr("Reset the window of grey"), {},
+               [](Session& session) { session.slices.edit([](SliceViews& s) { s.window.reset(); }); });
+}
+
+void addSliceActions(Workbench& bench) {
+    SessionStore& store = bench.store();
+    Actions& actions = bench.actions();
+    const QString menu = QObject::tr("&View") + "/" + QObject::tr("La&yout");
+    const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
+    struct Texts {
+        Layout layout;
+        QString id, text, tip;
+    };
+    const Texts layouts[] = {
+        {Layout::Volume, "layoutVolumeAction", QObject::tr("&Volume"), QObject::tr("The volume alone")},
+        {Layout::Four, "layoutFourAction", QObject::tr("&Four views"),
+         QObject::tr("The volume and three slices through it, of a size")},
+        {Layout::VolumeLarge, "layoutVolumeLargeAction", QObject::tr("Volume and &slices"),
+         QObject::tr("The volume large, three slices small beside it")}};
+    int key = 1;
+    for (const Texts& t : layouts)
+        actions
+            .add({.id = t.id,
+                  .menu = menu,
+                  .text = t.text,
+                  .keys = {QKeySequence(QStringLiteral("Ctrl+Shift+%1").arg(key++))},
+                  .tip = t.tip,
+                  .trigger = [&store, layout = t.layout] { setLayout(store, layout); },
+                  .enabled = editable,
+                  .checked = [&store, layout = t.layout] { return store.session().slices->layout == layout; },
+                  .inToolBar = true})
+            ->setIcon(iconOf(t.layout));
+    actions.add({.id = "centreCrosshairAction",
+                 .menu = menu,
+                 .text = QObject::tr("&Crosshair to the middle"),
+                 .tip = QObject::tr("The slices through the middle of the volume"),
+                 .trigger = [&store] { moveCrosshair(store, Vec3(store.scene().volume->dims() / 2)); },
+                 .enabled = [&store] { return store.hasVolume(); },
+                 .separatorBefore = true});
+    actions.add({.id = "resetGreyWindowAction",
+                 .menu = menu,
+                 .text = QObject::tr("&Reset the window of grey"),
+                 .tip = QObject::tr("Black and white of the slices at the ends of the range of values, as the transfer "
+                                    "function has it"),
+                 .trigger = [&store] { resetGreyWindow(store); },
+                 .enabled = [&store, editable] { return editable() && store.session().slices->window.has_value(); }});
+    const QString slices = QObject::tr("Slices");
+    actions.addGestures(
+        {{slices, QObject::tr("Left drag"), QObject::tr("move the crosshair")},
+         {slices, QObject::tr("Wheel, Page Up and Down, arrow keys; with Shift"),
+          QObject::tr("next slice; ten further")},
+         {slices, QObject::tr("Right drag across, up and down"), QObject::tr("window and level of grey")},
+         {slices, QObject::tr("Right double-click"), QObject::tr("reset the window of grey")},
+         {slices, QObject::tr("Ctrl + wheel, + and −"), QObject::tr("zoom")},
+         {slices, QObject::tr("Middle drag, Shift + left drag"), QObject::tr("pan")},
+         {slices, QObject::tr("Double-click; on the title"), QObject::tr("fit; one view alone, and back")}});
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,133 @@
+#include "controllers/start_controller.h"
+
+#include "controllers/open_controller.h"
+#include "number_text.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+/// "fat, soft tissue, bone"
+QString namesOf(const Proposal& proposal) {
+    QStringList names;
+    for (const ProposedFeature& f : proposal.features) names << QString::fromStdString(f.name);
+    return names.join(QStringLiteral(", "));
+}
+
+/// Of voxels: "0.001 %", no more digits than it needs.
+QString percentText(double share) {
+    if (!(share >= 1e-5)) return QObject::tr("under 0.001 %");
+    return QString::number(100 * share, 'g', 2) + QStringLiteral(" %");
+}
+
+} // namespace
+
+QString recognisedText(const Proposal& proposal) {
+    switch (proposal.kind) {
+    case DataKind::Ct:
+        return proposal.background ? QObject::tr("CT in Hounsfield units: air left out; %1.").arg(namesOf(proposal))
+                                   : QObject::tr("CT in Hounsfield units: %1.").arg(namesOf(proposal));
+    case DataKind::Signed:
+        return QObject::tr("Values of both signs: colours part at 0, and what lies about it is left out.");
+    case DataKind::Labels:
+        return QObject::tr("Labels: a feature for each.");
+    case DataKind::Constant:
+        return QObject::tr("All voxels have the same value.");
+    case DataKind::Empty:
+        return QObject::tr("No voxel has a valid value: there is nothing to see.");
+    case DataKind::Binary:
+    case DataKind::Continuous:
+        break;
+    }
+    return {};
+}
+
+QString beyondText(const Proposal& proposal, const ValueRange& data) {
+    const ValueRange& window = proposal.window;
+    const bool below = data.lo < window.lo, above = data.hi > window.hi;
+    if (!(data.lo < data.hi) || (!below && !above)) return {};
+    const auto plain = [](double v) { return QString::number(v, 'g', 4); };
+    const QString ends = below && above ? QObject::tr("%1 and %2").arg(plain(data.lo), plain(data.hi))
+                                        : plain(below ? data.lo : data.hi);
+    return QObject::tr("Values %1 are told apart; those of %2 of the voxels lie beyond, as far as %3.")
+        .arg(rangeText(window), percentText(proposal.outside), ends);
+}
+
+StartController::StartController(Workbench& bench)
+    : m_bench(bench), m_tuning([](const Scene& scene, const JobControl& job) { return tunedTf(scene, job); },
+                               [this](const Scene& scene, TransferFunction& tf) { showTuned(scene, tf); }),
+      m_again(
+          [](const Request& request, const JobControl& job) {
+              return automaticStart(request.scene, request.view, job);
+          },
+          [this](const Request& request, AutomaticStart& start) {
+              if (request.scene.data != m_bench.scene().data || m_bench.isReadOnly()) return;
+              const auto change = [window = start.window, tf = start.tf](Session& session) {
+                  session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
+                  session.setTf(tf);
+              };
+              m_bench.opening().editData(tr("Automatic start"), change,
+                                         [this, proposal = start.proposal] { say(proposal); });
+          }) {
+    connect(&m_tuning, &JobBase::busyChanged, this, &StartController::busyChanged);
+    connect(&m_again, &JobBase::busyChanged, this, &StartController::busyChanged);
+    connect(&m_again, &JobBase::failed, this,
+            [this](const Error& error) { m_bench.showError(tr("Automatic start failed"), error); });
+}
+
+StartController::~StartController() = default;
+
+void StartController::addActions() {
+    m_bench.actions().add(
+        {.id = "automaticStartAction",
+         .menu = tr("&Transfer function"),
+         .text = tr("&Automatic start"),
+         .tip = tr("Window and features from the data, opacities for this view"),
+         .trigger = [this] { startAgain(); },
+         .enabled = [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); }});
+}
+
+void StartController::follow(const Scene& scene) {
+    m_tuning.cancel();
+    m_again.cancel();
+    if (!scene.proposal) return;
+    say(*scene.proposal);
+    m_tuning.start(scene, QString::fromStdString(scene.volume->title));
+}
+
+void StartController::startAgain() {
+    if (!m_bench.store().hasVolume() || m_bench.isReadOnly()) return;
+    m_bench.store().commit();
+    const Scene& scene = m_bench.scene();
+    m_again.start({scene, {scene.camera, *scene.session.clipping}}, QString::fromStdString(scene.volume->title));
+}
+
+void StartController::cancel() {
+    m_tuning.cancel();
+    m_again.cancel();
+}
+
+void StartController::say(const Proposal& proposal) {
+    if (const QString text = recognisedText(proposal); !text.isEmpty()) m_bench.notices().add({text, {}});
+    const QString beyond = beyondText(proposal, m_bench.scene().data->dataRange());
+    if (beyond.isEmpty()) return;
+    m_bench.notices().add({beyond, {{tr("Show full range"), [this] {
+                                         m_bench.opening().editData(tr("Full range"), [](Session& session) {
+                                             session.variables.edit(
+                                                 [](std::vector<Variable>& all) { all.front().window.reset(); });
+                                         });
+                                     }}}});
+}
+
+void StartController::showTuned(const Scene& scene, TransferFunction& tf) {
+    SessionStore& store = m_bench.store();
+    // Whoever has a hand in it keeps what he has.
+    if (store.scene().data != scene.data || store.isPreviewing() || m_bench.isReadOnly() ||
+        store.session().tf() != scene.session.tf() || store.scene().volume != scene.volume)
+        return;
+    const bool clean = store.isClean();
+    store.edit(tr("Automatic opacities"), {}, [&tf](Session& session) { session.setTf(tf); });
+    if (clean) store.setClean(); // it is not the user's work
+}
+
+} // namespace pellucid::gui

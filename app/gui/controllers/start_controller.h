@@ -1,0 +1,51 @@
+// The automatic start: what the data propose, the opacities that follow, and what is said about both.
+#pragma once
+
+#include <QObject>
+
+#include "jobs/job.h"
+#include "session/scene.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// After a volume has been opened under a proposed transfer function its opacities are tuned beside the first picture,
+/// and come as one step, "Automatic opacities", unless the transfer function has been edited meanwhile.
+class StartController : public QObject {
+    Q_OBJECT
+public:
+    explicit StartController(Workbench& bench);
+    ~StartController() override;
+
+    void addActions();
+    /// `scene` has just been opened: says what was recognised where it has a proposal, and tunes its opacities.
+    void follow(const Scene& scene);
+    /// Once more, from the present data and view: one step.
+    void startAgain();
+
+    bool isBusy() const { return m_tuning.isRunning() || m_again.isRunning(); }
+    void cancel();
+
+Q_SIGNALS:
+    void busyChanged();
+
+private:
+    struct Request {
+        Scene scene;
+        View view; ///< of startAgain()
+    };
+    void say(const Proposal& proposal);
+    void showTuned(const Scene& scene, TransferFunction& tf);
+
+    Workbench& m_bench;
+    Job<Scene, TransferFunction> m_tuning;
+    Job<Request, AutomaticStart> m_again;
+};
+
+/// What was recognised in the data, a sentence; empty where there is nothing to say.
+QString recognisedText(const Proposal& proposal);
+/// That values lie beyond the window of a proposal; empty where none do. `data`: smallest and largest value.
+QString beyondText(const Proposal& proposal, const ValueRange& data);
+
+} // namespace pellucid::gui

@@ -1,0 +1,14 @@
+// The choice between a dark and a light window.
+#pragma once
+
+#include "theme.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// The theme of the latest choice on this machine; dark before the first.
+Theme keptTheme();
+void addThemeActions(Workbench& bench);
+
+} // namespace pellucid::gui

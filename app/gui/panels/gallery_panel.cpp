@@ -1,0 +1,289 @@
+#include "panels/gallery_panel.h"
+
+#include <QComboBox>
+#include <QDir>
+#include <QHBoxLayout>
+#include <QInputDialog>
+#include <QLabel>
+#include <QListWidget>
+#include <QMenu>
+#include <QMessageBox>
+#include <QStandardPaths>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "image_convert.h"
+#include "panel.h"
+#include "render/image_renderer.h"
+#include "store/edits.h"
+#include "tf/shown_tf.h"
+#include "tf/tf_range.h"
+#include "theme.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kWidth = 112, kHeight = 84; ///< of a picture, logical pixels
+constexpr int kWait = 350;                ///< milliseconds after the last change, so that a turning hand is not slowed
+constexpr const char* kThesis[] = {"tents:2", "tents:3", "tents:4", "tents:6", "ramp:6", "ramp:12"};
+
+std::vector<TfPreset> thesisPresets() {
+    std::vector<TfPreset> all;
+    for (const char* spec : kThesis) {
+        const std::string text = spec, number = text.substr(text.find(':') + 1);
+        const bool areTents = text.starts_with("tents");
+        all.push_back(
+            {text, areTents ? number + " tents" : "Ramp of " + number, "Even",
+             areTents ? "Tents of equal width and height over all values" : "Points of equal opacity over all values",
+             *tfFromSpec(text)});
+    }
+    return all;
+}
+
+/// As it stands in the window of a volume; a window without width takes it as it is.
+TransferFunction placed(const TransferFunction& tf, const ValueRange& window) {
+    return window.lo < window.hi ? inRange(tf, window) : tf;
+}
+
+QString fileNameOf(const QString& title) {
+    QString name;
+    for (const QChar c : title.toLower()) name += c.isLetterOrNumber() ? c : QChar('-');
+    return name + ".tf.json";
+}
+
+} // namespace
+
+PanelInfo galleryPanel() {
+    return {.id = "gallery",
+            .title = QObject::tr("Presets"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = true,
+            .tabOf = "display",
+            .keys = QKeySequence("Ctrl+9"),
+            .tip = QObject::tr("Transfer functions as small pictures of this volume"),
+            .make = [](Workbench& bench, QWidget* parent) { return new GalleryPanel(bench, parent); },
+            .shown =
+                [](Workbench& bench, bool visible) {
+                    if (auto* panel = bench.window()->findChild<GalleryPanel*>()) panel->setShown(visible);
+                }};
+}
+
+GalleryPanel::GalleryPanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_group(new QComboBox(this)), m_take(new QComboBox(this)),
+      m_list(new QListWidget(this)), m_keep(new QToolButton(this)), m_remove(new QToolButton(this)),
+      m_job(
+          [this](const Task& task, const JobControl& job) {
+              const auto renderer = makeCpuRenderer(task.picture.volume);
+              for (std::size_t i = 0; i < task.tfs.size(); ++i) {
+                  const Image image =
+                      renderer->render(task.picture.camera, task.tfs[i], task.picture.settings, {job.stop, {}});
+                  QMetaObject::invokeMethod(this, [this, number = task.number, i, picture = qImageFromImage(image)] {
+                      showPicture(number, static_cast<int>(i), picture);
+                  });
+              }
+              return task.number;
+          },
+          [](const Task&, int&) {}) {
+    setObjectName("galleryPanel");
+    m_group->setObjectName("galleryGroup");
+    m_group->setToolTip(tr("Which presets are listed"));
+    m_take->setObjectName("galleryTake");
+    m_take->addItem(tr("Take all"));
+    m_take->addItem(tr("Take colours"));
+    m_take->addItem(tr("Take opacities"));
+    m_take->setToolTip(tr("What is taken of a preset: everything, its colours under the present opacities,\n"
+                          "or its opacities in the present colours"));
+    m_list->setObjectName("galleryList");
+    m_list->setViewMode(QListView::IconMode);
+    m_list->setResizeMode(QListView::Adjust);
+    m_list->setMovement(QListView::Static);
+    m_list->setIconSize({kWidth, kHeight});
+    m_list->setGridSize({kWidth + 14, kHeight + 26});
+    m_list->setUniformItemSizes(true);
+    m_list->setWordWrap(false);
+    m_list->setContextMenuPolicy(Qt::CustomContextMenu);
+    m_keep->setObjectName("galleryKeep");
+    m_keep->setText(tr("Keep this…"));
+    m_keep->setToolTip(tr("Keeps the present transfer function, with its opacities, as a preset of your own"));
+    m_remove->setObjectName("galleryRemove");
+    m_remove->setText(tr("Remove"));
+    m_remove->setToolTip(tr("Removes the preset of your own that is selected"));
+
+    auto* top = new QHBoxLayout;
+    top->addWidget(m_group, 1);
+    top->addWidget(m_take, 1);
+    auto* bottom = new QHBoxLayout;
+    bottom->addWidget(m_keep);
+    bottom->addWidget(m_remove);
+    bottom->addStretch(1);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(8, 8, 8, 8);
+    column->addLayout(top);
+    column->addWidget(m_list, 1);
+    column->addLayout(bottom);
+
+    m_wait.setSingleShot(true);
+    m_wait.setInterval(kWait);
+    connect(&m_wait, &QTimer::timeout, this, &GalleryPanel::draw);
+    connect(m_group, &QComboBox::activated, this, &GalleryPanel::fill);
+    connect(m_list, &QListWidget::itemActivated, this, [this](QListWidgetItem* item) { apply(m_list->row(item)); });
+    connect(m_list, &QListWidget::itemClicked, this, [this](QListWidgetItem* item) { apply(m_list->row(item)); });
+    connect(m_list, &QListWidget::customContextMenuRequested, this, &GalleryPanel::showMenu);
+    connect(m_list, &QListWidget::currentRowChanged, this, [this](int row) {
+        m_remove->setEnabled(row >= 0 && row < static_cast<int>(m_entries.size()) &&
+                             !m_entries[static_cast<std::size_t>(row)].path.isEmpty());
+    });
+    connect(m_keep, &QToolButton::clicked, this, &GalleryPanel::keep);
+    connect(m_remove, &QToolButton::clicked, this, &GalleryPanel::remove);
+    connect(&bench.store(), &SessionStore::changed, this, &GalleryPanel::follow);
+    connect(&bench, &Workbench::readOnlyChanged, this, [this] { m_list->setEnabled(!m_bench.isReadOnly()); });
+    fill();
+}
+
+QString GalleryPanel::presetFolder() {
+    return QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/presets";
+}
+
+void GalleryPanel::setShown(bool shown) {
+    m_shown = shown;
+    if (shown && m_stale) draw();
+}
+
+void GalleryPanel::follow(const Scene& before, const Scene& after) {
+    m_keep->setEnabled(after.volume != nullptr);
+    const auto look = [](const Scene& scene) {
+        PictureInput input = pictureInput(scene, kWidth, kHeight);
+        input.tf = {}; // each entry has its own
+        return input;
+    };
+    if (before.volume == nullptr || after.volume == nullptr || !(look(before) == look(after))) drawSoon();
+}
+
+void GalleryPanel::fill() {
+    std::vector<Entry> all;
+    for (const TfPreset& preset : thesisPresets()) all.push_back({preset, {}});
+    for (const TfPreset& preset : tfPresets()) all.push_back({preset, {}});
+    const QDir folder(presetFolder());
+    for (const QFileInfo& file : folder.entryInfoList({"*.tf.json"}, QDir::Files, QDir::Name)) {
+        try {
+            TfPreset preset = readPreset(file.filePath().toStdString());
+            preset.group = tr("My own").toStdString();
+            all.push_back({std::move(preset), file.filePath()});
+        } catch (const Error& error) { // one broken file is no reason to do without the others
+            m_bench.notices().add({QString::fromUtf8(error.what()), {}});
+        }
+    }
+
+    const QString wanted = m_group->currentText();
+    QStringList groups{tr("All presets")};
+    for (const Entry& entry : all)
+        if (const QString group = QString::fromStdString(entry.preset.group); !groups.contains(group)) groups << group;
+    m_group->clear();
+    m_group->addItems(groups);
+    m_group->setCurrentIndex(std::max(0, static_cast<int>(groups.indexOf(wanted))));
+
+    m_list->clear();
+    m_entries.clear();
+    QPixmap empty(kWidth, kHeight);
+    empty.fill(theme::kPanel);
+    for (Entry& entry : all) {
+        const QString group = QString::fromStdString(entry.preset.group);
+        if (m_group->currentIndex() > 0 && group != m_group->currentText()) continue;
+        auto* item = new QListWidgetItem(QIcon(empty), QString::fromStdString(entry.preset.title), m_list);
+        QString tip = QStringLiteral("%1: %2").arg(group, QString::fromStdString(entry.preset.title));
+        if (!entry.preset.about.empty()) tip += "\n" + QString::fromStdString(entry.preset.about);
+        if (!entry.preset.tf.range) tip += "\n" + tr("Relative to the range of values");
+        item->setToolTip(tip);
+        m_entries.push_back(std::move(entry));
+    }
+    m_remove->setEnabled(false);
+    drawSoon();
+}
+
+void GalleryPanel::drawSoon() {
+    m_stale = true;
+    if (m_shown) m_wait.start();
+}
+
+void GalleryPanel::draw() {
+    if (!m_shown || !m_bench.store().hasVolume()) return;
+    m_stale = false;
+    const Scene& scene = m_bench.store().committed();
+    Task task;
+    const double density = devicePixelRatioF();
+    task.picture = pictureInput(scene, static_cast<int>(kWidth * density), static_cast<int>(kHeight * density));
+    task.picture.settings.stepInD0 = 1;
+    task.picture.settings.onlyFeature = -1;
+    for (const Entry& entry : m_entries) task.tfs.push_back(placed(entry.preset.tf, scene.volume->range()));
+    task.number = ++m_number;
+    m_job.start(std::move(task), tr("the presets"));
+}
+
+void GalleryPanel::showPicture(int number, int row, const QImage& image) {
+    if (number != m_number || row >= m_list->count()) return;
+    QPixmap pixmap = QPixmap::fromImage(image);
+    pixmap.setDevicePixelRatio(devicePixelRatioF());
+    m_list->item(row)->setIcon(QIcon(pixmap));
+}
+
+void GalleryPanel::apply(int row) {
+    SessionStore& store = m_bench.store();
+    if (row < 0 || row >= static_cast<int>(m_entries.size()) || !store.hasVolume() || m_bench.isReadOnly()) return;
+    store.commit();
+    const Entry& entry = m_entries[static_cast<std::size_t>(row)];
+    const auto what = static_cast<Take>(m_take->currentIndex());
+    const TransferFunction tf =
+        taken(m_bench.scene().tf, placed(entry.preset.tf, m_bench.scene().volume->range()), what);
+    const QString title = QString::fromStdString(entry.preset.title);
+    editTf(store, tf, tr("Preset %1").arg(title));
+    const bool empty = what != Take::Colors && !entry.preset.tf.points.empty() && tf.points.empty();
+    Q_EMIT m_bench.message(empty ? tr("Preset %1 shows values that this volume does not have.").arg(title)
+                                 : tr("Preset %1.").arg(title));
+}
+
+void GalleryPanel::keep() {
+    if (!m_bench.store().hasVolume()) return;
+    bool ok = false;
+    const QString title =
+        QInputDialog::getText(this, tr("Keep as a preset"), tr("Name:"), QLineEdit::Normal, {}, &ok).trimmed();
+    if (!ok || title.isEmpty()) return;
+    const QString path = presetFolder() + "/" + fileNameOf(title);
+    if (QFile::exists(path) &&
+        QMessageBox::question(this, tr("Keep as a preset"), tr("There is a preset of this name. Replace it?")) !=
+            QMessageBox::Yes)
+        return;
+    try {
+        if (!QDir().mkpath(presetFolder()))
+            throw FileError("the folder of presets cannot be made", presetFolder().toStdString(), "check its rights");
+        TransferFunction tf = m_bench.scene().tf;
+        for (Feature& f : tf.features) f.id = 0; // that is the session's
+        writePreset(tf, title.toStdString(), path.toStdString());
+    } catch (const Error& error) {
+        return m_bench.showError(tr("The preset cannot be kept"), error);
+    }
+    fill();
+}
+
+void GalleryPanel::remove() {
+    const int row = m_list->currentRow();
+    if (row < 0 || m_entries[static_cast<std::size_t>(row)].path.isEmpty()) return;
+    const Entry& entry = m_entries[static_cast<std::size_t>(row)];
+    if (!QFile::moveToTrash(entry.path) && !QFile::remove(entry.path))
+        return m_bench.showError(tr("The preset cannot be removed"),
+                                 FileError("the file cannot be deleted", entry.path.toStdString(), "check its rights"));
+    fill();
+}
+
+void GalleryPanel::showMenu(const QPoint& at) {
+    const int row = m_list->row(m_list->itemAt(at));
+    if (row < 0) return;
+    m_list->setCurrentRow(row);
+    QMenu menu(this);
+    menu.setObjectName("galleryMenu");
+    menu.addAction(tr("Apply"), this, [this, row] { apply(row); });
+    if (m_remove->isEnabled()) menu.addAction(tr("Remove"), this, &GalleryPanel::remove);
+    menu.exec(m_list->viewport()->mapToGlobal(at));
+}
+
+} // namespace pellucid::gui

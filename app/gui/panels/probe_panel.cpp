@@ -1,0 +1,240 @@
+#include "panels/probe_panel.h"
+
+#include <algorithm>
+
+#include <QHBoxLayout>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QWheelEvent>
+
+#include "controllers/probe_controller.h"
+#include "number_text.h"
+#include "panels/probe_plot.h"
+#include "render/clip_handles.h"
+#include "theme.h"
+#include "volume_view.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kWidth = 320, kMargin = 10;
+constexpr int kMostRowsHeight = 160; ///< of the shares, before they scroll
+
+/// A ring around the place, in the colour of its feature.
+class ProbeLayer : public OverlayLayer {
+public:
+    explicit ProbeLayer(ProbeController& probe) : m_probe(probe) {}
+
+    void paint(QPainter& painter, const OverlayView& view) override {
+        if (!m_probe.isActive()) return;
+        const auto at = pixelOf({view.scene.camera, std::max(1, static_cast<int>(view.size.width())),
+                                 std::max(1, static_cast<int>(view.size.height()))},
+                                m_probe.place());
+        if (!at) return;
+        const QPointF place(at->x, at->y);
+        const int f = m_probe.feature();
+        const QColor color =
+            f >= 0 ? colorFromRgb(m_probe.tf().features[static_cast<std::size_t>(f)].color) : QColor(Qt::white);
+        painter.setBrush(Qt::NoBrush);
+        for (const auto& [pen, radius] :
+             {std::pair{QPen(QColor(0, 0, 0, 200), 5), 7.0}, std::pair{QPen(QColor(255, 255, 255), 3), 7.0},
+              std::pair{QPen(color, 1.5), 7.0}}) {
+            painter.setPen(pen);
+            painter.drawEllipse(place, radius, radius);
+        }
+    }
+
+private:
+    ProbeController& m_probe;
+};
+
+QLabel* label(const char* name, QWidget* parent) {
+    auto* l = new QLabel(parent);
+    l->setObjectName(name);
+    l->setWordWrap(true);
+    return l;
+}
+
+} // namespace
+
+ProbePanel::ProbePanel(Workbench& bench, ProbeController& probe, VolumeView& view)
+    : QFrame(&view), m_bench(bench), m_probe(probe), m_view(view), m_title(label("probeTitle", this)),
+      m_readout(label("probeReadout", this)), m_text(label("probeText", this)), m_hint(label("probeHint", this)),
+      m_plot(new ProbePlot(bench, probe, this)), m_shares(new ProbeShares(bench, probe, this)),
+      m_scroll(new QScrollArea(this)), m_more(new QPushButton(tr("More of this"), this)),
+      m_less(new QPushButton(tr("Less of this"), this)) {
+    setObjectName("probePanel");
+    setAccessibleName(tr("Probe"));
+    setFrameShape(QFrame::StyledPanel);
+    setAutoFillBackground(true);
+    setFixedWidth(kWidth);
+    setCursor(Qt::ArrowCursor);
+    m_more->setObjectName("moreOfThisButton");
+    m_more->setToolTip(tr("Raise the opacity of this feature, and lower that of what hides it here (Ctrl+]).\n"
+                          "Locked features and fixed points stay."));
+    m_less->setObjectName("lessOfThisButton");
+    m_less->setToolTip(tr("Lower the opacity of this feature, and raise that of what hides it here (Ctrl+[).\n"
+                          "Locked features and fixed points stay."));
+    for (QPushButton* b : {m_more, m_less}) {
+        b->setAutoDefault(false);
+        b->setFocusPolicy(Qt::TabFocus); // a click leaves the keys to the picture
+    }
+    auto* close = new QToolButton(this);
+    close->setObjectName("closeProbeButton");
+    close->setText(QStringLiteral("×"));
+    close->setAutoRaise(true);
+    close->setFocusPolicy(Qt::TabFocus);
+    close->setToolTip(tr("End the probe (Esc)"));
+    m_text->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    m_text->setCursor(Qt::IBeamCursor);
+    m_text->setToolTip(tr("At the mark: value in data units, place in world units (mm to the left, back and head of a "
+                          "patient). Can be selected and copied."));
+    m_readout->setMinimumHeight(fontMetrics().height());
+    m_readout->setTextFormat(Qt::PlainText);
+    m_title->setTextFormat(Qt::PlainText);
+    m_scroll->setWidget(m_shares);
+    m_scroll->setWidgetResizable(true);
+    m_scroll->setFrameShape(QFrame::NoFrame);
+    m_scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    QFont bold = font();
+    bold.setBold(true);
+    m_title->setFont(bold);
+
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(10, 6, 10, 8);
+    column->setSpacing(5);
+    auto* head = new QHBoxLayout;
+    head->addWidget(m_title, 1);
+    head->addWidget(close, 0, Qt::AlignTop);
+    column->addLayout(head);
+    column->addWidget(m_plot);
+    column->addWidget(m_readout);
+    column->addWidget(m_scroll);
+    column->addWidget(m_text);
+    column->addWidget(m_hint);
+    auto* buttons = new QHBoxLayout;
+    buttons->addWidget(m_more);
+    buttons->addWidget(m_less);
+    column->addLayout(buttons);
+    hide();
+
+    connect(close, &QToolButton::clicked, &m_probe, &ProbeController::clear);
+    connect(m_more, &QPushButton::clicked, this, [this] { m_probe.emphasize(true); });
+    connect(m_less, &QPushButton::clicked, this, [this] { m_probe.emphasize(false); });
+    connect(m_plot, &ProbePlot::readOut, this, [this](const QString& text) {
+        m_readout->setText(text.isEmpty() ? tr("Point at the plot to read it") : text);
+    });
+    m_readout->setText(tr("Point at the plot to read it"));
+    connect(&m_probe, &ProbeController::changed, this, &ProbePanel::refresh);
+    connect(&bench, &Workbench::readOnlyChanged, this, &ProbePanel::refresh);
+    connect(&bench.store(), &SessionStore::changed, this, [this] { // its mode, names and colours
+        if (m_probe.isActive()) refresh();
+    });
+    connect(&view, &VolumeView::clicked, this, [this](const QPointF& point) {
+        m_clicked = point;
+        m_probe.probeAt(point, m_view.size(), m_view.devicePixelRatioF());
+    });
+    view.installEventFilter(this);
+}
+
+void ProbePanel::refresh() {
+    const bool wasShown = !isHidden();
+    setVisible(m_probe.isActive());
+    m_view.overlay().update();
+    if (!m_probe.isActive()) return;
+    refreshText();
+    m_shares->updateGeometry();
+    m_scroll->setFixedHeight(std::min(m_shares->sizeHint().height(), kMostRowsHeight));
+    m_plot->update();
+    m_shares->update();
+    for (QPushButton* b : {m_more, m_less}) b->setEnabled(m_probe.canEmphasize());
+    layout()->activate();
+    resize(kWidth, layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(kWidth) : sizeHint().height());
+    if (!wasShown) move(m_clicked.x() > m_view.width() / 2.0 ? kMargin : m_view.width() - kWidth - kMargin, kMargin);
+    keepInView();
+    raise();
+}
+
+void ProbePanel::refreshText() {
+    const RayProbe& ray = m_probe.ray();
+    const Scene& scene = m_bench.scene();
+    const int f = m_probe.feature();
+    const auto percent = [](double share) { return QStringLiteral("%1 %").arg(100 * share, 0, 'f', 1); };
+    m_title->setText(f >= 0 ? tr("%1: %2 of the pixel")
+                                  .arg(QString::fromStdString(m_probe.tf().features[static_cast<std::size_t>(f)].name),
+                                       percent(ray.shares[static_cast<std::size_t>(f)]))
+                            : tr("In no feature"));
+    const Volume& volume = *scene.volume;
+    const double span = volume.range().hi - volume.range().lo, size = 2 * volume.geometry().radius();
+    const auto value = m_probe.valueAtPlace();
+    const Vec3& p = m_probe.place();
+    QString text = tr("alpha %1").arg(percent(ray.alpha));
+    text += tr(" · value %1").arg(value ? numberText(*value, span) : tr("invalid"));
+    text += tr(" · at %1, %2, %3").arg(numberText(p.x, size), numberText(p.y, size), numberText(p.z, size));
+    if (volume.geometry().frame == Frame::Patient) text += tr(" mm");
+    m_text->setText(text);
+    const bool composite = scene.session.display->mode == RenderMode::Composite;
+    m_hint->setVisible(!composite);
+    if (!composite) m_hint->setText(tr("Shares are those of the mode composite."));
+}
+
+void ProbePanel::keepInView() {
+    const QRect room = m_view.rect().adjusted(kMargin, kMargin, -kMargin, -kMargin);
+    const int x = std::clamp(pos().x(), room.left(), std::max(room.left(), room.right() + 1 - width()));
+    const int y = std::clamp(pos().y(), room.top(), std::max(room.top(), room.bottom() + 1 - height()));
+    move(x, y);
+}
+
+void ProbePanel::mousePressEvent(QMouseEvent* event) {
+    event->accept(); // not for the view
+    m_held = event->button() == Qt::LeftButton;
+    m_grip = event->position().toPoint();
+}
+
+void ProbePanel::mouseMoveEvent(QMouseEvent* event) {
+    event->accept();
+    if (!m_held) return;
+    move(mapToParent(event->position().toPoint() - m_grip));
+    keepInView();
+}
+
+void ProbePanel::mouseReleaseEvent(QMouseEvent* event) {
+    event->accept();
+    m_held = false;
+}
+
+void ProbePanel::wheelEvent(QWheelEvent* event) { event->accept(); }
+
+void ProbePanel::keyPressEvent(QKeyEvent* event) {
+    if (event->key() == Qt::Key_Escape) return m_probe.clear();
+    QFrame::keyPressEvent(event);
+}
+
+bool ProbePanel::eventFilter(QObject* watched, QEvent* event) {
+    if (m_probe.isActive()) {
+        if (event->type() == QEvent::Resize) keepInView();
+        if (event->type() == QEvent::MouseButtonDblClick) m_probe.clear(); // it fits the view
+        if (event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape &&
+            !m_view.overlay().isDragging()) {
+            m_probe.clear();
+            return true;
+        }
+    }
+    return QFrame::eventFilter(watched, event);
+}
+
+void addProbe(Workbench& bench, VolumeView& view) {
+    auto* probe = new ProbeController(bench);
+    probe->addActions();
+    view.overlay().add(std::make_unique<ProbeLayer>(*probe));
+    new ProbePanel(bench, *probe, view);
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,443 @@
+#include "panels/refine_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QHelpEvent>
+#include <QLabel>
+#include <QPainter>
+#include <QPainterPath>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QToolButton>
+#include <QToolTip>
+#include <QVBoxLayout>
+
+#include "number_box.h"
+#include "number_text.h"
+#include "panel.h"
+#include "panels/scrolled.h"
+#include "theme.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kRest = 300; // milliseconds without a change before the methods are compared
+constexpr double kMargin = 10;
+
+QString shortNumber(double value) { return QString::number(value, 'g', 3).replace('-', QChar(0x2212)); }
+
+QColor translucent(QColor color, double alpha) {
+    color.setAlphaF(static_cast<float>(alpha));
+    return color;
+}
+
+QFont smallFont(const QFont& font) {
+    QFont small = font;
+    small.setPointSizeF(small.pointSizeF() * 0.85);
+    return small;
+}
+
+} // namespace
+
+PanelInfo refinePanel() {
+    return {.id = "refine",
+            .title = QObject::tr("Refinement"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = true,
+            .tabOf = "features",
+            .size = 0,
+            .keys = QKeySequence("Ctrl+Shift+R"),
+            .tip = QObject::tr("Opacities by entropy: how, for what, and what came of it"),
+            .make = [](Workbench& bench, QWidget* parent) { return new RefinePanel(bench, parent); }};
+}
+
+void EdgeBars::setBars(std::vector<Bar> bars) {
+    m_bars = std::move(bars);
+    update();
+}
+
+QRectF EdgeBars::cell(std::size_t i) const {
+    const double n = static_cast<double>(std::max<std::size_t>(1, m_bars.size()));
+    const double each = (width() - 2 * kMargin) / n;
+    return {kMargin + static_cast<double>(i) * each, 4, each, height() - 10.0};
+}
+
+void EdgeBars::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.fillRect(rect(), theme::kPanel);
+    double most = 0, sum = 0, participating = 0;
+    for (const Bar& bar : m_bars) {
+        most = std::max({most, bar.weight, bar.before.value_or(0)});
+        if (!bar.participates) continue;
+        sum += bar.weight;
+        ++participating;
+    }
+    painter.setPen(theme::kLine);
+    painter.drawLine(QPointF(kMargin, height() - 6), QPointF(width() - kMargin, height() - 6));
+    if (!(most > 0)) return;
+    painter.setRenderHint(QPainter::Antialiasing);
+    const auto heightOf = [&](double weight, const QRectF& r) { return std::sqrt(weight / most) * r.height(); };
+    for (std::size_t i = 0; i < m_bars.size(); ++i) {
+        const Bar& bar = m_bars[i];
+        const QRectF r = cell(i);
+        const double gap = r.width() > 6 ? 1 : 0;
+        if (bar.before) {
+            const double h = heightOf(*bar.before, r);
+            const QRectF pale(r.left() + gap, r.bottom() - h, r.width() - 2 * gap, h);
+            painter.fillRect(pale, translucent(bar.color, 0.25));
+            painter.setPen(QPen(translucent(bar.color, 0.6), 1));
+            painter.drawLine(pale.topLeft(), pale.topRight());
+        }
+        const double h = heightOf(bar.weight, r), in = bar.before ? 0.22 * r.width() : gap;
+        painter.fillRect(QRectF(r.left() + in, r.bottom() - h, r.width() - 2 * in, h),
+                         translucent(bar.color, bar.participates ? 1 : 0.45));
+    }
+    if (participating > 0) { // what all of them would be, were they equal
+        const QRectF r = cell(0);
+        const double y = r.bottom() - heightOf(sum / participating, r);
+        painter.setPen(QPen(theme::kText, 1, Qt::DotLine));
+        painter.drawLine(QPointF(kMargin, y), QPointF(width() - kMargin, y));
+    }
+}
+
+bool EdgeBars::event(QEvent* event) {
+    if (event->type() != QEvent::ToolTip) return QWidget::event(event);
+    const auto* help = static_cast<QHelpEvent*>(event);
+    QString text = tr("Weight of each edge of the curve: the information −α p ln p between two points.\n"
+                      "Pale: before the refinement; line: the mean. Heights are square roots");
+    for (std::size_t i = 0; i < m_bars.size(); ++i) {
+        const QRectF r = cell(i);
+        if (help->pos().x() < r.left() || help->pos().x() >= r.right()) continue;
+        const Bar& bar = m_bars[i];
+        text = tr("%1\nweight %2").arg(bar.text, shortNumber(bar.weight));
+        if (bar.before) text += tr(", before %1").arg(shortNumber(*bar.before));
+        if (!bar.participates) text += tr("\nboth ends are fixed: refinement leaves it out");
+    }
+    QToolTip::showText(help->globalPos(), text, this);
+    return true;
+}
+
+void EnergyPlot::setCurve(std::vector<double> energies, int iterations, bool current) {
+    m_energies = std::move(energies);
+    m_iterations = iterations;
+    m_current = current;
+    update();
+}
+
+void EnergyPlot::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.fillRect(rect(), theme::kPanel);
+    std::vector<double> logs;
+    double least = 0;
+    for (const double e : m_energies)
+        if (e > 0) least = least == 0 ? e : std::min(least, e);
+    if (least == 0) return;
+    for (const double e : m_energies) logs.push_back(std::log10(std::max(e, least)));
+    const auto [lo, hi] = std::minmax_element(logs.begin(), logs.end());
+    const double bottom = *lo, span = std::max(1e-6, *hi - *lo);
+    painter.setFont(smallFont(font()));
+    const QFontMetricsF metrics(painter.font());
+    const QRectF plot(kMargin, 4 + metrics.height(), width() - 2 * kMargin, height() - 8 - 2 * metrics.height());
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setPen(theme::kLine);
+    painter.drawLine(plot.bottomLeft(), plot.bottomRight());
+    QPolygonF line;
+    for (std::size_t i = 0; i < logs.size(); ++i)
+        line << QPointF(plot.left() + static_cast<double>(i) /
+                                          std::max<double>(1, static_cast<double>(logs.size()) - 1) * plot.width(),
+                        plot.bottom() - (logs[i] - bottom) / span * plot.height());
+    painter.setPen(QPen(m_current ? theme::kAccent : theme::kFaint, 1.5));
+    painter.drawPolyline(line);
+    painter.setPen(theme::kFaint);
+    painter.drawText(QRectF(plot.left(), 2, plot.width(), metrics.height()), Qt::AlignLeft,
+                     shortNumber(m_energies.front()));
+    const QString count = tr("%L1 iterations").arg(m_iterations);
+    painter.drawText(QRectF(plot.left(), plot.bottom() + 2, plot.width(), metrics.height()), Qt::AlignRight, count);
+    painter.drawText(QRectF(plot.left(), plot.bottom() + 2, plot.width(), metrics.height()), Qt::AlignLeft,
+                     tr("least %1").arg(shortNumber(least)));
+}
+
+RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_refine(new QPushButton(tr("&Refine"), this)),
+      m_pair(new QPushButton(tr("&Side by side…"), this)), m_live(new QCheckBox(tr("Li&ve"), this)),
+      m_auto(new QCheckBox(tr("auto"), this)), m_ghost(new QCheckBox(tr("&Ghost of the curve"), this)),
+      m_priority(new QLabel(this)), m_nothing(new QToolButton(this)), m_method(new QComboBox(this)),
+      m_down(new QDoubleSpinBox(this)), m_up(new QDoubleSpinBox(this)), m_limit(new QSpinBox(this)),
+      m_words(new QLabel(this)), m_figures(new QLabel(this)), m_comparison(new QLabel(this)),
+      m_edges(new EdgeBars(this)), m_plot(new EnergyPlot(this)),
+      m_compare([](const Comparing& task,
+                   const JobControl& job) { return compareMethods(*task.histogram, task.start, task.options, job); },
+                [this](const Comparing&, RefineComparison& answer) {
+                    const double greedy = answer.greedyEnergy, exact = answer.exactEnergy;
+                    const double less = greedy > 0 ? 100 * (1 - exact / greedy) : 0;
+                    m_comparison->setText(
+                        less < 0.01 ? tr("Exact and greedy come to the same at equal total opacity.")
+                                    : tr("At equal total opacity the exact energy is %1 % lower than "
+                                         "greedy's: %2, not %3.")
+                                          .arg(QString::number(less, 'g', 3), shortNumber(exact), shortNumber(greedy)));
+                }) {
+    setObjectName("refinePanel");
+    m_refine->setObjectName("refineNowButton");
+    m_refine->setToolTip(tr("Refine the opacities with these settings (Ctrl+R)"));
+    m_pair->setObjectName("sideBySideButton");
+    m_pair->setToolTip(tr("The picture before and after the latest refinement"));
+    m_live->setObjectName("liveRefineCheck");
+    m_live->setToolTip(tr("Refine after every edit: what you move stays where you put it,\n"
+                          "the other points give way evenly, so that the total opacity stays"));
+    m_auto->setObjectName("refineStepUpAuto");
+    m_auto->setToolTip(tr("From the step down and the ratio of the two points' significances (thesis 3.4.2)"));
+    m_ghost->setObjectName("ghostCheck");
+    m_ghost->setToolTip(tr("Dashed, behind the curve: what it was before the latest refinement"));
+    m_priority->setObjectName("refinePriority");
+    m_priority->setToolTip(tr("What becomes more opaque, relative to everything else. Click on the palette below the\n"
+                              "curve for a value, or select a part of the picture"));
+    m_nothing->setObjectName("clearPriorityButton");
+    m_nothing->setText(tr("Clear"));
+    m_nothing->setToolTip(tr("Prioritize nothing; opacities stay"));
+    m_method->setObjectName("refineMethodCombo");
+    m_method->addItem(tr("Greedy, as in the thesis"), static_cast<int>(RefineMethod::Greedy));
+    m_method->addItem(tr("Exact"), static_cast<int>(RefineMethod::Exact));
+    m_method->setToolTip(tr("Greedy: one opacity down, one up, while that helps (thesis 3.4.2).\n"
+                            "Exact: the least variance of edge weights at constant total opacity"));
+    for (const auto& [box, name, tip] :
+         {std::tuple{m_down, "refineStepDown", tr("Taken off an opacity in each iteration, in 1/256 of full opacity")},
+          std::tuple{m_up, "refineStepUp", tr("Added to an opacity in each iteration, in 1/256 of full opacity")}}) {
+        box->setObjectName(name);
+        box->setToolTip(tip);
+        box->setDecimals(3);
+        box->setRange(0.001, 256);
+        box->setSingleStep(0.25);
+        box->setSuffix(tr(" / 256"));
+        box->setKeyboardTracking(false);
+        connect(box, &QDoubleSpinBox::valueChanged, this, &RefinePanel::editSettings);
+    }
+    m_limit->setObjectName("refineLimit");
+    m_limit->setRange(0, 1'000'000);
+    m_limit->setGroupSeparatorShown(true);
+    m_limit->setSingleStep(500);
+    m_limit->setKeyboardTracking(false);
+    m_limit->setToolTip(tr("Iterations at most; greedy stops before where nothing improves any more"));
+    m_edges->setObjectName("refineEdges");
+    m_plot->setObjectName("refineCurve");
+    m_plot->setToolTip(tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
+    const std::pair<QLabel*, const char*> labels[] = {
+        {m_words, "refineWords"}, {m_figures, "refineFigures"}, {m_comparison, "refineComparison"}};
+    for (const auto& [label, name] : labels) {
+        label->setObjectName(name);
+        label->setWordWrap(true);
+        label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred); // what is said makes nothing wider
+    }
+    m_priority->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    m_words->setToolTip(tr("Mean opacity of each feature, before and after; the largest changes first"));
+    QFont bold = font();
+    bold.setBold(true);
+    m_words->setFont(bold);
+    m_comparison->setStyleSheet(QStringLiteral("color: %1").arg(theme::kFaint.name()));
+
+    auto* content = new QWidget;
+    auto* column = new QVBoxLayout(content);
+    column->setContentsMargins(10, 8, 10, 8);
+    column->setSpacing(7);
+    auto* head = new QHBoxLayout;
+    head->addWidget(m_refine, 1);
+    head->addWidget(m_live);
+    column->addLayout(head);
+    auto* priority = new QHBoxLayout;
+    priority->addWidget(m_priority, 1);
+    priority->addWidget(m_nothing);
+    column->addLayout(priority);
+    auto* selecting = new QHBoxLayout;
+    for (const auto& [id, text] :
+         {std::pair{"rectangleAction", tr("Select rectangle")}, std::pair{"lassoAction", tr("Select with lasso")}}) {
+        QAction* action = m_bench.actions().find(id);
+        auto* button = new QToolButton(this);
+        button->setObjectName(QString(id).replace("Action", "Button"));
+        button->setText(text);
+        button->setToolTip(action->toolTip());
+        button->setCheckable(true);
+        button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+        connect(button, &QToolButton::clicked, action, &QAction::trigger);
+        connect(action, &QAction::changed, button, [button, action] {
+            button->setChecked(action->isChecked());
+            button->setEnabled(action->isEnabled());
+        });
+        selecting->addWidget(button, 1);
+    }
+    column->addLayout(selecting);
+    auto* form = new QFormLayout;
+    form->setVerticalSpacing(5);
+    form->addRow(tr("&Method"), m_method);
+    auto* up = new QHBoxLayout;
+    up->addWidget(m_up, 1);
+    up->addWidget(m_auto);
+    form->addRow(tr("Step &down"), m_down);
+    form->addRow(tr("Step up"), up);
+    form->addRow(tr("At most"), m_limit);
+    column->addLayout(form);
+    column->addWidget(m_words);
+    column->addWidget(m_figures);
+    column->addWidget(m_edges);
+    column->addWidget(m_plot);
+    column->addWidget(m_comparison);
+    auto* foot = new QHBoxLayout;
+    foot->addWidget(m_ghost, 1);
+    foot->addWidget(m_pair);
+    column->addLayout(foot);
+    column->addStretch(1);
+    fillScrolled(this, content);
+
+    const auto triggers = [this](QAbstractButton* button, const char* action) {
+        connect(button, &QAbstractButton::clicked, this, [this, action] { m_bench.actions().find(action)->trigger(); });
+    };
+    triggers(m_refine, "refineAction");
+    triggers(m_live, "liveRefineAction");
+    triggers(m_pair, "sideBySideAction");
+    triggers(m_ghost, "ghostAction");
+    triggers(m_nothing, "prioritizeNothingAction");
+    connect(m_method, &QComboBox::activated, this, &RefinePanel::editSettings);
+    connect(m_auto, &QCheckBox::clicked, this, &RefinePanel::editSettings);
+    connect(m_limit, &QSpinBox::valueChanged, this, &RefinePanel::editSettings);
+    m_wait.setSingleShot(true);
+    m_wait.setInterval(kRest);
+    connect(&m_wait, &QTimer::timeout, this, &RefinePanel::compare);
+    RefineController& refining = m_bench.refining();
+    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.volume != after.volume || !before.session.refine.isSame(after.session.refine)) follow();
+    });
+    connect(&refining, &RefineController::refined, this, &RefinePanel::follow);
+    connect(&refining, &RefineController::busyChanged, this, &RefinePanel::showPriority);
+    connect(&refining, &RefineController::ghostChanged, this, &RefinePanel::follow);
+    connect(&m_bench, &Workbench::readOnlyChanged, this, &RefinePanel::follow);
+    follow();
+}
+
+void RefinePanel::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    showOutcome(); // while hidden it has followed nothing
+}
+
+void RefinePanel::editSettings() {
+    if (m_showing) return;
+    QObject* const by = sender();
+    m_bench.store().edit(tr("Refinement settings"), "refine-settings", [&](Session& session) {
+        session.refine.edit([&](RefineSettings& r) {
+            // Only the box that was edited counts: the others show rounded numbers.
+            if (by == m_method) r.method = static_cast<RefineMethod>(m_method->currentData().toInt());
+            if (by == m_down) r.stepDown = m_down->value() / 256;
+            if (by == m_up) r.stepUp = m_up->value() / 256;
+            if (by == m_auto) r.stepUp = m_auto->isChecked() ? std::nullopt : std::optional(r.stepDown);
+            if (by == m_limit) r.maxIterations = m_limit->value();
+        });
+    });
+    showSettings(); // also where nothing has come of it
+}
+
+void RefinePanel::follow() {
+    showSettings();
+    showPriority();
+    showOutcome();
+}
+
+void RefinePanel::showSettings() {
+    const RefineSettings& r = *m_bench.store().session().refine;
+    m_showing = true;
+    m_live->setChecked(r.live);
+    m_method->setCurrentIndex(m_method->findData(static_cast<int>(r.method)));
+    showNumber(*m_down, 256 * r.stepDown);
+    showNumber(*m_up, 256 * r.stepUp.value_or(r.stepDown));
+    m_auto->setChecked(!r.stepUp);
+    if (m_limit->value() != r.maxIterations) m_limit->setValue(r.maxIterations);
+    m_ghost->setChecked(m_bench.refining().isGhostShown());
+    m_showing = false;
+    const bool ready = m_bench.store().hasVolume() && !m_bench.isReadOnly(), greedy = r.method == RefineMethod::Greedy;
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_refine, m_live, m_method}) widget->setEnabled(ready);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_down, m_auto, m_limit})
+        widget->setEnabled(ready && greedy);
+    m_up->setEnabled(ready && greedy && r.stepUp);
+    m_pair->setEnabled(m_bench.refining().latest() != nullptr);
+}
+
+void RefinePanel::showPriority() {
+    const RefineSettings& r = *m_bench.store().session().refine;
+    QString text = tr("Prioritized: nothing");
+    if (m_bench.refining().isBusy()) {
+        text = tr("Looking at the region…");
+    } else if (r.intensity && m_bench.store().hasVolume()) {
+        const Volume& volume = *m_bench.scene().volume;
+        text = tr("Prioritized: value %1")
+                   .arg(numberText(volume.valueOfIntensity(*r.intensity), volume.range().hi - volume.range().lo));
+    } else if (r.region) {
+        text = tr("Prioritized: a region");
+    }
+    m_priority->setText(text);
+    m_nothing->setEnabled((r.intensity || r.region) && !m_bench.isReadOnly());
+}
+
+void RefinePanel::showOutcome() {
+    if (!isVisible()) return;
+    m_compare.cancel();
+    m_comparison->clear();
+    const Scene& scene = m_bench.scene();
+    if (!scene.volume || !scene.histogram) {
+        m_edges->setBars({});
+        m_plot->setCurve({}, 0, true);
+        m_words->clear();
+        m_figures->clear();
+        return;
+    }
+    const Refinement* now = m_bench.refining().current();
+    const Refinement* any = m_bench.refining().latest();
+    const std::vector<double> weights =
+        now != nullptr ? now->result.edgesAfter
+                       : edgeWeights(*scene.histogram, scene.tf, m_bench.refining().options().priority);
+    const std::vector<ControlPoint> points = scene.tf.pointsWithEnds();
+    const TfSampler sampler(scene.tf);
+    const double span = scene.volume->range().hi - scene.volume->range().lo;
+    const auto value = [&](double x) { return numberText(scene.volume->valueOfIntensity(x), span); };
+    std::vector<EdgeBars::Bar> bars;
+    for (std::size_t i = 0; i < weights.size() && i + 1 < points.size(); ++i) {
+        EdgeBars::Bar bar;
+        bar.weight = weights[i];
+        if (now != nullptr) bar.before = now->result.edgesBefore[i];
+        bar.color = colorFromRgb(sampler.color((points[i].x + points[i + 1].x) / 2));
+        bar.participates = !points[i].fixed || !points[i + 1].fixed;
+        bar.text = tr("values %1 to %2").arg(value(points[i].x), value(points[i + 1].x));
+        bars.push_back(std::move(bar));
+    }
+    m_edges->setBars(std::move(bars));
+    m_words->setEnabled(now != nullptr);
+    m_figures->setEnabled(now != nullptr);
+    if (any == nullptr) {
+        m_words->setText(tr("Not refined yet."));
+        m_figures->setText(tr("Even edge weights mean: every part of the curve tells as much as any other."));
+        m_plot->setCurve({}, 0, true);
+        return;
+    }
+    m_words->setText(any->words);
+    const RefineResult& result = any->result;
+    QString evenness = evennessText(result.energyMovableBefore, result.energyMovableAfter);
+    evenness[0] = evenness[0].toUpper();
+    m_figures->setText(
+        tr("%1: energy %2, from %3, in %L4 iterations%5")
+            .arg(evenness, shortNumber(result.energyMovableAfter), shortNumber(result.energyMovableBefore))
+            .arg(result.iterations)
+            .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")));
+    m_plot->setCurve(result.energyCurve, result.iterations, now != nullptr);
+    if (now != nullptr) m_wait.start();
+}
+
+void RefinePanel::compare() {
+    const Refinement* now = m_bench.refining().current();
+    if (now == nullptr || m_bench.store().isPreviewing() || !isVisible() || !m_bench.scene().histogram) return;
+    m_compare.start({m_bench.scene().histogram, now->start, now->options}, tr("the comparison"));
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,105 @@
+// What the entropy refiner does: its settings, what it brings out, and what came of it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <QTimer>
+#include <QWidget>
+
+#include "controllers/refine_controller.h"
+
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QPushButton;
+class QSpinBox;
+class QToolButton;
+
+namespace pellucid::gui {
+
+/// One bar per edge of the curve: its weight before the refinement (pale) and now. Heights are square roots.
+class EdgeBars : public QWidget {
+    Q_OBJECT
+public:
+    struct Bar {
+        double weight = 0;            ///< now
+        std::optional<double> before; ///< empty: nothing was refined
+        QColor color;
+        bool participates = true; ///< one of its ends can move
+        QString text;             ///< "values −20 to 40"
+    };
+    using QWidget::QWidget;
+    void setBars(std::vector<Bar> bars);
+    const std::vector<Bar>& bars() const { return m_bars; }
+
+    QSize sizeHint() const override { return {260, 96}; }
+    QSize minimumSizeHint() const override { return {120, 80}; }
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+    bool event(QEvent* event) override;
+
+private:
+    QRectF cell(std::size_t i) const;
+    std::vector<Bar> m_bars;
+};
+
+/// The energy over the iterations, logarithmic.
+class EnergyPlot : public QWidget {
+    Q_OBJECT
+public:
+    using QWidget::QWidget;
+    void setCurve(std::vector<double> energies, int iterations, bool current);
+
+    QSize sizeHint() const override { return {260, 96}; }
+    QSize minimumSizeHint() const override { return {120, 80}; }
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+
+private:
+    std::vector<double> m_energies;
+    int m_iterations = 0;
+    bool m_current = true;
+};
+
+class RefinePanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit RefinePanel(Workbench& bench, QWidget* parent = nullptr);
+
+protected:
+    void showEvent(QShowEvent* event) override;
+
+private:
+    struct Comparing {
+        std::shared_ptr<const Histogram> histogram;
+        TransferFunction start;
+        RefineOptions options;
+    };
+    void editSettings();
+    void follow();
+    void showSettings();
+    void showPriority();
+    void showOutcome();
+    void compare();
+
+    Workbench& m_bench;
+    QPushButton *m_refine, *m_pair;
+    QCheckBox *m_live, *m_auto, *m_ghost;
+    QLabel* m_priority;
+    QToolButton* m_nothing;
+    QComboBox* m_method;
+    QDoubleSpinBox *m_down, *m_up;
+    QSpinBox* m_limit;
+    QLabel *m_words, *m_figures, *m_comparison;
+    EdgeBars* m_edges;
+    EnergyPlot* m_plot;
+    bool m_showing = false; ///< the boxes show, they do not edit
+    QTimer m_wait;          ///< before the methods are compared
+    Job<Comparing, RefineComparison> m_compare;
+};
+
+} // namespace pellucid::gui

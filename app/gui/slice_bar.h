@@ -1,0 +1,32 @@
+// Above the views, while slices are shown: how slices look.
+#pragma once
+
+#include <QWidget>
+
+class QDoubleSpinBox;
+class QSlider;
+class QToolButton;
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// How strong the transfer function's colours are, and the window of grey in data units.
+class SliceBar : public QWidget {
+    Q_OBJECT
+public:
+    explicit SliceBar(Workbench& bench, QWidget* parent = nullptr);
+
+private:
+    void follow();
+    void editStrength(int percent);
+    void editWindow();
+
+    Workbench& m_bench;
+    QSlider* m_strength;
+    QDoubleSpinBox *m_lo, *m_hi;
+    QToolButton* m_reset;
+    bool m_showing = false; ///< the controls show, they do not edit
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,127 @@
+// One slice beside the picture, and the hands that move through it.
+#pragma once
+
+#include <optional>
+
+#include <QElapsedTimer>
+#include <QImage>
+#include <QWidget>
+
+#include "jobs/job.h"
+#include "render/slice.h"
+#include "store/session_store.h"
+
+class QToolButton;
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// Of the crosshair's lines, the titles and the planes in the volume: one for each world axis that a slice is
+/// perpendicular to. Colour-blind eyes can tell them apart.
+QColor slicePlaneColor(int worldAxis);
+
+/// The slice of the store's volume that is perpendicular to one world axis (nearly, where the volume lies obliquely),
+/// through the crosshair. Zoom and pan are its own and no part of the session. Drawn off the window's thread; coarse
+/// while it changes where that takes long.
+class SlicePane : public QWidget {
+    Q_OBJECT
+public:
+    /// `lane` draws the slices of all panes, one after the other; it outlives this.
+    SlicePane(Workbench& bench, int worldAxis, Lane& lane, QWidget* parent = nullptr);
+
+    int worldAxis() const { return m_worldAxis; }
+    int axis() const; ///< the index axis; there is a volume
+    /// What is shown, in logical pixels of this widget.
+    SlicePlane plane() const;
+    /// What is drawn is of the present state, and as good as it gets; or nothing is wanted.
+    bool isComplete() const { return isHidden() || m_complete; }
+
+    /// What lies under the mouse.
+    struct Hovered {
+        Vec3 voxel{0}, world{0};     ///< voxel coordinates, and the same in the world
+        std::optional<double> value; ///< of the nearest voxel, data units; empty where it is invalid
+    };
+    const std::optional<Hovered>& hovered() const { return m_hovered; }
+    QString hoverText() const; ///< value, feature, place; empty where nothing is
+
+    /// Where the right, left, upper and lower edge lie: in the patient (L R A P S I), else along the file's axes.
+    QStringList edgeLetters() const;
+
+    void fit();
+    void setMaximized(bool on); ///< how the button looks
+    QSize minimumSizeHint() const override { return {110, 90}; }
+
+Q_SIGNALS:
+    void frameShown();     ///< isComplete() may have changed
+    void maximizeWanted(); ///< alone, or back
+
+protected:
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void leaveEvent(QEvent* event) override;
+    void focusInEvent(QFocusEvent* event) override;
+    void focusOutEvent(QFocusEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+    void showEvent(QShowEvent* event) override;
+    void hideEvent(QHideEvent* event) override;
+    void paintEvent(QPaintEvent* event) override;
+
+private:
+    enum class Motion { None, Crosshair, Pan, Window };
+    struct Request {
+        std::shared_ptr<const Volume> volume;
+        TransferFunction tf;
+        SlicePlane plane; ///< in device pixels
+        SliceSettings settings;
+        bool coarse = false; ///< at half the resolution
+        bool operator==(const Request&) const = default;
+    };
+    struct Drawn {
+        QImage image;
+        double seconds = 0;
+    };
+    static Drawn drawn(const Request& request);
+
+    void follow(const Scene& before, const Scene& after);
+    void request();
+    void show(const Request& request, const Drawn& drawn);
+    SlicePlane planeOfSize(int width, int height) const;
+    void zoomAbout(const QPointF& point, double factor);
+    void pan(const QPointF& way);
+    void step(int slices);
+    void moveCrosshairTo(const QPointF& point);
+    void dragWindow(const QPointF& way);
+    void hover(const std::optional<QPointF>& point);
+    void cancelDrag();
+    bool onTitle(const QPointF& point) const;
+    QString titleText() const;
+    void paintCrosshair(QPainter& painter, const SlicePlane& plane) const;
+    void paintLetters(QPainter& painter) const;
+    void paintScale(QPainter& painter, const SlicePlane& plane) const;
+
+    Workbench& m_bench;
+    const int m_worldAxis;
+    QToolButton* m_maximize;
+    double m_zoom = 1;            ///< 1: the whole plane
+    std::optional<Vec2> m_center; ///< of what is shown, as SliceRect counts; empty: of the plane
+    Request m_wanted;
+    bool m_complete = false, m_slow = false;
+    QImage m_image;
+    Motion m_motion = Motion::None;
+    Qt::MouseButton m_button = Qt::NoButton;
+    bool m_moved = false;
+    QPointF m_pressed, m_last;
+    std::optional<Vec3> m_crosshairBefore; ///< of the drag, or of the first click of two
+    std::optional<ValueRange> m_windowBefore;
+    int m_wheel = 0; ///< eighths of degrees that are no whole notch yet
+    std::optional<QPointF> m_mouse;
+    std::optional<Hovered> m_hovered;
+    Job<Request, Drawn> m_job; // last: it ends before the rest goes
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,363 @@
+#include "optimize/first_sight.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "render/ray_box.h"
+#include "tf/opacity.h"
+#include "volume/noise.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kBins = 1024;        // of intensity
+constexpr int kMostSteps = 400;    // along the diagonal of the box
+constexpr int kLanes = 8;          // transfer functions that are looked at together
+constexpr double kLeastStep = 0.5; // d0
+constexpr double kMeets = 0.5;     // d0 of path through a feature
+constexpr double kSolid = 0.95, kEmpty = 0.05;
+
+int binOf(double s) { return std::min(static_cast<int>(s * kBins), kBins - 1); }
+double intensityOf(int bin) { return (bin + 0.5) / kBins; }
+
+/// Trilinear, of intensities that the window has clamped; empty where more than half of it is invalid.
+template <class T>
+class Sampler {
+public:
+    Sampler(const Volume& volume, const T* values)
+        : m_values(values), m_dims(volume.dims()), m_lo(volume.range().lo),
+          m_scale(volume.range().lo < volume.range().hi ? 1 / (volume.range().hi - volume.range().lo) : 0),
+          m_missing(volume.missing()) {}
+
+    std::optional<double> at(const Vec3& voxel) const {
+        std::size_t base[3], step[3];
+        double fraction[3];
+        std::size_t stride = 1;
+        for (int a = 0; a < 3; ++a) {
+            const double p = std::clamp(voxel[a], 0.0, static_cast<double>(m_dims[a] - 1));
+            const int low = std::min(static_cast<int>(p), std::max(0, m_dims[a] - 2));
+            fraction[a] = p - low;
+            base[a] = static_cast<std::size_t>(low) * stride;
+            step[a] = m_dims[a] == 1 ? 0 : stride;
+            stride *= static_cast<std::size_t>(m_dims[a]);
+        }
+        double sum = 0, weights = 0;
+        for (int c = 0; c < 8; ++c) {
+            std::size_t i = 0;
+            double w = 1;
+            for (int a = 0; a < 3; ++a) {
+                const bool upper = (c >> a) & 1;
+                w *= upper ? fraction[a] : 1 - fraction[a];
+                i += base[a] + (upper ? step[a] : 0);
+            }
+            const double v = static_cast<double>(m_values[i]);
+            if (!std::isfinite(v) || (m_missing && v == *m_missing)) continue;
+            sum += w * std::clamp((v - m_lo) * m_scale, 0.0, 1.0);
+            weights += w;
+        }
+        if (weights < 0.5) return {};
+        return std::min(sum / weights, 1.0);
+    }
+
+private:
+    const T* m_values;
+    Int3 m_dims;
+    double m_lo, m_scale;
+    std::optional<double> m_missing;
+};
+
+} // namespace
+
+RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const View& view, int pixels,
+                     const JobControl& job)
+    : m_features(tf.features.size()) {
+    for (int bin = 0; bin < kBins; ++bin) m_featureOfBin.push_back(featureAt(tf.features, intensityOf(bin)));
+    const Geometry& geometry = volume.geometry();
+    const double d0 = geometry.d0();
+    m_stepInD0 = std::max(kLeastStep, 2 * geometry.radius() / d0 / kMostSteps);
+    const double step = m_stepInD0 * d0;
+    const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, geometry);
+
+    std::vector<std::vector<std::uint16_t>> rows(static_cast<std::size_t>(pixels) *
+                                                 static_cast<std::size_t>(pixels));
+    std::visit(
+        [&](const auto& samples) {
+            const Sampler sampler(volume, samples.data());
+            parallelFor(static_cast<std::size_t>(pixels), [&](std::size_t row) {
+                job.throwIfStopped();
+                for (int column = 0; column < pixels; ++column) {
+                    const std::size_t pixel = row * static_cast<std::size_t>(pixels) + static_cast<std::size_t>(column);
+                    const Ray ray = inVoxels(
+                        pixelRay(view.camera, column + 0.5, static_cast<double>(row) + 0.5, pixels, pixels), geometry);
+                    RayInterval inside = intersectBox(ray, geometry);
+                    inside.enter = std::max(inside.enter, 0.0);
+                    cut(inside, ray, planes);
+                    // Each ray begins elsewhere, so that steps of several voxels hit thin things on average as often
+                    // as their thickness says.
+                    const double first = static_cast<double>(hashOf(column, static_cast<int>(row), 0, 1) % 1024) / 1024;
+                    for (double t = inside.enter + first * step; t < inside.exit; t += step)
+                        if (const auto s = sampler.at(ray.origin + t * ray.direction))
+                            if (const int bin = binOf(*s); m_featureOfBin[static_cast<std::size_t>(bin)] >= 0)
+                                rows[pixel].push_back(static_cast<std::uint16_t>(bin));
+                }
+            });
+        },
+        volume.samples());
+
+    m_begins.push_back(0);
+    for (const auto& bins : rows) {
+        std::vector<int> steps(m_features, 0);
+        for (const std::uint16_t bin : bins) ++steps[static_cast<std::size_t>(m_featureOfBin[bin])];
+        const auto met = [&](int n) { return n * m_stepInD0 >= kMeets; };
+        if (std::none_of(steps.begin(), steps.end(), met)) continue;
+        m_bins.insert(m_bins.end(), bins.begin(), bins.end());
+        m_begins.push_back(static_cast<std::uint32_t>(m_bins.size()));
+        for (const int n : steps) m_met.push_back(met(n));
+    }
+}
+
+int RayBundle::raysOf(int feature) const {
+    int count = 0;
+    for (int r = 0; r < rays(); ++r) count += meets(r, feature);
+    return count;
+}
+
+std::vector<RayBundle::Appearance> RayBundle::appearances(const std::vector<TransferFunction>& tfs) const {
+    std::vector<Appearance> all(tfs.size());
+    const auto rayCount = static_cast<std::size_t>(rays());
+    for (std::size_t first = 0; first < tfs.size(); first += kLanes) {
+        const std::size_t lanes = std::min<std::size_t>(kLanes, tfs.size() - first);
+        std::vector<std::array<float, kLanes>> opacity(kBins, std::array<float, kLanes>{});
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const TfSampler sampler(tfs[first + lane]);
+            for (int bin = 0; bin < kBins; ++bin)
+                opacity[static_cast<std::size_t>(bin)][lane] =
+                    static_cast<float>(opacityOfStep(sampler.opacity(intensityOf(bin)), m_stepInD0));
+        }
+        // A slot per block of rays, added in order: the same bits for any number of threads.
+        struct Sums {
+            std::vector<std::array<double, kLanes>> features;
+            std::array<double, kLanes> alpha{}, translucent{};
+        };
+        constexpr std::size_t kBlock = 128;
+        std::vector<Sums> blocks((rayCount + kBlock - 1) / kBlock);
+        parallelFor(blocks.size(), [&](std::size_t b) {
+            Sums& sums = blocks[b];
+            sums.features.assign(m_features, {});
+            std::vector<std::array<float, kLanes>> parts(m_features);
+            for (std::size_t ray = b * kBlock; ray < std::min(rayCount, (b + 1) * kBlock); ++ray) {
+                parts.assign(m_features, {});
+                std::array<float, kLanes> light;
+                light.fill(1.0f);
+                for (std::uint32_t i = m_begins[ray]; i < m_begins[ray + 1]; ++i) {
+                    const auto& a = opacity[m_bins[i]];
+                    auto& part = parts[static_cast<std::size_t>(m_featureOfBin[m_bins[i]])];
+                    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                        const float v = light[lane] * a[lane];
+                        part[lane] += v;
+                        light[lane] -= v;
+                    }
+                }
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    for (std::size_t f = 0; f < m_features; ++f)
+                        sums.features[f][lane] += static_cast<double>(parts[f][lane]);
+                    const double alpha = 1.0 - static_cast<double>(light[lane]);
+                    sums.alpha[lane] += alpha;
+                    sums.translucent[lane] += alpha > kEmpty && alpha < kSolid;
+                }
+            }
+        });
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            Appearance& a = all[first + lane];
+            a.covers.assign(m_features, 0.0);
+            for (const Sums& sums : blocks) {
+                for (std::size_t f = 0; f < m_features; ++f) a.covers[f] += sums.features[f][lane];
+                a.alpha += sums.alpha[lane];
+                a.translucent += sums.translucent[lane];
+            }
+            a.shares.assign(m_features, 0.0);
+            for (std::size_t f = 0; f < m_features; ++f) {
+                if (a.alpha > 0) a.shares[f] = a.covers[f] / a.alpha;
+                a.covers[f] /= std::max(1, raysOf(static_cast<int>(f)));
+            }
+            a.alpha /= std::max<double>(1, static_cast<double>(rayCount));
+            a.translucent /= std::max<double>(1, static_cast<double>(rayCount));
+        }
+    }
+    return all;
+}
+
+std::vector<double> importanceOf(const Proposal& proposal) {
+    double common = 0, rare = 1, farthest = 0;
+    for (const ProposedFeature& f : proposal.features) {
+        common = std::max(common, f.share);
+        rare = std::min(rare, std::max(f.share, 1e-6));
+        farthest = std::max(farthest, std::abs(f.mode));
+    }
+    std::vector<double> importance;
+    for (const ProposedFeature& f : proposal.features) {
+        const double rarity =
+            common > 1.5 * rare ? std::log(common / std::max(f.share, 1e-6)) / std::log(common / rare) : 0.5;
+        if (proposal.kind == DataKind::Ct) // soft tissue in front of bone
+            importance.push_back(f.mode < -20 ? 0.05 : f.mode < 150 ? 0.15 : f.mode < 700 ? 0.9 : 1);
+        else if (proposal.kind == DataKind::Signed) // the more, the farther from 0
+            importance.push_back(farthest > 0 ? std::abs(f.mode) / farthest : 0);
+        else
+            importance.push_back(proposal.background ? 0.5 * f.inside + 0.5 * rarity : rarity * rarity);
+    }
+    return importance;
+}
+
+std::vector<double> wantedCovers(const RayBundle& rays, const std::vector<double>& importance) {
+    const auto features = static_cast<int>(importance.size());
+    constexpr double kOuterAlpha = 0.4, kInnerAlpha = 0.95, kOuterWeight = 0.15;
+    std::vector<double> wanted(importance.size(), 0.0);
+    for (int r = 0; r < rays.rays(); ++r) {
+        double deepest = 0, weights = 0;
+        for (int f = 0; f < features; ++f)
+            if (rays.meets(r, f)) {
+                deepest = std::max(deepest, importance[static_cast<std::size_t>(f)]);
+                weights += kOuterWeight + importance[static_cast<std::size_t>(f)];
+            }
+        const double alpha = features == 1 ? 0.8 : kOuterAlpha + (kInnerAlpha - kOuterAlpha) * deepest;
+        for (int f = 0; f < features; ++f)
+            if (rays.meets(r, f))
+                wanted[static_cast<std::size_t>(f)] +=
+                    alpha * (kOuterWeight + importance[static_cast<std::size_t>(f)]) / weights;
+    }
+    for (int f = 0; f < features; ++f) wanted[static_cast<std::size_t>(f)] /= std::max(1, rays.raysOf(f));
+    return wanted;
+}
+
+namespace {
+
+constexpr double kLeast = 1e-4, kMost = 0.98; // of a peak
+
+/// `tf` with other peaks. Where two features meet without a step it stays without one, at the lower of the two
+/// opacities: withFeatureOpacities() alone would put one there.
+TransferFunction withPeaks(const TransferFunction& tf, const std::vector<double>& peaks) {
+    TransferFunction scaled = withFeatureOpacities(tf, peaks);
+    for (std::size_t f = 0; f + 1 < tf.features.size(); ++f) {
+        const double x = tf.features[f].b;
+        if (tf.features[f + 1].a != x) continue;
+        const auto pointsAt = [x](auto& points) {
+            const auto begin = std::find_if(points.begin(), points.end(), [x](const auto& p) { return p.x == x; });
+            const auto end = std::find_if(begin, points.end(), [x](const auto& p) { return p.x != x; });
+            return std::pair(begin, end);
+        };
+        const auto [first, end] = pointsAt(tf.points);
+        if (first == end || first->opacity != std::prev(end)->opacity) continue;
+        const auto [scaledFirst, scaledEnd] = pointsAt(scaled.points);
+        const double opacity = std::min(scaledFirst->opacity, std::prev(scaledEnd)->opacity);
+        std::vector<ControlPoint> joined(first, end);
+        for (ControlPoint& p : joined) p.opacity = opacity;
+        const auto at = scaled.points.erase(scaledFirst, scaledEnd);
+        scaled.points.insert(at, joined.begin(), joined.end());
+    }
+    return scaled;
+}
+
+class Search {
+public:
+    Search(const RayBundle& rays, const TransferFunction& tf, const std::vector<double>& wanted, const JobControl& job)
+        : m_rays(rays), m_tf(tf), m_wanted(wanted), m_job(job), m_peaks(featureOpacities(tf)) {
+        for (double& p : m_peaks) p = std::clamp(p, kLeast, kMost);
+        consider({m_peaks});
+    }
+
+    std::vector<double> run() {
+        constexpr int kRounds = 6;
+        for (int round = 0; round < kRounds; ++round) {
+            // Each feature by what it lacks, all by one factor, and each alone.
+            std::vector<double> lacking(m_peaks.size(), 0.0);
+            for (std::size_t f = 0; f < m_peaks.size(); ++f)
+                if (m_wanted[f] > 0) lacking[f] = lack(m_appearance, f);
+            along(lacking, {0.25, 0.5, 0.75, 1, 1.35, 1.8, 2.5, 4});
+            const double step = std::pow(0.7, round);
+            const std::vector<double> factors{-2 * step, -step, -step / 2, -step / 4, step / 4, step / 2, step, 2 * step};
+            along(std::vector<double>(m_peaks.size(), 1.0), factors);
+            for (std::size_t f = 0; f < m_peaks.size(); ++f) {
+                std::vector<double> alone(m_peaks.size(), 0.0);
+                alone[f] = 1;
+                along(alone, factors);
+            }
+        }
+        return m_peaks;
+    }
+
+private:
+    /// ln of the wanted cover over that there is.
+    double lack(const RayBundle::Appearance& a, std::size_t f) const {
+        return std::log(m_wanted[f] / std::max(a.covers[f], 1e-5));
+    }
+
+    double objective(const RayBundle::Appearance& a) const {
+        double sum = 0;
+        std::size_t seen = 0;
+        for (std::size_t f = 0; f < m_wanted.size(); ++f)
+            if (m_wanted[f] > 0) {
+                const double l = lack(a, f);
+                sum += l * l;
+                ++seen;
+            }
+        if (seen > 0) sum /= static_cast<double>(seen);
+        const double oneSided = std::max(0.0, std::abs(a.translucent - 0.5) - 0.44);
+        sum += 400 * oneSided * oneSided;
+        if (seen > 1) {
+            std::vector<double> shares = a.shares;
+            std::nth_element(shares.begin(), shares.begin() + 1, shares.end(), std::greater<>());
+            const double little = std::max(0.0, 0.15 - shares[1]);
+            sum += 100 * little * little;
+        }
+        return sum;
+    }
+
+    /// Opacities as exponents: peaks times e^(factor·direction).
+    void along(const std::vector<double>& direction, const std::vector<double>& factors) {
+        m_job.throwIfStopped();
+        std::vector<std::vector<double>> candidates;
+        for (const double factor : factors) {
+            std::vector<double> peaks = m_peaks;
+            for (std::size_t f = 0; f < peaks.size(); ++f)
+                peaks[f] = std::clamp(peaks[f] * std::exp(factor * direction[f]), kLeast, kMost);
+            candidates.push_back(std::move(peaks));
+        }
+        consider(candidates);
+    }
+
+    void consider(const std::vector<std::vector<double>>& candidates) {
+        std::vector<TransferFunction> tfs;
+        for (const auto& peaks : candidates) tfs.push_back(withPeaks(m_tf, peaks));
+        const std::vector<RayBundle::Appearance> all = m_rays.appearances(tfs);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (const double value = objective(all[i]); value < m_best) {
+                m_best = value;
+                m_peaks = candidates[i];
+                m_appearance = all[i];
+            }
+    }
+
+    const RayBundle& m_rays;
+    const TransferFunction& m_tf;
+    const std::vector<double>& m_wanted;
+    const JobControl& m_job;
+    std::vector<double> m_peaks;
+    RayBundle::Appearance m_appearance;
+    double m_best = std::numeric_limits<double>::infinity();
+};
+
+} // namespace
+
+TransferFunction withOpacitiesForView(const Volume& volume, const Proposal& proposal, const TransferFunction& tf,
+                                      const View& view, const JobControl& job) {
+    if (tf.features.empty() || tf.features.size() != proposal.features.size()) return tf;
+    const RayBundle rays(volume, tf, view, 72, job);
+    if (rays.rays() == 0) return tf;
+    return withPeaks(tf, Search(rays, tf, wantedCovers(rays, importanceOf(proposal)), job).run());
+}
+
+} // namespace pellucid

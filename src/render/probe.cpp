@@ -1,0 +1,266 @@
+#include "render/probe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+#include "tf/opacity.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kStepsPerD0 = 8;     ///< first; they are halved
+constexpr int kMostHalvings = 5;   ///< so often at most
+constexpr double kStraight = 1e-4; ///< until the middle is no farther than this off the straight line
+constexpr int kStepsPerSample = 4; ///< one of so many is kept for the profile
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Nodes and weights of Gauss and Legendre on [0, 1].
+constexpr std::array<std::array<double, 2>, 3> kGauss{
+    {{0.11270166537925831, 5.0 / 18}, {0.5, 8.0 / 18}, {0.88729833462074169, 5.0 / 18}}};
+
+/// The mean of −ln(1 − α) while α goes from a to b along a straight line; empty where it is so nearly straight itself
+/// that a quadrature tells it better.
+std::optional<double> meanDepth(double a, double b) {
+    a = std::clamp(a, 0.0, kMaxOpacity), b = std::clamp(b, 0.0, kMaxOpacity);
+    if (std::abs(b - a) < 0.01 * (1 - std::max(a, b))) return {};
+    const auto integral = [](double alpha) { return (1 - alpha) * std::log1p(-alpha) + alpha; };
+    return (integral(b) - integral(a)) / (b - a);
+}
+
+/// The ray at a point: intensity, and the weight of the valid voxels around it.
+struct Met {
+    double s = 0, valid = 0;
+};
+
+/// The interpolation of render/trilinear.h, of intensities that are made where they are needed.
+template <class Values>
+Met metAt(const Volume& volume, const Values& values, const Vec3& voxel) {
+    const Int3 n = volume.dims();
+    std::array<std::size_t, 3> base{},
+        step{1, static_cast<std::size_t>(n.x), static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y)};
+    std::array<double, 3> fraction{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const double p = std::clamp(voxel[axis], 0.0, static_cast<double>(n[axis] - 1));
+        const int low = std::min(static_cast<int>(p), std::max(0, n[axis] - 2));
+        base[a] = static_cast<std::size_t>(low);
+        fraction[a] = p - low;
+    }
+    const std::size_t first = base[0] + step[1] * base[1] + step[2] * base[2];
+    Met met;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        double w = 1;
+        std::size_t at = first;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const bool high = (corner >> a) & 1u;
+            w *= high ? fraction[a] : 1 - fraction[a];
+            if (high) at += step[a];
+        }
+        if (w == 0) continue; // beyond the grid, too
+        const double s = volume.intensityOfValue(static_cast<double>(values[at]));
+        if (std::isnan(s)) continue;
+        met.s += w * s;
+        met.valid += w;
+    }
+    if (met.valid > 0) met.s /= met.valid;
+    return met;
+}
+
+/// Goes along the ray from entry to exit and adds up what it meets.
+class Walk {
+public:
+    Walk(const TransferFunction& tf, double d0, int only, RayProbe& result)
+        : m_tf(tf), m_sampler(tf), m_d0(d0), m_only(only), m_result(result), m_most(tf.features.size() + 1) {
+        for (const ControlPoint& p : tf.points) m_cuts.push_back(p.x);
+        for (const Feature& f : tf.features) m_cuts.insert(m_cuts.end(), {f.a, f.b});
+        std::sort(m_cuts.begin(), m_cuts.end());
+        m_cuts.erase(std::unique(m_cuts.begin(), m_cuts.end()), m_cuts.end());
+        m_result.shares.assign(tf.features.size(), 0);
+    }
+
+    /// From t to t + length, in steps along which the intensity goes straight; `metAfter(t)` tells what is between.
+    template <class MetAfter>
+    void between(double t, double length, const Met& from, const Met& to, const MetAfter& metAfter, int halvings) {
+        const Met middle = halvings > 0 ? metAfter(t + length / 2) : Met{};
+        const auto isOff = [](double a, double m, double b) { return std::abs(m - (a + b) / 2) > kStraight; };
+        if (halvings == 0 || (!isOff(from.s, middle.s, to.s) && !isOff(from.valid, middle.valid, to.valid))) {
+            step(t, length, from, to);
+            return;
+        }
+        between(t, length / 2, from, middle, metAfter, halvings - 1);
+        between(t + length / 2, length / 2, middle, to, metAfter, halvings - 1);
+    }
+
+    void sample(double t, const Met& met) {
+        m_result.samples.push_back({t, met.valid > 0 ? met.s : kNone, -std::expm1(-m_depth)});
+    }
+
+    void finish() {
+        m_result.alpha = -std::expm1(-m_depth);
+        if (m_result.alpha > 0) {
+            m_result.color = {m_color[0] / m_result.alpha, m_color[1] / m_result.alpha, m_color[2] / m_result.alpha};
+        }
+        double largest = 0;
+        for (std::size_t f = 0; f < m_result.shares.size(); ++f) {
+            if (m_result.shares[f] <= largest) continue;
+            largest = m_result.shares[f];
+            m_result.feature = static_cast<int>(f);
+        }
+        const Most& most = m_most[static_cast<std::size_t>(m_result.feature + 1)];
+        m_result.t = most.t;
+        m_result.intensity = most.intensity;
+    }
+
+private:
+    /// Where a feature adds most.
+    struct Most {
+        double perLength = 0, t = 0, intensity = kNone;
+    };
+
+    /// From t to t + length, where the intensity goes from `from` to `to` along a straight line.
+    void step(double t, double length, Met from, Met to) {
+        if (from.valid == 0) from.s = to.s;
+        if (to.valid == 0) to.s = from.s;
+        // Pieces that no control point and no border of a feature divides.
+        const double lo = std::min(from.s, to.s), hi = std::max(from.s, to.s);
+        auto first = std::upper_bound(m_cuts.begin(), m_cuts.end(), lo);
+        auto last = std::lower_bound(first, m_cuts.end(), hi);
+        double begin = 0;
+        const auto until = [&](double cut) {
+            const double end = (cut - from.s) / (to.s - from.s);
+            piece(t, length, from, to, begin, end);
+            begin = end;
+        };
+        if (from.s < to.s)
+            for (; first < last; ++first) until(*first);
+        else
+            for (; first < last; --last) until(*(last - 1));
+        piece(t, length, from, to, begin, 1);
+    }
+
+    void piece(double t, double length, const Met& from, const Met& to, double begin, double end) {
+        if (!(begin < end)) return;
+        const auto mix = [](double a, double b, double f) { return a + f * (b - a); };
+        const double middle = mix(from.s, to.s, (begin + end) / 2);
+        const int feature = featureAt(m_tf.features, middle);
+        double tau = 0, valid = 0; // τ·d0, and the same where voxels are valid
+        std::array<double, 3> emitted{};
+        if (m_only < 0 || feature == m_only)
+            for (const auto& [node, weight] : kGauss) {
+                const double u = mix(begin, end, node), s = mix(from.s, to.s, u);
+                const double here = weight * opticalDepthOfOpacity(m_sampler.opacity(s));
+                if (here == 0) continue;
+                tau += here;
+                const double there = here * mix(from.valid, to.valid, u);
+                valid += there;
+                const Rgb c = m_sampler.color(s);
+                emitted[0] += there * c.r;
+                emitted[1] += there * c.g;
+                emitted[2] += there * c.b;
+            }
+        const double own = (end - begin) * length;
+        double opticalDepth = 0;
+        if (valid > 0) {
+            // The sides of the piece, where there may be a step of α, are met from its inside.
+            const double a = m_sampler.opacity(mix(from.s, to.s, mix(begin, end, 0.25))),
+                         b = m_sampler.opacity(mix(from.s, to.s, mix(begin, end, 0.75)));
+            opticalDepth = valid / tau * meanDepth(a + (a - b) / 2, b + (b - a) / 2).value_or(tau) * own / m_d0;
+        }
+        const double share = std::exp(-m_depth) * -std::expm1(-opticalDepth);
+        if (share > 0)
+            for (std::size_t c = 0; c < 3; ++c) m_color[c] += share * emitted[c] / valid;
+        m_depth += opticalDepth;
+
+        if (m_result.runs.empty() || m_result.runs.back().feature != feature)
+            m_result.runs.push_back({t + begin * length, 0, feature, 0, 0});
+        ProbeRun& run = m_result.runs.back();
+        run.end = t + end * length;
+        run.opticalDepth += opticalDepth;
+        run.share += share;
+        (feature >= 0 ? m_result.shares[static_cast<std::size_t>(feature)] : m_result.rest) += share;
+        Most& most = m_most[static_cast<std::size_t>(feature + 1)];
+        if (share / own > most.perLength) most = {share / own, t + (begin + end) / 2 * length, middle};
+    }
+
+    const TransferFunction& m_tf;
+    TfSampler m_sampler;
+    double m_d0;
+    int m_only;
+    RayProbe& m_result;
+    std::vector<double> m_cuts; ///< intensities where α or the feature changes its ways, ascending
+    double m_depth = 0;
+    std::array<double, 3> m_color{};
+    std::vector<Most> m_most; ///< the rest, then each feature
+};
+
+} // namespace
+
+Vec3 RayProbe::at(double length) const {
+    const double whole = glm::length(exit - entry);
+    return whole > 0 ? entry + (length / whole) * (exit - entry) : entry;
+}
+
+RayProbe probe(const Volume& volume, const TransferFunction& tf, const View& view, double x, double y, int width,
+               int height, int onlyFeature) {
+    const Geometry& g = volume.geometry();
+    view.camera.validate(g, "camera");
+    view.clipping.validate();
+    RayProbe result;
+    result.intensity = kNone;
+    result.shares.assign(tf.features.size(), 0);
+    const Ray world = pixelRay(view.camera, x, y, width, height), ray = inVoxels(world, g);
+    RayInterval inside = intersectBox(ray, g);
+    cut(inside, ray, planesInVoxels(view.clipping, g));
+    if (view.camera.projection == Projection::Perspective) inside.enter = std::max(inside.enter, 0.0);
+    if (inside.empty()) return result;
+    result.hit = true;
+    result.entry = world.origin + inside.enter * world.direction;
+    result.exit = world.origin + inside.exit * world.direction;
+
+    const double length = inside.exit - inside.enter;
+    const auto steps = static_cast<std::size_t>(std::ceil(length / g.d0() * kStepsPerD0));
+    const double step = length / static_cast<double>(steps);
+    Walk walk(tf, g.d0(), onlyFeature, result);
+    std::visit(
+        [&](const auto& values) {
+            const auto metAfter = [&](double t) {
+                return metAt(volume, values, ray.origin + (inside.enter + t) * ray.direction);
+            };
+            Met from = metAfter(0);
+            walk.sample(0, from);
+            for (std::size_t n = 0; n < steps; ++n) {
+                const double t = static_cast<double>(n) * step;
+                const Met to = metAfter(t + step);
+                walk.between(t, step, from, to, metAfter, kMostHalvings);
+                if ((n + 1) % kStepsPerSample == 0 || n + 1 == steps) walk.sample(t + step, to);
+                from = to;
+            }
+        },
+        volume.samples());
+    walk.finish();
+    result.position = result.at(result.t);
+    return result;
+}
+
+std::vector<double> depthInFront(const RayProbe& probe, std::size_t feature) {
+    std::vector<double> depths(probe.shares.size(), 0);
+    const auto less = [](const ProbeRun& a, const ProbeRun& b) {
+        return a.share != b.share ? a.share < b.share : a.opticalDepth < b.opticalDepth;
+    };
+    const ProbeRun* main = nullptr;
+    for (const ProbeRun& run : probe.runs)
+        if (run.feature == static_cast<int>(feature) && (main == nullptr || less(*main, run))) main = &run;
+    if (main == nullptr) return depths;
+    for (const ProbeRun* run = probe.runs.data(); run != main; ++run)
+        if (run->feature >= 0 && run->feature != main->feature)
+            depths[static_cast<std::size_t>(run->feature)] += run->opticalDepth;
+    return depths;
+}
+
+} // namespace pellucid

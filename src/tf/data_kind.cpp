@@ -1,0 +1,159 @@
+#include "tf/data_kind.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/parallel.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::size_t kMostValues = 64; // of labels
+
+using Values = std::set<double>;
+
+/// The valid values of voxels begin, begin + stride, … below end; more than kMostValues where there are more.
+template <class T>
+Values valuesOf(const T* samples, std::size_t begin, std::size_t end, std::size_t stride,
+                std::optional<double> missing) {
+    Values values;
+    T last{};
+    bool first = true;
+    for (std::size_t i = begin; i < end && values.size() <= kMostValues; i += stride) {
+        if (!first && samples[i] == last) continue;
+        last = samples[i];
+        first = false;
+        const auto v = static_cast<double>(last);
+        if (std::isfinite(v) && v != missing) values.insert(v);
+    }
+    return values;
+}
+
+/// All values, where they are few; empty where they are more than kMostValues.
+Values fewValues(const Volume& data, const VoxelSurvey& survey, const JobControl& job) {
+    Values values;
+    for (const double v : survey.values) {
+        if (!std::isnan(v)) values.insert(v);
+        if (values.size() > kMostValues) return {};
+    }
+    // The survey knows few: whether a rare one hid from it, all voxels tell.
+    constexpr std::size_t kMostVoxels = std::size_t{1} << 26, kPieces = 64;
+    const std::size_t stride = (data.size() + kMostVoxels - 1) / kMostVoxels;
+    std::vector<Values> found(kPieces);
+    std::visit(
+        [&](const auto& samples) {
+            parallelFor(kPieces, [&](std::size_t p) {
+                job.throwIfStopped();
+                found[p] = valuesOf(samples.data(), data.size() * p / kPieces, data.size() * (p + 1) / kPieces, stride,
+                                    data.missing());
+            });
+        },
+        data.samples());
+    for (Values& piece : found) values.merge(piece);
+    return values.size() <= kMostValues ? values : Values{};
+}
+
+/// Share of the voxels that equal all their neighbours, of those that are not of the most common value.
+double flatShare(const VoxelSurvey& survey) {
+    std::vector<double> sorted;
+    for (const double v : survey.values)
+        if (!std::isnan(v)) sorted.push_back(v);
+    std::sort(sorted.begin(), sorted.end());
+    double common = 0;
+    std::size_t longest = 0;
+    for (std::size_t i = 0, j = 0; i < sorted.size(); i = j) {
+        while (j < sorted.size() && sorted[j] == sorted[i]) ++j;
+        if (j - i > longest) longest = j - i, common = sorted[i];
+    }
+    std::size_t others = 0, flat = 0;
+    for (std::size_t i = 0; i < survey.size(); ++i) {
+        if (std::isnan(survey.values[i]) || survey.values[i] == common) continue;
+        ++others;
+        flat += survey.gradients[i] == 0;
+    }
+    return others > 0 ? static_cast<double>(flat) / static_cast<double>(others) : 0;
+}
+
+bool areLabels(const Values& values, const VoxelSurvey& survey) {
+    constexpr std::size_t kAlwaysLabels = 5; // so few whole numbers are no intensities
+    constexpr double kFlat = 0.4;
+    if (values.size() < 3 || !std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); }))
+        return false;
+    return values.size() <= kAlwaysLabels || flatShare(survey) >= kFlat;
+}
+
+double shareIn(const std::vector<double>& sorted, double lo, double hi) {
+    const auto a = std::lower_bound(sorted.begin(), sorted.end(), lo);
+    const auto b = std::upper_bound(sorted.begin(), sorted.end(), hi);
+    return a < b ? static_cast<double>(b - a) / static_cast<double>(sorted.size()) : 0;
+}
+
+double quantile(const std::vector<double>& sorted, double q) {
+    return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5)];
+}
+
+/// Air, tissue of about the density of water, and nothing that CT cannot hold.
+bool isCt(const std::vector<double>& sorted) {
+    constexpr double kLeastAir = 0.03, kLeastTissue = 0.03;
+    if (quantile(sorted, 0.0005) < -3100 || quantile(sorted, 0.999) > 5000) return false;
+    return shareIn(sorted, kAirHounsfield.lo, kAirHounsfield.hi) >= kLeastAir &&
+           shareIn(sorted, -200, 200) >= kLeastTissue;
+}
+
+/// The spread about 0 where values of both signs lie around it, 0 where they do not.
+double signedSpread(const std::vector<double>& sorted) {
+    constexpr double kBalance = 5;   // how many times farther one side may reach
+    constexpr double kCentred = 0.2; // the median's distance from 0, of the farther side
+    std::vector<double> values;      // that say something: 0 fills what was masked
+    for (const double v : sorted)
+        if (v != 0) values.push_back(v);
+    if (values.size() < 16) return 0;
+    const double low = -quantile(values, 0.005), high = quantile(values, 0.995), median = quantile(values, 0.5);
+    if (!(low > 0 && high > 0) || low > kBalance * high || high > kBalance * low) return 0;
+    if (std::abs(median) > kCentred * std::max(low, high)) return 0;
+    for (double& v : values) v = std::abs(v);
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return 1.4826 * values[values.size() / 2];
+}
+
+} // namespace
+
+const char* name(DataKind kind) {
+    switch (kind) {
+    case DataKind::Continuous:
+        return "continuous";
+    case DataKind::Ct:
+        return "ct";
+    case DataKind::Signed:
+        return "signed";
+    case DataKind::Labels:
+        return "labels";
+    case DataKind::Binary:
+        return "binary";
+    case DataKind::Constant:
+        return "constant";
+    case DataKind::Empty:
+        break;
+    }
+    return "empty";
+}
+
+RecognisedKind recogniseKind(const Volume& data, const VoxelSurvey& survey, const JobControl& job) {
+    if (!data.hasValidVoxels()) return {DataKind::Empty, {}, 0};
+    if (data.isConstant()) return {DataKind::Constant, {}, 0};
+    const Values few = fewValues(data, survey, job);
+    if (few.size() == 2) return {DataKind::Binary, {few.begin(), few.end()}, 0};
+    if (areLabels(few, survey)) return {DataKind::Labels, {few.begin(), few.end()}, 0};
+    std::vector<double> sorted;
+    for (const double v : survey.values)
+        if (!std::isnan(v)) sorted.push_back(v);
+    if (sorted.empty()) return {};
+    std::sort(sorted.begin(), sorted.end());
+    if (isCt(sorted)) return {DataKind::Ct, {}, 0};
+    if (const double sigma = signedSpread(sorted); sigma > 0) return {DataKind::Signed, {}, sigma};
+    return {};
+}
+
+} // namespace pellucid

@@ -1,0 +1,183 @@
+#include "volume/voxel_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "base/parallel.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::uint32_t hashOf(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    std::uint32_t h = a * 0x9e3779b1u ^ b * 0x85ebca77u ^ c * 0xc2b2ae3du;
+    h = (h ^ (h >> 15)) * 0x2c1b3c6du;
+    h = (h ^ (h >> 12)) * 0x297a2d39u;
+    return h ^ (h >> 15);
+}
+
+/// Values of voxels: NaN where invalid or outside.
+template <class T>
+class Reader {
+public:
+    Reader(const Volume& volume, const T* samples)
+        : m_samples(samples), m_dims(volume.dims()), m_missing(volume.missing().value_or(kNaN)) {}
+
+    double at(const Int3& v) const {
+        if (v.x < 0 || v.y < 0 || v.z < 0 || v.x >= m_dims.x || v.y >= m_dims.y || v.z >= m_dims.z) return kNaN;
+        return at(index(v));
+    }
+    double at(std::size_t i) const {
+        const auto value = static_cast<double>(m_samples[i]);
+        return std::isfinite(value) && value != m_missing ? value : kNaN;
+    }
+    std::size_t index(const Int3& v) const {
+        return static_cast<std::size_t>(v.x) +
+               static_cast<std::size_t>(m_dims.x) *
+                   (static_cast<std::size_t>(v.y) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(v.z));
+    }
+    Int3 voxel(std::size_t i) const {
+        const auto nx = static_cast<std::size_t>(m_dims.x), ny = static_cast<std::size_t>(m_dims.y);
+        return {static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / (nx * ny))};
+    }
+    /// Trilinear; NaN where a corner with weight is invalid or outside.
+    double at(const Vec3& p) const {
+        const Vec3 floor = glm::floor(p);
+        const Int3 v(floor);
+        const Vec3 f = p - floor;
+        double sum = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            const Int3 d(corner & 1, corner >> 1 & 1, corner >> 2);
+            const double weight = (d.x ? f.x : 1 - f.x) * (d.y ? f.y : 1 - f.y) * (d.z ? f.z : 1 - f.z);
+            if (weight > 0) sum += weight * at(v + d);
+        }
+        return sum;
+    }
+
+private:
+    const T* m_samples;
+    Int3 m_dims;
+    double m_missing;
+};
+
+/// Central differences per voxel step; one-sided where a neighbour is missing, 0 where both are.
+template <class T>
+Vec3 differences(const Reader<T>& read, const Int3& v, double value) {
+    Vec3 d(0);
+    for (int a = 0; a < 3; ++a) {
+        Int3 step(0);
+        step[a] = 1;
+        const double before = read.at(v - step), after = read.at(v + step);
+        if (!std::isnan(before) && !std::isnan(after))
+            d[a] = after / 2 - before / 2;
+        else if (!std::isnan(after))
+            d[a] = after - value;
+        else if (!std::isnan(before))
+            d[a] = value - before;
+    }
+    return d;
+}
+
+} // namespace
+
+bool VoxelSurvey::onFace(std::size_t i) const {
+    const auto nx = static_cast<std::size_t>(dims.x), ny = static_cast<std::size_t>(dims.y);
+    const Int3 c(static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / (nx * ny)));
+    for (int a = 0; a < 3; ++a)
+        if (dims[a] > 1 && (c[a] == 0 || c[a] == dims[a] - 1)) return true;
+    return false;
+}
+
+VoxelSurvey surveyVoxels(const Volume& volume, const JobControl& job) {
+    const Int3 full = volume.dims();
+    VoxelSurvey survey;
+    survey.dims = full;
+    const double factor = std::cbrt(static_cast<double>(volume.size()) / static_cast<double>(VoxelSurvey::kMostCells));
+    if (factor > 1) // an axis shorter than the factor keeps one cell
+        for (int a = 0; a < 3; ++a) survey.dims[a] = std::clamp(static_cast<int>(full[a] / factor), 1, full[a]);
+    const double d0 = volume.geometry().d0();
+    for (int a = 0; a < 3; ++a) survey.pathPerCell[a] = volume.geometry().spacing[a] / d0 * full[a] / survey.dims[a];
+
+    const std::size_t cells = voxelCount(survey.dims);
+    survey.values.resize(cells);
+    survey.gradients.resize(cells);
+    survey.indices.resize(cells);
+    // Columns of the gradient are per d0 along each axis; oblique axes make this an approximation that ranks alike.
+    const Vec3 perD0 = Vec3(d0) / volume.geometry().spacing;
+    const auto pick = [&](int a, int cell, std::uint32_t random) {
+        const int n = survey.dims[a];
+        if (cell == 0 && n > 1) return 0;
+        if (cell == n - 1 && n > 1) return full[a] - 1;
+        const auto begin = static_cast<int>(static_cast<std::int64_t>(cell) * full[a] / n);
+        const auto end = static_cast<int>(static_cast<std::int64_t>(cell + 1) * full[a] / n);
+        return begin + static_cast<int>(random % static_cast<std::uint32_t>(end - begin));
+    };
+    std::visit(
+        [&](const auto& samples) {
+            const Reader read(volume, samples.data());
+            parallelFor(static_cast<std::size_t>(survey.dims.z), [&](std::size_t k) {
+                job.throwIfStopped();
+                std::size_t at = k * static_cast<std::size_t>(survey.dims.x) * static_cast<std::size_t>(survey.dims.y);
+                for (int j = 0; j < survey.dims.y; ++j)
+                    for (int i = 0; i < survey.dims.x; ++i, ++at) {
+                        const auto z = static_cast<int>(k);
+                        const std::uint32_t h = hashOf(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j),
+                                                       static_cast<std::uint32_t>(z));
+                        const Int3 v(pick(0, i, h), pick(1, j, h >> 10), pick(2, z, h >> 20));
+                        const double value = read.at(v);
+                        survey.indices[at] = read.index(v);
+                        survey.values[at] = value;
+                        survey.gradients[at] =
+                            std::isnan(value) ? kNaN : glm::length(differences(read, v, value) * perD0);
+                    }
+            });
+        },
+        volume.samples());
+    return survey;
+}
+
+std::vector<BoundaryEnds> boundaryEnds(const Volume& volume, const VoxelSurvey& survey, double least, double flat,
+                                       const JobControl& job) {
+    std::vector<std::size_t> steep;
+    for (std::size_t i = 0; i < survey.size(); ++i)
+        if (survey.gradients[i] > least) steep.push_back(survey.indices[i]);
+    const std::size_t count = std::min(steep.size(), kMostBoundaries);
+    std::vector<BoundaryEnds> ends(count);
+    const Vec3 perD0 = Vec3(volume.geometry().d0()) / volume.geometry().spacing;
+    constexpr std::size_t kPiece = 1024;
+    constexpr int kMostSteps = 8;
+    std::visit(
+        [&](const auto& samples) {
+            const Reader read(volume, samples.data());
+            parallelFor((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
+                job.throwIfStopped();
+                for (std::size_t n = piece * kPiece; n < std::min(count, (piece + 1) * kPiece); ++n) {
+                    const Int3 v = read.voxel(steep[n * steep.size() / count]);
+                    const double value = read.at(v);
+                    const Vec3 gradient = differences(read, v, value) * perD0;
+                    const Vec3 step = gradient / glm::length(gradient) * perD0; // one d0, in voxels
+                    const auto walk = [&](double sign) {
+                        double last = value;
+                        for (int s = 1; s <= kMostSteps; ++s) {
+                            const double next = read.at(Vec3(v) + sign * s * step);
+                            if (std::isnan(next) || sign * (next - last) <= 0) break;
+                            const double change = sign * (next - last);
+                            last = next;
+                            if (change < flat) break;
+                        }
+                        return last;
+                    };
+                    ends[n] = {walk(-1), walk(1)};
+                }
+            });
+        },
+        volume.samples());
+    return ends;
+}
+
+} // namespace pellucid

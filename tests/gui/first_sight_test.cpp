@@ -1,0 +1,203 @@
+// What a window does with a volume that brings no transfer function, and what it says about it.
+#include "gui_support.h"
+
+#include <cstring>
+#include <filesystem>
+
+#include <QLabel>
+#include <QPushButton>
+#include <QSettings>
+
+#include "controllers/start_controller.h"
+#include "support/temp_folder.h"
+#include "welcome_card.h"
+
+using namespace pellucid;
+using namespace pellucid::gui;
+using pellucid::test::TempFolder;
+
+namespace {
+
+/// Nested boxes of values 90 and 200 in 0 and one voxel of 1e6.
+VolumeSource boxesWithOutlier(const TempFolder& folder) {
+    std::string bytes;
+    for (int k = 0; k < 24; ++k)
+        for (int j = 0; j < 24; ++j)
+            for (int i = 0; i < 24; ++i) {
+                const int out = std::max({std::abs(2 * i - 23), std::abs(2 * j - 23), std::abs(2 * k - 23)});
+                const float v = i + j + k == 0 ? 1e6F : out < 8 ? 200.0F : out < 18 ? 90.0F : 0.0F;
+                bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
+            }
+    VolumeSource source;
+    source.path = folder.write("boxes.raw", bytes);
+    source.raw = RawLayout{{24, 24, 24}, SampleType::F32, false, {1, 1, 1}, 0};
+    return source;
+}
+
+/// Part of the pixels in the middle third that are not black.
+double litShare(const QImage& picture) {
+    int lit = 0, all = 0;
+    for (int y = picture.height() / 3; y < 2 * picture.height() / 3; ++y)
+        for (int x = picture.width() / 3; x < 2 * picture.width() / 3; ++x, ++all)
+            lit += qGray(picture.pixel(x, y)) > 12;
+    return static_cast<double>(lit) / all;
+}
+
+QString noticeText(OpenWindow& w) { return w.child<QLabel>("noticeText").text(); }
+
+} // namespace
+
+TEST_CASE("a volume opens under its proposal, and its opacities come as a step", "[first sight]") {
+    const TempFolder folder;
+    OpenWindow w;
+    w.opening().openVolume(boxesWithOutlier(folder));
+    REQUIRE(waitFor([&] { return w.document().volume()->title == "boxes.raw"; }));
+    w.settle();
+    SceneInputs inputs;
+    inputs.session = sessionOf(boxesWithOutlier(folder));
+    const Scene tuned = openScene(inputs);
+    CHECK(w.document().tf() == tuned.tf); // as the command line has it
+    CHECK(w.bench().store().undoText() == "Automatic opacities");
+    CHECK(w.document().isClean()); // the user has done nothing
+    const QImage after = w.picture();
+    CHECK(litShare(after) > 0.2);
+
+    w.child<QAction>("undoAction").trigger();
+    CHECK(w.document().tf().points == tuned.proposal->tf.points);
+    const QImage first = w.picture();
+    CHECK(litShare(first) > 0.2); // the first picture shows something, too
+    CHECK(first != after);
+    w.child<QAction>("redoAction").trigger();
+    CHECK(w.document().tf() == tuned.tf);
+    CHECK(w.picture() == after);
+}
+
+TEST_CASE("values far off are said to lie beyond, and a click brings the full range", "[first sight]") {
+    const TempFolder folder;
+    OpenWindow w;
+    w.opening().openVolume(boxesWithOutlier(folder));
+    REQUIRE(waitFor([&] { return w.document().volume()->title == "boxes.raw"; }));
+    w.settle();
+    const ValueRange window = w.document().volume()->range();
+    CHECK(window.hi < 400);
+    CHECK(noticeText(w).contains("1e+06"));
+    const TransferFunction tf = w.document().tf();
+    const QImage before = w.picture();
+
+    QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
+    REQUIRE(waitFor([&] { return w.document().volume()->range() == ValueRange{0, 1e6}; }));
+    CHECK(w.bench().store().undoText() == "Full range");
+    CHECK_FALSE(noticeText(w).contains("1e+06"));
+    // Values keep what they had; those beyond have that of the end.
+    const auto opacityOf = [&](double value) {
+        return w.document().tf().opacity(w.document().volume()->intensityOfValue(value));
+    };
+    CHECK(opacityOf(200) == Approx(tf.opacity(200 / window.hi)).epsilon(0.01));
+    const QImage full = w.picture();
+    CHECK(litShare(full) > 0.2);
+
+    w.child<QAction>("undoAction").trigger();
+    CHECK(w.document().volume()->range() == window);
+    CHECK(w.document().tf() == tf);
+    CHECK(litShare(w.picture()) == Approx(litShare(before)).margin(0.05)); // the notice has gone: a little larger
+}
+
+TEST_CASE("who edits at once keeps what he has done", "[first sight]") {
+    const TempFolder folder;
+    OpenWindow w;
+    TransferFunction mine = tents(2, 0.3);
+    QObject::connect(&w.opening(), &OpenController::opened, &w.window, [&] {
+        editTf(w.bench().store(), mine, "Mine");
+    });
+    w.opening().openVolume(boxesWithOutlier(folder));
+    REQUIRE(waitFor([&] { return w.document().volume()->title == "boxes.raw"; }));
+    w.settle();
+    CHECK(w.document().tf().points == mine.points);
+    CHECK(w.document().stepCount() == 1);
+    CHECK(w.bench().store().undoText() == "Mine");
+    const QImage picture = w.picture();
+    w.child<QAction>("undoAction").trigger();
+    CHECK(w.document().tf().points != mine.points);
+    CHECK(w.picture() != picture);
+}
+
+TEST_CASE("the automatic start again is for the present view, and one step", "[first sight]") {
+    OpenWindow w;
+    const TransferFunction before = w.document().tf();
+    const QImage picture = w.picture();
+    w.document().setCamera(cameraFromView(w.document().volume()->geometry(), 100, -50, 1, Projection::Perspective));
+    const QImage turned = w.picture();
+    const AutomaticStart expected = automaticStart(w.bench().scene(), View(w.document().camera()));
+    w.child<QAction>("automaticStartAction").trigger();
+    REQUIRE(waitFor([&] { return w.bench().store().undoText() == "Automatic start"; }));
+    w.settle();
+    CHECK(w.document().stepCount() == 1);
+    CHECK(w.document().tf().points == expected.tf.points);
+    CHECK(w.document().tf().features == expected.tf.features);
+    const QImage automatic = w.picture();
+    CHECK(automatic != turned);
+    CHECK(litShare(automatic) > 0.2);
+    w.child<QAction>("undoAction").trigger();
+    CHECK(w.document().tf() == before);
+    CHECK(w.picture() == turned);
+}
+
+TEST_CASE("the card of the first start goes for good", "[first sight]") {
+    QSettings().remove("welcomeCardSeen");
+    OpenWindow w;
+    const TransferFunction tf = w.document().tf();
+    const QImage picture = w.picture();
+    w.window.welcome();
+    auto& card = w.child<WelcomeCard>("welcomeCard");
+    CHECK(card.isVisible());
+    CHECK(w.view().geometry().contains(card.geometry()));
+    CHECK(w.child<QLabel>("welcomeTitle").text().contains("sample"));
+    // It is no part of the picture that it lies over: a click on it turns nothing.
+    const Camera camera = w.document().camera();
+    drag(card, {10, 10}, {60, 30});
+    CHECK(w.document().camera() == camera);
+    CHECK(w.picture() == picture);
+
+    QTest::mouseClick(&w.child<QPushButton>("welcomeClose"), Qt::LeftButton);
+    REQUIRE(waitFor([&] { return w.window.findChild<WelcomeCard*>() == nullptr; }));
+    CHECK(QSettings().value("welcomeCardSeen").toBool());
+    w.window.welcome();
+    CHECK(w.window.findChild<WelcomeCard*>() == nullptr);
+    CHECK(w.document().tf() == tf);
+    CHECK(w.picture() == picture);
+
+    // Another volume is the first thing to try.
+    QSettings().remove("welcomeCardSeen");
+    w.window.welcome();
+    REQUIRE(w.window.findChild<WelcomeCard*>() != nullptr);
+    const TempFolder folder;
+    w.opening().openVolume(boxesWithOutlier(folder));
+    REQUIRE(waitFor([&] { return w.window.findChild<WelcomeCard*>() == nullptr; }));
+    CHECK(QSettings().value("welcomeCardSeen").toBool());
+}
+
+TEST_CASE("a skull is seen, lit, through the skin as soon as the file is open", "[first sight][files]") {
+    const std::string path = std::string(PELLUCID_SHARED_DIR) + "/data/real/cranium_ct/cranium_ct.nrrd";
+    if (!std::filesystem::exists(path)) {
+        WARN("SKIPPED: " << path << " is not there");
+        return;
+    }
+    OpenWindow w;
+    w.opening().openPath(QString::fromStdString(path)); // as dropping it does: the one action
+    REQUIRE(waitFor([&] { return w.document().volume()->title == "cranium_ct.nrrd"; }));
+    w.settle();
+    CHECK(noticeText(w).contains("Hounsfield"));
+    CHECK(w.bench().store().session().display->light.on);
+    double bone = 0, skin = 0;
+    REQUIRE(w.document().measures() != nullptr);
+    const auto& features = w.document().tf().features;
+    for (std::size_t f = 0; f < features.size(); ++f)
+        (features[f].name.find("bone") != std::string::npos ? bone : skin) +=
+            w.document().measures()->features[f].visibility;
+    CHECK(bone > 0.25);
+    CHECK(skin > 0.1);
+    const TransferFunction& tf = w.document().tf();
+    CHECK(tf.opacity(w.document().volume()->intensityOfValue(-1000)) == 0); // air
+    const QImage picture = w.picture();
+    CHECK(litShare(picture) > 0.5);
+}
