@@ -227,7 +227,7 @@ void TargetBars::paintEvent(QPaintEvent*) {
         painter.setPen(Qt::NoPen);
         const QRectF vwsTrack(track.left(), track.top() + 2, track.width(), kVwsBar);
         const QRectF visTrack(track.left(), vwsTrack.bottom() + 3, track.width(), kVisibilityBar);
-        painter.setBrush(theme::kPanel);
+        painter.setBrush(theme::kTrack);
         painter.drawRoundedRect(vwsTrack, 2, 2);
         painter.drawRoundedRect(visTrack, 2, 2);
         painter.setFont(small);

@@ -17,7 +17,7 @@ namespace pellucid::gui {
 namespace {
 
 struct Colors {
-    QRgb window, panel, raised, title, line, text, faint, accent, histogram, curve, knob, hover, falls, disabled,
+    QRgb window, panel, raised, title, line, text, faint, accent, track, histogram, curve, knob, hover, falls, disabled,
         shadow;
     QRgb notice, noticeLine, noticeText;
 };
@@ -30,6 +30,7 @@ constexpr Colors kDark{.window = 0xff262729,
                        .text = 0xffe4e5e7,
                        .faint = 0xff9a9da3,
                        .accent = 0xff4c9aff,
+                       .track = 0xff1c1d1f,
                        .histogram = 0xff44474c,
                        .curve = 0xffd8dade,
                        .knob = 0xffffffff,
@@ -49,6 +50,7 @@ constexpr Colors kLight{.window = 0xfff1f2f3,
                         .text = 0xff1b1d20,
                         .faint = 0xff585c62,
                         .accent = 0xff1667c9,
+                        .track = 0xffcdd0d5, // white features are seen on it
                         .histogram = 0xffcdd1d6,
                         .curve = 0xff2b2e33,
                         .knob = 0xff3a3d42,
@@ -123,6 +125,7 @@ void applyTheme(QApplication& application, Theme theme) {
                                        {theme::kText, c.text},
                                        {theme::kFaint, c.faint},
                                        {theme::kAccent, c.accent},
+                                       {theme::kTrack, c.track},
                                        {theme::kHistogram, c.histogram},
                                        {theme::kCurve, c.curve},
                                        {theme::kKnob, c.knob},

@@ -22,6 +22,7 @@ inline QColor kWindow, kPanel; ///< behind controls; behind what is painted or t
 inline QColor kRaised;         ///< buttons
 inline QColor kTitle;          ///< bars of docks and tables
 inline QColor kLine, kText, kFaint, kAccent;
+inline QColor kTrack;     ///< under bars of any colour
 inline QColor kHistogram; ///< the area of a histogram on kPanel
 inline QColor kCurve;     ///< a line that stands out from kPanel and kHistogram
 inline QColor kKnob;      ///< what can be taken hold of: rings of points, handles
