@@ -125,7 +125,8 @@ TEST_CASE("the inner one of two balls is seen through the outer one", "[first si
     CHECK(sums.visibility[0] / sums.allVisibility > 0.1);
     CHECK(sums.visibility[1] / sums.allVisibility > 0.1);
 
-    RenderSettings settings{.width = 96, .height = 96};
+    RenderSettings settings;
+    settings.width = settings.height = 96;
     settings.background.reset();
     const Image image = makeCpuRenderer(volume)->render(home.camera, tf, settings);
     // The middle goes through both balls, a point at 0.7 of the outer radius through the outer one alone. The box's
