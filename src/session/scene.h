@@ -24,7 +24,7 @@ struct Scene {
     Camera camera;                              ///< the session's, else the home view
     std::shared_ptr<const Histogram> histogram; ///< 256 bins of `volume`; null before prepareToShow()
     std::shared_ptr<const IntensityGrid> codes; ///< of `volume`, kept for those who draw and measure; likewise
-    std::shared_ptr<const Proposal> proposal;   ///< where this resolving proposed window and transfer function; else null
+    std::shared_ptr<const Proposal> proposal; ///< where this resolving proposed window and transfer function; else null
 
     /// Wanted shares of the features, in their order; 0 of hidden ones.
     std::vector<double> targets() const { return targetsOf(tf, *session.goals); }
@@ -74,8 +74,9 @@ struct AutomaticStart {
 /// Throws Cancelled.
 AutomaticStart automaticStart(const Scene& scene, const View& view, const JobControl& job = {});
 
-/// The scene of a session; a session without transfer function gets what the data propose, not tuned. Data that `basis` has is taken from there: where source and window are the same this costs
-/// next to nothing, where only the window differs no file is read.
+/// The scene of a session; a session without transfer function gets what the data propose, not tuned. Data that `basis`
+/// has is taken from there: where source and window are the same this costs next to nothing, where only the window
+/// differs no file is read.
 Scene resolve(Session session, const Scene& basis, const MemoryUse& then = {}, const JobControl& job = {});
 /// Whether resolve() would read a file or go over all voxels.
 bool needsData(const Session& session, const Scene& basis);

@@ -108,9 +108,8 @@ TEST_CASE("who edits at once keeps what he has done", "[first sight]") {
     const TempFolder folder;
     OpenWindow w;
     TransferFunction mine = tents(2, 0.3);
-    QObject::connect(&w.opening(), &OpenController::opened, &w.window, [&] {
-        editTf(w.bench().store(), mine, "Mine");
-    });
+    QObject::connect(&w.opening(), &OpenController::opened, &w.window,
+                     [&] { editTf(w.bench().store(), mine, "Mine"); });
     w.opening().openVolume(boxesWithOutlier(folder));
     REQUIRE(waitFor([&] { return w.document().volume()->title == "boxes.raw"; }));
     w.settle();
