@@ -82,8 +82,7 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
     const double step = m_stepInD0 * d0;
     const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, geometry);
 
-    std::vector<std::vector<std::uint16_t>> rows(static_cast<std::size_t>(pixels) *
-                                                 static_cast<std::size_t>(pixels));
+    std::vector<std::vector<std::uint16_t>> rows(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
     std::visit(
         [&](const auto& samples) {
             const Sampler sampler(volume, samples.data());
@@ -209,10 +208,9 @@ std::vector<double> importanceOf(const Proposal& proposal) {
         else if (proposal.background)
             importance.push_back(0.5 * f.inside + 0.5 * rarity);
         else { // matter everywhere, where depth says nothing
-            const double height =
-                proposal.features.size() < 2
-                    ? 0.5
-                    : static_cast<double>(importance.size()) / static_cast<double>(proposal.features.size() - 1);
+            const double height = proposal.features.size() < 2 ? 0.5
+                                                               : static_cast<double>(importance.size()) /
+                                                                     static_cast<double>(proposal.features.size() - 1);
             importance.push_back(std::pow((height + rarity) / 2, 2));
         }
     }
@@ -272,9 +270,10 @@ TransferFunction withPeaks(const TransferFunction& tf, const std::vector<double>
 
 class Search {
 public:
-    Search(const RayBundle& rays, const TransferFunction& tf, const std::vector<double>& importance,
-           bool everywhere, const JobControl& job)
-        : m_rays(rays), m_tf(tf), m_importance(importance), m_wanted(wantedCovers(rays, importance, everywhere)), m_job(job), m_peaks(featureOpacities(tf)) {
+    Search(const RayBundle& rays, const TransferFunction& tf, const std::vector<double>& importance, bool everywhere,
+           const JobControl& job)
+        : m_rays(rays), m_tf(tf), m_importance(importance), m_wanted(wantedCovers(rays, importance, everywhere)),
+          m_job(job), m_peaks(featureOpacities(tf)) {
         for (double& p : m_peaks) p = std::clamp(p, kLeast, kMost);
         consider({m_peaks});
     }
@@ -288,7 +287,8 @@ public:
                 if (m_wanted[f] > 0) lacking[f] = lack(m_appearance, f);
             along(lacking, {0.25, 0.5, 0.75, 1, 1.35, 1.8, 2.5, 4});
             const double step = std::pow(0.7, round);
-            const std::vector<double> factors{-2 * step, -step, -step / 2, -step / 4, step / 4, step / 2, step, 2 * step};
+            const std::vector<double> factors{-2 * step, -step,    -step / 2, -step / 4,
+                                              step / 4,  step / 2, step,      2 * step};
             along(std::vector<double>(m_peaks.size(), 1.0), factors);
             for (std::size_t f = 0; f < m_peaks.size(); ++f) {
                 std::vector<double> alone(m_peaks.size(), 0.0);

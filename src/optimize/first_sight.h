@@ -39,10 +39,10 @@ private:
 
     std::size_t m_features = 0;
     double m_stepInD0 = 1;
-    std::vector<std::uint16_t> m_bins;  ///< of intensity, of all rays one after the other, front to back
+    std::vector<std::uint16_t> m_bins;   ///< of intensity, of all rays one after the other, front to back
     std::vector<std::uint32_t> m_begins; ///< of each ray in m_bins, and the end
-    std::vector<std::uint8_t> m_met;    ///< [ray][feature]
-    std::vector<int> m_featureOfBin;    ///< −1: none
+    std::vector<std::uint8_t> m_met;     ///< [ray][feature]
+    std::vector<int> m_featureOfBin;     ///< −1: none
 };
 
 /// Covers that an automatic start wants: a ray's alpha grows with the importance of what it meets, and is divided among

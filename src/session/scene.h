@@ -25,7 +25,7 @@ struct Scene {
     std::shared_ptr<const Histogram> histogram; ///< 256 bins of `volume`; null before prepareToShow()
     std::shared_ptr<const IntensityGrid> codes; ///< of `volume`, kept for those who draw and measure; likewise
     std::optional<std::string> unit;            ///< of the data: "HU", "" where unknown; empty before prepareToShow()
-    std::shared_ptr<const Proposal> proposal;   ///< where this resolving proposed window and transfer function; else null
+    std::shared_ptr<const Proposal> proposal; ///< where this resolving proposed window and transfer function; else null
 
     /// Wanted shares of the features, in their order; 0 of hidden ones.
     std::vector<double> targets() const { return targetsOf(tf, *session.goals); }

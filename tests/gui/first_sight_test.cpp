@@ -10,6 +10,7 @@
 
 #include "controllers/start_controller.h"
 #include "support/temp_folder.h"
+#include "volume/noise.h"
 #include "welcome_card.h"
 
 using namespace pellucid;
@@ -25,7 +26,8 @@ VolumeSource boxesWithOutlier(const TempFolder& folder) {
         for (int j = 0; j < 24; ++j)
             for (int i = 0; i < 24; ++i) {
                 const int out = std::max({std::abs(2 * i - 23), std::abs(2 * j - 23), std::abs(2 * k - 23)});
-                const float v = i + j + k == 0 ? 1e6F : out < 8 ? 200.0F : out < 18 ? 90.0F : 0.0F;
+                const auto noise = static_cast<float>(2 * whiteNoise(i, j, k, 1)); // else they would be labels
+                const float v = i + j + k == 0 ? 1e6F : out < 8 ? 200 + noise : out < 18 ? 90 + noise : 0.0F;
                 bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
             }
     VolumeSource source;
@@ -106,9 +108,8 @@ TEST_CASE("who edits at once keeps what he has done", "[first sight]") {
     const TempFolder folder;
     OpenWindow w;
     TransferFunction mine = tents(2, 0.3);
-    QObject::connect(&w.opening(), &OpenController::opened, &w.window, [&] {
-        editTf(w.bench().store(), mine, "Mine");
-    });
+    QObject::connect(&w.opening(), &OpenController::opened, &w.window,
+                     [&] { editTf(w.bench().store(), mine, "Mine"); });
     w.opening().openVolume(boxesWithOutlier(folder));
     REQUIRE(waitFor([&] { return w.document().volume()->title == "boxes.raw"; }));
     w.settle();

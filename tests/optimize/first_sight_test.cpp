@@ -70,8 +70,7 @@ TEST_CASE("a bundle of rays knows the alpha of a block, and of what is left of i
 
 TEST_CASE("covers and shares are those of compositing, front to back", "[first sight]") {
     // Seen along +y: 5 voxels of 0.3, then 7 of 0.7; between the two centres the value crosses 0.5 in the middle.
-    const auto volume =
-        volumeFrom(geometryOf({8, 12, 8}), [](int, int j, int) { return j < 5 ? 0.3 : 0.7; });
+    const auto volume = volumeFrom(geometryOf({8, 12, 8}), [](int, int j, int) { return j < 5 ? 0.3 : 0.7; });
     View view(lookingAlong(volume->geometry(), {0, 1, 0}));
     view.camera.height = 12;
     const TransferFunction tf = frontAndBack(0.1, 0.2);
@@ -125,7 +124,8 @@ TEST_CASE("the inner one of two balls is seen through the outer one", "[first si
     CHECK(sums.visibility[0] / sums.allVisibility > 0.1);
     CHECK(sums.visibility[1] / sums.allVisibility > 0.1);
 
-    RenderSettings settings{.width = 96, .height = 96};
+    RenderSettings settings;
+    settings.width = settings.height = 96;
     settings.background.reset();
     const Image image = makeCpuRenderer(volume)->render(home.camera, tf, settings);
     // The middle goes through both balls, a point at 0.7 of the outer radius through the outer one alone. The box's
@@ -196,7 +196,8 @@ TEST_CASE("the same opacities for any number of threads", "[first sight]") {
 }
 
 TEST_CASE("where there is nothing to see opacities stay", "[first sight]") {
-    const auto nothing = volumeFrom(geometryOf(Int3(8)), [](int, int, int) { return NAN; }, std::nullopt);
+    const auto nothing = volumeFrom(
+        geometryOf(Int3(8)), [](int, int, int) { return NAN; }, std::nullopt);
     const Proposal proposal = propose(*nothing);
     CHECK(withOpacitiesForView(*nothing, proposal, proposal.tf, homeOf(*nothing)) == proposal.tf);
     TransferFunction bare = tents(2);

@@ -7,6 +7,7 @@
 #include "support/temp_folder.h"
 #include "support/volumes.h"
 #include "tf/formats/tf_json.h"
+#include "volume/noise.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -177,7 +178,8 @@ SceneInputs boxesWithOutlier(const TempFolder& folder) {
         for (int j = 0; j < 24; ++j)
             for (int i = 0; i < 24; ++i) {
                 const int out = std::max({std::abs(2 * i - 23), std::abs(2 * j - 23), std::abs(2 * k - 23)});
-                const float v = i + j + k == 0 ? 1e6F : out < 8 ? 200.0F : out < 18 ? 90.0F : 0.0F;
+                const auto noise = static_cast<float>(2 * whiteNoise(i, j, k, 1)); // else they would be labels
+                const float v = i + j + k == 0 ? 1e6F : out < 8 ? 200 + noise : out < 18 ? 90 + noise : 0.0F;
                 bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
             }
     VolumeSource source;

@@ -44,7 +44,7 @@ QString recognisedText(const Proposal& proposal) {
 
 QString beyondText(const Proposal& proposal, const ValueRange& data) {
     const ValueRange& window = proposal.window;
-    const bool below = data.lo < window.lo, above = data.hi > window.hi;
+    const bool below = data.lo<window.lo, above = data.hi> window.hi;
     if (!(data.lo < data.hi) || (!below && !above)) return {};
     const auto plain = [](double v) { return QString::number(v, 'g', 4); };
     const QString ends = below && above ? QObject::tr("%1 and %2").arg(plain(data.lo), plain(data.hi))
@@ -56,19 +56,17 @@ QString beyondText(const Proposal& proposal, const ValueRange& data) {
 StartController::StartController(Workbench& bench)
     : m_bench(bench), m_tuning([](const Scene& scene, const JobControl& job) { return tunedTf(scene, job); },
                                [this](const Scene& scene, TransferFunction& tf) { showTuned(scene, tf); }),
-      m_again(
-          [](const Request& request, const JobControl& job) {
-              return automaticStart(request.scene, request.view, job);
-          },
-          [this](const Request& request, AutomaticStart& start) {
-              if (request.scene.data != m_bench.scene().data || m_bench.isReadOnly()) return;
-              const auto change = [window = start.window, tf = start.tf](Session& session) {
-                  session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
-                  session.setTf(tf);
-              };
-              m_bench.opening().editData(tr("Automatic start"), change,
-                                         [this, proposal = start.proposal] { say(proposal); });
-          }) {
+      m_again([](const Request& request,
+                 const JobControl& job) { return automaticStart(request.scene, request.view, job); },
+              [this](const Request& request, AutomaticStart& start) {
+                  if (request.scene.data != m_bench.scene().data || m_bench.isReadOnly()) return;
+                  const auto change = [window = start.window, tf = start.tf](Session& session) {
+                      session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
+                      session.setTf(tf);
+                  };
+                  m_bench.opening().editData(tr("Automatic start"), change,
+                                             [this, proposal = start.proposal] { say(proposal); });
+              }) {
     connect(&m_tuning, &JobBase::busyChanged, this, &StartController::busyChanged);
     connect(&m_again, &JobBase::busyChanged, this, &StartController::busyChanged);
     connect(&m_again, &JobBase::failed, this,
@@ -78,13 +76,12 @@ StartController::StartController(Workbench& bench)
 StartController::~StartController() = default;
 
 void StartController::addActions() {
-    m_bench.actions().add(
-        {.id = "automaticStartAction",
-         .menu = tr("&Transfer function"),
-         .text = tr("&Automatic start"),
-         .tip = tr("Window and features from the data, opacities for this view"),
-         .trigger = [this] { startAgain(); },
-         .enabled = [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); }});
+    m_bench.actions().add({.id = "automaticStartAction",
+                           .menu = tr("&Transfer function"),
+                           .text = tr("&Automatic start"),
+                           .tip = tr("Window and features from the data, opacities for this view"),
+                           .trigger = [this] { startAgain(); },
+                           .enabled = [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); }});
 }
 
 void StartController::follow(const Scene& scene) {
