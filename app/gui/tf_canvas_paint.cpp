@@ -274,7 +274,7 @@ void TfCanvas::paintFeatures(QPainter& painter, const Ink& ink) const {
                                                                                                              : 0.07));
         painter.setPen(selected  ? QPen(ink.text, 1.8)
                        : hovered ? QPen(ink.text, 1)
-                                 : (f.hidden ? QPen(color, 1, Qt::DashLine) : QPen(Qt::NoPen)));
+                                 : (f.hidden ? QPen(color, 1, Qt::DashLine) : QPen(theme::kLine, 1)));
         painter.setBrush(f.hidden ? translucent(color, 0.12) : mixed(ink.ground, color, 0.88));
         painter.drawRoundedRect(bar.adjusted(0.5, 0.5, -0.5, -0.5), 3, 3);
         painter.setPen(f.hidden ? ink.faint : readableOn(color));

@@ -78,6 +78,25 @@ private:
 };
 
 /// A slider in each cell of the opacity column.
+/// The swatch of a feature with an outline: white ones are seen on white, too.
+class NameDelegate : public QStyledItemDelegate {
+public:
+    using QStyledItemDelegate::QStyledItemDelegate;
+
+protected:
+    void initStyleOption(QStyleOptionViewItem* option, const QModelIndex& index) const override {
+        QStyledItemDelegate::initStyleOption(option, index);
+        const auto color = index.data(Qt::DecorationRole).value<QColor>();
+        if (!color.isValid()) return;
+        QPixmap swatch(option->decorationSize);
+        swatch.fill(color);
+        QPainter painter(&swatch);
+        painter.setPen(theme::kLine);
+        painter.drawRect(swatch.rect().adjusted(0, 0, -1, -1));
+        option->icon = QIcon(swatch);
+    }
+};
+
 class OpacityDelegate : public QStyledItemDelegate {
 public:
     OpacityDelegate(FeaturesModel& model, QObject* parent) : QStyledItemDelegate(parent), m_model(model) {}
@@ -136,6 +155,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     m_table->setObjectName("featuresTable");
     m_table->setModel(m_model);
     m_table->setItemDelegateForColumn(FeaturesModel::Opacity, new OpacityDelegate(*m_model, m_table));
+    m_table->setItemDelegateForColumn(FeaturesModel::Name, new NameDelegate(m_table));
     m_table->setItemDelegateForColumn(FeaturesModel::Eye, new EyeDelegate(*m_model, m_table));
     for (const auto column : {FeaturesModel::Visibility, FeaturesModel::Vws, FeaturesModel::Target}) {
         m_table->setColumnHidden(column, true); // the bars below show them

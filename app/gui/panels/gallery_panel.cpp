@@ -162,8 +162,8 @@ void GalleryPanel::follow(const Scene& before, const Scene& after) {
 
 void GalleryPanel::fill() {
     std::vector<Entry> all;
-    for (const TfPreset& preset : thesisPresets()) all.push_back({preset, {}});
     for (const TfPreset& preset : tfPresets()) all.push_back({preset, {}});
+    for (const TfPreset& preset : thesisPresets()) all.push_back({preset, {}});
     const QDir folder(presetFolder());
     for (const QFileInfo& file : folder.entryInfoList({"*.tf.json"}, QDir::Files, QDir::Name)) {
         try {
