@@ -127,7 +127,7 @@ TEST_CASE("wrong values of render are wrong usage", "[cli][errors]") {
     checkFails(w, kRender + Words{"--light-preset", "gold"}, 2, "metal");
     checkFails(w, kRender + Words{"--no-shading", "--shading"}, 2, "--no-shading");
     checkFails(w, kRender + Words{"--depth-cue", "2"}, 2, "--depth-cue");
-    checkFails(w, kRender + Words{"--feature", "dentine"}, 2, "'core'");
+    checkFails(w, kRender + Words{"--tf", "tents:3", "--feature", "dentine"}, 2, "'f3'");
     // Before any work: the volume would be refused too.
     checkFails(w, {"render", "missing.nrrd", "--out", "x.bmp"}, 2, "x.bmp");
     checkFails(w, {"render", "missing.nrrd", "--out", ""}, 2, "--out");
