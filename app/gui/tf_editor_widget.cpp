@@ -19,7 +19,6 @@
 #include "controllers/feature_actions.h"
 #include "ghost_layer.h"
 #include "number_box.h"
-#include "number_text.h"
 #include "palette_bar.h"
 #include "panel.h"
 #include "store/edits.h"
@@ -40,10 +39,6 @@ QIcon swatch(const QColor& color, const QSize& size = {22, 14}) {
     painter.drawRect(0, 0, size.width() - 1, size.height() - 1);
     return pixmap;
 }
-
-} // namespace
-
-namespace {
 
 /// What can be done to the feature under the mouse, which is selected for it.
 void addFeatureMenu(QMenu& menu, Workbench& bench, FeatureId id) {
