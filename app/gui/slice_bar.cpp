@@ -10,6 +10,7 @@
 
 #include "controllers/slice_actions.h"
 #include "number_box.h"
+#include "number_text.h"
 #include "workbench.h"
 
 namespace pellucid::gui {

@@ -19,6 +19,7 @@
 #include "controllers/feature_actions.h"
 #include "ghost_layer.h"
 #include "number_box.h"
+#include "number_text.h"
 #include "palette_bar.h"
 #include "panel.h"
 #include "store/edits.h"
