@@ -42,7 +42,9 @@ _pellucid_cli() {
         --annotate) choices="all cube letters axes scale legend title" ;;
         --view) choices="anterior posterior left right superior inferior front back top bottom" ;;
         --tf)
-            COMPREPLY=($(compgen -W "auto tents: ramp: $("$program" presets 2>/dev/null | sed -n 's/^\(preset:[^ ]*\) .*/\1/p')" -- "$current") $(compgen -f -- "$current"))
+            choices="auto tents: ramp: $("$program" presets 2>/dev/null | sed -n 's/^\(preset:[^ ]*\) .*/\1/p')"
+            COMPREPLY=($(compgen -W "$choices" -- "$current") $(compgen -f -- "$current"))
+            choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
         --camera | --session | --out | --out-tf)
@@ -53,8 +55,8 @@ _pellucid_cli() {
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
-            --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --image-size | --fix | --target | \
-            --tolerance | --window | --tf-strength)
+            --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | \
+            --image-size | --fix | --target | --tolerance | --window | --tf-strength)
             return
             ;;
     esac
@@ -67,7 +69,7 @@ _pellucid_cli() {
     elif [[ $command == generate ]]; then
         choices=$("$program" samples 2>/dev/null | sed -n 's/^sample:\([^ ]*\) .*/\1/p')
         COMPREPLY=($(compgen -W "$choices" -- "$current"))
-    elif [[ $command != samples && $previous != --tf ]]; then
+    elif [[ $command != samples && $command != presets && $previous != --tf ]]; then
         choices=$("$program" samples 2>/dev/null | sed -n 's/^\(sample:[^ ]*\) .*/\1/p')
         COMPREPLY=($(compgen -W "$choices" -- "$current") $(compgen -f -- "$current"))
         compopt -o filenames 2>/dev/null

@@ -156,11 +156,7 @@ std::string textOf(const RefineOptions& options, const TransferFunction& before,
 
 /// Without the priority.
 RefineOptions optionsOf(const Options& o, const RefineSettings& session) {
-    RefineOptions options;
-    options.stepDown = session.stepDown;
-    options.stepUp = session.stepUp;
-    options.maxIterations = session.maxIterations;
-    options.method = session.method;
+    RefineOptions options = session.options();
     for (const auto& set : o.given) set(options);
     return options;
 }
@@ -235,8 +231,7 @@ Command addRefine(CLI::App& program) {
             o->given.emplace_back([method](RefineOptions& r) { r.method = *method; });
         },
         "greedy: one opacity down and one up while that helps (default); exact: the most even edges that the same "
-        "total "
-        "opacity allows");
+        "total opacity allows");
     addValue(
         *app, "--step-down", "D",
         [o](const std::string& text, const std::string& option) {

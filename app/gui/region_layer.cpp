@@ -198,7 +198,7 @@ void RegionLayer::paint(QPainter& painter, const OverlayView& view) {
     if (!isRectangle(*region)) return;
     const QRectF r = outline.boundingRect();
     painter.setPen(QPen(QColor(0, 0, 0, 170), 1));
-    painter.setBrush(theme::kAccent);
+    painter.setBrush(theme::kMarkAccent);
     for (const double x : {r.left(), r.center().x(), r.right()})
         for (const double y : {r.top(), r.center().y(), r.bottom()})
             if (x != r.center().x() || y != r.center().y()) painter.drawRect(QRectF(x - 3.5, y - 3.5, 7, 7));

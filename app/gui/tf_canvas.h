@@ -49,7 +49,6 @@ public:
     HistogramScale histogramScale() const { return m_scale; }
     /// Behind the curve: how often intensities meet gradient magnitudes.
     void setJointHistogramShown(bool on);
-    bool isJointHistogramShown() const { return m_showJoint; }
     /// See OpacityAxis; on at first.
     void setFineOpacityAxis(bool on);
     bool isFineOpacityAxis() const { return m_opacityAxis.isFine(); }

@@ -41,10 +41,6 @@ QIcon swatch(const QColor& color, const QSize& size = {22, 14}) {
     return pixmap;
 }
 
-} // namespace
-
-namespace {
-
 /// What can be done to the feature under the mouse, which is selected for it.
 void addFeatureMenu(QMenu& menu, Workbench& bench, FeatureId id) {
     const int feature = featureWithId(bench.scene().tf, id);

@@ -10,7 +10,8 @@
 namespace pellucid {
 
 /// The colours of the pixels whose centres lie in the region, each colour once, sorted; pixels of alpha 0 are skipped.
-/// `picture` is unlit and has no background, see plainPicture(). Throws Error where no pixel is left.
+/// `picture` is unlit and has no background, see plainPictureInput() in session/scene.h. Throws Error where no pixel is
+/// left.
 std::vector<RegionColor> regionColors(const Image& picture, const ImageRegion& region);
 
 } // namespace pellucid

@@ -39,7 +39,7 @@ inline constexpr const char* kAutomaticTf = "auto";
 /// What a user may name beside a session, or in place of one. Everything given overrides the session.
 struct SceneInputs {
     Session session;                 ///< what to start from: its variable's source is what is opened
-    std::optional<std::string> tf;   ///< a file, tents:N[:PEAK], ramp:N or kAutomaticTf
+    std::optional<std::string> tf;   ///< a file, tents:N[:PEAK], ramp:N, preset:NAME or kAutomaticTf
     std::optional<ValueRange> range; ///< intensity window, data units
     std::optional<Camera> camera;
     std::string cameraName;               ///< of `camera` in messages, such as its file

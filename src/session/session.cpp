@@ -17,6 +17,15 @@ const Part<TransferFunction>* TfTrack::at(int frame) const {
     return next == keys.begin() ? &next->second : &std::prev(next)->second;
 }
 
+RefineOptions RefineSettings::options() const {
+    RefineOptions options;
+    options.stepDown = stepDown;
+    options.stepUp = stepUp;
+    options.maxIterations = maxIterations;
+    options.method = method;
+    return options;
+}
+
 const TransferFunction* Session::tf() const {
     if (isEmpty()) return nullptr;
     const Part<TransferFunction>* part = variable().track.at(frame);

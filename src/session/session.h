@@ -91,6 +91,7 @@ struct RefineSettings {
     bool live = false;                      ///< after every edit, not only when asked for
     std::optional<double> intensity = {};   ///< [0,1]
     std::optional<ImageRegion> region = {}; ///< of the picture as the view shows it
+    RefineOptions options() const;          ///< without what is favoured
     bool operator==(const RefineSettings&) const = default;
 };
 

@@ -342,10 +342,8 @@ OptimizeOptions toOptimize(const JsonValue& j) {
 constexpr std::size_t kMostCorners = 10'000; ///< of a region
 
 json fromRefine(const RefineSettings& r) {
-    json j{{"step_down", r.stepDown},
-           {"max_iterations", r.maxIterations},
-           {"method", r.method == RefineMethod::Exact ? "exact" : "greedy"},
-           {"live", r.live}};
+    json j{
+        {"step_down", r.stepDown}, {"max_iterations", r.maxIterations}, {"method", name(r.method)}, {"live", r.live}};
     j["step_up"] = r.stepUp ? json(*r.stepUp) : json("auto");
     if (r.intensity) j["intensity"] = *r.intensity;
     if (r.region)
@@ -371,8 +369,9 @@ RefineSettings toRefine(const JsonValue& j) {
     if (j.has("max_iterations")) r.maxIterations = static_cast<int>(j["max_iterations"].integer(0, 1'000'000'000));
     if (j.has("method"))
         r.method = named(j["method"], [](const std::string& text) {
-            if (text != "greedy" && text != "exact") throw UsageError("no such method", "", "write greedy or exact");
-            return text == "exact" ? RefineMethod::Exact : RefineMethod::Greedy;
+            const auto method = refineMethodFromName(text);
+            if (!method) throw UsageError("no such method", "", "write greedy or exact");
+            return *method;
         });
     if (j.has("live")) r.live = j["live"].boolean();
     if (j.has("intensity")) r.intensity = j["intensity"].number(0, 1);

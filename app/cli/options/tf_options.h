@@ -13,7 +13,7 @@
 namespace pellucid::cli {
 
 struct TfOptions {
-    std::optional<std::string> spec; ///< a file, auto, tents:N[:PEAK] or ramp:N
+    std::optional<std::string> spec; ///< a file, auto, tents:N[:PEAK], ramp:N or preset:NAME
 
     const ColorMap* colorMap = nullptr;
     ColorMapOptions colorMapOptions;

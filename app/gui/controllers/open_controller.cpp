@@ -220,13 +220,12 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 }
 
 void OpenController::show(const Request& request, Opened& opened) {
-    const bool ownTf = opened.tfError || request.tfPath.isEmpty() || !isTfFile(request.tfPath);
-    m_tfPath = ownTf ? QString() : request.tfPath;
+    const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && isTfFile(request.tfPath);
+    m_tfPath = tfFromFile ? request.tfPath : QString();
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
     const VolumeSource source = opened.scene.session.variable().source;
-    const bool tfFromFile = !request.tfPath.isEmpty() && !opened.tfError && isTfFile(request.tfPath);
     const Scene scene = opened.scene;
     m_bench.store().open(std::move(opened.scene));
     if (request.unsaved) m_bench.store().setUnsaved();

@@ -23,7 +23,8 @@ public:
     void updateRecentFiles();
 
     /// All of these open in the background; an error shows a dialog and leaves everything as it is.
-    /// `tfSpec` (a file, auto, tents:N[:PEAK], ramp:N) is the transfer function; empty: the automatic start.
+    /// `tfSpec` (a file, auto, tents:N[:PEAK], ramp:N, preset:NAME) is the transfer function; empty: the automatic
+    /// start.
     void openVolume(const VolumeSource& source, const QString& tfSpec = {});
     void openSession(const QString& path);
     /// A session that need not have a file: one that was recovered. It is unsaved.

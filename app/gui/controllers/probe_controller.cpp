@@ -63,7 +63,6 @@ void ProbeController::probeAt(const QPointF& point, const QSizeF& size, double p
     m_tf = shown;
     const int main = ray.feature;
     m_ray = std::move(ray);
-    if (scene.session.slices->layout != SliceViews::Layout::Volume) moveCrosshairToWorld(m_bench.store(), m_place);
     if (main >= 0) m_bench.selection().setFeature(scene.tf.features[static_cast<std::size_t>(main)].id);
     if (scene.session.slices->layout != SliceViews::Layout::Volume) moveCrosshairToWorld(m_bench.store(), m_place);
     Q_EMIT changed();

@@ -214,11 +214,7 @@ std::optional<RefinePriority> RefineController::priorityOf(const RefineSettings&
 
 RefineOptions RefineController::options() const {
     const RefineSettings& settings = *m_bench.store().session().refine;
-    RefineOptions options;
-    options.stepDown = settings.stepDown;
-    options.stepUp = settings.stepUp;
-    options.maxIterations = settings.maxIterations;
-    options.method = settings.method;
+    RefineOptions options = settings.options();
     options.priority = priorityOf(settings).value_or(RefinePriority());
     return options;
 }
@@ -432,11 +428,7 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
         return {};
     }
     try {
-        RefineOptions by;
-        by.stepDown = settings.stepDown;
-        by.stepUp = settings.stepUp;
-        by.maxIterations = settings.maxIterations;
-        by.method = settings.method;
+        RefineOptions by = settings.options();
         by.priority = *priority;
         const auto held = edited ? heldPoints(before.tf, after.tf) : std::vector<std::size_t>();
         Refinement r = refineFrom(after.tf, liveStart(before.tf, after.tf, held), after, by);

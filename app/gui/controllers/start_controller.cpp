@@ -42,7 +42,8 @@ QString recognisedText(const Proposal& proposal) {
 
 QString beyondText(const Proposal& proposal, const ValueRange& data) {
     const ValueRange& window = proposal.window;
-    const bool below = data.lo<window.lo, above = data.hi> window.hi;
+    const bool below = data.lo < window.lo;
+    const bool above = data.hi > window.hi;
     if (!(data.lo < data.hi) || (!below && !above)) return {};
     const auto plain = [](double v) { return QString::number(v, 'g', 4); };
     const QString ends = below && above ? QObject::tr("%1 and %2").arg(plain(data.lo), plain(data.hi))

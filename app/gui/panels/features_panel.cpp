@@ -77,7 +77,6 @@ private:
     const FeaturesModel& m_model;
 };
 
-/// A slider in each cell of the opacity column.
 /// The swatch of a feature with an outline: white ones are seen on white, too.
 class NameDelegate : public QStyledItemDelegate {
 public:
@@ -97,6 +96,7 @@ protected:
     }
 };
 
+/// A slider in each cell of the opacity column.
 class OpacityDelegate : public QStyledItemDelegate {
 public:
     OpacityDelegate(FeaturesModel& model, QObject* parent) : QStyledItemDelegate(parent), m_model(model) {}

@@ -215,7 +215,7 @@ void GalleryPanel::draw() {
     task.picture = pictureInput(scene, static_cast<int>(kWidth * density), static_cast<int>(kHeight * density));
     task.picture.settings.stepInD0 = 1;
     task.picture.settings.onlyFeature = -1;
-    for (const Entry& entry : m_entries) task.tfs.push_back(placed(entry.preset.tf, scene.volume->range()));
+    for (const Entry& entry : m_entries) task.tfs.push_back(shownTf(placed(entry.preset.tf, scene.volume->range())));
     task.number = ++m_number;
     m_job.start(std::move(task), tr("the presets"));
 }
