@@ -1,7 +1,6 @@
 // Heights of opacities along the vertical axis of the transfer function.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -16,7 +15,10 @@ public:
 
     double height(double opacity) const { return m_fine ? std::cbrt(opacity) : opacity; } ///< [0,1]
     double opacity(double height) const {                                                 ///< [0,1], of any height
-        height = std::clamp(height, 0.0, 1.0);
+        // To pixels and back leaves rounding: an opacity of 0 is to stay 0, which means that there is nothing.
+        constexpr double kRounding = 1e-9;
+        if (height < kRounding) return 0;
+        if (height > 1 - kRounding) return 1;
         return m_fine ? height * height * height : height;
     }
     /// Opacities that are written at the axis; the first ones before the others where there is no room for all.

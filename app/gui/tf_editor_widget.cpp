@@ -16,8 +16,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "ghost_layer.h"
 #include "controllers/feature_actions.h"
+#include "ghost_layer.h"
 #include "number_box.h"
 #include "number_text.h"
 #include "palette_bar.h"

@@ -202,9 +202,7 @@ private:
         m_nine = tents(9);
         m_nineWeights = saliencyFields(*m_case.volume, m_nine, {}, job);
         add(row(BenchRow::Jacobian, m_engine->name(), 1, m_nine, kNineTents), sweepBytes(),
-            [this](BenchResult&, const JobControl& j) {
-                m_engine->jacobian(m_case.view, m_nine, &m_nineWeights, j);
-            });
+            [this](BenchResult&, const JobControl& j) { m_engine->jacobian(m_case.view, m_nine, &m_nineWeights, j); });
     }
 
     /// The search alone: engine and weights are there.
@@ -250,7 +248,9 @@ private:
             BenchResult r = row(BenchRow::Render, renderer->name());
             r.extra = {{"size", {settings.width, settings.height}}};
             if (settings.light.on) r.extra["lit"] = true;
-            if (m_options.orbit > 1) r.extra.update({{"frames", nlohmann::ordered_json::array()}, {"cpu_frames", nlohmann::ordered_json::array()}});
+            if (m_options.orbit > 1)
+                r.extra.update(
+                    {{"frames", nlohmann::ordered_json::array()}, {"cpu_frames", nlohmann::ordered_json::array()}});
             add(
                 r, voxels() * kBytesPerCode,
                 [this, renderer, settings](BenchResult& result, const JobControl& j) {

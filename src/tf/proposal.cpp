@@ -153,7 +153,8 @@ std::vector<ValueRange> rangesOf(const std::vector<Part>& parts) {
 }
 
 /// Trapezoids from border to border. Where two features meet, the opacity is the lower of the two, so that neither
-/// rises beyond its own and nothing between them is left out; beside the background it falls to 0.
+/// rises beyond its own and nothing between them is left out; beside the background it falls to 0, and stays there:
+/// these points are fixed, so that no refinement brings back what was left out.
 TransferFunction trapezoids(const Evidence& e, const std::vector<Part>& parts, const std::vector<double>& opacities) {
     constexpr double kSlope = 0.5; // of the way from border to mode
     TransferFunction tf;
@@ -167,8 +168,11 @@ TransferFunction trapezoids(const Evidence& e, const std::vector<Part>& parts, c
         const double before = meetsBefore ? std::min(opacities[f - 1], own) : a <= 0 ? own : 0;
         const double after = meetsAfter ? std::min(own, opacities[f + 1]) : b >= 1 ? own : 0;
         const auto add = [&](double x, double opacity) {
-            tf.points.push_back(
-                {std::clamp(x, tf.points.empty() ? 0.0 : tf.points.back().x, 1.0), opacity, parts[f].color, false, {}});
+            tf.points.push_back({std::clamp(x, tf.points.empty() ? 0.0 : tf.points.back().x, 1.0),
+                                 opacity,
+                                 parts[f].color,
+                                 opacity == 0,
+                                 {}});
         };
         add(a, before);
         if (before < own) add(a + kSlope * (m - a), own);

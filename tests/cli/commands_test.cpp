@@ -248,8 +248,8 @@ TEST_CASE("the view decides which disk hides the others", "[cli]") {
     const Workshop w;
     // Three disks one behind the other along x (thesis fig. 4.5, 4.6): azimuth −90 puts the eye at −x, +90 at +x.
     const auto visibility = [&](const std::string& view) {
-        return column(w.json({"measure", "sample:disks", "--size", "24", "--view", view, "--orthographic", "--engine",
-                              "cpu"})["features"],
+        return column(w.json({"measure", "sample:disks", "--tf", "tents:3:0.6", "--size", "24", "--view", view,
+                              "--orthographic", "--engine", "cpu"})["features"],
                       "visibility");
     };
     const auto fromLeft = visibility("-90,0"), fromRight = visibility("90,0");
@@ -387,8 +387,8 @@ TEST_CASE("fields writes volumes whose sums are the measures", "[cli]") {
 
 TEST_CASE("render writes a picture of the asked size over the asked background", "[cli]") {
     const Workshop w;
-    const std::vector<std::string> base{"render",   "sample:shells", "--sample-size", "24",
-                                        "--engine", "cpu",           "--size",        "64x48"};
+    const std::vector<std::string> base{"render", "sample:shells", "--tf", "tents:3:0.25", "--sample-size",
+                                        "24",     "--engine",      "cpu",  "--size",       "64x48"};
     const auto rendered = [&](const std::string& file, std::vector<std::string> options) {
         std::vector<std::string> arguments = base;
         arguments.insert(arguments.end(), options.begin(), options.end());
@@ -419,8 +419,8 @@ TEST_CASE("render writes a picture of the asked size over the asked background",
     const Image plain = rendered("c.png", {});
     CHECK(plain.pixel(0, 0)[0] == Approx(0.0));
     const std::vector<std::vector<std::string>> changes{
-        {"--shading"},         {"--clip", "y:0.5:1"}, {"--clip", "x:0:0.5", "z:0:0.6"},
-        {"--feature", "core"}, {"--view", "30,20,2"}, {"--orthographic"}};
+        {"--shading"},       {"--clip", "y:0.5:1"}, {"--clip", "x:0:0.5", "z:0:0.6"},
+        {"--feature", "f3"}, {"--view", "30,20,2"}, {"--orthographic"}};
     for (const auto& change : changes) {
         INFO(change[0] << " " << change.back());
         CHECK(rendered("d.png", change).rgba != plain.rgba);
@@ -722,7 +722,8 @@ TEST_CASE("constant and invalid volumes are measured as empty ones", "[cli]") {
         CHECK(info["notices"].size() == 1);
         CHECK(info["range"][0] == info["range"][1]);
         // Every intensity is 0 or none, and tents:3 is transparent there: all figures are 0, and a remark says why.
-        const Outcome outcome = w.run({"measure", file, "--raw", layout, "--json", "--engine", "cpu"});
+        const Outcome outcome =
+            w.run({"measure", file, "--raw", layout, "--tf", "tents:3", "--json", "--engine", "cpu"});
         CHECK(outcome.status == 0);
         CHECK(outcome.err.rfind("pellucid-cli: note: ", 0) == 0);
         const json j = json::parse(outcome.out);

@@ -127,7 +127,7 @@ TEST_CASE("wrong values of render are wrong usage", "[cli][errors]") {
     checkFails(w, kRender + Words{"--light-preset", "gold"}, 2, "metal");
     checkFails(w, kRender + Words{"--no-shading", "--shading"}, 2, "--no-shading");
     checkFails(w, kRender + Words{"--depth-cue", "2"}, 2, "--depth-cue");
-    checkFails(w, kRender + Words{"--feature", "dentine"}, 2, "'core'");
+    checkFails(w, kRender + Words{"--tf", "tents:3", "--feature", "dentine"}, 2, "'f3'");
     // Before any work: the volume would be refused too.
     checkFails(w, {"render", "missing.nrrd", "--out", "x.bmp"}, 2, "x.bmp");
     checkFails(w, {"render", "missing.nrrd", "--out", ""}, 2, "--out");
@@ -156,7 +156,7 @@ TEST_CASE("wrong values of refine and optimize are wrong usage", "[cli][errors]"
     for (const Words& words : ofPictures) checkFails(w, samples + words, 2, words[0]);
     // Its corner shows nothing.
     checkFails(w, samples + Words{"--region", "0,0,2,2", "--size", "32x32"}, 1, "nothing is to be seen");
-    checkFails(w, kRefine + Words{"--fix", "0.4"}, 2, "0.366667"); // lists the points there are
+    checkFails(w, kRefine + Words{"--tf", "tents:3", "--fix", "0.4"}, 2, "0.366667"); // lists the points there are
     checkFails(w, kOptimize, 2, "--target is required");
     for (const char* target : {"1,1", "1,1,1,1", "0,0,0", "-1,1,1", "1,nan,1", "1,,1"})
         checkFails(w, kOptimize + Words{"--target", target}, 2, "--target");

@@ -20,9 +20,9 @@
 #include <QTimer>
 #include <QToolTip>
 
+#include "image_io/image_file.h"
 #include "input_habits.h"
 #include "render/camera_motion.h"
-#include "image_io/image_file.h"
 #include "tf/edit.h"
 
 using namespace pellucid;

@@ -9,8 +9,8 @@
 #include <QSignalSpy>
 
 #include "render/camera_motion.h"
-#include "selection.h"
 #include "render/clip_handles.h"
+#include "selection.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

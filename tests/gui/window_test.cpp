@@ -27,9 +27,9 @@
 #include <QUrl>
 #include <QWheelEvent>
 
+#include "image_io/image_file.h"
 #include "optimize/refine.h"
 #include "render/camera_motion.h"
-#include "image_io/image_file.h"
 #include "tf/formats/tf_json.h"
 
 using namespace pellucid;

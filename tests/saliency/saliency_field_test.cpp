@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "saliency/ball_plan.h"
 #include "saliency/appearance.h"
+#include "saliency/ball_plan.h"
 #include "saliency/saliency_direct.h"
 #include "saliency/saliency_field.h"
 #include "support/volumes.h"

@@ -159,7 +159,7 @@ TEST_CASE("data of one value alone can be opened", "[session]") {
     Scene scene = openScene(in);
     CHECK(scene.volume->range() == ValueRange{7, 7});
     CHECK(scene.tf.opacity(0) > 0); // all intensities are 0, and something is to be seen
-    CHECK_FALSE(scene.tf.range); // no two values for 0 and 1
+    CHECK_FALSE(scene.tf.range);    // no two values for 0 and 1
     CHECK(scene.tf.features[0].id != 0);
     in.tf = files.tf;
     scene = openScene(in);

@@ -84,8 +84,7 @@ TEST_CASE("colours or opacities alone are taken of another transfer function", "
         CHECK(colored.points[i].color == other.color(mine.points[i].x));
     }
     // A feature has the colour of its peak: of tent i, that is at (i + ½)/3.
-    for (std::size_t f = 0; f < 3; ++f)
-        CHECK(colored.features[f].color == other.color(mine.points[3 * f + 1].x));
+    for (std::size_t f = 0; f < 3; ++f) CHECK(colored.features[f].color == other.color(mine.points[3 * f + 1].x));
     const TransferFunction shaped = taken(mine, other, Take::Opacities);
     for (const double s : {0.05, 0.2, 0.51, 0.9}) CHECK(shaped.opacity(s) == Approx(other.opacity(s)));
     CHECK(shaped.points[2].color == mine.color(other.points[2].x));

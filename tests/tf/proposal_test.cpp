@@ -58,6 +58,7 @@ void checkSound(const Proposal& p) {
     CHECK(p.outside <= 1);
     CHECK_FALSE(p.why.empty());
     REQUIRE_FALSE(p.features.empty());
+    for (const ControlPoint& point : p.tf.points) CHECK(point.fixed == (point.opacity == 0)); // out stays out
     CHECK(p.features.size() <= (p.kind == DataKind::Labels ? 12u : 5u));
     REQUIRE(p.tf.features.size() == p.features.size());
     const auto intensity = [&](double v) { return (v / 2 - p.window.lo / 2) / (p.window.hi / 2 - p.window.lo / 2); };

@@ -56,7 +56,7 @@ TEST_CASE("gradients are per d0, whatever the spacing of their axis", "[joint]")
         const JointHistogram h = makeJointHistogram(kinkedRamp(axis, spacing), 64, 128);
         const double slope = 0.5 / 32 / spacing[axis]; // 1/32 per spacing, over d0
         CHECK(h.mostGradient >= slope - 1e-12);
-        CHECK(h.mostGradient <= slope + 1.5 / 16384); // the bound: 0.5/2 + 1 + 0.5/4 < 1.5
+        CHECK(h.mostGradient <= slope + 1.5 / 16384);                              // the bound: 0.5/2 + 1 + 0.5/4 < 1.5
         CHECK(inGradientBin(h, histogramBin(slope / h.mostGradient, 128)) == 400); // the steep part
         CHECK(inGradientBin(h, histogramBin(slope / 2 / h.mostGradient, 128)) == 400);
     }

@@ -34,7 +34,9 @@ void TfOptions::addSource(CLI::App& app) {
     addValue(
         app, "--tf", "FILE|auto|tents:N[:PEAK]|ramp:N|preset:NAME",
         [this](const std::string& text, const std::string& option) {
-            if (text.empty()) throw UsageError("the name is empty", option, "give a file, auto, tents:N[:PEAK], ramp:N or preset:NAME");
+            if (text.empty())
+                throw UsageError("the name is empty", option,
+                                 "give a file, auto, tents:N[:PEAK], ramp:N or preset:NAME");
             spec = text;
         },
         "transfer function (default: the session's, else auto: what the data propose, see propose); auto and the "

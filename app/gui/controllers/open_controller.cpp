@@ -61,7 +61,8 @@ VolumeSource recentSource(const QString& entry) {
 
 /// Whether what names a transfer function names a file.
 bool isTfFile(const QString& specOrPath) {
-    return specOrPath != kAutomaticTf && !tfFromSpec(specOrPath.toStdString()) && !tfFromPresetSpec(specOrPath.toStdString());
+    return specOrPath != kAutomaticTf && !tfFromSpec(specOrPath.toStdString()) &&
+           !tfFromPresetSpec(specOrPath.toStdString());
 }
 
 } // namespace

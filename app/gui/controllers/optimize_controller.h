@@ -29,8 +29,8 @@ public:
     double objective() const { return m_objective; }
     double firstObjective() const { return m_firstObjective; }
 
-    /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present state
-    /// any more.
+    /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present
+    /// state any more.
     const QString& message() const { return m_message; }
     void say(const QString& text);
 

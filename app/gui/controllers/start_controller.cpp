@@ -31,10 +31,8 @@ QString recognisedText(const Proposal& proposal) {
         return QObject::tr("Values of both signs: colours part at 0, and what lies about it is left out.");
     case DataKind::Labels:
         return QObject::tr("Labels: a feature for each.");
-    case DataKind::Constant:
-        return QObject::tr("All voxels have the same value.");
+    case DataKind::Constant: // the loader has said it
     case DataKind::Empty:
-        return QObject::tr("No voxel has a valid value: there is nothing to see.");
     case DataKind::Binary:
     case DataKind::Continuous:
         break;
