@@ -88,6 +88,8 @@ ValueRange parseRange(const std::string& text, const std::string& option) {
     const auto v = parseReals(text, option, 2, "LO,HI in data units");
     if (!(v[0] < v[1]))
         throw UsageError("the lower end of " + text + " is not below the upper one", option, "give LO,HI with LO < HI");
+    if (!std::isfinite(v[1] - v[0]))
+        throw UsageError("the ends of " + text + " are too far apart", option, "give LO,HI less than 1e308 apart");
     return {v[0], v[1]};
 }
 

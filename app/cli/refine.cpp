@@ -73,7 +73,11 @@ void check(const Options& o) {
         throw UsageError("the region lies outside the picture of " + std::to_string(size.width) + " x " +
                              std::to_string(size.height) + " pixels",
                          "--region", "correct it, or give the picture's --size WxH");
-    if (o.region) return;
+}
+
+/// Refuses options of a picture that nothing looks at.
+void checkPicture(const Options& o, bool looks) {
+    if (looks) return;
     const CameraOptions& camera = o.scene.camera;
     const char* of = o.size                            ? "--size WxH"
                      : camera.file                     ? "--camera"
@@ -86,7 +90,23 @@ void check(const Options& o) {
                          "leave it out, or give --region X0,Y0,X1,Y1");
 }
 
-/// The priority that the options ask for, and in `said` what it is.
+/// The region that counts, of a picture of `o.size`: the one given, else the session's where nothing else counts.
+std::optional<ImageRegion> regionOf(const Options& o, const Session& session) {
+    if (!o.region) return o.intensity || o.hue ? std::nullopt : session.refine->region;
+    const ImageSize size = o.size.value_or(ImageSize{});
+    const double w = size.width, h = size.height;
+    const PixelRectangle& r = *o.region;
+    return ImageRegion{{{r.x0 / w, r.y0 / h}, {r.x1 / w, r.y0 / h}, {r.x1 / w, r.y1 / h}, {r.x0 / w, r.y1 / h}}};
+}
+
+/// As corners in fractions of the picture.
+Json jsonFromRegion(const ImageRegion& region) {
+    Json corners = Json::array();
+    for (const glm::dvec2& corner : region.outline) corners.push_back({corner.x, corner.y});
+    return corners;
+}
+
+/// The priority that the options or the session ask for, and in `said` what it is.
 RefinePriority priorityOf(const Options& o, const Scene& scene, const TransferFunction& tf, Progress& progress,
                           Json& said) {
     RefinePriority priority;
@@ -96,23 +116,22 @@ RefinePriority priorityOf(const Options& o, const Scene& scene, const TransferFu
     if (priority.intensity) {
         said = {{"kind", "intensity"}, {"intensity", *priority.intensity}};
         if (o.hue) said["hue"] = *o.hue;
-    } else if (o.region) {
+    } else if (const std::optional<ImageRegion> region = regionOf(o, scene.session)) {
         const ImageSize size = o.size.value_or(ImageSize{});
-        const PixelRectangle& r = *o.region;
         // Always by the cpu renderer: the same answer on every machine.
         const PictureInput picture = plainPictureInput(scene, size.width, size.height);
         const Image image = makeCpuRenderer(picture.volume)
                                 ->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
-        const double w = size.width, h = size.height;
-        const ImageRegion region{
-            {{r.x0 / w, r.y0 / h}, {r.x1 / w, r.y0 / h}, {r.x1 / w, r.y1 / h}, {r.x0 / w, r.y1 / h}}};
-        priority.region = regionColors(image, region);
+        priority.region = regionColors(image, *region);
         double pixels = 0;
         for (const RegionColor& c : priority.region) pixels += c.count;
-        said = {{"kind", "region"},
-                {"region", {r.x0, r.y0, r.x1, r.y1}},
-                {"size", {size.width, size.height}},
-                {"pixels", static_cast<long long>(pixels)}};
+        said = {{"kind", "region"}};
+        if (o.region)
+            said["region"] = {o.region->x0, o.region->y0, o.region->x1, o.region->y1};
+        else
+            said["outline"] = jsonFromRegion(*region);
+        said["size"] = {size.width, size.height};
+        said["pixels"] = static_cast<long long>(pixels);
     } else {
         said = {{"kind", "none"}};
     }
@@ -163,7 +182,10 @@ RefineOptions optionsOf(const Options& o, const RefineSettings& session) {
 
 Answer run(const Options& o, Progress& progress) {
     check(o);
-    const Opened opened = resolve(o.scene, progress, {o.region ? toView("drawing") : MemoryUse{}});
+    const bool hasSession = o.scene.session.file.has_value(); // which may bring a region
+    if (!hasSession) checkPicture(o, o.region.has_value());
+    const Opened opened = resolve(o.scene, progress, {o.region || hasSession ? toView("drawing") : MemoryUse{}});
+    checkPicture(o, regionOf(o, opened.scene.session).has_value());
     TransferFunction tf = opened.scene.tf;
     for (const double x : o.fixed) fixPoint(tf, x);
     Json priority;

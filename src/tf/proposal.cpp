@@ -224,6 +224,13 @@ Proposal proposeUniform(const Volume& data, VoxelSurvey survey, DataKind kind) {
     return result;
 }
 
+std::vector<double> valuesIn(const std::vector<double>& values, const ValueRange& window) {
+    std::vector<double> inside;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(inside),
+                 [&](double v) { return v >= window.lo && v <= window.hi; });
+    return inside;
+}
+
 /// One feature per value, borders half-way; the most common one on the faces is the background.
 void proposeValues(Proposal& result, const Evidence& e, const std::vector<double>& values) {
     constexpr std::size_t kMostFeatures = 12;
@@ -378,15 +385,29 @@ void proposeClasses(Proposal& result, const Evidence& e, const JobControl& job) 
     finish(result, e, std::move(parts));
 }
 
-/// The window: what somebody has chosen, else a robust range; of CT from −1024 on.
+/// Whether renderers tell the values apart, whose tables hold a few thousand intensities.
+bool canTellApart(const std::vector<double>& values, const ValueRange& window) {
+    constexpr double kLeastGap = 1.0 / 1024; // of the window
+    for (std::size_t v = 1; v < values.size(); ++v)
+        if (values[v] - values[v - 1] < kLeastGap * (window.hi - window.lo)) return false;
+    return true;
+}
+
+/// The window: what somebody has chosen, else a robust range; of CT from −1024 on, of labels from label to label, all
+/// of them where their values can be told apart.
 ValueRange windowFor(const Volume& data, const VoxelSurvey& survey, const RecognisedKind& kind, Proposal& result) {
     const ValueRange whole = data.dataRange();
     if (data.range() != whole) return data.range();
-    if (kind.kind == DataKind::Labels || kind.kind == DataKind::Binary) return whole;
+    if (kind.kind == DataKind::Binary || (kind.kind == DataKind::Labels && canTellApart(kind.values, whole)))
+        return whole;
     std::vector<double> valid;
     for (const double v : survey.values)
         if (!std::isnan(v)) valid.push_back(v);
     const RobustRange robust = robustRange(std::move(valid), whole);
+    if (kind.kind == DataKind::Labels) {
+        const std::vector<double> inside = valuesIn(kind.values, robust.range);
+        return inside.size() < 2 ? whole : ValueRange{inside.front(), inside.back()};
+    }
     ValueRange window = robust.range;
     if (kind.kind == DataKind::Ct) {
         constexpr double kLeastHounsfield = -1024, kAtLeastTo = 300;
@@ -431,7 +452,7 @@ Proposal propose(const Volume& data, const JobControl& job) {
     switch (kind.kind) {
     case DataKind::Labels:
     case DataKind::Binary:
-        proposeValues(result, e, kind.values);
+        proposeValues(result, e, valuesIn(kind.values, e.window));
         break;
     case DataKind::Signed:
         proposeSigned(result, e, kind.sigma);

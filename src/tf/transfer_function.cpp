@@ -123,7 +123,7 @@ void TransferFunction::validate() const {
                             "make them disjoint");
     }
     if (range && (!std::isfinite(range->hi - range->lo) || !(range->lo < range->hi)))
-        throw Error("the range needs lo < hi, both finite", "/range", "correct it");
+        throw Error("the range needs lo < hi, both finite and so their distance", "/range", "correct it");
 }
 
 std::size_t TfSampler::segment(double s) const {

@@ -88,7 +88,7 @@ TEST_CASE("wrong values of the volume's options are wrong usage", "[cli][errors]
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--skip", "-1"}, 2, "--skip");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--size", "16"}, 2, "sample");
     checkFails(w, {"info", "v.raw", "--raw", "2,2,2,u8", "--component", "-1"}, 2, "--component");
-    for (const char* range : {"5,1", "3,3", "nan,1", "0,inf", "5", ""})
+    for (const char* range : {"5,1", "3,3", "nan,1", "0,inf", "-1e308,1e308", "5", ""})
         checkFails(w, Words{"info"} + kShells + Words{"--range", range}, 2, "--range");
     checkFails(w, Words{"info"} + kShells + Words{"--missing", "none"}, 2, "--missing");
     checkFails(w, Words{"info"} + kShells + Words{"--seed", "-1"}, 2, "--seed");

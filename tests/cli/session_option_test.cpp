@@ -140,6 +140,31 @@ TEST_CASE("options override what the session says", "[cli][session]") {
     CHECK(small["features"][1]["name"] == "middle");
 }
 
+TEST_CASE("refine takes what the session prioritizes, a region too", "[cli][session]") {
+    Saved s;
+    const auto refined = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"refine", "--session", "a.pellucid.json", "--json"});
+        const Outcome o = s.w.run(options);
+        REQUIRE(o.status == 0);
+        return json::parse(o.out);
+    };
+    CHECK(refined({})["priority"]["kind"] == "none");
+    // Without a region there is no picture to have a size.
+    CHECK(s.w.run({"refine", "--session", "a.pellucid.json", "--size", "64x64"}).status == 2);
+
+    // The middle quarter of the picture: pixels 16 to 47 of 64.
+    s.session.refine.edit([](RefineSettings& r) {
+        r.region = ImageRegion{{{0.25, 0.25}, {0.75, 0.25}, {0.75, 0.75}, {0.25, 0.75}}};
+    });
+    s.save();
+    const json own = refined({"--size", "64x64"}), given = refined({"--size", "64x64", "--region", "16,16,48,48"});
+    CHECK(own["priority"]["kind"] == "region");
+    CHECK(own["priority"]["outline"].size() == 4);
+    CHECK(own["priority"]["pixels"] == given["priority"]["pixels"]);
+    CHECK(own["tf"] == given["tf"]);
+    CHECK(refined({"--intensity", "0.5"})["priority"]["kind"] == "intensity");
+}
+
 TEST_CASE("every command takes a session", "[cli][session]") {
     const Saved saved;
     const Workshop& w = saved.w;

@@ -244,6 +244,17 @@ TEST_CASE("labels have a feature each, borders half-way between them", "[proposa
     CHECK(rare.kind == DataKind::Labels);
     CHECK(rare.features.back().mode == 40);
 
+    // One wild voxel beside them, so far away that no picture could tell 0, 1, 2 and 3 apart: it lies beyond the
+    // window.
+    first = true;
+    const Proposal wild = propose(cubeOf<float>(
+        40, [&](double r, const Vec3& v) { return std::exchange(first, false) ? 1e6 : std::min(shells(r, v), 3); }));
+    checkSound(wild);
+    CHECK(wild.kind == DataKind::Labels);
+    CHECK(wild.window == ValueRange{0, 3});
+    CHECK(wild.outside == Approx(1.0 / (40 * 40 * 40)));
+    CHECK(bordersOf(wild) == std::vector<double>{0.5, 1.5, 2.5});
+
     // More labels than features: neighbours share one.
     // 26 labels in slabs five voxels thick: three to each of nine features.
     const Proposal many = propose(cubeOf<std::uint8_t>(
