@@ -156,6 +156,8 @@ int main(int argc, char** argv) {
                     &window, &MainWindow::settledChanged, &window,
                     [&window, screenshot] {
                         if (!window.isSettled()) return;
+                        // Texts have come that nothing has made room for yet.
+                        QApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
                         if (!window.grab().save(screenshot, "PNG"))
                             return QCoreApplication::exit(complain("cannot write the picture, " + screenshot +
                                                                        ", choose a folder you can write to",

@@ -59,7 +59,7 @@ PanelInfo galleryPanel() {
             .title = QObject::tr("Presets"),
             .area = Qt::RightDockWidgetArea,
             .visible = true,
-            .tabOf = "display",
+            .tabOf = "features",
             .keys = QKeySequence("Ctrl+9"),
             .tip = QObject::tr("Transfer functions as small pictures of this volume"),
             .make = [](Workbench& bench, QWidget* parent) { return new GalleryPanel(bench, parent); },
