@@ -61,6 +61,7 @@ void check(const Options& o) {
         throw UsageError("a slice has no frame of reference", "--annotate", "leave it out");
     if (o.slice.at && o.scene.picture.feature)
         throw UsageError("a slice shows all features", "--feature", "leave it out");
+    if (o.slice.at && o.scene.picture.mode) throw UsageError("a slice has no rays", "--mode", "leave it out");
 }
 
 /// What shows where the picture is transparent.

@@ -106,8 +106,10 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
     source.path = "sample:knee";
     w.opening().openVolume(source);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
-    w.bench().store().edit(
-        "Clip", {}, [](Session& session) { session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; }); });
+    w.bench().store().edit("Clip", {}, [](Session& session) {
+        session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
+        session.refine.edit([](RefineSettings& refine) { refine.method = RefineMethod::Exact; });
+    });
     w.child<QDockWidget>("refineDock").raise();
     w.settle();
     // The femur above the joint, cut open.
