@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "render/ray_box.h"
+#include "render/trilinear.h"
 #include "tf/opacity.h"
 #include "volume/noise.h"
 
@@ -24,51 +25,14 @@ constexpr double kSolid = 0.95, kEmpty = 0.05;
 int binOf(double s) { return std::min(static_cast<int>(s * kBins), kBins - 1); }
 double intensityOf(int bin) { return (bin + 0.5) / kBins; }
 
-/// Trilinear, of intensities that the window has clamped; empty where more than half of it is invalid.
-template <class T>
-class Sampler {
-public:
-    Sampler(const Volume& volume, const T* values)
-        : m_values(values), m_dims(volume.dims()), m_lo(volume.range().lo),
-          m_scale(volume.range().lo < volume.range().hi ? 1 / (volume.range().hi - volume.range().lo) : 0),
-          m_missing(volume.missing()) {}
-
-    std::optional<double> at(const Vec3& voxel) const {
-        std::size_t base[3], step[3];
-        double fraction[3];
-        std::size_t stride = 1;
-        for (int a = 0; a < 3; ++a) {
-            const double p = std::clamp(voxel[a], 0.0, static_cast<double>(m_dims[a] - 1));
-            const int low = std::min(static_cast<int>(p), std::max(0, m_dims[a] - 2));
-            fraction[a] = p - low;
-            base[a] = static_cast<std::size_t>(low) * stride;
-            step[a] = m_dims[a] == 1 ? 0 : stride;
-            stride *= static_cast<std::size_t>(m_dims[a]);
-        }
-        double sum = 0, weights = 0;
-        for (int c = 0; c < 8; ++c) {
-            std::size_t i = 0;
-            double w = 1;
-            for (int a = 0; a < 3; ++a) {
-                const bool upper = (c >> a) & 1;
-                w *= upper ? fraction[a] : 1 - fraction[a];
-                i += base[a] + (upper ? step[a] : 0);
-            }
-            const double v = static_cast<double>(m_values[i]);
-            if (!std::isfinite(v) || (m_missing && v == *m_missing)) continue;
-            sum += w * std::clamp((v - m_lo) * m_scale, 0.0, 1.0);
-            weights += w;
-        }
-        if (weights < 0.5) return {};
-        return std::min(sum / weights, 1.0);
-    }
-
-private:
-    const T* m_values;
-    Int3 m_dims;
-    double m_lo, m_scale;
-    std::optional<double> m_missing;
-};
+/// Trilinear, of intensities; empty where more than half of it is invalid.
+template <class Values>
+std::optional<double> intensityAt(const Volume& volume, const Values& values, const Vec3& voxel) {
+    const Interpolated met = interpolateValid(
+        [&](std::size_t i) { return volume.intensityOfValue(static_cast<double>(values[i])); }, volume.dims(), voxel);
+    if (met.validShare < 0.5) return {};
+    return std::min(met.value, 1.0);
+}
 
 } // namespace
 
@@ -85,7 +49,6 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
     std::vector<std::vector<std::uint16_t>> rows(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
     std::visit(
         [&](const auto& samples) {
-            const Sampler sampler(volume, samples.data());
             parallelFor(static_cast<std::size_t>(pixels), [&](std::size_t row) {
                 job.throwIfStopped();
                 for (int column = 0; column < pixels; ++column) {
@@ -99,7 +62,7 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
                     // as their thickness says.
                     const double first = static_cast<double>(hashOf(column, static_cast<int>(row), 0, 1) % 1024) / 1024;
                     for (double t = inside.enter + first * step; t < inside.exit; t += step)
-                        if (const auto s = sampler.at(ray.origin + t * ray.direction))
+                        if (const auto s = intensityAt(volume, samples, ray.origin + t * ray.direction))
                             if (const int bin = binOf(*s); m_featureOfBin[static_cast<std::size_t>(bin)] >= 0)
                                 rows[pixel].push_back(static_cast<std::uint16_t>(bin));
                 }

@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "render/trilinear.h"
 #include "tf/opacity.h"
 
 namespace pellucid {
@@ -33,45 +34,6 @@ std::optional<double> meanDepth(double a, double b) {
     return (integral(b) - integral(a)) / (b - a);
 }
 
-/// The ray at a point: intensity, and the weight of the valid voxels around it.
-struct Met {
-    double s = 0, valid = 0;
-};
-
-/// The interpolation of render/trilinear.h, of intensities that are made where they are needed.
-template <class Values>
-Met metAt(const Volume& volume, const Values& values, const Vec3& voxel) {
-    const Int3 n = volume.dims();
-    std::array<std::size_t, 3> base{},
-        step{1, static_cast<std::size_t>(n.x), static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y)};
-    std::array<double, 3> fraction{};
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        const double p = std::clamp(voxel[axis], 0.0, static_cast<double>(n[axis] - 1));
-        const int low = std::min(static_cast<int>(p), std::max(0, n[axis] - 2));
-        base[a] = static_cast<std::size_t>(low);
-        fraction[a] = p - low;
-    }
-    const std::size_t first = base[0] + step[1] * base[1] + step[2] * base[2];
-    Met met;
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        double w = 1;
-        std::size_t at = first;
-        for (std::size_t a = 0; a < 3; ++a) {
-            const bool high = (corner >> a) & 1u;
-            w *= high ? fraction[a] : 1 - fraction[a];
-            if (high) at += step[a];
-        }
-        if (w == 0) continue; // beyond the grid, too
-        const double s = volume.intensityOfValue(static_cast<double>(values[at]));
-        if (std::isnan(s)) continue;
-        met.s += w * s;
-        met.valid += w;
-    }
-    if (met.valid > 0) met.s /= met.valid;
-    return met;
-}
-
 /// Goes along the ray from entry to exit and adds up what it meets.
 class Walk {
 public:
@@ -86,10 +48,12 @@ public:
 
     /// From t to t + length, in steps along which the intensity goes straight; `metAfter(t)` tells what is between.
     template <class MetAfter>
-    void between(double t, double length, const Met& from, const Met& to, const MetAfter& metAfter, int halvings) {
-        const Met middle = halvings > 0 ? metAfter(t + length / 2) : Met{};
+    void between(double t, double length, const Interpolated& from, const Interpolated& to, const MetAfter& metAfter,
+                 int halvings) {
+        const Interpolated middle = halvings > 0 ? metAfter(t + length / 2) : Interpolated{};
         const auto isOff = [](double a, double m, double b) { return std::abs(m - (a + b) / 2) > kStraight; };
-        if (halvings == 0 || (!isOff(from.s, middle.s, to.s) && !isOff(from.valid, middle.valid, to.valid))) {
+        if (halvings == 0 ||
+            (!isOff(from.value, middle.value, to.value) && !isOff(from.validShare, middle.validShare, to.validShare))) {
             step(t, length, from, to);
             return;
         }
@@ -97,8 +61,8 @@ public:
         between(t + length / 2, length / 2, middle, to, metAfter, halvings - 1);
     }
 
-    void sample(double t, const Met& met) {
-        m_result.samples.push_back({t, met.valid > 0 ? met.s : kNone, -std::expm1(-m_depth)});
+    void sample(double t, const Interpolated& met) {
+        m_result.samples.push_back({t, met.validShare > 0 ? met.value : kNone, -std::expm1(-m_depth)});
     }
 
     void finish() {
@@ -124,40 +88,40 @@ private:
     };
 
     /// From t to t + length, where the intensity goes from `from` to `to` along a straight line.
-    void step(double t, double length, Met from, Met to) {
-        if (from.valid == 0) from.s = to.s;
-        if (to.valid == 0) to.s = from.s;
+    void step(double t, double length, Interpolated from, Interpolated to) {
+        if (from.validShare == 0) from.value = to.value;
+        if (to.validShare == 0) to.value = from.value;
         // Pieces that no control point and no border of a feature divides.
-        const double lo = std::min(from.s, to.s), hi = std::max(from.s, to.s);
+        const double lo = std::min(from.value, to.value), hi = std::max(from.value, to.value);
         auto first = std::upper_bound(m_cuts.begin(), m_cuts.end(), lo);
         auto last = std::lower_bound(first, m_cuts.end(), hi);
         double begin = 0;
         const auto until = [&](double cut) {
-            const double end = (cut - from.s) / (to.s - from.s);
+            const double end = (cut - from.value) / (to.value - from.value);
             piece(t, length, from, to, begin, end);
             begin = end;
         };
-        if (from.s < to.s)
+        if (from.value < to.value)
             for (; first < last; ++first) until(*first);
         else
             for (; first < last; --last) until(*(last - 1));
         piece(t, length, from, to, begin, 1);
     }
 
-    void piece(double t, double length, const Met& from, const Met& to, double begin, double end) {
+    void piece(double t, double length, const Interpolated& from, const Interpolated& to, double begin, double end) {
         if (!(begin < end)) return;
         const auto mix = [](double a, double b, double f) { return a + f * (b - a); };
-        const double middle = mix(from.s, to.s, (begin + end) / 2);
+        const double middle = mix(from.value, to.value, (begin + end) / 2);
         const int feature = featureAt(m_tf.features, middle);
         double tau = 0, valid = 0; // τ·d0, and the same where voxels are valid
         std::array<double, 3> emitted{};
         if (m_only < 0 || feature == m_only)
             for (const auto& [node, weight] : kGauss) {
-                const double u = mix(begin, end, node), s = mix(from.s, to.s, u);
+                const double u = mix(begin, end, node), s = mix(from.value, to.value, u);
                 const double here = weight * opticalDepthOfOpacity(m_sampler.opacity(s));
                 if (here == 0) continue;
                 tau += here;
-                const double there = here * mix(from.valid, to.valid, u);
+                const double there = here * mix(from.validShare, to.validShare, u);
                 valid += there;
                 const Rgb c = m_sampler.color(s);
                 emitted[0] += there * c.r;
@@ -168,8 +132,8 @@ private:
         double opticalDepth = 0;
         if (valid > 0) {
             // The sides of the piece, where there may be a step of α, are met from its inside.
-            const double a = m_sampler.opacity(mix(from.s, to.s, mix(begin, end, 0.25))),
-                         b = m_sampler.opacity(mix(from.s, to.s, mix(begin, end, 0.75)));
+            const double a = m_sampler.opacity(mix(from.value, to.value, mix(begin, end, 0.25))),
+                         b = m_sampler.opacity(mix(from.value, to.value, mix(begin, end, 0.75)));
             opticalDepth = valid / tau * meanDepth(a + (a - b) / 2, b + (b - a) / 2).value_or(tau) * own / m_d0;
         }
         const double share = std::exp(-m_depth) * -std::expm1(-opticalDepth);
@@ -230,13 +194,15 @@ RayProbe probe(const Volume& volume, const TransferFunction& tf, const View& vie
     std::visit(
         [&](const auto& values) {
             const auto metAfter = [&](double t) {
-                return metAt(volume, values, ray.origin + (inside.enter + t) * ray.direction);
+                return interpolateValid(
+                    [&](std::size_t i) { return volume.intensityOfValue(static_cast<double>(values[i])); },
+                    volume.dims(), ray.origin + (inside.enter + t) * ray.direction);
             };
-            Met from = metAfter(0);
+            Interpolated from = metAfter(0);
             walk.sample(0, from);
             for (std::size_t n = 0; n < steps; ++n) {
                 const double t = static_cast<double>(n) * step;
-                const Met to = metAfter(t + step);
+                const Interpolated to = metAfter(t + step);
                 walk.between(t, step, from, to, metAfter, kMostHalvings);
                 if ((n + 1) % kStepsPerSample == 0 || n + 1 == steps) walk.sample(t + step, to);
                 from = to;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "volume/grid.h"
@@ -17,49 +18,69 @@ struct Interpolated {
     double validShare = 0; ///< weight of the valid corners, [0,1]
 };
 
-/// Trilinear between centres, clamped to the edge beyond the outer ones, of a grid of `n` values. `at` is in voxels.
-/// `valid` may be empty.
-template <class T>
-Interpolated interpolate(const T* grid, const Int3& n, const std::vector<std::uint8_t>& valid, const Vec3& at) {
-    int base[3];
-    double fraction[3];
-    std::size_t step[3] = {1, static_cast<std::size_t>(n.x),
-                           static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y)};
-    for (int a = 0; a < 3; ++a) {
-        const double p = std::clamp(at[a], 0.0, static_cast<double>(n[a] - 1));
-        base[a] = std::min(static_cast<int>(p), std::max(0, n[a] - 2));
-        fraction[a] = p - base[a];
-        if (n[a] == 1) step[a] = 0;
-    }
-    const std::size_t corner = static_cast<std::size_t>(base[0]) + step[1] * static_cast<std::size_t>(base[1]) +
-                               step[2] * static_cast<std::size_t>(base[2]);
-    if (valid.empty()) { // nearly always: no weights to keep
-        const auto alongX = [&](std::size_t i) {
-            const auto low = static_cast<double>(grid[i]), high = static_cast<double>(grid[i + step[0]]);
-            return low + fraction[0] * (high - low);
-        };
-        const auto alongY = [&](std::size_t i) {
-            const double low = alongX(i), high = alongX(i + step[1]);
-            return low + fraction[1] * (high - low);
-        };
-        const double low = alongY(corner), high = alongY(corner + step[2]);
-        return {low + fraction[2] * (high - low), 1.0};
-    }
-    Interpolated result;
-    for (int c = 0; c < 8; ++c) {
-        double w = 1;
-        std::size_t i = corner;
+/// The cell around a place: its lowest corner, and how to get from there to the others.
+struct TrilinearCell {
+    std::size_t corner = 0;
+    std::size_t step[3]; ///< to the next voxel along each axis; 0 where there is one only
+    double fraction[3];  ///< of the way to it
+
+    /// `at` is in voxels of a grid of `n`; clamped to the outer centres.
+    TrilinearCell(const Int3& n, const Vec3& at)
+        : step{1, static_cast<std::size_t>(n.x), static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y)} {
         for (int a = 0; a < 3; ++a) {
-            const bool upper = (c >> a) & 1;
-            w *= upper ? fraction[a] : 1 - fraction[a];
-            if (upper) i += step[a];
+            const double p = std::clamp(at[a], 0.0, static_cast<double>(n[a] - 1));
+            const int base = std::min(static_cast<int>(p), std::max(0, n[a] - 2));
+            fraction[a] = p - base;
+            corner += step[a] * static_cast<std::size_t>(base);
+            if (n[a] == 1) step[a] = 0;
         }
-        if (w == 0 || !valid[i]) continue;
-        result.value += w * static_cast<double>(grid[i]);
+    }
+};
+
+/// Trilinear between centres, clamped to the edge beyond the outer ones, of a grid of `n` values that `valueAt(index)`
+/// tells: NaN where invalid. `at` is in voxels.
+template <class ValueAt>
+Interpolated interpolateValid(const ValueAt& valueAt, const Int3& n, const Vec3& at) {
+    const TrilinearCell cell(n, at);
+    Interpolated result;
+    for (unsigned c = 0; c < 8; ++c) {
+        double w = 1;
+        std::size_t i = cell.corner;
+        for (unsigned a = 0; a < 3; ++a) {
+            const bool upper = (c >> a) & 1u;
+            w *= upper ? cell.fraction[a] : 1 - cell.fraction[a];
+            if (upper) i += cell.step[a];
+        }
+        if (w == 0) continue;
+        const double value = valueAt(i);
+        if (std::isnan(value)) continue;
+        result.value += w * value;
         result.validShare += w;
     }
     if (result.validShare > 0) result.value /= result.validShare;
     return result;
+}
+
+/// The same of a grid in memory. `valid` may be empty.
+template <class T>
+Interpolated interpolate(const T* grid, const Int3& n, const std::vector<std::uint8_t>& valid, const Vec3& at) {
+    if (!valid.empty())
+        return interpolateValid(
+            [&](std::size_t i) {
+                return valid[i] ? static_cast<double>(grid[i]) : std::numeric_limits<double>::quiet_NaN();
+            },
+            n, at);
+    const TrilinearCell cell(n, at); // nearly always: no weights to keep
+    const auto alongX = [&](std::size_t i) {
+        const auto low = static_cast<double>(grid[i]), high = static_cast<double>(grid[i + cell.step[0]]);
+        return low + cell.fraction[0] * (high - low);
+    };
+    const auto alongY = [&](std::size_t i) {
+        const double low = alongX(i), high = alongX(i + cell.step[1]);
+        return low + cell.fraction[1] * (high - low);
+    };
+    const double low = alongY(cell.corner), high = alongY(cell.corner + cell.step[2]);
+    return {low + cell.fraction[2] * (high - low), 1.0};
 }
 
 template <class T>

@@ -195,7 +195,11 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
 void prepareToShow(Scene& scene, const JobControl& job) {
     if (!scene.volume) return;
     job.throwIfStopped();
-    if (!scene.unit) scene.unit = scene.proposal ? scene.proposal->unit : propose(*scene.data, {job.stop, {}}).unit;
+    if (!scene.unit) {
+        const JobControl stop{job.stop, {}};
+        scene.unit = scene.proposal ? scene.proposal->unit
+                                    : unitOf(recogniseKind(*scene.data, surveyVoxels(*scene.data, stop), stop).kind);
+    }
     job.throwIfStopped();
     if (!scene.histogram) scene.histogram = std::make_shared<const Histogram>(makeHistogram(*scene.volume));
     job.throwIfStopped();

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "volume/robust_range.h"
 
 namespace pellucid {
 
@@ -90,10 +91,6 @@ double shareIn(const std::vector<double>& sorted, double lo, double hi) {
     return a < b ? static_cast<double>(b - a) / static_cast<double>(sorted.size()) : 0;
 }
 
-double quantile(const std::vector<double>& sorted, double q) {
-    return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5)];
-}
-
 /// Air, tissue of about the density of water, and nothing that CT cannot hold.
 bool isCt(const std::vector<double>& sorted) {
     constexpr double kLeastAir = 0.03, kLeastTissue = 0.03;
@@ -119,6 +116,8 @@ double signedSpread(const std::vector<double>& sorted) {
 }
 
 } // namespace
+
+const char* unitOf(DataKind kind) { return kind == DataKind::Ct ? "HU" : ""; }
 
 const char* name(DataKind kind) {
     switch (kind) {

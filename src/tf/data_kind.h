@@ -21,6 +21,9 @@ enum class DataKind {
 /// "continuous", "ct", "signed", "labels", "binary", "constant", "empty".
 const char* name(DataKind kind);
 
+/// Of the values of such data: "HU" of CT, "" where nothing tells.
+const char* unitOf(DataKind kind);
+
 /// Density of air and of what scanners write beyond it, HU.
 inline constexpr ValueRange kAirHounsfield{-1100, -900};
 

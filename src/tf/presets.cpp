@@ -23,6 +23,12 @@ std::string textOf(const json& document, const char* key, const std::string& oth
     return found != document.end() && found->is_string() ? found->get<std::string>() : otherwise;
 }
 
+/// What a file of that name is called.
+std::string stemOf(std::string name) {
+    if (name.ends_with(kSuffix)) name.resize(name.size() - std::string(kSuffix).size());
+    return name;
+}
+
 TfPreset presetOf(const json& document, const std::string& name, const std::string& place) {
     return {name, textOf(document, "title", name), textOf(document, "group", ""), textOf(document, "about", ""),
             tfFromJson({document, place})};
@@ -34,8 +40,8 @@ const std::vector<TfPreset>& tfPresets() {
     static const std::vector<TfPreset> presets = [] {
         std::vector<TfPreset> all;
         for (const EmbeddedPreset& preset : embeddedPresets()) {
-            const json document = json::parse(preset.text);
-            all.push_back(presetOf(document, preset.name, std::string(kPrefix) + preset.name));
+            const std::string name = stemOf(preset.name);
+            all.push_back(presetOf(json::parse(preset.text), name, kPrefix + name));
         }
         std::stable_sort(all.begin(), all.end(),
                          [](const TfPreset& a, const TfPreset& b) { return a.group < b.group; });
@@ -56,8 +62,7 @@ std::optional<TransferFunction> tfFromPresetSpec(const std::string& text) {
 }
 
 TfPreset readPreset(const std::string& path) {
-    std::string name = std::filesystem::path(path).filename().string();
-    if (name.ends_with(kSuffix)) name.resize(name.size() - std::string(kSuffix).size());
+    const std::string name = stemOf(std::filesystem::path(path).filename().string());
     return presetOf(readJson(path), name, path);
 }
 

@@ -11,7 +11,7 @@ namespace pellucid {
 
 /// One file of data/tf/presets.
 struct EmbeddedPreset {
-    const char* name; ///< without ".tf.json"
+    const char* name; ///< of the file, "ct-bone.tf.json"
     const char* text;
 };
 const std::vector<EmbeddedPreset>& embeddedPresets();

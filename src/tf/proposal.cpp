@@ -300,7 +300,6 @@ void proposeSigned(Proposal& result, const Evidence& e, double sigma) {
 
 /// Tissues by their density. Borders lie half-way between the densities found, or where they usually lie.
 void proposeCt(Proposal& result, const Evidence& e, const JobControl& job) {
-    result.unit = "HU";
     std::optional<Background> found = findBackground(e);
     if (found && e.value(found->values.mode) > kAirHounsfield.hi) found.reset();
     const double air = found ? std::clamp(e.value(found->values.mode), kAirHounsfield.lo, kAirHounsfield.hi) : -1000;
@@ -435,6 +434,7 @@ Proposal propose(const Volume& data, const JobControl& job) {
 
     Proposal result;
     result.kind = kind.kind;
+    result.unit = unitOf(kind.kind);
     result.window = windowFor(data, survey, kind, result);
     Evidence e{data, std::move(survey), result.window};
     std::size_t outside = 0, valid = 0;

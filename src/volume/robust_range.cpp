@@ -12,11 +12,11 @@ constexpr double kKept = 0.5, kMargin = 0.1; // of the width between the percent
 constexpr double kCommon = 0.3;              // share from which on one single value counts as filled in
 constexpr double kFar = 2.0;                 // widths between a filler and everything else
 
+} // namespace
+
 double quantile(const std::vector<double>& sorted, double q) {
     return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5)];
 }
-
-} // namespace
 
 RobustRange robustRange(std::vector<double> values, const ValueRange& data) {
     if (values.empty() || !(data.lo < data.hi)) return {data, {}};

@@ -8,6 +8,9 @@
 
 namespace pellucid {
 
+/// The q-th quantile, q in [0,1], of values that ascend and are not none: the one at the nearest place.
+double quantile(const std::vector<double>& sorted, double q);
+
 struct RobustRange {
     ValueRange range; ///< lo < hi where the values differ
     /// A value that many voxels share, far from all others: a filler that the file does not declare as missing. It lies

@@ -14,7 +14,6 @@
 
 #include "image_convert.h"
 #include "panel.h"
-#include "render/image_renderer.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
@@ -72,12 +71,13 @@ PanelInfo galleryPanel() {
 GalleryPanel::GalleryPanel(Workbench& bench, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_group(new QComboBox(this)), m_take(new QComboBox(this)),
       m_list(new QListWidget(this)), m_keep(new QToolButton(this)), m_remove(new QToolButton(this)),
+      m_renderer(std::make_shared<KeptRenderer>()),
       m_job(
-          [this](const Task& task, const JobControl& job) {
-              const auto renderer = makeCpuRenderer(task.picture.volume);
+          [this, renderer = m_renderer](const Task& task, const JobControl& job) {
+              PictureInput picture = task.picture;
               for (std::size_t i = 0; i < task.tfs.size(); ++i) {
-                  const Image image =
-                      renderer->render(task.picture.camera, task.tfs[i], task.picture.settings, {job.stop, {}});
+                  picture.tf = task.tfs[i];
+                  const Image image = renderer->render(picture, {job.stop, {}});
                   QMetaObject::invokeMethod(this, [this, number = task.number, i, picture = qImageFromImage(image)] {
                       showPicture(number, static_cast<int>(i), picture);
                   });
@@ -147,11 +147,14 @@ QString GalleryPanel::presetFolder() {
 
 void GalleryPanel::setShown(bool shown) {
     m_shown = shown;
+    if (!shown) m_renderer->release();
     if (shown && m_stale) draw();
 }
 
 void GalleryPanel::follow(const Scene& before, const Scene& after) {
     m_keep->setEnabled(after.volume != nullptr);
+    if (before.volume != after.volume) m_renderer->release();
+    if (m_stale && !m_shown) return; // it is drawn anew when it is shown
     const auto look = [](const Scene& scene) {
         PictureInput input = pictureInput(scene, kWidth, kHeight);
         input.tf = {}; // each entry has its own

@@ -8,6 +8,7 @@
 #include <QWidget>
 
 #include "jobs/job.h"
+#include "kept_renderer.h"
 #include "session/scene.h"
 #include "tf/presets.h"
 
@@ -60,6 +61,7 @@ private:
     QTimer m_wait;
     bool m_shown = false, m_stale = true;
     int m_number = 0;
+    std::shared_ptr<KeptRenderer> m_renderer;
     Job<Task, int> m_job; ///< last: it ends before the rest goes
 };
 
