@@ -9,32 +9,15 @@
 #include <QSettings>
 
 #include "controllers/start_controller.h"
-#include "support/temp_folder.h"
-#include "volume/noise.h"
+#include "support/outlier_boxes.h"
 #include "welcome_card.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
+using pellucid::test::boxesWithOutlier;
 using pellucid::test::TempFolder;
 
 namespace {
-
-/// Nested boxes of values 90 and 200 in 0 and one voxel of 1e6.
-VolumeSource boxesWithOutlier(const TempFolder& folder) {
-    std::string bytes;
-    for (int k = 0; k < 24; ++k)
-        for (int j = 0; j < 24; ++j)
-            for (int i = 0; i < 24; ++i) {
-                const int out = std::max({std::abs(2 * i - 23), std::abs(2 * j - 23), std::abs(2 * k - 23)});
-                const auto noise = static_cast<float>(2 * whiteNoise(i, j, k, 1)); // else they would be labels
-                const float v = i + j + k == 0 ? 1e6F : out < 8 ? 200 + noise : out < 18 ? 90 + noise : 0.0F;
-                bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
-            }
-    VolumeSource source;
-    source.path = folder.write("boxes.raw", bytes);
-    source.raw = RawLayout{{24, 24, 24}, SampleType::F32, false, {1, 1, 1}, 0};
-    return source;
-}
 
 /// Part of the pixels in the middle third that are not black.
 double litShare(const QImage& picture) {

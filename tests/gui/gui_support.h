@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <QImage>
+#include <QSignalSpy>
 #include <QTest>
 
 #include "controllers/open_controller.h"
@@ -110,6 +111,12 @@ struct OpenWindow {
         source.sampleSize = size;
         opening().openVolume(source, "tents:3");
         settle();
+    }
+    /// Returns when it is open, which is before all is drawn and measured.
+    void open(const VolumeSource& source) {
+        QSignalSpy opened(&opening(), &OpenController::opened);
+        opening().openVolume(source);
+        REQUIRE(waitFor([&] { return opened.count() == 1; }));
     }
     void settle() {
         REQUIRE(waitFor([this] { return window.isSettled(); }));

@@ -6,7 +6,6 @@
 #include <QCheckBox>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
-#include <QSignalSpy>
 
 #include "render/camera_motion.h"
 #include "render/clip_handles.h"
@@ -30,11 +29,9 @@ TEST_CASE("a picture of the transfer-function editor", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
     w.window.resize(1280, 800);
-    QSignalSpy opened(&w.opening(), &OpenController::opened);
     VolumeSource source;
     source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
-    w.opening().openVolume(source);
-    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.open(source);
     w.child<QCheckBox>("jointHistogram").click();
     const Feature feature = w.document().tf().features.at(1);
     w.canvas().axis().setVisible(0, 0.8);
@@ -54,11 +51,9 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
     w.window.resize(1280, 800);
-    QSignalSpy opened(&w.opening(), &OpenController::opened);
     VolumeSource source;
     source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
-    w.opening().openVolume(source);
-    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.open(source);
     grab(w, "window_opened.png");
     w.child<QAction>("displayAction").trigger();
     w.child<QDoubleSpinBox>("clipXHi").setValue(60);
@@ -86,12 +81,10 @@ TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
     w.window.resize(1280, 800);
-    QSignalSpy opened(&w.opening(), &OpenController::opened);
     VolumeSource source;
     source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
     if (source.isSample()) source.sampleSize = 160;
-    w.opening().openVolume(source);
-    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.open(source);
     w.settle();
     QTest::mouseClick(&w.view(), Qt::LeftButton, {}, w.view().rect().center() + QPoint(20, 10));
     grab(w, "probe.png");
@@ -101,11 +94,9 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
     w.window.resize(1280, 860);
-    QSignalSpy opened(&w.opening(), &OpenController::opened);
     VolumeSource source;
     source.path = "sample:knee";
-    w.opening().openVolume(source);
-    REQUIRE(waitFor([&] { return opened.count() == 1; }));
+    w.open(source);
     w.bench().store().edit("Clip", {}, [](Session& session) {
         session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
         session.refine.edit([](RefineSettings& refine) { refine.method = RefineMethod::Exact; });

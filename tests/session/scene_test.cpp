@@ -4,10 +4,10 @@
 #include "base/error.h"
 #include "render/camera_motion.h"
 #include "session/scene.h"
+#include "support/outlier_boxes.h"
 #include "support/temp_folder.h"
 #include "support/volumes.h"
 #include "tf/formats/tf_json.h"
-#include "volume/noise.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -171,22 +171,10 @@ TEST_CASE("data of one value alone can be opened", "[session]") {
 
 namespace {
 
-/// Two nested boxes of values 90 and 200 in 0, with one voxel of 1e6, as f32 of 24³.
-SceneInputs boxesWithOutlier(const TempFolder& folder) {
-    std::string bytes;
-    for (int k = 0; k < 24; ++k)
-        for (int j = 0; j < 24; ++j)
-            for (int i = 0; i < 24; ++i) {
-                const int out = std::max({std::abs(2 * i - 23), std::abs(2 * j - 23), std::abs(2 * k - 23)});
-                const auto noise = static_cast<float>(2 * whiteNoise(i, j, k, 1)); // else they would be labels
-                const float v = i + j + k == 0 ? 1e6F : out < 8 ? 200 + noise : out < 18 ? 90 + noise : 0.0F;
-                bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
-            }
-    VolumeSource source;
-    source.path = folder.write("boxes.raw", bytes);
-    source.raw = RawLayout{{24, 24, 24}, SampleType::F32, false, {1, 1, 1}, 0};
+/// The boxes of tests/support, as something to open.
+SceneInputs inputsOfBoxes(const TempFolder& folder) {
     SceneInputs inputs;
-    inputs.session = sessionOf(source);
+    inputs.session = sessionOf(boxesWithOutlier(folder));
     return inputs;
 }
 
@@ -194,7 +182,7 @@ SceneInputs boxesWithOutlier(const TempFolder& folder) {
 
 TEST_CASE("a volume that brings nothing opens by what its data propose", "[session]") {
     const TempFolder folder;
-    SceneInputs in = boxesWithOutlier(folder);
+    SceneInputs in = inputsOfBoxes(folder);
     const Scene scene = openScene(in);
     REQUIRE(scene.proposal);
     // The one wild voxel does not stretch the window: 200 lies in its upper half.
@@ -228,7 +216,7 @@ TEST_CASE("a volume that brings nothing opens by what its data propose", "[sessi
     CHECK(openScene(in).tf == scene.tf);
     CHECK(openScene(in).volume->range() == scene.volume->range());
     // Who needs none gets none.
-    SceneInputs bare = boxesWithOutlier(folder);
+    SceneInputs bare = inputsOfBoxes(folder);
     bare.start = SceneInputs::Start::Tents;
     CHECK(openScene(bare).volume->range() == ValueRange{0, 1e6});
     CHECK_FALSE(openScene(bare).proposal);
@@ -236,7 +224,7 @@ TEST_CASE("a volume that brings nothing opens by what its data propose", "[sessi
 
 TEST_CASE("a range that is asked for is the window of an automatic start, too", "[session]") {
     const TempFolder folder;
-    SceneInputs in = boxesWithOutlier(folder);
+    SceneInputs in = inputsOfBoxes(folder);
     in.range = ValueRange{-50, 250};
     const Scene scene = openScene(in);
     CHECK(scene.volume->range() == ValueRange{-50, 250});
@@ -247,7 +235,7 @@ TEST_CASE("a range that is asked for is the window of an automatic start, too", 
 
 TEST_CASE("a session keeps the transfer function that was found for it", "[session]") {
     const TempFolder folder;
-    const Scene opened = openScene(boxesWithOutlier(folder));
+    const Scene opened = openScene(inputsOfBoxes(folder));
     SceneInputs again;
     again.session = opened.session;
     const Scene scene = openScene(again);
@@ -259,7 +247,7 @@ TEST_CASE("a session keeps the transfer function that was found for it", "[sessi
 
 TEST_CASE("an automatic start again is one for the view that it is asked for", "[session]") {
     const TempFolder folder;
-    SceneInputs in = boxesWithOutlier(folder);
+    SceneInputs in = inputsOfBoxes(folder);
     const Scene automatic = openScene(in);
     in.tf = "tents:4";
     const Scene other = openScene(in);
