@@ -9,6 +9,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "base/job.h"
 #include "volume/memory_use.h"
 #include "volume/volume.h"
 
@@ -61,7 +62,8 @@ private:
 };
 
 /// The same part of a volume in memory, with its missing value, title and format; the window stays that of `whole`.
-Volume excerptOf(const Volume& whole, const ExcerptPlan& plan);
+/// Throws Cancelled.
+Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job = {});
 
 /// The voxels of the data that lie, wholly or in part, between the fractions `lo` and `hi` of the volume's box along
 /// each axis; 0 ≤ lo < hi ≤ 1.
