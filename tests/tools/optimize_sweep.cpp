@@ -1,6 +1,8 @@
-// optimize_sweep [--starts N] [--no-random] [--cases NAME,…] [--delta]: what every method reaches on volumes, views and
-// targets, as a table; and what the best of N random restarts of any method finds (on a volume of at most 48³ voxels,
-// then compared there). VOLUMES: files and sample:NAME, as arguments. One line per problem.
+// optimize_sweep VOLUME… [--starts N] [--newton-only] [--delta] [--tf tents:3|auto] [--azimuth A] [--which T]: what Newton
+// reaches on volumes (files, sample:NAME) under three tents and the automatic start, from three views, for three targets
+// each (rising, equal, falling); and on a copy of at most 48³ voxels Newton against the best of N random restarts of the
+// other methods, where Newton does not get below 0.001 there. --delta: root mean square differences of W between the
+// volume and its coarser copies instead, at three opacities. One line per problem; histories of those not reached.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,12 +28,6 @@ std::vector<std::vector<double>> targetsFor(std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) rising.push_back(0.5 * static_cast<double>((i + 1) * (i + 2)));
     falling.assign(rising.rbegin(), rising.rend());
     return {rising, equal, falling};
-}
-
-/// Halved until it has at most `most` voxels.
-std::shared_ptr<const Volume> small(std::shared_ptr<const Volume> volume, std::size_t most) {
-    while (volume->size() > most) volume = halved(*volume);
-    return volume;
 }
 
 struct Tally {
@@ -87,9 +83,13 @@ int main(int argc, char** argv) {
             const WeightFields weights = saliencyFields(*scene.volume, scene.tf);
             CoarserVolumes coarser(scene.volume, make);
             coarser.setWeights(weights);
-            const auto tiny = small(scene.volume, 48 * 48 * 48);
+            std::shared_ptr<const Volume> tiny = scene.volume;
+            WeightFields tinyWeights = weights;
+            while (tiny->size() > 48 * 48 * 48) {
+                tinyWeights = halvedWeights(tinyWeights, *tiny);
+                tiny = halved(*tiny);
+            }
             const auto tinyEngine = make(tiny);
-            const WeightFields tinyWeights = saliencyFields(*tiny, scene.tf);
             for (const auto& [azimuth, elevation] : {std::pair{30.0, 20.0}, {0.0, 0.0}, {-115.0, -40.0}}) {
                 if (onlyAzimuth != -1000 && onlyAzimuth != azimuth) continue;
                 const View view{cameraFromView(scene.volume->geometry(), azimuth, elevation, 1, Projection::Perspective), {}};
