@@ -198,11 +198,13 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 
     m_method->setObjectName("methodCombo");
+    m_method->addItem(tr("Newton"), static_cast<int>(SearchMethod::Newton));
     m_method->addItem(tr("Parallel line search"), static_cast<int>(SearchMethod::Parallel));
     m_method->addItem(tr("Line search"), static_cast<int>(SearchMethod::Line));
     m_method->addItem(tr("Fixed steps"), static_cast<int>(SearchMethod::Fixed));
-    m_method->setToolTip(tr("How far each move goes: the best of eight lengths tried at once,\n"
-                            "one length found by doubling or halving, or always the same"));
+    m_method->setToolTip(tr("How moves are found: by exact derivatives, first on coarser volumes; or along the\n"
+                            "differences to the targets, by the best of eight lengths tried at once, one length\n"
+                            "found by doubling or halving, or always the same"));
     m_tolerance->setObjectName("toleranceSpin");
     m_tolerance->setRange(0.0001, 1.0);
     m_tolerance->setKeyboardTracking(false);
