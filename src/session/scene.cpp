@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "optimize/first_sight.h"
-#include "tf/formats/tf_json.h"
+#include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 

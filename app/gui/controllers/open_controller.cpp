@@ -13,7 +13,7 @@
 #include "number_text.h"
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
-#include "tf/formats/tf_json.h"
+#include "tf/formats/tf_file.h"
 #include "tf/presets.h"
 #include "volume/excerpt.h"
 #include "volume/procedural.h"
@@ -27,7 +27,12 @@ constexpr auto kRecentKey = "recentFiles";
 
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
-bool isTf(const QString& path) { return path.endsWith(".tf.json", Qt::CaseInsensitive); }
+bool isTf(const QString& path) { return isTfFile(path.toStdString()); }
+QString tfPatterns() {
+    QStringList patterns;
+    for (const char* suffix : tfSuffixes()) patterns << QString("*%1").arg(suffix);
+    return patterns.join(' ');
+}
 bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
 
 bool hasKnownSuffix(const QString& path) {
@@ -374,8 +379,8 @@ void OpenController::chooseVolume() {
     }
     const QString path = QFileDialog::getOpenFileName(
         m_bench.window(), tr("Open"), QSettings().value("volumeFolder").toString(),
-        tr("Volumes, sessions, transfer functions (%1 *.pellucid.json *.tf.json);;All files (*)")
-            .arg(patterns.join(' ')));
+        tr("Volumes, sessions, transfer functions (%1 *.pellucid.json %2);;All files (*)")
+            .arg(patterns.join(' '), tfPatterns()));
     if (path.isEmpty()) return;
     QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
     openPath(path);
@@ -397,7 +402,7 @@ void OpenController::chooseRaw() {
 void OpenController::chooseTf() {
     const QString path = QFileDialog::getOpenFileName(m_bench.window(), tr("Open transfer function"),
                                                       QSettings().value("tfFolder").toString(),
-                                                      tr("Transfer functions (*.tf.json *.json);;All files (*)"));
+                                                      tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
     QSettings().setValue("tfFolder", QFileInfo(path).absolutePath());
     openTf(path);
