@@ -92,8 +92,10 @@ Answer run(const Options& o, Progress& progress) {
         seconds.jacobian = workspace.seconds().visibility;
     }
     seconds.total = total.seconds();
-    return {textOf(input.tf, m, jacobian, engine, seconds),
-            jsonOf(*input.volume, input.tf, m, jacobian, engine, seconds),
+    Json json = jsonOf(*input.volume, input.tf, m, jacobian, engine, seconds);
+    addProfile(json, input.settings);
+    return {textOf(input.tf, m, jacobian, engine + profileText(input.settings), seconds),
+            std::move(json),
             opened.notices(),
             {}};
 }

@@ -279,6 +279,33 @@ private:
 
 } // namespace
 
+Camera cameraAlong(const Geometry& geometry, Along along) {
+    const auto [axis, sign] = [along]() -> std::pair<int, double> {
+        switch (along) {
+        case Along::Top:
+            return {2, -1};
+        case Along::Bottom:
+            return {2, 1};
+        case Along::Front:
+            return {1, -1};
+        case Along::Back:
+            return {1, 1};
+        case Along::Left:
+            return {0, 1};
+        case Along::Right:
+            return {0, -1};
+        }
+        return {1, -1};
+    }();
+    Camera camera;
+    camera.projection = Projection::Orthographic;
+    camera.center = geometry.boxCenter();
+    camera.eye = camera.center - geometry.directions[axis] * (sign * 2 * geometry.radius());
+    camera.up = geometry.directions[axis == 2 ? 1 : 2];
+    camera.height = 2 * geometry.radius();
+    return camera;
+}
+
 std::unique_ptr<VisibilityEngine> makePublishedEngine(std::shared_ptr<const Volume> volume) {
     return std::make_unique<PublishedEngine>(std::move(volume));
 }

@@ -143,9 +143,9 @@ TEST_CASE("a broken file of Voreen is refused with its place", "[tf][tfi]") {
 TEST_CASE("a transfer function is read by its suffix", "[tf][tfi]") {
     const test::TempFolder folder;
     CHECK(loadTf(folder.write("a.TFI", document(kTent))) == tfOf(kTent));
-    CHECK(isTfFile("x/a.TFI"));
-    CHECK(isTfFile("a.tf.json"));
-    CHECK_FALSE(isTfFile("a.json"));
+    CHECK(hasTfSuffix("x/a.TFI"));
+    CHECK(hasTfSuffix("a.tf.json"));
+    CHECK_FALSE(hasTfSuffix("a.json"));
     CHECK_THROWS_AS(loadTf(folder.write("b.tf.json", document(kTent))), Error); // not JSON
     CHECK_THROWS_AS(loadTf(folder.path("none.tfi")), FileError);
 }

@@ -27,7 +27,7 @@ constexpr auto kRecentKey = "recentFiles";
 
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
-bool isTf(const QString& path) { return isTfFile(path.toStdString()); }
+bool isTf(const QString& path) { return hasTfSuffix(path.toStdString()); }
 QString tfPatterns() {
     QStringList patterns;
     for (const char* suffix : tfSuffixes()) patterns << QString("*%1").arg(suffix);
@@ -226,7 +226,7 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 
 void OpenController::show(const Request& request, Opened& opened) {
     const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && isTfFile(request.tfPath);
-    m_tfPath = tfFromFile ? request.tfPath : QString();
+    m_tfPath = tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString();
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
@@ -287,8 +287,9 @@ void OpenController::openTf(const QString& specOrPath) {
     try {
         const TransferFunction tf = loadTf(specOrPath.toStdString());
         const bool isFile = isTfFile(specOrPath);
-        const auto change = [tf](Session& session) {
+        const auto change = [tf, data = store.scene().data](Session& session) {
             TransferFunction placed = tf;
+            placeAsPublished(session, *data, placed);
             session.variables.edit([&](std::vector<Variable>& all) {
                 if (placed.range) all.front().window = placed.range; // what it was made for
             });
@@ -296,7 +297,7 @@ void OpenController::openTf(const QString& specOrPath) {
         };
         editData(tr("Open transfer function"), change, [this, tf, isFile, specOrPath] {
             if (isFile) {
-                m_tfPath = specOrPath;
+                m_tfPath = isForeignTf(specOrPath.toStdString()) ? QString() : specOrPath;
                 m_bench.store().setTfSaved();
             }
             noteWindow(tf);
@@ -377,10 +378,10 @@ void OpenController::chooseVolume() {
     for (const char* raw : {"*.raw", "*.dat", "*.bin", "*.vol"}) {
         if (!patterns.contains(raw)) patterns << raw;
     }
-    const QString path = QFileDialog::getOpenFileName(
-        m_bench.window(), tr("Open"), QSettings().value("volumeFolder").toString(),
-        tr("Volumes, sessions, transfer functions (%1 *.pellucid.json %2);;All files (*)")
-            .arg(patterns.join(' '), tfPatterns()));
+    const QString path =
+        QFileDialog::getOpenFileName(m_bench.window(), tr("Open"), QSettings().value("volumeFolder").toString(),
+                                     tr("Volumes, sessions, transfer functions (%1 *.pellucid.json %2);;All files (*)")
+                                         .arg(patterns.join(' '), tfPatterns()));
     if (path.isEmpty()) return;
     QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
     openPath(path);
@@ -400,9 +401,9 @@ void OpenController::chooseRaw() {
 }
 
 void OpenController::chooseTf() {
-    const QString path = QFileDialog::getOpenFileName(m_bench.window(), tr("Open transfer function"),
-                                                      QSettings().value("tfFolder").toString(),
-                                                      tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
+    const QString path = QFileDialog::getOpenFileName(
+        m_bench.window(), tr("Open transfer function"), QSettings().value("tfFolder").toString(),
+        tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
     QSettings().setValue("tfFolder", QFileInfo(path).absolutePath());
     openTf(path);

@@ -21,13 +21,13 @@ bool endsWith(const std::string& path, const char* suffix) { return lowerCase(pa
 
 std::span<const char* const> tfSuffixes() { return kSuffixes; }
 
-bool isTfFile(const std::string& path) {
+bool hasTfSuffix(const std::string& path) {
     return std::any_of(kSuffixes.begin(), kSuffixes.end(), [&](const char* suffix) { return endsWith(path, suffix); });
 }
 
-TransferFunction readTfFile(const std::string& path) {
-    return endsWith(path, kVoreenSuffix) ? readVoreenTf(path) : readTf(path);
-}
+bool isForeignTf(const std::string& path) { return endsWith(path, kVoreenSuffix); }
+
+TransferFunction readTfFile(const std::string& path) { return isForeignTf(path) ? readVoreenTf(path) : readTf(path); }
 
 TransferFunction loadTf(const std::string& specOrPath) {
     if (auto tf = tfFromSpec(specOrPath)) return *tf;

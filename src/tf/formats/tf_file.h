@@ -11,7 +11,10 @@ namespace pellucid {
 /// Suffixes by which a file is known to be a transfer function, ".tf.json" first.
 std::span<const char* const> tfSuffixes();
 /// Whether `path` ends in one of them, in any case.
-bool isTfFile(const std::string& path);
+bool hasTfSuffix(const std::string& path);
+
+/// Whether it is the file of another program, which can be read and not written.
+bool isForeignTf(const std::string& path);
 
 /// By suffix: *.tfi as Voreen writes it (voreen_tfi.h), anything else as *.tf.json (tf_json.h). Throws Error.
 TransferFunction readTfFile(const std::string& path);
