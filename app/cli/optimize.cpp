@@ -163,7 +163,9 @@ Answer run(const Options& o, Progress& progress) {
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(result, engine, seconds), jsonOf(result, options, *input.volume, engine, seconds), opened.notices(),
+    Json json = jsonOf(result, options, *input.volume, engine, seconds);
+    addProfile(json, input.settings);
+    return {textOf(result, engine + profileText(input.settings), seconds), std::move(json), opened.notices(),
             failureOf(o, options, result)};
 }
 

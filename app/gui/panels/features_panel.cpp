@@ -29,6 +29,7 @@
 #include "number_box.h"
 #include "opacity_editor.h"
 #include "panel.h"
+#include "panels/profile_settings.h"
 #include "theme.h"
 #include "workbench.h"
 
@@ -262,6 +263,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     column->addWidget(makeColorRow());
     column->addLayout(status);
     column->addLayout(choices);
+    column->addWidget(new ProfileSettings(m_bench, this));
     column->addLayout(buttons);
 
     const auto triggers = [this](QPushButton* b, const char* action) {
