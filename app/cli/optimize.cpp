@@ -1,5 +1,6 @@
 // `optimize`: the opacities that give each feature its share of attention.
 #include "commands.h"
+#include "optimize_report.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -37,6 +38,7 @@ struct Options {
     std::optional<std::vector<double>> targets;
     std::optional<std::string> outTf;
     bool requireConverged = false;
+    ReportOptions report;
 };
 
 struct Seconds {
@@ -90,6 +92,7 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
+    if (o.report.any()) o.report.check(inputFiles(o.scene));
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
@@ -113,8 +116,10 @@ Answer run(const Options& o, Progress& progress) {
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(result, engine, seconds), jsonOf(result, options, *input.volume, engine, seconds), opened.notices(),
-            failureOf(o, options, result)};
+    Answer answer{textOf(result, engine, seconds), jsonOf(result, options, *input.volume, engine, seconds),
+                  opened.notices(), failureOf(o, options, result)};
+    o.report.write(scene, options, result, seconds.search, workspace, progress, answer);
+    return answer;
 }
 
 void SearchOptions::add(CLI::App& app) {
@@ -162,6 +167,7 @@ Command addOptimize(CLI::App& program) {
     addValue(
         *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
         "write the optimized transfer function (the best one seen)");
+    o->report.add(*app);
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where the targets are not reached; the answer is written all the same");
     return {app, [o](Progress& progress) { return run(*o, progress); }};

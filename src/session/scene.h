@@ -97,6 +97,8 @@ struct MeasureInput {
     bool operator==(const MeasureInput&) const = default;
 };
 MeasureInput measureInput(const Scene& scene);
+/// What an optimization of the scene under `options` begins with.
+RunStart runStartOf(const Scene& scene, const OptimizeOptions& options);
 
 /// Everything that a picture depends on.
 struct PictureInput {
