@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "commands.h"
+#include "optimize_report.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -64,6 +65,7 @@ struct Options {
     std::optional<std::vector<double>> targets;
     std::optional<std::string> outTf;
     bool requireConverged = false;
+    ReportOptions report;
 };
 
 struct Seconds {
@@ -139,6 +141,7 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
+    if (o.report.any()) o.report.check(inputFiles(o.scene));
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
@@ -165,8 +168,10 @@ Answer run(const Options& o, Progress& progress) {
     if (o.outTf) writeTf(result.tf, *o.outTf);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
     addProfile(json, input.settings);
-    return {textOf(result, engine + profileText(input.settings), seconds), std::move(json), opened.notices(),
-            failureOf(o, options, result)};
+    Answer answer{textOf(result, engine + profileText(input.settings), seconds), std::move(json), opened.notices(),
+                  failureOf(o, options, result)};
+    o.report.write(scene, options, result, seconds.search, workspace, progress, answer);
+    return answer;
 }
 
 void SearchOptions::add(CLI::App& app) {
@@ -229,6 +234,7 @@ Command addOptimize(CLI::App& program) {
     addValue(
         *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
         "write the optimized transfer function (the best one seen)");
+    o->report.add(*app);
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where the targets are not reached; the answer is written all the same");
     return {app, [o](Progress& progress) { return run(*o, progress); }};

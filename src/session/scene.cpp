@@ -232,6 +232,15 @@ MeasureInput measureInput(const Scene& scene) {
     return {scene.volume, shownTf(scene.tf), {scene.camera, *scene.session.clipping}, *scene.session.measure};
 }
 
+RunStart runStartOf(const Scene& scene, const OptimizeOptions& options) {
+    return {scene.tf,
+            scene.camera,
+            *scene.session.clipping,
+            *scene.session.measure,
+            options,
+            limitsOf(scene.tf, *scene.session.goals)};
+}
+
 PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent) {
     PictureInput input{scene.volume, shownTf(scene.tf), scene.camera, {}};
     RenderSettings& s = input.settings;

@@ -103,6 +103,8 @@ struct MeasureInput {
 /// Of the published profile the view is that of its axis (cameraAlong()), wherever the camera is, and what the profile
 /// does not depend on is as by default.
 MeasureInput measureInput(const Scene& scene);
+/// What an optimization of the scene under `options` begins with.
+RunStart runStartOf(const Scene& scene, const OptimizeOptions& options);
 
 /// Everything that a picture depends on.
 struct PictureInput {
