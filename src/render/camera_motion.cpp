@@ -143,6 +143,16 @@ Camera fitted(const Camera& camera, const Geometry& geometry) {
     return closerToBox(c, geometry);
 }
 
+Camera lookingFrom(const Camera& camera, const Geometry& geometry, const Vec3& towardEye) {
+    Camera c = camera;
+    c.eye = c.center + distance(camera) * towardEye;
+    const double level = std::hypot(towardEye.x, towardEye.y);
+    // Along z, where every side is up, as seen from azimuth 0.
+    const Vec3 outward = level > 1e-9 ? Vec3(towardEye.x, towardEye.y, 0) / level : Vec3(0, -1, 0);
+    c.up = {-towardEye.z * outward.x, -towardEye.z * outward.y, level};
+    return keptOutside(c, geometry);
+}
+
 Camera withProjection(const Camera& camera, const Geometry& geometry, Projection projection) {
     if (camera.projection == projection) return camera;
     Camera c = camera;

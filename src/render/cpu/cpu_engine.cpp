@@ -390,7 +390,7 @@ private:
         return glm::round(m_volume->geometry().voxelFromWorld(camera.eye) * 1048576.0) / 1048576.0;
     }
 
-    bool isSmall() const { return m_volume->size() < kSmallVolume; }
+    bool isSmall() const { return m_quality != Quality::Draft && m_volume->size() < kSmallVolume; }
 
     void setRays(SweepInput& in, const Camera& camera, const Pass& pass) const {
         const Axes& axes = pass.axes;
