@@ -3,9 +3,11 @@
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
+#include "render/camera_motion.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/view_workspace.h"
 #include "tf/formats/tf_json.h"
 #include "tf/shown_tf.h"
 
@@ -35,26 +37,13 @@ struct Options {
     SceneOptions scene;
     SearchOptions search;
     std::optional<std::vector<double>> targets;
-    std::optional<std::string> outTf;
+    std::optional<std::string> outTf, outCamera;
     bool requireConverged = false;
 };
 
 struct Seconds {
     double saliency = 0, search = 0, total = 0;
 };
-
-/// What can be told about the targets before their features are known.
-std::vector<double> parseTargets(const std::string& text, const std::string& option) {
-    auto targets = parseReals(text, option);
-    double sum = 0;
-    for (const double t : targets) {
-        if (t < 0) throw UsageError("the target " + plainText(t) + " is negative", option, "give numbers from 0 on");
-        if (t > 1e9) throw UsageError("the target " + plainText(t) + " is too large", option, "only proportions count");
-        sum += t;
-    }
-    if (sum == 0) throw UsageError("all targets are 0", option, "give at least one above 0");
-    return targets;
-}
 
 std::string textOf(const OptimizeResult& r, const std::string& engine, const Seconds& seconds) {
     Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after"});
@@ -90,6 +79,7 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
+    if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputFiles(o.scene));
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
@@ -98,23 +88,41 @@ Answer run(const Options& o, Progress& progress) {
     atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
     const std::vector<double> targets = shownShares(scene.tf, named);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
-    const MeasureInput input = measureInput(scene);
+    MeasureInput input = measureInput(scene);
     Workspace workspace;
     const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
+    const std::vector<OpacityLimits> limits = limitsOf(scene.tf, *scene.session.goals);
 
     JobControl job = progress.phase("optimizing");
     job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
     int moves = -1;
-    OptimizeResult result = workspace.optimize(
-        input, targets, limitsOf(scene.tf, *scene.session.goals), options, job, [&](const OptimizeState& state) {
-            progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
-        });
+    const auto tell = [&](const OptimizeState& state) {
+        progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
+    };
+    OptimizeResult result;
+    if (o.scene.camera.best) {
+        ViewWorkspace views;
+        ViewAndOpacities found =
+            optimizeViewAndOpacities(workspace, views, input, targets, limits, options, progress.phase("views"),
+                                     [&](const MeasureInput&, const OptimizeState& state) { tell(state); });
+        input.view = found.input.view;
+        result = std::move(found.result);
+    } else {
+        result = workspace.optimize(input, targets, limits, options, job, tell);
+    }
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(result, engine, seconds), jsonOf(result, options, *input.volume, engine, seconds), opened.notices(),
-            failureOf(o, options, result)};
+    if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
+    std::string text = textOf(result, engine, seconds);
+    Json json = jsonOf(result, options, *input.volume, engine, seconds);
+    if (o.scene.camera.best) {
+        const ViewAngles angles = viewAngles(input.view.camera, input.volume->geometry());
+        text += "view " + fixedText(angles.azimuth, 1) + "," + fixedText(angles.elevation, 1) + " degrees\n";
+        json.update(jsonFromView(input.view.camera, input.volume->geometry()));
+    }
+    return {text, json, opened.notices(), failureOf(o, options, result)};
 }
 
 void SearchOptions::add(CLI::App& app) {
@@ -153,6 +161,7 @@ Command addOptimize(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("optimize", "Finds the opacities that give each feature its target saliency");
     const auto o = std::make_shared<Options>();
+    o->scene.camera.mayBeBest = true;
     o->scene.addForFigures(*app);
     addValue(
         *app, "--target", "T1,T2,...",
@@ -162,6 +171,9 @@ Command addOptimize(CLI::App& program) {
     addValue(
         *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
         "write the optimized transfer function (the best one seen)");
+    addValue(
+        *app, "--out-camera", "FILE", [o](const std::string& text, const std::string&) { o->outCamera = text; },
+        "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where the targets are not reached; the answer is written all the same");
     return {app, [o](Progress& progress) { return run(*o, progress); }};

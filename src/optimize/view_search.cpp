@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/check.h"
 #include "base/error.h"
 #include "optimize/objective.h"
 #include "render/camera_motion.h"
@@ -16,11 +17,17 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-constexpr int kValleys = 6;             ///< best places of the map that are followed between its directions
-constexpr int kFinalists = 4;           ///< of them, measured on the full volume
-constexpr int kMoves = 24;              ///< of each, at most
-constexpr double kFinestStep = 0.5;     ///< degrees, of the steps on the coarse volume
-constexpr double kFullStep = 4.0;       ///< degrees, of the first steps on the full volume
+constexpr int kValleys = 6;                     ///< best places of the map that are followed between its directions
+constexpr int kFinalists = 4;                   ///< of them, measured on the full volume
+constexpr int kMoves = 24;                      ///< of each, at most
+constexpr double kFinestStep = 0.5 * kPi / 180; ///< radians, of the steps between directions
+constexpr double kFullStep = 4.0 * kPi / 180;   ///< of the first step on the full volume
+
+constexpr int kReachSpread = 24; ///< directions from which opacities are searched, beside the best ones of the map
+constexpr int kReachMoves = 6;   ///< of each search, at most
+constexpr int kReachRounds = 6;  ///< of four neighbours of the nearest
+constexpr double kNear = 0.005;  ///< F: views that come so near are equal
+
 constexpr std::size_t kWatchEvery = 16; ///< views
 
 double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
@@ -68,13 +75,14 @@ struct Place {
 /// Tries four neighbours, goes to the best, and halves the step where none is better, until it is below `finest` or
 /// `moves` have been tried.
 Place descend(Judge& judge, const ViewMetric& metric, Place at, double step, double finest, int moves,
-              const JobControl& job) {
+              const JobControl& job, const std::function<void()>& tell = {}) {
     for (int move = 0; step >= finest && move < moves; ++move) {
         Place best = at;
         for (int side = 0; side < 4; ++side) {
             const Vec3 direction = moved(at.direction, step, side * kPi / 2 + (move % 2) * kPi / 4);
             Place next{direction, judge.look(direction, job)};
             if (metric.isBetter(next.seen.value, best.seen.value)) best = next;
+            if (tell) tell();
         }
         if (best.direction == at.direction) step /= 2;
         at = best;
@@ -138,6 +146,18 @@ std::vector<Vec3> spreadDirections(int count) {
     return ordered;
 }
 
+const char* name(ViewMetric::Figure figure) {
+    switch (figure) {
+    case ViewMetric::Figure::Objective:
+        return "objective";
+    case ViewMetric::Figure::Vws:
+        return "vws";
+    case ViewMetric::Figure::Visibility:
+        return "visibility";
+    }
+    return "";
+}
+
 double ViewMetric::valueOf(const FeatureSums& sums, const VwsOptions& options) const {
     switch (figure) {
     case Figure::Objective:
@@ -187,21 +207,18 @@ double ViewMap::interpolated(const Vec3& direction) const {
     return value;
 }
 
-ViewSearchResult searchViews(const ViewLevel& coarse, const ViewLevel& full, const ViewSubject& subject,
-                             const ViewMetric& metric, const ViewSearchOptions& options, const JobControl& job,
-                             const std::function<void(const ViewMap&)>& watch) {
+ViewSearch searchViews(const ViewLevel& level, const ViewSubject& subject, const ViewMetric& metric, int count,
+                       const JobControl& job, const std::function<void(const ViewMap&)>& watch) {
     validate(subject, metric);
-    Judge rough(coarse, subject, metric), exact(full, subject, metric);
-    const bool sameLevel = &coarse.engine == &full.engine;
-    ViewSearchResult result;
+    Judge judge(level, subject, metric);
+    ViewSearch result;
     ViewMap& map = result.map;
     map.metric = metric;
 
-    // The share of the map in all that is to be done; what comes after it is known only roughly.
-    constexpr double kMapShare = 0.7;
-    const std::vector<Vec3> directions = spreadDirections(options.count);
+    constexpr double kMapShare = 0.8; // of the work; how much comes after the map is not known before
+    const std::vector<Vec3> directions = spreadDirections(count);
     for (std::size_t i = 0; i < directions.size(); ++i) {
-        map.values.push_back(rough.look(directions[i], job).value);
+        map.values.push_back(judge.look(directions[i], job).value);
         map.directions.push_back(directions[i]);
         job.report(kMapShare * static_cast<double>(i + 1) / static_cast<double>(directions.size()));
         if (watch && (map.values.size() % kWatchEvery == 0 || map.values.size() == directions.size())) watch(map);
@@ -210,34 +227,104 @@ ViewSearchResult searchViews(const ViewLevel& coarse, const ViewLevel& full, con
     std::vector<Place> places;
     std::vector<std::size_t> valleys = valleysOf(map);
     if (valleys.size() > kValleys) valleys.resize(kValleys);
-    const double spacing = spacingOf(directions.size()), finest = kFinestStep * kPi / 180;
+    const double spacing = spacingOf(directions.size());
     for (std::size_t i = 0; i < valleys.size(); ++i) {
-        const Vec3 direction = directions[valleys[i]];
-        Place place{direction, {rough.cameraFor(direction), map.values[valleys[i]]}};
-        if (options.refinements > 0) place = descend(rough, metric, place, spacing / 2, finest, kMoves, job);
-        places.push_back(std::move(place));
-        job.report(kMapShare + 0.15 * static_cast<double>(i + 1) / static_cast<double>(valleys.size()));
+        const Place start{directions[valleys[i]], {judge.cameraFor(directions[valleys[i]]), map.values[valleys[i]]}};
+        places.push_back(descend(judge, metric, start, spacing / 2, kFinestStep, kMoves, job));
+        job.report(kMapShare + (1 - kMapShare) * static_cast<double>(i + 1) / static_cast<double>(valleys.size()));
     }
     std::stable_sort(places.begin(), places.end(),
                      [&](const Place& a, const Place& b) { return metric.isBetter(a.seen.value, b.seen.value); });
     if (places.size() > kFinalists) places.resize(kFinalists);
+    for (const Place& place : places) result.finalists.push_back(place.direction);
+    result.views = judge.views();
+    return result;
+}
 
-    // The last word has the full volume.
-    result.present = exact.look(subject.view.camera, job);
-    result.worst = exact.look(map.directions[map.worst()], job);
+BestView bestView(const ViewLevel& full, const ViewSubject& subject, const ViewSearch& search, int moves,
+                  const JobControl& job) {
+    const ViewMetric& metric = search.map.metric;
+    validate(subject, metric);
+    Judge judge(full, subject, metric);
+    const double expected = static_cast<double>(search.finalists.size()) + 2 + 4 * moves;
+    const auto tell = [&] { job.report(std::min(1.0, judge.views() / expected)); };
+
+    BestView result;
+    result.present = judge.look(subject.view.camera, job);
     Place best{-subject.view.camera.forward(), result.present};
-    for (Place& place : places) {
-        if (!sameLevel) place.seen = exact.look(place.seen.camera, job);
+    for (const Vec3& direction : search.finalists) {
+        const Place place{direction, judge.look(direction, job)};
         if (metric.isBetter(place.seen.value, best.seen.value)) best = place;
+        tell();
     }
-    job.report(0.93);
-    if (!sameLevel) best = descend(exact, metric, best, kFullStep * kPi / 180, finest, options.refinements, job);
+    best = descend(judge, metric, best, kFullStep, kFinestStep, moves, job, tell);
     result.best = best.seen;
-    if (metric.isBetter(result.worst.value, result.present.value)) result.worst = result.present;
-    result.views = rough.views();
-    result.fullViews = exact.views();
+    result.worst = result.present;
+    if (!search.map.isEmpty()) {
+        const SeenView worst = judge.look(search.map.directions[search.map.worst()], job);
+        if (metric.isBetter(result.worst.value, worst.value)) result.worst = worst;
+    }
+    result.views = judge.views();
     job.report(1);
     return result;
+}
+
+std::vector<ReachableView> reachableViews(const ViewLevel& level, const ViewSubject& subject, const ViewSearch& search,
+                                          const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                          const JobControl& job) {
+    const ViewMetric& metric = search.map.metric;
+    validate(subject, metric);
+    PELLUCID_CHECK(metric.figure == ViewMetric::Figure::Objective);
+    const Geometry& geometry = level.engine.volume().geometry();
+    OptimizeOptions few = options;
+    few.maxIterations = std::min(options.maxIterations, kReachMoves);
+    few.coarse = false;
+
+    const auto reach = [&](const Camera& camera) {
+        const View view(camera, subject.view.clipping);
+        const EngineVws function(level.engine, view, subject.tf, level.weights, subject.options);
+        const OptimizeResult found = optimize({function, metric.targets, limits}, few, {job.stop, {}});
+        job.throwIfStopped();
+        const OptimizeState& best = found.history[found.best];
+        const FeatureSums sums = level.engine.sums(view, {&found.tf, 1}, &level.weights, {job.stop, {}})[0];
+        return ReachableView{camera, best.opacity, best.objective, sums.allVisibility};
+    };
+
+    std::vector<Camera> cameras{subject.view.camera};
+    for (const Vec3& direction : search.finalists)
+        cameras.push_back(lookingFrom(subject.view.camera, geometry, direction));
+    for (int i = 0; i < kReachSpread && i < static_cast<int>(search.map.directions.size()); ++i)
+        cameras.push_back(
+            lookingFrom(subject.view.camera, geometry, search.map.directions[static_cast<std::size_t>(i)]));
+    std::vector<ReachableView> all;
+    for (const Camera& camera : cameras) {
+        all.push_back(reach(camera));
+        job.report(0.9 * static_cast<double>(all.size()) / static_cast<double>(cameras.size()));
+    }
+    const auto nearest = [&] {
+        return *std::min_element(all.begin(), all.end(), [](const ReachableView& a, const ReachableView& b) {
+            return a.objective < b.objective;
+        });
+    };
+    // Where targets can be reached they mostly can from everywhere; only elsewhere the exact direction matters.
+    double step = 0.5 * spacingOf(static_cast<std::size_t>(kReachSpread));
+    for (int round = 0; round < kReachRounds && nearest().objective > kNear; ++round) {
+        const ReachableView at = nearest();
+        for (int side = 0; side < 4; ++side)
+            all.push_back(
+                reach(lookingFrom(subject.view.camera, geometry,
+                                  moved(-at.camera.forward(), step, side * kPi / 2 + (round % 2) * kPi / 4))));
+        if (nearest().camera == at.camera) step /= 2;
+        job.report(0.9 + 0.1 * (round + 1) / kReachRounds);
+    }
+    const double least = std::max(kNear, nearest().objective);
+    std::stable_sort(all.begin(), all.end(), [&](const ReachableView& a, const ReachableView& b) {
+        const bool nearA = a.objective <= least, nearB = b.objective <= least;
+        if (nearA && nearB) return a.seen > b.seen;
+        return nearA != nearB ? nearA : a.objective < b.objective;
+    });
+    job.report(1);
+    return all;
 }
 
 } // namespace pellucid

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "optimize/optimizer.h"
 #include "render/view.h"
 #include "render/visibility.h"
 
@@ -34,6 +35,8 @@ struct ViewMetric {
     bool operator==(const ViewMetric&) const = default;
 };
 
+const char* name(ViewMetric::Figure figure); ///< "objective", "vws", "visibility"
+
 /// What is shown, whatever it is looked at from.
 struct ViewSubject {
     View view; ///< the present one: its projection, center and distance hold for all views, and what it cuts away
@@ -61,30 +64,51 @@ struct ViewMap {
     double interpolated(const Vec3& direction) const;
 };
 
+/// The map, and where between its directions it looks best.
+struct ViewSearch {
+    ViewMap map;
+    std::vector<Vec3> finalists; ///< directions, the best first: the bottoms of the best valleys
+    int views = 0;               ///< that were looked at
+};
+
+/// Looks from all over the sphere, then down the best valleys in steps of half a degree at last. `watch` gets the map
+/// as it grows, on the calling thread. The same bits for any number of threads. Throws Cancelled; UsageError for a
+/// count out of range, and for a feature or targets that `subject` has not.
+ViewSearch searchViews(const ViewLevel& level, const ViewSubject& subject, const ViewMetric& metric,
+                       int count = kSphereViews, const JobControl& job = {},
+                       const std::function<void(const ViewMap&)>& watch = {});
+
 struct SeenView {
     Camera camera;
     double value = 0;
 };
 
-struct ViewSearchOptions {
-    int count = kSphereViews;
-    /// Moves on the full volume, four views each; 0: nothing but the directions of the map is looked at.
-    int refinements = 3;
+/// Figures of the full volume, whatever the search was made on.
+struct BestView {
+    SeenView best, worst;
+    SeenView present; ///< the subject's own view
+    int views = 0;    ///< that were looked at
 };
 
-struct ViewSearchResult {
-    ViewMap map;                  ///< of the coarse level
-    SeenView best, worst;         ///< measured on the full level; the best of all that were
-    SeenView present;             ///< the subject's own view, likewise
-    int views = 0, fullViews = 0; ///< measured on the coarse level and on the full one
+/// The best of the finalists and the present view, and of their neighbours in at most `moves` moves of four; and what
+/// the worst direction of the map is worth. Throws Cancelled.
+BestView bestView(const ViewLevel& full, const ViewSubject& subject, const ViewSearch& search, int moves = 3,
+                  const JobControl& job = {});
+
+/// A view, and opacities by which it comes near the targets.
+struct ReachableView {
+    Camera camera;
+    std::vector<double> opacity;
+    double objective = 0;
+    double seen = 0; ///< Σv over all voxels: how much of the picture is covered, and how densely
 };
 
-/// The map on `coarse`; from its best valleys down to views between its directions; the best of those and the present
-/// view on `full`, where the last steps are made. Both levels may be the same. `watch` gets the map as it grows, on the
-/// calling thread. The same bits for any number of threads. Throws Cancelled, UsageError for a count out of range or a
-/// feature or targets that `subject` has not.
-ViewSearchResult searchViews(const ViewLevel& coarse, const ViewLevel& full, const ViewSubject& subject,
-                             const ViewMetric& metric, const ViewSearchOptions& options = {},
-                             const JobControl& job = {}, const std::function<void(const ViewMap&)>& watch = {});
+/// What can be reached of the targets of `search`, from its best directions, others all over the sphere and the present
+/// view: each by a few moves of the optimizer, the best first. Views nearer than 0.005 to the targets count as equal;
+/// of these the first is the one with the most to see. Where no view comes that near, neighbours of the nearest are
+/// tried too. `options.maxIterations` bounds the moves. Throws as searchViews() does.
+std::vector<ReachableView> reachableViews(const ViewLevel& level, const ViewSubject& subject, const ViewSearch& search,
+                                          const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                          const JobControl& job = {});
 
 } // namespace pellucid

@@ -177,4 +177,14 @@ ViewAngles viewAngles(const Camera& camera, const Geometry& geometry) {
     return angles;
 }
 
+ViewAngles anglesOf(const Vec3& towardEye) {
+    return {std::atan2(towardEye.x, -towardEye.y) / kRadians, std::asin(std::clamp(towardEye.z, -1.0, 1.0)) / kRadians,
+            1};
+}
+
+Vec3 towardEye(const ViewAngles& angles) {
+    const double az = angles.azimuth * kRadians, el = angles.elevation * kRadians;
+    return {std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el), std::sin(el)};
+}
+
 } // namespace pellucid

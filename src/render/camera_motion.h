@@ -41,5 +41,8 @@ struct ViewAngles {
     double azimuth = 0, elevation = 0, zoom = 1;
 };
 ViewAngles viewAngles(const Camera& camera, const Geometry& geometry);
+/// Of an eye that lies in this direction (a unit vector) of the center, at zoom 1; and the other way round.
+ViewAngles anglesOf(const Vec3& towardEye);
+Vec3 towardEye(const ViewAngles& angles);
 
 } // namespace pellucid
