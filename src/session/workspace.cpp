@@ -103,6 +103,11 @@ std::vector<std::vector<double>> Workspace::jacobian(const MeasureInput& input, 
         [this] { releaseEngine(); });
 }
 
+OcclusionMatrix Workspace::occlusion(const MeasureInput& input, const JobControl& job) {
+    return guarded([&] { return pellucid::occlusion(engine(input), input.view, input.tf, job); },
+                   [this] { releaseEngine(); });
+}
+
 OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
                                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                                    const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "optimize/measure.h"
+#include "optimize/occlusion.h"
 #include "session/scene.h"
 
 namespace pellucid {
@@ -23,6 +24,8 @@ public:
     Measures measure(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
+    /// Who hides whom.
+    OcclusionMatrix occlusion(const MeasureInput& input, const JobControl& job = {});
     /// `limits`: one per feature, or empty.
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
