@@ -18,7 +18,6 @@
 #include "controllers/recovery_controller.h"
 #include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
-#include "controllers/view_search_controller.h"
 #include "light_layer.h"
 #include "notice_bar.h"
 #include "panel.h"
@@ -60,7 +59,6 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
         m_bench->refining().setViewSize({m_view->frame().width, m_view->frame().height});
         Q_EMIT settledChanged();
     });
-    connect(&m_bench->viewSearch(), &ViewSearchController::glimpsed, m_view, &VolumeView::lookFrom);
     connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
     connect(m_view, &VolumeView::rendererFailed, this, [this](const Error& error) {
         m_bench->notices().add({QString::fromUtf8(error.what()), {}});

@@ -13,7 +13,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "render/camera_motion.h"
+#include "render/view_direction.h"
 #include "tf/color_maps.h"
 #include "theme.h"
 

@@ -12,7 +12,6 @@
 #include "controllers/tf_actions.h"
 #include "controllers/theme_actions.h"
 #include "controllers/view_actions.h"
-#include "controllers/view_search_controller.h"
 #include "error_dialog.h"
 
 namespace pellucid::gui {
@@ -24,7 +23,6 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     m_opening = std::make_unique<OpenController>(*this);
     m_start = std::make_unique<StartController>(*this);
     m_recovery = std::make_unique<RecoveryController>(*this);
-    m_viewSearch = std::make_unique<ViewSearchController>(*this);
 
     // The menus stand in the order in which their first actions come.
     m_opening->addActions();
@@ -36,7 +34,6 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     m_refining->addActions();
     m_optimizing->addActions();
     addViewActions(*this);
-    m_viewSearch->addActions();
     addFrameActions(*this);
     addSliceActions(*this);
     addThemeActions(*this);
@@ -61,13 +58,11 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
     connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
-    connect(m_viewSearch.get(), &ViewSearchController::changed, this, &Workbench::idleChanged);
 }
 
 Workbench::~Workbench() {
     m_store.disconnect(); // what ends below must not be heard by what has ended already
     m_results.disconnect();
-    m_viewSearch.reset();
     m_recovery.reset();
     m_start.reset();
     m_opening.reset();
@@ -100,7 +95,7 @@ bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
-           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_viewSearch->isBusy() && !m_results.isBusy();
+           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_results.isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

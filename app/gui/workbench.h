@@ -21,7 +21,6 @@ class RecoveryController;
 class RefineController;
 class SaveController;
 class StartController;
-class ViewSearchController;
 
 /// The services of one window. Panels and controllers get it, and know nothing of each other.
 class Workbench : public QObject {
@@ -55,7 +54,6 @@ public:
     StartController& start() { return *m_start; }
     RecoveryController& recovery() { return *m_recovery; }
     RefineController& refining() { return *m_refining; }
-    ViewSearchController& viewSearch() { return *m_viewSearch; }
 
     /// Nothing may be edited: an optimization shows its moves.
     bool isReadOnly() const;
@@ -80,7 +78,6 @@ private:
     std::unique_ptr<OpenController> m_opening;
     std::unique_ptr<StartController> m_start;
     std::unique_ptr<RecoveryController> m_recovery;
-    std::unique_ptr<ViewSearchController> m_viewSearch;
 };
 
 } // namespace pellucid::gui

@@ -9,7 +9,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "optimize/objective.h"
-#include "render/camera_motion.h"
+#include "render/view_direction.h"
 
 namespace pellucid {
 

@@ -143,16 +143,6 @@ Camera fitted(const Camera& camera, const Geometry& geometry) {
     return closerToBox(c, geometry);
 }
 
-Camera lookingFrom(const Camera& camera, const Geometry& geometry, const Vec3& towardEye) {
-    Camera c = camera;
-    c.eye = c.center + distance(camera) * towardEye;
-    const double level = std::hypot(towardEye.x, towardEye.y);
-    // Along z, where every side is up, as seen from azimuth 0.
-    const Vec3 outward = level > 1e-9 ? Vec3(towardEye.x, towardEye.y, 0) / level : Vec3(0, -1, 0);
-    c.up = {-towardEye.z * outward.x, -towardEye.z * outward.y, level};
-    return keptOutside(c, geometry);
-}
-
 Camera withProjection(const Camera& camera, const Geometry& geometry, Projection projection) {
     if (camera.projection == projection) return camera;
     Camera c = camera;
@@ -175,16 +165,6 @@ ViewAngles viewAngles(const Camera& camera, const Geometry& geometry) {
     angles.azimuth = std::atan2(level.x, -level.y) / kRadians;
     angles.zoom = fittingHeight(geometry) / heightAtCenter(camera);
     return angles;
-}
-
-ViewAngles anglesOf(const Vec3& towardEye) {
-    return {std::atan2(towardEye.x, -towardEye.y) / kRadians, std::asin(std::clamp(towardEye.z, -1.0, 1.0)) / kRadians,
-            1};
-}
-
-Vec3 towardEye(const ViewAngles& angles) {
-    const double az = angles.azimuth * kRadians, el = angles.elevation * kRadians;
-    return {std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el), std::sin(el)};
 }
 
 } // namespace pellucid

@@ -29,10 +29,6 @@ Camera zoomed(const Camera& camera, const Geometry& geometry, double factor);
 /// The same direction, with the whole box in the image.
 Camera fitted(const Camera& camera, const Geometry& geometry);
 
-/// Center, distance and magnification stay; the eye lies in the direction `towardEye` (a unit vector) of the center,
-/// and the world's z is up, as cameraFromView() has it.
-Camera lookingFrom(const Camera& camera, const Geometry& geometry, const Vec3& towardEye);
-
 /// The other projection with the same size of what lies in the plane of the center.
 Camera withProjection(const Camera& camera, const Geometry& geometry, Projection projection);
 
@@ -41,8 +37,5 @@ struct ViewAngles {
     double azimuth = 0, elevation = 0, zoom = 1;
 };
 ViewAngles viewAngles(const Camera& camera, const Geometry& geometry);
-/// Of an eye that lies in this direction (a unit vector) of the center, at zoom 1; and the other way round.
-ViewAngles anglesOf(const Vec3& towardEye);
-Vec3 towardEye(const ViewAngles& angles);
 
 } // namespace pellucid

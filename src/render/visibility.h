@@ -22,9 +22,8 @@ struct VisibilityField {
     Grid<float> values;
 };
 
-/// High: about half the error for about twice the time and more (docs/method.md, "Tolerances"). Draft, to compare many
-/// views: the cpu engine samples small volumes as it does large ones, several times faster; the others take it as Normal.
-enum class Quality { Draft, Normal, High };
+/// High: about half the error for about twice the time and more (docs/method.md, "Tolerances").
+enum class Quality { Normal, High };
 
 /// Anything that can tell visibility. One call takes many transfer functions, so that a line search is
 /// parallel inside: SIMD lanes and threads on the CPU, render targets on GL. Order is kept.

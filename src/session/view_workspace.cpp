@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "optimize/objective.h"
+#include "render/cpu/cpu_engine.h"
 #include "volume/excerpt.h"
 
 namespace pellucid {
@@ -44,7 +45,7 @@ ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job)
         const auto coarse =
             factor == 1 ? input.volume : std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
         job.throwIfStopped();
-        m_engine = makeCpuEngine(coarse, Quality::Draft);
+        m_engine = makeDraftEngine(coarse);
         m_volume = input.volume;
     }
     const TransferFunction colors = colorsOf(input.tf);

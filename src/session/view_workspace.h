@@ -20,7 +20,7 @@ ViewSubject viewSubject(const MeasureInput& input);
 /// at a time. The same input gives the same map, whatever was searched before.
 class ViewWorkspace {
 public:
-    /// The cpu engine, whichever `input` asks for, quality draft. Throws Cancelled.
+    /// By the draft engine, whichever `input` asks for. Throws Cancelled.
     ViewLevel level(const MeasureInput& input, const JobControl& job = {});
     ViewSearch search(const MeasureInput& input, const ViewMetric& metric, int count = kSphereViews,
                       const JobControl& job = {}, const std::function<void(const ViewMap&)>& watch = {});

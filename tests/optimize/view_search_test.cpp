@@ -8,7 +8,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "optimize/view_search.h"
-#include "render/camera_motion.h"
+#include "render/cpu/cpu_engine.h"
+#include "render/view_direction.h"
 #include "saliency/saliency_field.h"
 #include "support/volumes.h"
 
@@ -34,7 +35,7 @@ struct Subject {
     WeightFields weights;
 
     Subject(std::shared_ptr<const Volume> v, TransferFunction t)
-        : volume(std::move(v)), tf(std::move(t)), engine(makeCpuEngine(volume, Quality::Draft)),
+        : volume(std::move(v)), tf(std::move(t)), engine(makeDraftEngine(volume)),
           weights(saliencyFields(*volume, tf)) {}
     ViewLevel level() const { return {*engine, weights}; }
     ViewSubject from(const Camera& camera) const { return {View(camera), tf, {}}; }

@@ -6,7 +6,7 @@
 
 #include "controllers/optimize_controller.h"
 #include "optimize/objective.h"
-#include "render/camera_motion.h"
+#include "render/view_direction.h"
 #include "tf/shown_tf.h"
 #include "workbench.h"
 
@@ -42,8 +42,8 @@ bool ViewSearchController::Question::operator==(const Question& other) const {
            metric == other.metric;
 }
 
-ViewSearchController::ViewSearchController(Workbench& bench)
-    : m_bench(bench),
+ViewSearchController::ViewSearchController(Workbench& bench, QObject* parent)
+    : QObject(parent), m_bench(bench),
       m_judging(
           [&workspace = bench.workspace()](const Judgement& task, const JobControl& job) {
               return bestView(workspace, task.input, task.search, {job.stop, {}});

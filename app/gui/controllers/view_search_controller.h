@@ -20,7 +20,7 @@ class Workbench;
 class ViewSearchController : public QObject {
     Q_OBJECT
 public:
-    explicit ViewSearchController(Workbench& bench);
+    ViewSearchController(Workbench& bench, QObject* parent);
     ~ViewSearchController() override;
 
     void addActions();

@@ -13,9 +13,10 @@
 #include "controllers/optimize_controller.h"
 #include "controllers/view_search_controller.h"
 #include "panel.h"
-#include "render/camera_motion.h"
+#include "render/view_direction.h"
 #include "theme.h"
 #include "view_globe.h"
+#include "volume_view.h"
 #include "workbench.h"
 
 namespace pellucid::gui {
@@ -53,13 +54,16 @@ PanelInfo viewsPanel() {
                                                  {sphere, QObject::tr("Left drag"), QObject::tr("rotate")}});
                     return new ViewsPanel(bench, parent);
                 },
-            .shown = [](Workbench& bench, bool visible) { bench.viewSearch().setWanted(visible); }};
+            .shown =
+                [](Workbench& bench, bool visible) {
+                    if (auto* panel = bench.window()->findChild<ViewsPanel*>()) panel->search().setWanted(visible);
+                }};
 }
 
 ViewsPanel::ViewsPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_figure(new QComboBox(this)), m_globe(new ViewGlobe(this)),
-      m_words(new QLabel(this)), m_progress(new QProgressBar(this)), m_look(new QPushButton(this)),
-      m_go(new QPushButton(tr("Go there"), this)),
+    : QWidget(parent), m_bench(bench), m_search(new ViewSearchController(bench, this)), m_figure(new QComboBox(this)),
+      m_globe(new ViewGlobe(this)), m_words(new QLabel(this)), m_progress(new QProgressBar(this)),
+      m_look(new QPushButton(this)), m_go(new QPushButton(tr("Go there"), this)),
       m_optimize(new QPushButton(tr("Optimize view and opacities"), this)) {
     setObjectName("viewsPanel");
     m_figure->setObjectName("viewsFigure");
@@ -92,7 +96,10 @@ ViewsPanel::ViewsPanel(Workbench& bench, QWidget* parent)
     column->addLayout(buttons);
     column->addWidget(m_optimize);
 
-    ViewSearchController& search = bench.viewSearch();
+    ViewSearchController& search = *m_search;
+    search.addActions();
+    if (auto* view = bench.window()->findChild<VolumeView*>())
+        connect(&search, &ViewSearchController::glimpsed, view, &VolumeView::lookFrom);
     connect(m_figure, &QComboBox::activated, this,
             [this, &search](int row) { search.setFeature(m_figure->itemData(row).value<FeatureId>()); });
     connect(m_look, &QPushButton::clicked, this, [&search] { search.isRunning() ? search.cancel() : search.start(); });
@@ -115,7 +122,7 @@ ViewsPanel::ViewsPanel(Workbench& bench, QWidget* parent)
                         m_gesture);
     });
     m_globe->setWords([this](const Vec3& toward) {
-        const ViewSearchController& views = m_bench.viewSearch();
+        const ViewSearchController& views = *m_search;
         if (views.map().isEmpty()) return anglesText(toward);
         const QString figure = figureText(views.map().metric, views.map().interpolated(toward), true);
         return tr("From %1: %2").arg(anglesText(toward), figure) +
@@ -143,7 +150,7 @@ void ViewsPanel::fillFigures() {
 }
 
 QString ViewsPanel::words() const {
-    const ViewSearchController& search = m_bench.viewSearch();
+    const ViewSearchController& search = *m_search;
     const SessionStore& store = m_bench.store();
     if (!store.hasVolume()) return {};
     if (store.session().measure->profile == Profile::Published)
@@ -167,7 +174,7 @@ QString ViewsPanel::words() const {
 }
 
 void ViewsPanel::refresh() {
-    const ViewSearchController& search = m_bench.viewSearch();
+    const ViewSearchController& search = *m_search;
     const SessionStore& store = m_bench.store();
     const bool ready = store.hasVolume() && !store.scene().tf.features.empty() && !m_bench.isReadOnly() &&
                        store.session().measure->profile != Profile::Published;

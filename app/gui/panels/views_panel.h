@@ -11,6 +11,7 @@ class QPushButton;
 namespace pellucid::gui {
 
 class ViewGlobe;
+class ViewSearchController;
 class Workbench;
 
 /// What is judged, the sphere in its colours, the best view in words, and the ways there.
@@ -19,12 +20,15 @@ class ViewsPanel : public QWidget {
 public:
     explicit ViewsPanel(Workbench& bench, QWidget* parent = nullptr);
 
+    ViewSearchController& search() { return *m_search; }
+
 private:
     void fillFigures();
     void refresh();
     QString words() const;
 
     Workbench& m_bench;
+    ViewSearchController* m_search; ///< a child
     QComboBox* m_figure;
     ViewGlobe* m_globe;
     QLabel* m_words;
