@@ -108,8 +108,7 @@ void ViewSearchController::addActions() {
          .keys = {QKeySequence("Shift+B")},
          .tip = tr("The view that the panel Best view has found; it looks for it where there is none"),
          .trigger = [this] { goToBest(); },
-         .enabled = ready,
-         .separatorBefore = true});
+         .enabled = ready});
     m_bench.actions().add({.id = "optimizeViewAction",
                            .menu = tr("&Transfer function"),
                            .text = tr("Optimize &view and opacities"),
