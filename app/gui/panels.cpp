@@ -12,6 +12,7 @@
     PANEL(lightPanel) \
     PANEL(clipPanel) \
     PANEL(galleryPanel) \
+    PANEL(viewsPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 
