@@ -6,7 +6,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kMovesAtOnce = 2;  ///< of an update while things move
+constexpr int kMovesAtOnce = 1;  ///< of an update while things move
 constexpr int kMovesAtRest = 12; ///< enough from nearby
 
 LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, const JobControl& job) {
@@ -14,6 +14,7 @@ LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, cons
     options.method = SearchMethod::Newton; // from nearby it arrives in a move or two
     options.coverage.reset();
     options.coarse = false;
+    options.restarts = false;
     options.tolerance = std::min(options.tolerance, kLiveGoal);
     options.maxIterations = moves;
     const OptimizeResult result = workspace.optimize(held.input, held.targets, held.limits, options, job);

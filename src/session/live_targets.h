@@ -25,7 +25,7 @@ struct LiveUpdate {
 /// F below which an update leaves opacities alone while things move: what is not seen is not worth a move.
 inline constexpr double kLiveGoal = 0.005;
 
-/// One or two moves toward the targets: what keeps up with the hand. Never farther from them than it began. Throws as
+/// One move toward the targets: what keeps up with the hand. Never farther from them than it began. Throws as
 /// Workspace::optimize() does, Cancelled too.
 LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});
 /// The same until F < min(tolerance, kLiveGoal) on the volume itself, or nothing helps: what is done when all rests.

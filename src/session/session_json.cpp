@@ -329,6 +329,7 @@ json fromOptimize(const OptimizeOptions& o) {
            {"step", o.step},
            {"tolerance", o.tolerance},
            {"coarse", o.coarse},
+           {"restarts", o.restarts},
            {"max_iterations", o.maxIterations}};
     if (o.coverage) j["coverage"] = *o.coverage;
     return j;
@@ -341,6 +342,7 @@ OptimizeOptions toOptimize(const JsonValue& j) {
     if (j.has("direction")) o.direction = named(j["direction"], directionFromName);
     if (j.has("b")) o.b = j["b"].number();
     if (j.has("coarse")) o.coarse = j["coarse"].boolean();
+    if (j.has("restarts")) o.restarts = j["restarts"].boolean();
     if (j.has("coverage")) o.coverage = j["coverage"].number();
     if (j.has("normalize")) o.normalize = j["normalize"].boolean();
     if (j.has("step")) o.step = j["step"].number();

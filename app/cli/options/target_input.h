@@ -17,7 +17,8 @@ struct TargetInput {
     std::optional<std::string> only; ///< name of the feature that gets all
 
     static TargetInput parse(const std::string& text, const std::string& option); ///< throws UsageError
-    /// One number for each feature, not scaled; words respect what the session has locked and hidden. Throws UsageError.
+    /// One number for each feature, not scaled; words respect what the session has locked and hidden. Throws
+    /// UsageError.
     std::vector<double> of(const Scene& scene) const;
 };
 
