@@ -12,7 +12,8 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kRest = 150; // milliseconds without a change before the last moves are made
+constexpr int kRest = 150;             // milliseconds without a change before the last moves are made
+constexpr double kLeastOpacity = 1e-5; // what is scaled to 0 has lost its shape
 
 bool sameFeatures(const TransferFunction& a, const TransferFunction& b) {
     return std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(),
@@ -116,14 +117,15 @@ void LiveController::follow(const Scene& before, const Scene& after) {
     if (m_settled && present().held == *m_settled) return;
     m_bench.results().setPaused(true); // updates tell VWS, and need the engine
     m_rest.start();
-    if (m_job.isRunning())
-        m_dirty = true;
+    if (m_job.isRunning() && !m_settling)
+        m_dirty = true; // its answer is waited for: a hand that never rests would see none
     else
         begin(false);
 }
 
 void LiveController::begin(bool settles) {
     m_dirty = false;
+    m_settling = settles;
     Task task = present();
     task.settles = settles;
     const bool was = m_job.isRunning();
@@ -154,7 +156,7 @@ void LiveController::finish(const Task& task, const LiveUpdate& update) {
             if (session.tf() == nullptr || session.tf()->features.size() != ids.size()) return;
             std::vector<double> x = featureOpacities(*session.tf());
             for (std::size_t i = 0; i < x.size(); ++i)
-                if (!pinned.contains(ids[i].id)) x[i] = wanted[i];
+                if (!pinned.contains(ids[i].id)) x[i] = std::max(wanted[i], std::min(x[i], kLeastOpacity));
             const TransferFunction tf = withShownOpacities(*session.tf(), x);
             if (featureOpacities(tf) != featureOpacities(*session.tf())) session.setTf(tf);
         });

@@ -52,6 +52,7 @@ private:
     std::set<FeatureId> m_pinned;         ///< whose opacity was set by hand in the latest change
     std::map<FeatureId, double> m_wanted; ///< opacities of the latest update
     bool m_applying = false;              ///< what happens to the scene is an update
+    bool m_settling = false;              ///< the update under way is that at rest
     bool m_dirty = false;                 ///< something has changed since the update under way began
     std::optional<HeldTargets> m_settled;
     QTimer m_rest;

@@ -520,7 +520,10 @@ PanelInfo featuresPanel() {
                     {{place, QObject::tr("Click on an eye"), QObject::tr("show or hide the feature")},
                      {place, QObject::tr("Alt or Ctrl+click on an eye"), QObject::tr("draw only this feature, or all")},
                      {place, QObject::tr("Click on a colour"), QObject::tr("change it")},
-                     {place, QObject::tr("Double-click on a name, F2"), QObject::tr("rename the feature")}});
+                     {place, QObject::tr("Double-click on a name, F2"), QObject::tr("rename the feature")},
+                     {place, QObject::tr("Double-click on a target, Enter, a digit"), QObject::tr("type the target")},
+                     {place, QObject::tr("Click on a target's padlock, L"),
+                      QObject::tr("hold the target where others are set")}});
                 auto* panel = new FeaturesPanel(bench, parent);
                 panel->setMinimumWidth(340);
                 return panel;
