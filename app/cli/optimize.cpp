@@ -3,6 +3,7 @@
 
 #include "commands.h"
 #include "optimize_report.h"
+#include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -64,7 +65,7 @@ struct Options {
     SearchOptions search;
     std::vector<NamedLimits> limits;
     std::vector<std::string> locked;
-    std::optional<std::vector<double>> targets;
+    std::optional<TargetInput> targets;
     std::optional<std::string> outTf, outCamera;
     bool requireConverged = false;
     ReportOptions report;
@@ -73,19 +74,6 @@ struct Options {
 struct Seconds {
     double saliency = 0, search = 0, total = 0;
 };
-
-/// What can be told about the targets before their features are known.
-std::vector<double> parseTargets(const std::string& text, const std::string& option) {
-    auto targets = parseReals(text, option);
-    double sum = 0;
-    for (const double t : targets) {
-        if (t < 0) throw UsageError("the target " + plainText(t) + " is negative", option, "give numbers from 0 on");
-        if (t > 1e9) throw UsageError("the target " + plainText(t) + " is too large", option, "only proportions count");
-        sum += t;
-    }
-    if (sum == 0) throw UsageError("all targets are 0", option, "give at least one above 0");
-    return targets;
-}
 
 std::size_t featureNamed(const TransferFunction& tf, const std::string& name, const std::string& option) {
     const auto found =
@@ -149,7 +137,7 @@ Answer run(const Options& o, Progress& progress) {
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
     Scene scene = opened.scene;
-    const std::vector<double> named = o.targets.value_or(scene.targets());
+    const std::vector<double> named = o.targets ? o.targets->of(scene) : scene.targets();
     atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
     const std::vector<double> targets = shownShares(scene.tf, named);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
@@ -242,9 +230,10 @@ Command addOptimize(CLI::App& program) {
     o->scene.camera.mayBeBest = true;
     o->scene.addForFigures(*app);
     addValue(
-        *app, "--target", "T1,T2,...",
-        [o](const std::string& text, const std::string& option) { o->targets = parseTargets(text, option); },
-        "one number for each feature, from 0 on; scaled to sum 1; required unless a session has targets");
+        *app, "--target", kTargetForms,
+        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        "one number for each feature, from 0 on, scaled to sum 1; or all equal, by the value of their peaks, turned "
+        "round, or all for one; required unless a session has targets");
     o->search.add(*app);
     addRepeated(
         *app, "--limits", "NAME:LO:HI",

@@ -41,6 +41,7 @@ _pellucid_cli() {
         --slice) choices="x: y: z:" ;;
         --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
+        --target) choices="equal diagonal inside-out only:" ;;
         --annotate) choices="all cube letters axes scale legend title" ;;
         --view)
             choices="anterior posterior left right superior inferior front back top bottom"
@@ -62,7 +63,7 @@ _pellucid_cli() {
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
-            --image-size | --fix | --target | --tolerance | --window | --tf-strength)
+            --image-size | --fix | --tolerance | --window | --tf-strength)
             return
             ;;
     esac

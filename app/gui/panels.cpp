@@ -13,6 +13,7 @@
     PANEL(clipPanel) \
     PANEL(galleryPanel) \
     PANEL(viewsPanel) \
+    PANEL(settingsPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

@@ -2,6 +2,7 @@
 
 #include "controllers/feature_actions.h"
 #include "controllers/frame_actions.h"
+#include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
@@ -9,6 +10,7 @@
 #include "controllers/save_controller.h"
 #include "controllers/slice_actions.h"
 #include "controllers/start_controller.h"
+#include "controllers/target_actions.h"
 #include "controllers/tf_actions.h"
 #include "controllers/theme_actions.h"
 #include "controllers/view_actions.h"
@@ -19,6 +21,7 @@ namespace pellucid::gui {
 Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
     m_optimizing = std::make_unique<OptimizeController>(*this);
     m_refining = std::make_unique<RefineController>(*this);
+    m_live = std::make_unique<LiveController>(*this);
     m_saving = std::make_unique<SaveController>(*this);
     m_opening = std::make_unique<OpenController>(*this);
     m_start = std::make_unique<StartController>(*this);
@@ -32,7 +35,9 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     addTfActions(*this);
     addFeatureActions(*this);
     m_refining->addActions();
+    addTargetActions(*this);
     m_optimizing->addActions();
+    m_live->addActions();
     addViewActions(*this);
     addFrameActions(*this);
     addSliceActions(*this);
@@ -56,6 +61,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     });
     connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
     connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_live.get(), &LiveController::busyChanged, this, &Workbench::idleChanged);
     connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
 }
@@ -67,6 +73,7 @@ Workbench::~Workbench() {
     m_start.reset();
     m_opening.reset();
     m_saving.reset();
+    m_live.reset();
     m_refining.reset();
     m_optimizing.reset();
 }
@@ -95,7 +102,7 @@ bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
-           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_results.isBusy();
+           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_live->isBusy() && !m_results.isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

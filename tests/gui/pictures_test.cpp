@@ -77,6 +77,21 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     grab(w, "window_influence.png");
 }
 
+TEST_CASE("targets for the guide", "[.pictures][.targetspicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
+    if (source.isSample()) source.sampleSize = 160;
+    w.open(source);
+    w.settle();
+    w.child<QAction>("targetsDiagonal").trigger();
+    w.child<TargetBars>("targetBars").toggleLock(0);
+    w.child<QAction>("liveTargetsAction").trigger();
+    grab(w, "targets.png");
+}
+
 TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
