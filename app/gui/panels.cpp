@@ -11,6 +11,7 @@
     PANEL(lightPanel) \
     PANEL(clipPanel) \
     PANEL(galleryPanel) \
+    PANEL(spacePanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

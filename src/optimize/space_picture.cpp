@@ -51,7 +51,7 @@ MarkMaker makerOf(const SpaceView& view) {
 
 /// A row of the legend above the picture.
 struct Row {
-    enum class Sign { None, Path, Minimum, Contour } sign = Sign::None;
+    enum class Sign { None, Path, Minimum, Present, Contour } sign = Sign::None;
     Rgb color;
     std::string text;
 };
@@ -67,6 +67,7 @@ std::vector<Row> rowsOf(const ParameterSpace& space, const SpaceView& view) {
     std::vector<Row> rows{
         {Row::Sign::None, make.ink, titleOf(space, view)},
         {Row::Sign::Minimum, make.ink, "least of the grid: F " + numberText(space.objective[space.best], 0.01)}};
+    if (view.present) rows.push_back({Row::Sign::Present, make.ink, "the opacities now"});
     if (hasContour(space, view))
         rows.push_back({Row::Sign::Contour, make.ink, "F = " + numberText(view.tolerance, view.tolerance)});
     const auto most = static_cast<std::size_t>(std::max(3.0, 0.35 * view.height / (1.9 * make.capHeight)));
@@ -105,6 +106,13 @@ Mark ring(const MarkMaker& make, const Vec2& at, double diameter, double width, 
     return mark;
 }
 
+Mark square(const MarkMaker& make, const Vec2& at) {
+    const double r = 0.6 * make.capHeight;
+    return make.lineMark(FramePart::Legend,
+                         {at + Vec2(-r, -r), at + Vec2(r, -r), at + Vec2(r, r), at + Vec2(-r, r), at + Vec2(-r, -r)},
+                         0.22 * make.capHeight);
+}
+
 void addCross(std::vector<Mark>& marks, const MarkMaker& make, const Vec2& at) {
     const double reach = 0.6 * make.capHeight;
     for (const Vec2& way : {Vec2(reach, reach), Vec2(reach, -reach)})
@@ -127,6 +135,9 @@ void addRows(std::vector<Mark>& marks, const ParameterSpace& space, const SpaceV
         }
         case Row::Sign::Minimum:
             addCross(marks, make, (from + to) * 0.5);
+            break;
+        case Row::Sign::Present:
+            marks.push_back(square(make, (from + to) * 0.5));
             break;
         case Row::Sign::Contour:
             marks.push_back(make.lineMark(FramePart::Legend, {from, to}, 0.2 * cap));
@@ -481,6 +492,9 @@ std::vector<Mark> spaceMarks(const ParameterSpace& space, const SpaceView& view)
     addPaths(marks, space, view);
     if (const auto least = pixelOf(space, view, space.positionOfSample(space.best)))
         addCross(marks, makerOf(view), *least);
+    if (view.present)
+        if (const auto now = pixelOf(space, view, space.positionOf(*view.present)))
+            marks.push_back(square(makerOf(view), *now));
     addRows(marks, space, view);
     return marks;
 }

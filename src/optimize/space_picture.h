@@ -31,9 +31,10 @@ struct SpaceView {
     std::vector<Rgb> colors;        ///< of all features
     double tolerance = 0.03;        ///< the F within which targets count as reached: a contour of the heat map
     std::vector<SpacePath> paths;
-    Camera camera;                 ///< of the volume, see spaceCamera(); nothing to a heat map
-    int width = 512, height = 512; ///< pixels
-    double density = 1;            ///< pixels in which lengths of the screen are one
+    std::optional<std::vector<double>> present; ///< opacities of all features now: a square
+    Camera camera;                              ///< of the volume, see spaceCamera(); nothing to a heat map
+    int width = 512, height = 512;              ///< pixels
+    double density = 1;                         ///< pixels in which lengths of the screen are one
     Rgb background{0, 0, 0};
 };
 
