@@ -8,8 +8,6 @@
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
-#include "render/annotation_raster.h"
-#include "render/image_renderer.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "session/space_inputs.h"
@@ -110,7 +108,7 @@ std::vector<SpacePath> searchPaths(const Options& o, const VwsFunction& function
     for (const SearchMethod method : o.methods) {
         OptimizeOptions options = *scene.session.optimize;
         options.method = method;
-        JobControl job = progress.phase(std::string("optimizing, ") + name(method));
+        JobControl job = progress.phase("optimizing");
         job.progress = nullptr; // how many moves it takes nobody knows
         const OptimizeResult r =
             optimize({function, space.targets, limitsOf(scene.tf, *scene.session.goals), nullptr}, options, job);
@@ -130,19 +128,6 @@ std::vector<SpacePath> searchPaths(const Options& o, const VwsFunction& function
         json.push_back(std::move(one));
     }
     return paths;
-}
-
-Image pictureOf(const ParameterSpace& space, const SpaceView& view, const JobControl& job) {
-    Image image;
-    if (space.isFlat()) {
-        image = heatMap(space, view);
-    } else {
-        const Rgb color = view.shown == kObjective ? Rgb{} : view.colors[static_cast<std::size_t>(view.shown)];
-        image = makeCpuRenderer(spaceVolume(space, view.shown))
-                    ->render(view.camera, spaceTf(space, view.shown, color), spaceRenderSettings(view), job);
-    }
-    drawMarks(image, spaceMarks(space, view));
-    return image;
 }
 
 std::vector<double> vwsAt(const ParameterSpace& space, std::size_t sample) {
@@ -233,7 +218,7 @@ Answer run(const Options& o, Progress& progress) {
     view.camera = spaceCamera(space, o.view.azimuth, o.view.elevation, o.view.zoom);
     std::vector<std::string> files;
     if (o.out) {
-        writeImage(pictureOf(space, view, progress.phase("rendering")), *o.out);
+        writeImage(spaceImage(space, view, progress.phase("rendering")), *o.out);
         files.push_back(*o.out);
     }
     if (o.save) {

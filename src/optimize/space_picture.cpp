@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include "base/round_numbers.h"
+#include "render/annotation_raster.h"
+#include "render/image_renderer.h"
 #include "render/mark_maker.h"
 #include "render/projected.h"
 #include "tf/color_maps.h"
@@ -358,12 +360,13 @@ std::shared_ptr<const Volume> spaceVolume(const ParameterSpace& space, int shown
     return std::make_shared<const Volume>(std::move(volume));
 }
 
-TransferFunction spaceTf(const ParameterSpace& space, int shown, const Rgb& featureColor) {
+TransferFunction spaceTf(const ParameterSpace& space, const SpaceView& view) {
     TransferFunction tf;
     const auto add = [&](double x, double alpha, const Rgb& color) {
         tf.points.push_back({x, perSample(alpha, space), color, false, {}});
     };
-    if (shown != kObjective) {
+    if (view.shown != kObjective) {
+        const Rgb featureColor = view.colors.at(static_cast<std::size_t>(view.shown));
         add(0, 0, mixed({0, 0, 0}, featureColor, 0.15));
         add(1, kVwsAlpha, featureColor);
         return tf;
@@ -432,6 +435,18 @@ Image heatMap(const ParameterSpace& space, const SpaceView& view) {
     return image;
 }
 
+Image spaceImage(const ParameterSpace& space, const SpaceView& view, const JobControl& job) {
+    Image image;
+    if (space.isFlat()) {
+        image = heatMap(space, view);
+    } else {
+        image = makeCpuRenderer(spaceVolume(space, view.shown))
+                    ->render(view.camera, spaceTf(space, view), spaceRenderSettings(view), job);
+    }
+    drawMarks(image, spaceMarks(space, view));
+    return image;
+}
+
 std::optional<Vec2> pixelOf(const ParameterSpace& space, const SpaceView& view, const Vec3& position) {
     if (space.isFlat()) {
         const PixelBox map = heatMapBox(space, view);
@@ -484,10 +499,9 @@ std::vector<Mark> spaceMarks(const ParameterSpace& space, const SpaceView& view)
     } else {
         FrameOfReference show = FrameOfReference::none();
         show.axes = show.legend = true;
-        const Rgb color = view.shown == kObjective ? Rgb{} : view.colors.at(static_cast<std::size_t>(view.shown));
-        marks = annotationMarks({show, view.camera, space.geometry(), spaceTf(space, view.shown, color),
-                                 shownRange(space, view.shown), "", spaceRenderSettings(view), view.density,
-                                 namedBox(space, view)});
+        marks =
+            annotationMarks({show, view.camera, space.geometry(), spaceTf(space, view), shownRange(space, view.shown),
+                             "", spaceRenderSettings(view), view.density, namedBox(space, view)});
     }
     addPaths(marks, space, view);
     if (const auto least = pixelOf(space, view, space.positionOfSample(space.best)))

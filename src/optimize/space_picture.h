@@ -20,6 +20,7 @@ struct SpacePath {
     Rgb color;
     std::vector<OptimizeState> states; ///< opacities and VWS of all features of the space
     std::size_t best = 0;              ///< index into states
+    bool operator==(const SpacePath&) const = default;
 };
 /// The n-th colour for paths; they differ from each other and from the colours of F.
 Rgb pathColor(std::size_t n);
@@ -49,7 +50,7 @@ Camera spaceCamera(const ParameterSpace& space, double azimuth, double elevation
 std::shared_ptr<const Volume> spaceVolume(const ParameterSpace& space, int shown);
 /// W: colour and opacity grow with it. F: low values from blue, high ones to orange, and those between (between the
 /// quantiles 0.12 and 0.8 of the samples) transparent. The same looks for any number of samples.
-TransferFunction spaceTf(const ParameterSpace& space, int shown, const Rgb& featureColor);
+TransferFunction spaceTf(const ParameterSpace& space, const SpaceView& view);
 RenderSettings spaceRenderSettings(const SpaceView& view);
 
 // ---- two features
@@ -63,6 +64,8 @@ Rgb heatMapColor(double value, const ValueRange& range);
 
 // ---- both
 
+/// The finished picture, marks and all. Throws Cancelled.
+Image spaceImage(const ParameterSpace& space, const SpaceView& view, const JobControl& job = {});
 /// Axes with names and ticks, legend, paths, the minimum, and of a heat map of F the contour of the tolerance.
 std::vector<Mark> spaceMarks(const ParameterSpace& space, const SpaceView& view);
 /// Where a position lies in the picture; empty where it is behind the eye.

@@ -23,9 +23,10 @@ public:
     Measures measure(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
+    /// `limits`: one per feature, or empty.
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
-                            const OptimizeOptions& options, const JobControl& job = {},
-                            const std::function<void(const OptimizeState&)>& watch = {});
+                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                            const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
 
     VisibilityEngine& engine(const MeasureInput& input);
     /// The fields depend on colours and features alone, so that they outlive changes of opacity.

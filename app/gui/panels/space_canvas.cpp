@@ -26,16 +26,14 @@ SpaceCanvas::SpaceCanvas(QWidget* parent)
               if (task.volume == nullptr) return qImageFromImage(heatMap(*task.space, task.view));
               PictureInput input;
               input.volume = task.volume;
-              const int shown = task.view.shown;
-              input.tf = spaceTf(*task.space, shown,
-                                 shown == kObjective ? Rgb{} : task.view.colors[static_cast<std::size_t>(shown)]);
+              input.tf = spaceTf(*task.space, task.view);
               input.camera = task.view.camera;
               input.settings = spaceRenderSettings(task.view);
               return qImageFromImage(renderer->render(input, {job.stop, {}}));
           },
           [this](const Task& task, QImage& picture) {
-              if (task.space != m_space) return;
               m_picture = std::move(picture);
+              m_drawnSpace = task.space;
               m_drawn = task.view;
               update();
           },
@@ -53,18 +51,24 @@ SpaceCanvas::SpaceCanvas(QWidget* parent)
 SpaceCanvas::~SpaceCanvas() = default;
 
 void SpaceCanvas::setSpace(std::shared_ptr<const ParameterSpace> space, SpaceView view) {
-    const bool isNew = space != m_space;
+    const bool otherSpace = space != m_space, otherField = otherSpace || view.shown != m_view.shown;
+    const bool otherLook = otherField || view.colors != m_view.colors || view.paths.size() != m_view.paths.size();
     m_space = std::move(space);
     m_view = std::move(view);
     if (m_space == nullptr || m_space->isFlat()) {
         m_volume.reset();
         m_renderer->release();
-    } else if (isNew || m_volume == nullptr || m_volumeShows != m_view.shown) {
+    } else if (otherField) {
         m_volume = spaceVolume(*m_space, m_view.shown);
-        m_volumeShows = m_view.shown;
     }
-    if (isNew) m_picture = {};
-    draw();
+    if (m_space == nullptr) {
+        m_picture = {};
+        m_drawnSpace.reset();
+    }
+    if (otherLook || m_picture.isNull()) // a heat map makes room for the legend of paths
+        draw();
+    else
+        update(); // marks alone
 }
 
 void SpaceCanvas::setOutdated(const QString& remark) {
@@ -75,10 +79,21 @@ void SpaceCanvas::setOutdated(const QString& remark) {
 }
 
 SpaceView SpaceCanvas::shownView() const {
-    SpaceView view = m_drawn;
+    SpaceView view = drawnView();
     view.width = width();
     view.height = height();
     view.density = 1;
+    return view;
+}
+
+/// The picture that is seen under the marks of now.
+SpaceView SpaceCanvas::drawnView() const {
+    SpaceView view = m_view;
+    view.shown = m_drawn.shown;
+    view.camera = m_drawn.camera;
+    view.width = m_drawn.width;
+    view.height = m_drawn.height;
+    view.density = m_drawn.density;
     return view;
 }
 
@@ -96,13 +111,13 @@ void SpaceCanvas::draw() {
 void SpaceCanvas::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     painter.fillRect(rect(), colorFromRgb(m_view.background));
-    if (m_space != nullptr && !m_picture.isNull()) {
+    if (m_drawnSpace != nullptr) {
         painter.save();
         painter.setOpacity(m_outdated.isEmpty() ? 1 : 0.3);
         painter.setRenderHints(QPainter::Antialiasing | QPainter::SmoothPixmapTransform);
         painter.scale(width() * 1.0 / m_drawn.width, height() * 1.0 / m_drawn.height);
         painter.drawImage(0, 0, m_picture);
-        for (const Mark& mark : spaceMarks(*m_space, m_drawn)) drawMark(painter, mark);
+        for (const Mark& mark : spaceMarks(*m_drawnSpace, drawnView())) drawMark(painter, mark);
         painter.restore();
     }
     if (m_outdated.isEmpty()) return;
@@ -141,7 +156,7 @@ void SpaceCanvas::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void SpaceCanvas::mouseReleaseEvent(QMouseEvent* event) {
-    if (event->button() != Qt::LeftButton || m_turning || !m_pickable || !canRead() || m_picture.isNull()) return;
+    if (event->button() != Qt::LeftButton || m_turning || !m_pickable || !canRead()) return;
     const SpaceView view = shownView();
     const Vec2 at{event->position().x(), event->position().y()};
     if (const auto state = pathStateAt(*m_space, view, at, kReach))
@@ -163,7 +178,7 @@ void SpaceCanvas::leaveEvent(QEvent* event) {
 }
 
 void SpaceCanvas::readAt(const QPointF& at) {
-    if (!canRead() || m_picture.isNull()) return;
+    if (!canRead()) return;
     const SpaceView view = shownView();
     const Vec2 pixel{at.x(), at.y()};
     const auto textOf = [&](const std::vector<double>& x, const std::vector<double>& w, double objective) {

@@ -28,7 +28,7 @@ public:
     const std::shared_ptr<const ParameterSpace>& space() const { return m_space; }
     /// Of the picture that is seen, in logical pixels.
     SpaceView shownView() const;
-    bool isComplete() const { return m_space == nullptr || (!m_job.isRunning() && !m_picture.isNull()); }
+    bool isComplete() const { return m_space == m_drawnSpace && !m_job.isRunning(); }
     QSize sizeHint() const override { return {340, 320}; }
     QSize minimumSizeHint() const override { return {160, 160}; }
 
@@ -55,12 +55,12 @@ private:
     };
     void draw();
     void readAt(const QPointF& at);
-    bool canRead() const { return m_space != nullptr && m_outdated.isEmpty(); }
+    SpaceView drawnView() const;
+    bool canRead() const { return m_space != nullptr && m_drawnSpace == m_space && m_outdated.isEmpty(); }
 
-    std::shared_ptr<const ParameterSpace> m_space;
-    std::shared_ptr<const Volume> m_volume;
-    int m_volumeShows = kObjective; ///< what the samples of m_volume are
-    SpaceView m_view, m_drawn;      ///< as wanted; of m_picture. Device pixels
+    std::shared_ptr<const ParameterSpace> m_space, m_drawnSpace; ///< as wanted; of m_picture
+    SpaceView m_view, m_drawn;                                   ///< likewise; device pixels
+    std::shared_ptr<const Volume> m_volume;                      ///< of m_space
     double m_azimuth = kSpaceAzimuth, m_elevation = kSpaceElevation, m_zoom = 1;
     QString m_outdated;
     bool m_pickable = true;
