@@ -37,6 +37,7 @@ struct SpaceView {
     int width = 512, height = 512;              ///< pixels
     double density = 1;                         ///< pixels in which lengths of the screen are one
     Rgb background{0, 0, 0};
+    bool operator==(const SpaceView&) const = default;
 };
 
 // ---- three features

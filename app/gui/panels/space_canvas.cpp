@@ -51,8 +51,12 @@ SpaceCanvas::SpaceCanvas(QWidget* parent)
 SpaceCanvas::~SpaceCanvas() = default;
 
 void SpaceCanvas::setSpace(std::shared_ptr<const ParameterSpace> space, SpaceView view) {
-    const bool otherSpace = space != m_space, otherField = otherSpace || view.shown != m_view.shown;
-    const bool otherLook = otherField || view.colors != m_view.colors || view.paths.size() != m_view.paths.size();
+    view.camera = m_view.camera; // those are the canvas's own
+    view.width = m_view.width;
+    view.height = m_view.height;
+    view.density = m_view.density;
+    if (space == m_space && view == m_view) return;
+    const bool otherField = space != m_space || view.shown != m_view.shown;
     m_space = std::move(space);
     m_view = std::move(view);
     if (m_space == nullptr || m_space->isFlat()) {
@@ -62,13 +66,11 @@ void SpaceCanvas::setSpace(std::shared_ptr<const ParameterSpace> space, SpaceVie
         m_volume = spaceVolume(*m_space, m_view.shown);
     }
     if (m_space == nullptr) {
-        m_picture = {};
+        m_job.cancel();
         m_drawnSpace.reset();
+        update();
     }
-    if (otherLook || m_picture.isNull()) // a heat map makes room for the legend of paths
-        draw();
-    else
-        update(); // marks alone
+    draw();
 }
 
 void SpaceCanvas::setOutdated(const QString& remark) {
@@ -79,26 +81,14 @@ void SpaceCanvas::setOutdated(const QString& remark) {
 }
 
 SpaceView SpaceCanvas::shownView() const {
-    SpaceView view = drawnView();
+    SpaceView view = m_drawn;
     view.width = width();
     view.height = height();
     view.density = 1;
     return view;
 }
 
-/// The picture that is seen under the marks of now.
-SpaceView SpaceCanvas::drawnView() const {
-    SpaceView view = m_view;
-    view.shown = m_drawn.shown;
-    view.camera = m_drawn.camera;
-    view.width = m_drawn.width;
-    view.height = m_drawn.height;
-    view.density = m_drawn.density;
-    return view;
-}
-
 void SpaceCanvas::draw() {
-    update();
     if (m_space == nullptr || width() < 16 || height() < 16) return;
     const double density = devicePixelRatioF();
     m_view.width = static_cast<int>(std::lround(width() * density));
@@ -117,7 +107,7 @@ void SpaceCanvas::paintEvent(QPaintEvent*) {
         painter.setRenderHints(QPainter::Antialiasing | QPainter::SmoothPixmapTransform);
         painter.scale(width() * 1.0 / m_drawn.width, height() * 1.0 / m_drawn.height);
         painter.drawImage(0, 0, m_picture);
-        for (const Mark& mark : spaceMarks(*m_drawnSpace, drawnView())) drawMark(painter, mark);
+        for (const Mark& mark : spaceMarks(*m_drawnSpace, m_drawn)) drawMark(painter, mark);
         painter.restore();
     }
     if (m_outdated.isEmpty()) return;

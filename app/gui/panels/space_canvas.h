@@ -55,7 +55,6 @@ private:
     };
     void draw();
     void readAt(const QPointF& at);
-    SpaceView drawnView() const;
     bool canRead() const { return m_space != nullptr && m_drawnSpace == m_space && m_outdated.isEmpty(); }
 
     std::shared_ptr<const ParameterSpace> m_space, m_drawnSpace; ///< as wanted; of m_picture
