@@ -18,11 +18,11 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kLowShare = 0.12, kHighShare = 0.2;  // of the samples of F that are drawn at either end
-constexpr double kLowAlpha = 0.45, kHighAlpha = 0.10; // at the ends, per tenth of an axis
-constexpr double kVwsAlpha = 0.30;                    // where W is 1, likewise
-constexpr double kRoomAround = 0.86;                  // zoom that leaves room for ticks and names
-constexpr int kAlongRay = 200;                        // places looked at on the way through the cube
+constexpr double kLowShare = 0.12, kHighShare = 0.2; // of the samples of F that are drawn at either end
+constexpr double kLowAlpha = 0.7, kHighAlpha = 0.25; // at the ends, per tenth of an axis
+constexpr double kVwsAlpha = 0.40;                   // where W is 1, likewise
+constexpr double kRoomAround = 0.86;                 // zoom that leaves room for ticks and names
+constexpr int kAlongRay = 200;                       // places looked at on the way through the cube
 
 /// Of an opacity per tenth of an axis that of the distance between samples.
 double perSample(double alpha, const ParameterSpace& space) {
@@ -388,12 +388,15 @@ TransferFunction spaceTf(const ParameterSpace& space, const SpaceView& view) {
     return tf;
 }
 
-RenderSettings spaceRenderSettings(const SpaceView& view) {
+RenderSettings spaceRenderSettings(const ParameterSpace& space, const SpaceView& view) {
     RenderSettings settings;
     settings.width = view.width;
     settings.height = view.height;
     settings.background = view.background;
     settings.stepInD0 = 0.25;
+    const double half = 0.5 / space.axes.samples; // of a voxel: the corners of the cube are centres
+    settings.clipping.lo = Vec3(half);
+    settings.clipping.hi = Vec3(1 - half);
     return settings;
 }
 
@@ -441,7 +444,7 @@ Image spaceImage(const ParameterSpace& space, const SpaceView& view, const JobCo
         image = heatMap(space, view);
     } else {
         image = makeCpuRenderer(spaceVolume(space, view.shown))
-                    ->render(view.camera, spaceTf(space, view), spaceRenderSettings(view), job);
+                    ->render(view.camera, spaceTf(space, view), spaceRenderSettings(space, view), job);
     }
     drawMarks(image, spaceMarks(space, view));
     return image;
@@ -501,7 +504,7 @@ std::vector<Mark> spaceMarks(const ParameterSpace& space, const SpaceView& view)
         show.axes = show.legend = true;
         marks =
             annotationMarks({show, view.camera, space.geometry(), spaceTf(space, view), shownRange(space, view.shown),
-                             "", spaceRenderSettings(view), view.density, namedBox(space, view)});
+                             "", spaceRenderSettings(space, view), view.density, namedBox(space, view)});
     }
     addPaths(marks, space, view);
     if (const auto least = pixelOf(space, view, space.positionOfSample(space.best)))

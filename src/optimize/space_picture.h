@@ -52,7 +52,7 @@ std::shared_ptr<const Volume> spaceVolume(const ParameterSpace& space, int shown
 /// W: colour and opacity grow with it. F: low values from blue, high ones to orange, and those between (between the
 /// quantiles 0.12 and 0.8 of the samples) transparent. The same looks for any number of samples.
 TransferFunction spaceTf(const ParameterSpace& space, const SpaceView& view);
-RenderSettings spaceRenderSettings(const SpaceView& view);
+RenderSettings spaceRenderSettings(const ParameterSpace& space, const SpaceView& view);
 
 // ---- two features
 

@@ -28,7 +28,7 @@ SpaceCanvas::SpaceCanvas(QWidget* parent)
               input.volume = task.volume;
               input.tf = spaceTf(*task.space, task.view);
               input.camera = task.view.camera;
-              input.settings = spaceRenderSettings(task.view);
+              input.settings = spaceRenderSettings(*task.space, task.view);
               return qImageFromImage(renderer->render(input, {job.stop, {}}));
           },
           [this](const Task& task, QImage& picture) {

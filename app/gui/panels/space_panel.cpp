@@ -33,11 +33,9 @@ namespace {
 constexpr int kNone = -1;        ///< in place of a feature: no axis
 constexpr int kSavedSide = 1024; ///< of a saved picture, pixels
 
-/// Shapes and colours alone: the opacities of the axes and what things are called are no part of the samples.
-TransferFunction shapesOf(const TransferFunction& tf, const ParameterAxes& axes) {
-    std::vector<double> x = featureOpacities(tf);
-    for (const std::size_t f : axes.features) x[f] = 1;
-    TransferFunction shapes = withFeatureOpacities(tf, x);
+/// Shapes and colours alone: all peaks at 1, and nothing has a name.
+TransferFunction shapesOf(const TransferFunction& tf) {
+    TransferFunction shapes = withFullPeaks(tf);
     for (ControlPoint& p : shapes.points) p.opacity = std::round(p.opacity * 1e9) / 1e9; // scaling has rounded
     for (Feature& f : shapes.features) {
         f.name.clear();
@@ -207,8 +205,10 @@ ParameterAxes SpacePanel::axes() const {
 }
 
 SpacePanel::Inputs SpacePanel::inputs() const {
-    Inputs inputs{measureInput(m_bench.scene()), axes(), m_factor->currentData().toInt()};
-    inputs.measured.tf = shapesOf(inputs.measured.tf, inputs.axes);
+    Inputs inputs{measureInput(m_bench.scene()), {}, axes(), m_factor->currentData().toInt()};
+    inputs.others = featureOpacities(inputs.measured.tf);
+    for (const std::size_t f : inputs.axes.features) inputs.others[f] = 0;
+    inputs.measured.tf = shapesOf(inputs.measured.tf);
     return inputs;
 }
 

@@ -48,7 +48,8 @@ protected:
 private:
     /// Everything that the samples depend on.
     struct Inputs {
-        MeasureInput measured; ///< the opacities of the axes and what things are called apart
+        MeasureInput measured;      ///< opacities and what things are called apart
+        std::vector<double> others; ///< opacities of the features without an axis
         ParameterAxes axes;
         int factor = 0; ///< as the control says, 0: automatic
         bool operator==(const Inputs&) const = default;
