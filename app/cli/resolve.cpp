@@ -4,8 +4,8 @@
 
 namespace pellucid::cli {
 
-void SceneOptions::addForFigures(CLI::App& app, VolumeOptions::SizeIs sizeIs) {
-    volume.add(app, sizeIs);
+void SceneOptions::addForFigures(CLI::App& app) {
+    volume.add(app);
     session.add(app);
     tf.add(app);
     camera.add(app);

@@ -28,7 +28,7 @@ struct SceneOptions {
     PictureOptions picture;
 
     /// All that figures of a view depend on: the groups of `measure`, `fields` and `optimize`.
-    void addForFigures(CLI::App& app, VolumeOptions::SizeIs sizeIs = VolumeOptions::SizeIs::Sample);
+    void addForFigures(CLI::App& app);
 };
 
 /// What a command does with the volume, and the memory that it takes beside it.

@@ -11,6 +11,7 @@
 #include "render/annotation_raster.h"
 #include "render/image_renderer.h"
 #include "render/mark_maker.h"
+#include "render/named_box.h"
 #include "render/projected.h"
 #include "tf/color_maps.h"
 

@@ -8,6 +8,7 @@
 
 #include "base/round_numbers.h"
 #include "render/mark_maker.h"
+#include "render/named_box.h"
 #include "render/projected.h"
 #include "volume/orientation.h"
 
@@ -26,10 +27,11 @@ Rgb groundOf(const RenderSettings& picture) {
 /// The sheet that everything is laid out on.
 class Sheet : private MarkMaker {
 public:
-    explicit Sheet(const AnnotationInput& input)
+    explicit Sheet(const AnnotationInput& input, const NamedBox* box = nullptr)
         : MarkMaker(input.picture.width, input.picture.height, input.density, groundOf(input.picture)), m_in(input),
           m_width(input.picture.width), m_height(input.picture.height), m_project(input.camera, m_width, m_height),
-          m_cap(capHeight), m_margin(margin) {}
+          m_cap(capHeight), m_margin(margin),
+          m_box(box) {}
 
     std::vector<Mark> marks() {
         const FrameOfReference& show = m_in.show;
@@ -339,7 +341,7 @@ private:
 
     void addAxes() {
         const Geometry& g = m_in.geometry;
-        const Vec3 lo = m_in.box ? m_in.box->lo : g.boundsMin(), hi = m_in.box ? m_in.box->hi : g.boundsMax();
+        const Vec3 lo = m_box ? m_box->lo : g.boundsMin(), hi = m_box ? m_box->hi : g.boundsMax();
         const double line = std::max(m_in.density, 0.1 * m_cap);
         for (int axis = 0; axis < 3; ++axis)
             for (const Edge& edge : edgesAlong(axis, lo, hi))
@@ -355,7 +357,7 @@ private:
     }
 
     std::vector<AxisTick> ticksOf(int axis, double lo, double hi, int wanted) const {
-        if (m_in.box) return m_in.box->ticks[static_cast<std::size_t>(axis)];
+        if (m_box) return m_box->ticks[static_cast<std::size_t>(axis)];
         std::vector<AxisTick> all;
         for (const double value : axisTicks(lo, hi, wanted)) all.push_back({value, numberText(value, hi - lo)});
         return all;
@@ -397,7 +399,7 @@ private:
                     std::max(widest, std::abs(outward.x) * m_cap * textWidth(t.text) + std::abs(outward.y) * m_cap);
         }
         const std::string caption =
-            m_in.box ? m_in.box->captions[static_cast<std::size_t>(axis)]
+            m_box ? m_box->captions[static_cast<std::size_t>(axis)]
             : m_in.geometry.frame == Frame::Patient
                 ? std::string(1, patientLetter(axis, false)) + "→" + patientLetter(axis, true) + "  mm"
                 : std::string(1, "xyz"[axis]);
@@ -411,6 +413,7 @@ private:
     double m_width, m_height;
     Projected m_project;
     const double m_cap, m_margin; ///< of the MarkMaker
+    const NamedBox* m_box;        ///< null: the axes of the world
     std::vector<PixelBox> m_taken;
     std::vector<Mark> m_names; ///< of features, beside the legend
     std::vector<Mark> m_marks;
@@ -439,5 +442,9 @@ PixelBox extentOf(const Mark& mark) {
 }
 
 std::vector<Mark> annotationMarks(const AnnotationInput& input) { return Sheet(input).marks(); }
+
+std::vector<Mark> annotationMarks(const AnnotationInput& input, const NamedBox& box) {
+    return Sheet(input, &box).marks();
+}
 
 } // namespace pellucid

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,17 +43,6 @@ inline constexpr std::array<FramePartInfo, 6> kFrameParts{{{FramePart::Cube, "cu
                                                            {FramePart::Legend, "legend", &FrameOfReference::legend},
                                                            {FramePart::Title, "title", &FrameOfReference::title}}};
 
-struct AxisTick {
-    double at; ///< coordinate along its axis
-    std::string text;
-};
-/// A box whose axes are not those of the world: what they are, in words.
-struct NamedBox {
-    Vec3 lo{0, 0, 0}, hi{1, 1, 1}; ///< world units
-    std::array<std::string, 3> captions;
-    std::array<std::vector<AxisTick>, 3> ticks;
-};
-
 struct AnnotationInput {
     FrameOfReference show;
     Camera camera;
@@ -64,7 +52,6 @@ struct AnnotationInput {
     std::string title;
     RenderSettings picture; ///< size in pixels, background, mode, feature
     double density = 1;     ///< pixels in which lengths of the screen are one: no text gets smaller than 7 of them
-    std::optional<NamedBox> box = {}; ///< in place of the world's axes around the volume
 };
 
 /// One thing to draw: in pixels from the top left corner of the picture, y down.
