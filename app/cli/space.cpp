@@ -100,8 +100,8 @@ ParameterAxes axesOf(const Options& o, const TransferFunction& tf, const std::ve
 }
 
 /// All searches begin at the opacities of the transfer function, and see the same volume as the samples.
-std::vector<SpacePath> searchPaths(const Options& o, const VwsFunction& function, const Scene& scene,
-                                   const ParameterSpace& space, Progress& progress, Json& json) {
+std::vector<SpacePath> searchPaths(const Options& o, Workspace& workspace, const MeasureInput& input,
+                                   const Scene& scene, const ParameterSpace& space, Progress& progress, Json& json) {
     std::vector<SpacePath> paths;
     if (o.runs) paths = pathsOfRuns(*scene.session.runs, scene.tf, space.axes);
     json = Json::array();
@@ -111,7 +111,7 @@ std::vector<SpacePath> searchPaths(const Options& o, const VwsFunction& function
         JobControl job = progress.phase("optimizing");
         job.progress = nullptr; // how many moves it takes nobody knows
         const OptimizeResult r =
-            optimize({function, space.targets, limitsOf(scene.tf, *scene.session.goals), nullptr}, options, job);
+            workspace.optimize(input, space.targets, limitsOf(scene.tf, *scene.session.goals), options, job);
         if (r.reason == StopReason::Cancelled) throw Cancelled{};
         paths.push_back({name(method), pathColor(paths.size()), r.history, r.best});
         Json one{{"method", name(method)},
@@ -196,7 +196,10 @@ Answer run(const Options& o, Progress& progress) {
     view.shown = o.show == "F" ? kObjective : static_cast<int>(featureNamed(scene.tf, o.show, "--show"));
 
     MeasureInput input = measureInput(scene);
-    const int factor = o.reduce.value_or(reductionFor(input.volume->size(), axes));
+    const bool published = input.settings.profile == Profile::Published; // knows planes of voxels, and no lengths
+    if (published && o.reduce.value_or(1) > 1)
+        throw UsageError("the published profile has no coarser copies", "--reduce", "leave it out");
+    const int factor = o.reduce.value_or(published ? 1 : reductionFor(input.volume->size(), axes));
     const Json volume = jsonFromVolume(*input.volume);
     input = coarserInput(input, factor);
     Workspace workspace;
@@ -207,7 +210,7 @@ Answer run(const Options& o, Progress& progress) {
     const ParameterSpace space = sampleParameterSpace(function, targets, axes, progress.phase("sampling"));
     const double seconds = sampling.seconds();
     Json pathsJson;
-    view.paths = searchPaths(o, function, scene, space, progress, pathsJson);
+    view.paths = searchPaths(o, workspace, input, scene, space, progress, pathsJson);
 
     view.names = names;
     for (const Feature& f : scene.tf.features) view.colors.push_back(f.color);
@@ -247,7 +250,14 @@ Command addSpace(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "space", "Shows how VWS and distance from the targets depend on the opacities of two or three features");
     const auto o = std::make_shared<Options>();
-    o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
+    o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
+    o->scene.session.add(*app);
+    o->scene.tf.add(*app);
+    o->scene.camera.add(*app);
+    o->scene.clip.add(*app);
+    o->scene.engine.add(*app, "high: half the error, more time");
+    o->scene.saliency.add(*app);
+    o->scene.profile.add(*app);
     addValue(
         *app, "--target", "T1,T2,...",
         [o](const std::string& text, const std::string& option) { o->targets = parseReals(text, option); },

@@ -292,7 +292,10 @@ void SpacePanel::compute() {
     if (!m_bench.store().hasVolume() || m_job.isRunning() || axes().features.size() < 2) return;
     const Inputs now = inputs();
     Task task{measureInput(m_bench.scene()), targets(), now.axes, now.factor, now, m_bench.scene().tf.features};
-    if (task.factor == 0) task.factor = reductionFor(task.measured.volume->size(), task.axes);
+    if (task.measured.settings.profile == Profile::Published)
+        task.factor = 1; // it knows planes of voxels, and no lengths
+    else if (task.factor == 0)
+        task.factor = reductionFor(task.measured.volume->size(), task.axes);
     m_progress->setValue(0);
     m_job.start(std::move(task), tr("the parameter space"));
 }
