@@ -503,9 +503,9 @@ std::vector<Mark> spaceMarks(const ParameterSpace& space, const SpaceView& view)
     } else {
         FrameOfReference show = FrameOfReference::none();
         show.axes = show.legend = true;
-        marks =
-            annotationMarks({show, view.camera, space.geometry(), spaceTf(space, view), shownRange(space, view.shown),
-                             "", spaceRenderSettings(space, view), view.density, namedBox(space, view)});
+        marks = annotationMarks({show, view.camera, space.geometry(), spaceTf(space, view),
+                                 shownRange(space, view.shown), "", spaceRenderSettings(space, view), view.density},
+                                namedBox(space, view));
     }
     addPaths(marks, space, view);
     if (const auto least = pixelOf(space, view, space.positionOfSample(space.best)))
