@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "command_line.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "parse.h"
@@ -196,6 +197,7 @@ int runCommand(const Command& command, const CommonOptions& common) {
 }
 
 int run(const std::vector<std::string>& arguments) {
+    keepCommandLine(arguments);
     CLI::App program("Pellucid on the command line: measures and shapes what a volume rendering shows.", kProgram);
     program.set_version_flag("--version", std::string(kProgram) + " " + PELLUCID_VERSION, "print the version");
     program.require_subcommand(1);

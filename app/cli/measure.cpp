@@ -100,8 +100,10 @@ Answer run(const Options& o, Progress& progress) {
     }
     if (o.occlusion) matrices.occlusion = workspace.occlusion(input, progress.phase("occlusion"));
     seconds.total = total.seconds();
-    return {textOf(input.tf, m, matrices, engine, seconds),
-            jsonOf(*input.volume, input.tf, m, matrices, engine, seconds),
+    Json json = jsonOf(*input.volume, input.tf, m, matrices, engine, seconds);
+    addProfile(json, input.settings);
+    return {textOf(input.tf, m, matrices, engine + profileText(input.settings), seconds),
+            std::move(json),
             opened.notices(),
             {}};
 }

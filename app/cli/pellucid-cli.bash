@@ -23,6 +23,8 @@ _pellucid_cli() {
     case $previous in
         --engine) choices="auto gl cpu slices reference" ;;
         --quality) choices="normal high" ;;
+        --profile) choices="default published" ;;
+        --along) choices="top bottom front back left right" ;;
         --kernel) choices="thesis narrow" ;;
         --method)
             choices="fixed line parallel"

@@ -34,14 +34,25 @@ Json jsonFromRefinement(const TransferFunction& before, const RefineResult& r, R
 }
 
 Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& options) {
-    Json j{{"command", "optimize"},        {"method", name(options.method)},
-           {"direction", "gradient"},      {"converged", r.converged()},
-           {"stopped", name(r.reason)},    {"iterations", r.iterations()},
-           {"evaluations", r.evaluations}, {"target", r.targets},
-           {"objective", Json::array()},   {"vws", Json::array()},
-           {"opacity", Json::array()},     {"tf", Json(jsonFromTf(r.tf))}};
+    Json j{{"command", "optimize"},
+           {"method", name(options.method)},
+           {"direction", name(options.direction)},
+           {"converged", r.converged()},
+           {"stopped", name(r.reason)},
+           {"iterations", r.iterations()},
+           {"coarse_iterations", r.coarseIterations()},
+           {"evaluations", r.evaluations},
+           {"spread_starts", r.spreadStarts},
+           {"best", r.best},
+           {"target", r.targets},
+           {"objective", Json::array()},
+           {"level", Json::array()},
+           {"vws", Json::array()},
+           {"opacity", Json::array()},
+           {"tf", Json(jsonFromTf(r.tf))}};
     for (const OptimizeState& state : r.history) {
         j["objective"].push_back(state.objective);
+        j["level"].push_back(state.level);
         j["vws"].push_back(state.vws);
         j["opacity"].push_back(state.opacity);
     }

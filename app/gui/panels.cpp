@@ -7,6 +7,7 @@
     PANEL(featuresPanel) \
     PANEL(refinePanel) \
     PANEL(influencePanel) \
+    PANEL(convergencePanel) \
     PANEL(displayPanel) \
     PANEL(lightPanel) \
     PANEL(clipPanel) \

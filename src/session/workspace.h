@@ -45,6 +45,7 @@ private:
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
     Quality m_quality = Quality::Normal;
+    Profile m_engineProfile = Profile::Default, m_weightsProfile = Profile::Default;
     std::unique_ptr<VisibilityEngine> m_engine;
     TransferFunction m_weightsTf; // its colorsOf()
     SaliencyOptions m_weightsOptions;
