@@ -245,3 +245,21 @@ TEST_CASE("of views that reach the targets the one with the most to see comes fi
     }
     CHECK(std::any_of(all.begin(), all.end(), [&](const ReachableView& v) { return v.camera == hidden; }));
 }
+
+TEST_CASE("targets are reached by turning the view where opacities alone cannot", "[views]") {
+    // Straight onto the plate nothing is seen of the box while the plate keeps its opacity: W = (1, 0), and F = 0.2 for
+    // the targets (0.8, 0.2), of which only 1e-3 of the light leaks. From its free side the box has what it needs.
+    const Subject s = boxBehindPlate();
+    const Camera hidden = lookingFrom(s.home(), s.volume->geometry(), {-1, 0, 0});
+    const ViewMetric metric{ViewMetric::Figure::Objective, {0.8, 0.2}, 0};
+    const ViewSearch search = searchViews(s.level(), s.from(hidden), metric, 64);
+    const std::vector<OpacityLimits> limits{{0, 1, true}, {}};
+    const std::vector<ReachableView> all = reachableViews(s.level(), s.from(hidden), search, limits, {});
+    CHECK(all.front().objective < 0.03);
+    CHECK(all.front().opacity[0] == Approx(0.9));
+    CHECK((-all.front().camera.forward()).x > -0.5);
+    const auto present =
+        std::find_if(all.begin(), all.end(), [&](const ReachableView& v) { return v.camera == hidden; });
+    REQUIRE(present != all.end());
+    CHECK(present->objective == Approx(0.2).margin(0.01));
+}
