@@ -164,6 +164,12 @@ Answer run(const Options& o, Progress& progress) {
     std::string text = textOf(result, engine + profileText(input.settings), seconds);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
     addProfile(json, input.settings);
+    if (result.history[result.best].objective >= options.tolerance) {
+        const Verdict verdict =
+            workspace.explain(input, targets, limits, options, result, progress.phase("explaining"));
+        for (const std::string& sentence : verdict.sentences) text += sentence + "\n";
+        json["verdict"] = jsonFromVerdict(verdict, scene.tf);
+    }
     if (o.scene.camera.best) {
         const ViewAngles angles = viewAngles(input.view.camera, input.volume->geometry());
         text += "view " + fixedText(angles.azimuth, 1) + "," + fixedText(angles.elevation, 1) + " degrees\n";

@@ -8,6 +8,7 @@
 #include "optimize/coarser.h"
 #include "optimize/measure.h"
 #include "optimize/occlusion.h"
+#include "optimize/verdict.h"
 #include "session/scene.h"
 
 namespace pellucid {
@@ -32,6 +33,11 @@ public:
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                             const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
 
+    /// Why the answer of optimize() of this input is not on target, and what would help. Throws as measure() does.
+    Verdict explain(const MeasureInput& input, const std::vector<double>& targets,
+                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                    const OptimizeResult& found, const JobControl& job = {});
+
     VisibilityEngine& engine(const MeasureInput& input);
     /// The fields depend on colours and features alone, so that they outlive changes of opacity.
     const WeightFields& weights(const MeasureInput& input, const JobControl& job = {});
@@ -41,6 +47,7 @@ public:
     const Seconds& seconds() const { return m_seconds; } ///< of the latest computation
 
 private:
+    friend class WorkspaceTools;
     bool haveWeights(const MeasureInput& input) const;
     /// Of the volume that engine() and weights() are of now.
     const CoarserVolumes& coarser(const MeasureInput& input, const JobControl& job);
