@@ -16,6 +16,8 @@ constexpr double kOff = 0.02;      // F after a step that is too long
 constexpr int kMostSteps = 40;     // to each end
 constexpr double kFaintest = 0.1;  // of the largest coverage
 constexpr double kFreedom = 0.1;   // of a direction that must be left for the curve to go on
+constexpr double kPast = 0.95;     // of the largest coverage: it was the largest
+constexpr int kStill = 4;          // steps in a row without growth
 constexpr double kGrowth = 1e-3;   // of coverage per factor e of τ, below which it grows no longer
 constexpr double kSpacing = 0.35;  // of the curve's points
 constexpr double kHeld = 3e-4;     // F at which shares count as held
@@ -53,7 +55,7 @@ public:
 
     /// Both ways from the start, coverage ascending. `least`: of coverage, as a part of the largest.
     std::vector<Place> trace(double least) {
-        Place start{m_depths.start(), {}, 0};
+        Place start{m_depths.start(), {}, 0}; // later the strongest of a way
         start.coverage = coverageAt(start.y);
         if (m_depths.count() == 0 || m_problem.rays.rays() == 0) return {start};
         const VwsFunction::Linear linear = at(start.y);
@@ -64,17 +66,37 @@ public:
             for (double& x : v) x /= largestOf(v);
             up = v;
         }
-        if (coverageAt(plus(start.y, 0.1, up)) < start.coverage)
+        if (const auto c = coveragesAt({plus(start.y, 0.1, up), plus(start.y, -0.1, up)}); c[0] < c[1])
             for (double& x : up) x = -x;
-        std::vector<Place> stronger = follow(start, up, 2);
-        const auto strongest = std::max_element(stronger.begin(), stronger.end(), weaker);
-        if (strongest != stronger.end()) stronger.erase(strongest + 1, stronger.end());
-        const double most = stronger.empty() ? start.coverage : std::max(start.coverage, stronger.back().coverage);
-        for (double& x : up) x = -x;
-        std::vector<Place> path = follow(start, up, least * most);
-        std::reverse(path.begin(), path.end());
+        Numbers down = up;
+        for (double& x : down) x = -x;
+        std::vector<Place> stronger = follow(start, up, kPast), fainter;
+        const auto most = [&] {
+            const auto at = std::max_element(stronger.begin(), stronger.end(), weaker);
+            return at == stronger.end() ? start.coverage : std::max(start.coverage, at->coverage);
+        };
+        if (least < 1) {
+            fainter = follow(start, down, least);
+            // Beyond the largest coverage a curve may go on, denser and fainter: what hides others grows. Where the
+            // start lies there the long way down is on the other side.
+            const double end = fainter.empty() ? start.coverage : fainter.back().coverage;
+            if (end > 2 * least * most() && !stronger.empty() && stronger.back().coverage < most())
+                if (std::vector<Place> other = follow(start, up, least);
+                    !other.empty() && other.back().coverage < end) {
+                    fainter = std::move(other);
+                    stronger.clear();
+                    const auto top = std::max_element(fainter.begin(), fainter.end(), weaker);
+                    if (top->coverage > start.coverage) {
+                        start = *top;
+                        fainter.erase(fainter.begin(), top + 1);
+                    }
+                }
+        }
+        std::vector<Place> path(fainter.rbegin(), fainter.rend());
         path.push_back(start);
-        path.insert(path.end(), stronger.begin(), stronger.end());
+        const auto strongest = std::max_element(stronger.begin(), stronger.end(), weaker);
+        if (strongest != stronger.end() && strongest->coverage > start.coverage)
+            path.insert(path.end(), stronger.begin(), strongest + 1);
         return ascending(std::move(path), start.coverage);
     }
 
@@ -115,11 +137,12 @@ private:
         return plus(direction, 1, leastSquaresStep(place.derivative, change, lowest, highest, kRidge));
     }
 
-    std::vector<Place> follow(const Place& start, Numbers direction, double target) {
+    /// Ends where a bound leaves no way on, or the coverage is `past` of the largest; upwards also where it stays.
+    std::vector<Place> follow(const Place& start, Numbers direction, double past) {
         std::vector<Place> path;
         Place place = start;
         double step = kFirstStep, best = start.coverage;
-        const bool stronger = target > 1;
+        int still = 0;
         for (int n = 0; n < kMostSteps; ++n) {
             Numbers v = onCurve(place, direction, true);
             const double length = largestOf(v);
@@ -147,8 +170,8 @@ private:
             direction = v;
             path.push_back(std::move(next));
             best = std::max(best, place.coverage);
-            if (stronger && (place.coverage < 0.95 * best || (gain < kGrowth * reach && reach > kShortest))) break;
-            if (!stronger && place.coverage <= target) break;
+            still = std::abs(gain) < kGrowth * reach ? still + 1 : 0;
+            if ((past >= kPast && still == kStill) || place.coverage <= past * best) break;
             if (off < kOff / 8) step = std::min(kLongest, 1.5 * step);
         }
         return path;
@@ -223,17 +246,18 @@ public:
         : m_problem(problem), m_tracer(tracer), m_depths(tracer.depths()), m_shares(shares), m_job(job) {}
 
     struct Found {
-        Numbers y, vws;
+        Numbers y;
+        std::vector<double> opacity, vws;
         double objective = 1e9;
         double miss = 0; ///< |ln| of coverage over the wanted one
     };
     std::vector<OptimizeState> history;
     int evaluations = 0;
 
-    Found evaluated(const Numbers& y) {
+    Found evaluated(const std::vector<double>& x) {
         m_job.throwIfStopped();
-        const std::vector<double> x = m_depths.opacity(y);
-        Found found{y, m_problem.full.evaluate(std::vector<std::vector<double>>{x}, {m_job.stop, {}})[0], 0, 0};
+        Found found{m_depths.from(x), x,
+                    m_problem.full.evaluate(std::vector<std::vector<double>>{x}, {m_job.stop, {}})[0], 0, 0};
         ++evaluations;
         found.objective = objectiveOf(found.vws, m_shares);
         history.push_back({0, found.vws, x, 0});
@@ -245,7 +269,7 @@ public:
         Rows derivative = place.derivative;
         std::vector<char> held(place.y.size(), 0);
         for (std::size_t i = 0; i < held.size(); ++i) held[i] = hold && m_depths.isHighest(place.y, i);
-        Found best, at = evaluated(m_depths.clamped(place.y));
+        Found best, at = evaluated(m_depths.opacity(m_depths.clamped(place.y)));
         for (int n = 0;; ++n) {
             Rows rows = derivative;
             Numbers residual = differences(at.vws, m_shares);
@@ -261,7 +285,7 @@ public:
             double square = 0;
             for (const double v : d) square += v * v;
             if (square < 1e-16) break;
-            Found next = evaluated(m_depths.clamped(plus(at.y, 1, d)));
+            Found next = evaluated(m_depths.opacity(m_depths.clamped(plus(at.y, 1, d))));
             for (std::size_t r = 0; r < derivative.size(); ++r) {
                 double predicted = 0;
                 for (std::size_t i = 0; i < d.size(); ++i) predicted += derivative[r][i] * d[i];
@@ -343,7 +367,7 @@ DensityCurve densityCurve(const DensityProblem& problem, const std::vector<doubl
                 candidates.push_back(depths.opacity(places[p].y));
             }
         if (open.empty()) break;
-        if (curve.shares.empty()) candidates.push_back(depths.opacity(depths.start()));
+        if (curve.shares.empty()) candidates.push_back(start);
         const auto found = problem.full.evaluate(candidates, {job.stop, {}});
         curve.evaluations += static_cast<int>(candidates.size());
         if (curve.shares.empty()) curve.shares = found.back();
@@ -394,14 +418,14 @@ DensityAnswer atDensity(const DensityProblem& problem, const std::vector<double>
 
     std::vector<double> shares = targets;
     Corrector corrector(problem, tracer, shares, job);
-    const Corrector::Found first = corrector.evaluated(depths.start());
+    // Of the start itself: one that is more opaque than LogDepths goes differs from depths.start().
+    Corrector::Found found = corrector.evaluated(start);
     double allowed = 0.001;
-    if (first.objective >= allowed) { // out of reach: its own shares are the closest
-        shares = first.vws;
+    if (found.objective >= allowed) { // out of reach: its own shares are the closest
+        shares = found.vws;
+        found.objective = 0;
         allowed = 0.0005;
     }
-    Corrector::Found found = first;
-    found.objective = objectiveOf(first.vws, shares);
     const double from =
         coverage ? std::clamp(*coverage, path.front().coverage, path.back().coverage) : path.back().coverage;
     const double own = tracer.coverageAt(depths.start());
@@ -421,7 +445,7 @@ DensityAnswer atDensity(const DensityProblem& problem, const std::vector<double>
         }
     }
 
-    answer.point = {depths.opacity(found.y), found.vws, objectiveOf(found.vws, targets), {}};
+    answer.point = {found.opacity, found.vws, objectiveOf(found.vws, targets), {}};
     answer.point.coverage = coverageOf(problem.rays, withFeatureOpacities(problem.full.base(), answer.point.opacity));
     if (!coverage) answer.strongestCoverage = answer.point.coverage.coverage;
     answer.strongestCoverage = std::max(answer.strongestCoverage, answer.point.coverage.coverage);

@@ -46,10 +46,10 @@ LogDepths::LogDepths(const std::vector<OpacityLimits>& limits, const std::vector
         m_opacity[f] = std::clamp(start[f], limit.lowest, limit.highest);
         if (m_opacity[f] <= 0 || limit.lowest == limit.highest) continue;
         m_features.push_back(f);
-        const double y = logDepthOf(m_opacity[f]);
-        m_start.push_back(y);
-        m_lowest.push_back(std::min(y, logDepthOf(std::max(limit.lowest, kLeastOpacity))));
-        m_highest.push_back(std::max(y, logDepthOf(std::min(limit.highest, kMostOpacity))));
+        const double least = std::max(limit.lowest, std::min(kLeastOpacity, m_opacity[f]));
+        m_lowest.push_back(logDepthOf(std::min(least, kMostOpacity)));
+        m_highest.push_back(logDepthOf(std::max(least, std::min(limit.highest, kMostOpacity))));
+        m_start.push_back(std::clamp(logDepthOf(m_opacity[f]), m_lowest.back(), m_highest.back()));
     }
 }
 
