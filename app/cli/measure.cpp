@@ -35,14 +35,16 @@ std::string textOf(const TransferFunction& tf, const Matrix& jacobian) {
 
 std::string textOf(const TransferFunction& tf, const Measures& m, const std::optional<Matrix>& jacobian,
                    const std::string& engine, const Seconds& seconds) {
-    Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation"});
+    Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation", "cover"});
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];
         table.add({tf.features[i].name, fixedText(tf.features[i].a, 3) + " .. " + fixedText(tf.features[i].b, 3),
                    fixedText(m.opacities[i], 4), fixedText(f.visibility, 4), fixedText(f.vws, 4),
-                   fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4)});
+                   fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4), fixedText(m.coverage->covers[i], 4)});
     }
-    const std::string features = tf.features.empty() ? "the transfer function has no features\n" : table.text();
+    const std::string features = tf.features.empty()
+                                     ? "the transfer function has no features\n"
+                                     : table.text() + "coverage " + fixedText(m.coverage->coverage, 4) + "\n";
     const std::string derivatives = jacobian && !jacobian->empty() ? textOf(tf, *jacobian) : "";
     return features + derivatives + "engine " + engine + ": visibility " + secondsText(seconds.visibility) +
            ", saliency " + secondsText(seconds.saliency) +
@@ -61,12 +63,14 @@ Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m,
                             {"visibility", f.visibility},
                             {"vws", f.vws},
                             {"vws_brightness", f.vwsBrightness},
-                            {"vws_saturation", f.vwsSaturation}});
+                            {"vws_saturation", f.vwsSaturation},
+                            {"cover", m.coverage->covers[i]}});
     }
     Json json{{"command", "measure"},
               {"engine", engine},
               {"volume", jsonFromVolume(volume)},
               {"features", features},
+              {"coverage", m.coverage->coverage},
               {"visibility_histogram", m.visibilityHistogram}};
     if (jacobian) json["jacobian"] = *jacobian;
     Json& times = json["seconds"] = {{"visibility", seconds.visibility}, {"saliency", seconds.saliency}};

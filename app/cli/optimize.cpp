@@ -1,5 +1,6 @@
 // `optimize`: the opacities that give each feature its share of attention.
 #include "commands.h"
+#include "optimize/visibility_words.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -13,11 +14,11 @@ namespace pellucid::cli {
 
 namespace {
 
-/// --method, --normalize, --step, --tolerance, --max-iterations: what is not given is as in the session.
+/// --method, --normalize, --step, --tolerance, --max-iterations, --coverage: what is not given is as in the session.
 struct SearchOptions {
     std::optional<SearchMethod> method;
     bool normalize = false;
-    std::optional<double> step, tolerance;
+    std::optional<double> step, tolerance, coverage;
     std::optional<int> maxIterations;
 
     void add(CLI::App& app);
@@ -27,6 +28,7 @@ struct SearchOptions {
         options.step = step.value_or(options.step);
         options.tolerance = tolerance.value_or(options.tolerance);
         options.maxIterations = maxIterations.value_or(options.maxIterations);
+        if (coverage) options.coverage = coverage;
         return options;
     }
 };
@@ -56,23 +58,32 @@ std::vector<double> parseTargets(const std::string& text, const std::string& opt
     return targets;
 }
 
+/// "on target" and invisible do not stand together without this.
+std::string faintLine(const OptimizeResult& r) {
+    if (!r.seen->faint) return "";
+    return (r.converged() ? "on target, but faint: " : "faint: ") + faintText(r) + "\n";
+}
+
 std::string textOf(const OptimizeResult& r, const std::string& engine, const Seconds& seconds) {
-    Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after"});
+    Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after", "cover"});
     const OptimizeState& start = r.history.front();
     const OptimizeState& best = r.history[r.best];
     for (std::size_t i = 0; i < r.targets.size(); ++i)
         table.add({r.tf.features[i].name, fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
-                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4)});
-    return table.text() + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
-           name(r.reason) + " after " + std::to_string(r.iterations()) + " iterations, " +
-           std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
-           secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) + ", total " +
-           secondsText(seconds.total) + "\n";
+                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
+                   fixedText(r.seen->coverage.covers[i], 4)});
+    return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + ", at most " +
+           fixedText(r.seen->strongest, 4) + " with these shares\n" + faintLine(r) + "objective " +
+           plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
+           std::to_string(r.iterations()) + " iterations, " + std::to_string(r.evaluations) + " evaluations\nengine " +
+           engine + ": search " + secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) +
+           ", total " + secondsText(seconds.total) + "\n";
 }
 
 Json jsonOf(const OptimizeResult& r, const OptimizeOptions& options, const Volume& volume, const std::string& engine,
             const Seconds& seconds) {
     Json json = jsonFromOptimization(r, options);
+    addSeen(json, r);
     json["engine"] = engine;
     json["volume"] = jsonFromVolume(volume);
     json["seconds"] = {{"saliency", seconds.saliency}, {"search", seconds.search}, {"total", seconds.total}};
@@ -139,6 +150,10 @@ void SearchOptions::add(CLI::App& app) {
         app, "--tolerance", "F",
         [this](const std::string& text, const std::string& option) { tolerance = parseRealAbove(text, option, 0, 1); },
         "converged below this distance from the targets (default 0.03)");
+    addValue(
+        app, "--coverage", "C",
+        [this](const std::string& text, const std::string& option) { coverage = parseRealAbove(text, option, 0, 1); },
+        "mean alpha of the picture, moved to at equal shares (default with newton: as strong as they allow)");
     addValue(
         app, "--max-iterations", "N",
         [this](const std::string& text, const std::string& option) {

@@ -12,5 +12,7 @@ namespace pellucid::cli {
 Json jsonFromRefinement(const TransferFunction& before, const RefineResult& result, RefineMethod method,
                         const RefineComparison& comparison, Json priority);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
+/// How strong the picture is: "coverage", "covers", "strongest_coverage", and "faint" where its shares cannot be seen.
+void addSeen(Json& json, const OptimizeResult& result);
 
 } // namespace pellucid::cli

@@ -346,6 +346,30 @@ std::vector<double> DensityCurve::at(double coverage) const {
     return strongest().opacity;
 }
 
+DensityCurve::Nearest DensityCurve::nearest(const std::vector<double>& opacity) const {
+    const LogDepths depths({}, points.front().opacity);
+    const Numbers y = depths.from(opacity);
+    Nearest best{faintest().coverage.coverage, 1e9};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const DensityPoint &a = points[i == 0 ? 0 : i - 1], &b = points[i];
+        const Numbers from = depths.from(a.opacity), way = plus(depths.from(b.opacity), -1, from);
+        const Numbers offset = plus(y, -1, from);
+        double along = 0, square = 0;
+        for (std::size_t k = 0; k < y.size(); ++k) {
+            along += offset[k] * way[k];
+            square += way[k] * way[k];
+        }
+        const double t = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0;
+        const double distance = largestOf(plus(offset, -t, way));
+        if (distance < best.distance)
+            best = {a.coverage.coverage * std::pow(b.coverage.coverage / a.coverage.coverage, t), distance};
+    }
+    // What has no place in ln τ is on the curve or it is not.
+    for (std::size_t f = 0; f < opacity.size(); ++f)
+        if ((opacity[f] <= 0) != (points.front().opacity[f] <= 0)) best.distance = 1e9;
+    return best;
+}
+
 DensityCurve densityCurve(const DensityProblem& problem, const std::vector<double>& start,
                           const std::vector<double>& shares, const JobControl& job) {
     Tracer tracer(problem, start, job);

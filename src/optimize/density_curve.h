@@ -30,6 +30,12 @@ struct DensityCurve {
     bool isPoint() const { return points.size() == 1; }
     /// Opacities of a coverage, between points linear in ln τ; those of the nearer end beyond.
     std::vector<double> at(double coverage) const;
+    struct Nearest {
+        double coverage = 0;
+        double distance = 0; ///< largest of the features, in ln τ
+    };
+    /// The place on the curve that is nearest to these opacities, as at() has it.
+    Nearest nearest(const std::vector<double>& opacity) const;
 };
 
 /// What the curve is followed through. Keeps references.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "optimize/coverage.h"
 #include "optimize/objective.h"
 
 namespace pellucid {
@@ -75,6 +76,7 @@ struct OptimizeResult {
     std::size_t best = 0;               ///< index into history of `tf`
     int evaluations = 0;                ///< of W
     StopReason reason = StopReason::MaxIterations;
+    std::optional<Seen> seen = {}; ///< of `tf`: of those who ask for it (visible_answer.h)
 
     int iterations() const { return history.empty() ? 0 : static_cast<int>(history.size()) - 1; }
     bool converged() const { return reason == StopReason::Converged; }

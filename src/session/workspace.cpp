@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "engines/engines.h"
+#include "optimize/visible_answer.h"
 #include "render/memory_needs.h"
 
 namespace pellucid {
@@ -57,6 +58,18 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
     return m_weights;
 }
 
+const RayBundle& Workspace::rays(const MeasureInput& input, const JobControl& job) {
+    TransferFunction shapes = withFullPeaks(input.tf);
+    if (!m_rays || m_raysVolume != input.volume || !(m_raysView == input.view) || !(m_raysTf == shapes)) {
+        m_rays.reset();
+        m_rays.emplace(*input.volume, input.tf, input.view, kCoverageRays, job);
+        m_raysVolume = input.volume;
+        m_raysView = input.view;
+        m_raysTf = std::move(shapes);
+    }
+    return *m_rays;
+}
+
 namespace {
 
 /// Runs `work(engine)`. An engine that failed is not trusted again: `release` lets go of it.
@@ -80,8 +93,9 @@ Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
             VisibilityEngine& e = engine(input);
             const bool all = !haveWeights(input); // half of the work, or none
             const WeightFields& w = weights(input, all ? job.part(0, 2) : job);
-            const Measures measures =
+            Measures measures =
                 pellucid::measure(e, input.view, input.tf, w, input.settings.vws, all ? job.part(1, 2) : job);
+            measures.coverage = coverageOf(rays(input, {job.stop, {}}), input.tf);
             m_seconds.visibility = measures.visibilitySeconds;
             return measures;
         },
@@ -113,8 +127,23 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             const auto start = Clock::now();
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
             OptimizeResult result = pellucid::optimize({function, targets, limits}, options, job, watch);
+            makeVisible(result, {function, nullptr, rays(input, {job.stop, {}}), limits}, options, {job.stop, {}},
+                        watch);
             m_seconds.visibility = secondsSince(start);
             return result;
+        },
+        [this] { releaseEngine(); });
+}
+
+DensityCurve Workspace::densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
+                                     const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, {job.stop, {}});
+            const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
+            return pellucid::densityCurve({function, nullptr, rays(input, {job.stop, {}}), limits},
+                                          featureOpacities(input.tf), {}, job);
         },
         [this] { releaseEngine(); });
 }

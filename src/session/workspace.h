@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "optimize/density_curve.h"
 #include "optimize/measure.h"
 #include "session/scene.h"
 
@@ -23,14 +25,20 @@ public:
     Measures measure(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
-    /// `limits`: one per feature, or empty.
+    /// `limits`: one per feature, or empty. The answer is made visible, see makeVisible().
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                             const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
 
+    /// Through the opacities of the input's transfer function, with the shares that it has.
+    DensityCurve densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
+                              const JobControl& job = {});
+
     VisibilityEngine& engine(const MeasureInput& input);
     /// The fields depend on colours and features alone, so that they outlive changes of opacity.
     const WeightFields& weights(const MeasureInput& input, const JobControl& job = {});
+    /// What coverage is computed from. Kept until volume, view or features are others.
+    const RayBundle& rays(const MeasureInput& input, const JobControl& job = {});
     /// Its memory, and that of the volume it was made for, is wanted for something else.
     void releaseEngine();
 
@@ -46,6 +54,10 @@ private:
     TransferFunction m_weightsTf; // its colorsOf()
     SaliencyOptions m_weightsOptions;
     WeightFields m_weights;
+    std::shared_ptr<const Volume> m_raysVolume;
+    View m_raysView;
+    TransferFunction m_raysTf; // with peaks at 1
+    std::optional<RayBundle> m_rays;
     Seconds m_seconds;
 };
 

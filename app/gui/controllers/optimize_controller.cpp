@@ -1,5 +1,6 @@
 #include "controllers/optimize_controller.h"
 
+#include "optimize/visibility_words.h"
 #include "tf/shown_tf.h"
 #include "workbench.h"
 
@@ -138,6 +139,10 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
         say(tr("The view or the targets have changed since it began; where it began: %1.").arg(figures));
         return;
     }
+    if (const std::string faint = faintText(result); !faint.empty()) // not without what makes it visible
+        return say(tr("%1: %2 (%3)")
+                       .arg(result.converged() ? tr("On target, but faint") : tr("Faint"),
+                            QString::fromStdString(faint), figures));
     switch (result.reason) {
     case StopReason::Converged:
         return say(tr("On target: %1.").arg(figures));
