@@ -4,6 +4,8 @@
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
 #include "output.h"
+#include "render/camera.h"
+#include "render/camera.h"
 
 namespace pellucid::cli {
 
@@ -14,5 +16,8 @@ Json jsonFromRefinement(const TransferFunction& before, const RefineResult& resu
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
 /// How strong the picture is: "coverage", "covers", "strongest_coverage", and "faint" where its shares cannot be seen.
 void addSeen(Json& json, const OptimizeResult& result);
+
+/// {"view":{"azimuth","elevation"},"camera":{…}}: where an eye is, in degrees, and all of the camera.
+Json jsonFromView(const Camera& camera, const Geometry& geometry);
 
 } // namespace pellucid::cli

@@ -7,10 +7,12 @@
     PANEL(featuresPanel) \
     PANEL(refinePanel) \
     PANEL(influencePanel) \
+    PANEL(convergencePanel) \
     PANEL(displayPanel) \
     PANEL(lightPanel) \
     PANEL(clipPanel) \
     PANEL(galleryPanel) \
+    PANEL(viewsPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 
