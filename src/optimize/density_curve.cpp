@@ -118,7 +118,7 @@ private:
         m_job.throwIfStopped();
         VwsFunction::Linear linear = m_along.jacobian(m_depths.opacity(y), {m_job.stop, {}});
         ++evaluations;
-        history.push_back({0, linear.vws, m_depths.opacity(y), m_problem.coarse ? 1 : 0});
+        history.push_back({0, linear.vws, m_depths.opacity(y), m_problem.coarse ? m_problem.coarseLevel : 0});
         m_job.report(1 - 1.0 / (1 + evaluations / 8.0));
         return linear;
     }

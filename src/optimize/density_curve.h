@@ -44,6 +44,7 @@ struct DensityProblem {
     const VwsFunction* coarse = nullptr;    ///< the same features of a coarser volume: steps are taken there
     const RayBundle& rays;                  ///< of the view
     std::vector<OpacityLimits> limits = {}; ///< one per feature; empty: none has any
+    int coarseLevel = 1;                    ///< of `coarse`, see OptimizeState::level
 };
 
 /// Both ends of the curve through `start`: up to where an opacity meets a bound and shares cannot be held any more, or

@@ -1,5 +1,6 @@
 #include "session/workspace.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "engines/engines.h"
@@ -29,6 +30,7 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
     if (m_engineVolume != input.volume || !m_engine || m_choice != settings.engine || m_quality != settings.quality ||
         m_engineProfile != settings.profile) {
         m_engine.reset();
+        m_coarser.reset();
         if (m_weightsVolume != input.volume) { // what was measured before needs no room any more
             m_weightsVolume.reset();
             m_weights = {};
@@ -46,6 +48,7 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
 
 void Workspace::releaseEngine() {
     m_engine.reset();
+    m_coarser.reset();
     m_engineVolume.reset();
 }
 
@@ -59,6 +62,7 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
     if (!haveWeights(input)) {
         const auto start = Clock::now();
         m_weightsVolume.reset();
+        m_coarserWeighted = false;
         const bool published = input.settings.profile == Profile::Published;
         if (published || m_weightsProfile != input.settings.profile) m_weights = {}; // of another form
         m_weightsProfile = input.settings.profile;
@@ -86,6 +90,22 @@ const RayBundle& Workspace::rays(const MeasureInput& input, const JobControl& jo
     return *m_rays;
 }
 
+const CoarserVolumes& Workspace::coarser(const MeasureInput& input, const JobControl& job) {
+    if (!m_coarser) {
+        const MeasureSettings& settings = input.settings;
+        m_coarser = std::make_unique<CoarserVolumes>(
+            input.volume,
+            [&](std::shared_ptr<const Volume> volume) {
+                return makeEngine(settings.engine, std::move(volume), settings.quality);
+            },
+            job);
+        m_coarserWeighted = false;
+    }
+    if (!m_coarserWeighted) m_coarser->setWeights(m_weights, job);
+    m_coarserWeighted = true;
+    return *m_coarser;
+}
+
 namespace {
 
 /// Runs `work(engine)`. An engine that failed is not trusted again: `release` lets go of it.
@@ -99,6 +119,13 @@ auto guarded(const Work& work, const Release& release) {
         release();
         throw;
     }
+}
+
+/// The curve is followed on the second copy, where there is one: each has an eighth of the voxels of the one before.
+DensityProblem densityProblem(const VwsFunction& full, const std::vector<std::unique_ptr<VwsFunction>>& coarser,
+                              const RayBundle& rays, const std::vector<OpacityLimits>& limits) {
+    const std::size_t level = std::min<std::size_t>(coarser.size(), 2);
+    return {full, level == 0 ? nullptr : coarser[level - 1].get(), rays, limits, static_cast<int>(level)};
 }
 
 } // namespace
@@ -140,6 +167,15 @@ OcclusionMatrix Workspace::occlusion(const MeasureInput& input, const JobControl
                    [this] { releaseEngine(); });
 }
 
+std::vector<std::unique_ptr<VwsFunction>>
+Workspace::coarserFunctions(const MeasureInput& input, const OptimizeOptions& options, const JobControl& job) {
+    // The published profile has one slice per voxel plane: a coarser volume is another problem.
+    if ((options.method != SearchMethod::Newton && !options.coverage) || !options.coarse ||
+        input.settings.profile != Profile::Default)
+        return {};
+    return coarser(input, job).functions(input.view, input.tf, input.settings.vws);
+}
+
 OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
                                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                                    const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
@@ -151,10 +187,14 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
-            OptimizeResult result = pellucid::optimize({function, targets, limits}, steps, job, watch);
+            const auto held = coarserFunctions(input, options, job);
+            OptimizeProblem problem{function, targets, limits};
+            for (const auto& level : held) problem.coarser.push_back(level.get());
+            OptimizeResult result = pellucid::optimize(problem, steps, job, watch);
             // That profile looks along the grid and counts moves; its answer stays as it is.
             if (steps.publishedSteps) steps.maxIterations = 0;
-            makeVisible(result, {function, nullptr, rays(input, {job.stop, {}}), limits}, steps, {job.stop, {}}, watch);
+            makeVisible(result, densityProblem(function, held, rays(input, {job.stop, {}}), limits), steps,
+                        {job.stop, {}}, watch);
             m_seconds.visibility = secondsSince(start);
             return result;
         },
@@ -168,7 +208,8 @@ DensityCurve Workspace::densityCurve(const MeasureInput& input, const std::vecto
             VisibilityEngine& e = engine(input);
             const WeightFields& w = weights(input, {job.stop, {}});
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
-            return pellucid::densityCurve({function, nullptr, rays(input, {job.stop, {}}), limits},
+            const auto held = coarserFunctions(input, OptimizeOptions{}, {job.stop, {}});
+            return pellucid::densityCurve(densityProblem(function, held, rays(input, {job.stop, {}}), limits),
                                           featureOpacities(input.tf), {}, job);
         },
         [this] { releaseEngine(); });

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "optimize/coarser.h"
 #include "optimize/density_curve.h"
 #include "optimize/measure.h"
 #include "optimize/occlusion.h"
@@ -49,6 +50,11 @@ public:
 
 private:
     bool haveWeights(const MeasureInput& input) const;
+    /// Of the volume that engine() and weights() are of now.
+    const CoarserVolumes& coarser(const MeasureInput& input, const JobControl& job);
+    /// None where the options want none; they refer to coarser().
+    std::vector<std::unique_ptr<VwsFunction>> coarserFunctions(const MeasureInput& input,
+                                                               const OptimizeOptions& options, const JobControl& job);
 
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
@@ -62,6 +68,8 @@ private:
     View m_raysView;
     TransferFunction m_raysTf; // with peaks at 1
     std::optional<RayBundle> m_rays;
+    std::unique_ptr<CoarserVolumes> m_coarser; // of m_engineVolume, by its engine's kind
+    bool m_coarserWeighted = false;            // by m_weights
     Seconds m_seconds;
 };
 
