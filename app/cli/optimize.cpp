@@ -91,7 +91,7 @@ std::vector<double> parseTargets(const std::string& text, const std::string& opt
 
 /// "on target" and invisible do not stand together without this.
 std::string faintLine(const OptimizeResult& r) {
-    if (!r.seen->faint) return "";
+    if (!r.seen->faint) return {};
     return (r.converged() ? "on target, but faint: " : "faint: ") + faintText(r) + "\n";
 }
 

@@ -62,7 +62,7 @@ _pellucid_cli() {
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
-            --image-size | --fix | --target | --tolerance | --window | --tf-strength)
+            --image-size | --fix | --target | --tolerance | --coverage | --window | --tf-strength)
             return
             ;;
     esac

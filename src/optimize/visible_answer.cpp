@@ -150,6 +150,11 @@ void makeVisible(OptimizeResult& result, const DensityProblem& problem, const Op
         if (moves) {
             DensityAnswer answer = atDensity(problem, result.targets, best.opacity, options.coverage, job);
             result.evaluations += answer.evaluations;
+            if (answer.point.objective >= options.tolerance && best.objective < options.tolerance) {
+                // What is on target stays so.
+                answer.point = {best.opacity, best.vws, best.objective, seen.coverage};
+                answer.history.push_back(best);
+            }
             for (OptimizeState& state : answer.history) {
                 result.history.push_back(std::move(state));
                 if (watch) watch(result.history.back());
@@ -164,7 +169,6 @@ void makeVisible(OptimizeResult& result, const DensityProblem& problem, const Op
         if ((options.coverage || !moves) && faintnessOf(strongest, result.targets, opacity, problem.limits) &&
             options.maxIterations > 0) {
             const DensityAnswer answer = atDensity(problem, result.targets, opacity, {}, job);
-            result.evaluations += answer.evaluations;
             strongest = answer.point.coverage;
             opacity = answer.point.opacity;
             seen.strongest = std::max(seen.strongest, strongest.coverage);

@@ -6,7 +6,8 @@
 
 #include "base/parallel.h"
 #include "optimize/density_curve.h"
-#include "optimize/log_depths.h"
+#include "optimize/visibility_words.h"
+#include "optimize/visible_answer.h"
 #include "render/camera_motion.h"
 #include "support/volumes.h"
 #include "tf/opacity.h"
@@ -183,6 +184,99 @@ TEST_CASE("an answer goes to the strong end, or to the coverage that is asked fo
     const DensityAnswer away = atDensity(problem, far, start);
     CHECK(away.point.objective == Approx(objectiveOf(targets, far)).margin(0.001));
     CHECK(away.point.coverage.coverage == Approx(strong.strongestCoverage).epsilon(0.01));
+}
+
+TEST_CASE("the nearest place on a curve is known again", "[density]") {
+    const Bench b;
+    const DensityCurve curve = densityCurve({b.function, nullptr, b.rays}, {0.02, 0.05, 0.1});
+    for (const double coverage : {0.2, 0.6, 0.9}) {
+        const DensityCurve::Nearest nearest = curve.nearest(curve.at(coverage));
+        CHECK(nearest.coverage == Approx(coverage).epsilon(1e-6));
+        CHECK(nearest.distance < 1e-9);
+    }
+    // Half as deep again in one feature: ln 1.5 in that, away from the direction in which all grow alike: the nearest
+    // place is a third of it further on, and two thirds are left.
+    std::vector<double> off = curve.at(0.4);
+    off[1] = 1 - std::pow(1 - off[1], 1.5);
+    CHECK(curve.nearest(off).distance == Approx(2.0 / 3 * std::log(1.5)).epsilon(0.03));
+}
+
+TEST_CASE("shares that force a picture to be faint are said so, with shares that do not", "[density]") {
+    // A block of 0.2, 15 voxels deep, and in it a single column of 0.8 that is one voxel deep: with g of 2000 and 1
+    // equal shares make τ of the block 1/2000 of the other's, which ends at 6.9 (0.999).
+    const auto volume = volumeFrom(geometryOf({16, 15, 16}),
+                                   [](int i, int j, int k) { return i == 7 && j == 3 && k == 7 ? 0.8 : 0.2; });
+    TransferFunction tf;
+    tf.points = {{0, 0.5, {1, 0, 0}, false, {}},
+                 {0.5, 0.5, {1, 0, 0}, false, {}},
+                 {0.5, 0.5, {0, 0, 1}, false, {}},
+                 {1, 0.5, {0, 0, 1}, false, {}}};
+    tf.features = {{"block", 0, 0.5, {1, 0, 0}, {}}, {"seed", 0.5, 1, {0, 0, 1}, {}}};
+    View view(lookingAlong(volume->geometry(), {0, 1, 0}));
+    view.camera.height = 24;
+    const RayBundle rays(*volume, tf, view, kCoverageRays);
+    const Proportional function(tf, {2000, 1});
+    const DensityProblem problem{function, nullptr, rays};
+
+    OptimizeOptions options;
+    options.method = SearchMethod::Newton;
+    OptimizeResult result = optimize({function, {1, 1}}, options);
+    REQUIRE(result.converged());
+    makeVisible(result, problem, options);
+    const OptimizeState& best = result.history[result.best];
+    CHECK(best.objective < 0.001);
+    CHECK(best.opacity[1] > 0.99);
+    REQUIRE(result.seen);
+    // 1 − e^(−15 · 6.908/2000) = 0.050, and the one column more.
+    CHECK(result.seen->coverage.coverage == Approx(0.05).margin(0.008));
+    CHECK(result.seen->strongest >= result.seen->coverage.coverage);
+    REQUIRE(result.seen->faint);
+    const Faintness& faint = *result.seen->faint;
+    CHECK(faint.picture);
+    CHECK(faint.limiting == std::vector<std::size_t>{1});
+    REQUIRE(faint.remedy);
+    // A coverage of 0.3 takes τ = 0.357/15 of the block: shares 2000·0.0238 to 6.908, 0.873 to 0.127.
+    CHECK(faint.remedy->shares[0] == Approx(0.87).margin(0.015));
+    CHECK(faint.remedy->shares[0] + faint.remedy->shares[1] == Approx(1));
+    CHECK(faint.remedy->coverage.coverage == Approx(kVisibleCoverage).epsilon(0.1));
+    // Evaluated, not guessed.
+    CHECK(function.shares(faint.remedy->opacity)[0] == Approx(faint.remedy->shares[0]).margin(0.002));
+    CHECK(coverageOf(rays, withFeatureOpacities(tf, faint.remedy->opacity)) == faint.remedy->coverage);
+    const std::string text = faintText(result);
+    CHECK_THAT(text, Catch::Contains("5.") && Catch::Contains("'seed' cannot become more opaque") &&
+                         Catch::Contains("Shares of " + percentText(faint.remedy->shares[0]) + ", " +
+                                         percentText(faint.remedy->shares[1])));
+
+    // Of a picture that has them nothing is said, nor where somebody wanted it as faint as that.
+    OptimizeResult visible = optimize({function, {99, 1}}, options);
+    makeVisible(visible, problem, options);
+    REQUIRE(visible.seen);
+    CHECK_FALSE(visible.seen->faint);
+    CHECK(faintText(visible).empty());
+    options.coverage = 0.1;
+    OptimizeResult wanted = optimize({function, {99, 1}}, options);
+    makeVisible(wanted, problem, options);
+    CHECK(wanted.seen->coverage.coverage == Approx(0.1).epsilon(0.01));
+    CHECK_FALSE(wanted.seen->faint);
+    CHECK(wanted.seen->strongest == Approx(visible.seen->strongest).epsilon(0.02));
+}
+
+TEST_CASE("shares and parts of alpha in words", "[density]") {
+    CHECK(percentText(0.123) == "12 %");
+    CHECK(percentText(0.0123) == "1.2 %");
+    CHECK(percentText(0.0996) == "10 %");
+    CHECK(percentText(0.0001) == "< 0.1 %");
+    CHECK(percentText(0) == "0 %");
+    TransferFunction tf = tents(3);
+    Faintness faint;
+    faint.picture = true;
+    faint.features = {0, 1};
+    faint.limiting = {2};
+    CHECK(
+        faintText(tf, faint, 0.065) ==
+        "the picture has 6.5 % of alpha at most, and 'f1' and 'f2' have less than 2.0 % where they are seen, because "
+        "'f3' cannot become more opaque and more of anything else would take from its share. No shares close to these "
+        "were found that would be visible.");
 }
 
 TEST_CASE("on a real view equal shares are kept over a tenth of the coverage and more", "[density]") {
