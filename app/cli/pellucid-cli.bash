@@ -66,7 +66,7 @@ _pellucid_cli() {
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
-            --image-size | --fix | --tolerance | --window | --tf-strength | \
+            --image-size | --fix | --tolerance | --coverage | --window | --tf-strength | \
             --features | --samples | --space-view)
             return
             ;;
