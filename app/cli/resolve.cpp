@@ -26,6 +26,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.engine.applyTo(inputs);
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);
+    options.field.applyTo(inputs);
     const bool reference = work.byEngine && inputs.session.measure->engine == EngineChoice::Reference;
     inputs.then = reference ? byReference(work.use) : work.use;
     if (!work.needsTf) inputs.start = SceneInputs::Start::Tents;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "optimize/fields.h"
 #include "optimize/measure.h"
 #include "session/scene.h"
 
@@ -23,6 +24,9 @@ public:
     Measures measure(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
+    /// What every voxel contributes, of one kind; where `feature` of the input's transfer function is not −1, of its voxels
+    /// alone, 0 elsewhere. Saliency needs no engine. Throws as measure() does.
+    Field field(const MeasureInput& input, FieldKind kind, int feature = -1, const JobControl& job = {});
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
                             const OptimizeOptions& options, const JobControl& job = {},
                             const std::function<void(const OptimizeState&)>& watch = {});
