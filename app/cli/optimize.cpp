@@ -105,9 +105,10 @@ Answer run(const Options& o, Progress& progress) {
     JobControl job = progress.phase("optimizing");
     job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
     int moves = -1;
-    OptimizeResult result = workspace.optimize(input, targets, options, job, [&](const OptimizeState& state) {
-        progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
-    });
+    OptimizeResult result = workspace.optimize(
+        input, targets, limitsOf(scene.tf, *scene.session.goals), options, job, [&](const OptimizeState& state) {
+            progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
+        });
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};

@@ -31,18 +31,23 @@ double objectiveOf(std::span<const double> vws, std::span<const double> targets)
     return std::sqrt(sum / static_cast<double>(vws.size()));
 }
 
-VwsFunction::VwsFunction(VisibilityEngine& engine, const View& view, const TransferFunction& base,
-                         const WeightFields& weights, const VwsOptions& options)
+EngineVws::EngineVws(VisibilityEngine& engine, const View& view, const TransferFunction& base,
+                     const WeightFields& weights, const VwsOptions& options)
     : m_engine(engine), m_view(view), m_base(base), m_weights(weights), m_options(options) {}
 
-std::vector<std::vector<double>> VwsFunction::evaluate(std::span<const std::vector<double>> candidates,
-                                                       const JobControl& job) const {
+std::vector<std::vector<double>> EngineVws::evaluate(std::span<const std::vector<double>> candidates,
+                                                     const JobControl& job) const {
     std::vector<TransferFunction> tfs;
     tfs.reserve(candidates.size());
     for (const auto& x : candidates) tfs.push_back(withFeatureOpacities(m_base, x));
     std::vector<std::vector<double>> all;
     for (const FeatureSums& sums : m_engine.sums(m_view, tfs, &m_weights, job)) all.push_back(vwsOf(sums, m_options));
     return all;
+}
+
+VwsFunction::Linear EngineVws::jacobian(const std::vector<double>& x, const JobControl& job) const {
+    const SumsJacobian jacobian = m_engine.jacobian(m_view, withFeatureOpacities(m_base, x), &m_weights, job);
+    return {vwsOf(jacobian.sums, m_options), vwsJacobian(jacobian, m_options)};
 }
 
 } // namespace pellucid

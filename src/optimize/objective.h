@@ -15,18 +15,35 @@ std::vector<double> normalizedTargets(std::vector<double> targets, std::size_t f
 /// F = sqrt(Σ (W − t)² / n).
 double objectiveOf(std::span<const double> vws, std::span<const double> targets);
 
-/// VWS as a function of the features' peak opacities, of one view. Keeps references: engine and weights outlive it.
+/// VWS as a function of the features' peak opacities, of one view.
 class VwsFunction {
 public:
-    /// `base` gives the shapes that the opacities scale.
-    VwsFunction(VisibilityEngine& engine, const View& view, const TransferFunction& base,
-                const WeightFields& weights, const VwsOptions& options = {});
+    virtual ~VwsFunction() = default;
 
-    std::size_t featureCount() const { return m_base.features.size(); }
-    const TransferFunction& base() const { return m_base; }
-    /// W of each candidate (each of featureCount() opacities in [0,1]), all in one engine call.
+    std::size_t featureCount() const { return base().features.size(); }
+    /// Gives the shapes that the opacities scale.
+    virtual const TransferFunction& base() const = 0;
+    /// W of each candidate (each of featureCount() opacities in [0,1]), all in one engine call. Throws as engines do.
+    virtual std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> candidates,
+                                                      const JobControl& job = {}) const = 0;
+    struct Linear {
+        std::vector<double> vws;                     ///< W_i
+        std::vector<std::vector<double>> derivative; ///< [i][j]: ∂W_i/∂x_j
+    };
+    /// W at x and its exact derivatives, in one sweep.
+    virtual Linear jacobian(const std::vector<double>& x, const JobControl& job = {}) const = 0;
+};
+
+/// As an engine tells it. Keeps references: engine and weights outlive it.
+class EngineVws final : public VwsFunction {
+public:
+    EngineVws(VisibilityEngine& engine, const View& view, const TransferFunction& base, const WeightFields& weights,
+              const VwsOptions& options = {});
+
+    const TransferFunction& base() const override { return m_base; }
     std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> candidates,
-                                              const JobControl& job = {}) const;
+                                              const JobControl& job = {}) const override;
+    Linear jacobian(const std::vector<double>& x, const JobControl& job = {}) const override;
 
 private:
     VisibilityEngine& m_engine;

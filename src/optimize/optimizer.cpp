@@ -39,6 +39,7 @@ public:
         case SearchMethod::Line:
             return lineSearch(at, d);
         case SearchMethod::Parallel:
+        case SearchMethod::Newton:
             return parallelLineSearch(at, d);
         }
         return at;
@@ -133,14 +134,37 @@ const char* name(SearchMethod method) {
         return "line";
     case SearchMethod::Parallel:
         return "parallel";
+    case SearchMethod::Newton:
+        return "newton";
     }
     return "";
 }
 
 SearchMethod searchMethodFromName(const std::string& text) {
-    for (const SearchMethod m : {SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel})
+    for (const SearchMethod m : {SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel, SearchMethod::Newton})
         if (text == name(m)) return m;
-    throw UsageError("there is no search method '" + text + "'", "search method", "choose fixed, line or parallel");
+    throw UsageError("there is no search method '" + text + "'", "search method",
+                     "choose newton, parallel, line or fixed");
+}
+
+const char* name(Direction direction) {
+    switch (direction) {
+    case Direction::Gradient:
+        return "gradient";
+    case Direction::Backward:
+        return "backward";
+    case Direction::Second:
+        return "second";
+    case Direction::Exact:
+        return "exact";
+    }
+    return "";
+}
+
+Direction directionFromName(const std::string& text) {
+    for (const Direction d : {Direction::Gradient, Direction::Backward, Direction::Second, Direction::Exact})
+        if (text == name(d)) return d;
+    throw UsageError("there is no direction '" + text + "'", "direction", "choose gradient, backward, second or exact");
 }
 
 const char* name(StopReason reason) {
@@ -161,16 +185,19 @@ void OptimizeOptions::validate() const {
     if (!(step > 0 && step <= 10)) throw UsageError("the step lies in (0,10]", "optimize", "correct the step");
     if (!(tolerance > 0) || !std::isfinite(tolerance))
         throw UsageError("the tolerance is positive", "optimize", "correct the tolerance");
-    if (maxIterations < 0)
-        throw UsageError("the number of iterations is not negative", "optimize", "correct it");
+    if (!(b > 0 && b <= 1e6)) throw UsageError("b lies in (0,1e6]", "optimize", "correct it");
+    if (coverage && !(*coverage > 0 && *coverage <= 1))
+        throw UsageError("the coverage lies in (0,1]", "optimize", "correct it");
+    if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "optimize", "correct it");
 }
 
-OptimizeResult optimize(const VwsFunction& function, const std::vector<double>& targets, const OptimizeOptions& options,
-                        const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
+OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& options, const JobControl& job,
+                        const std::function<void(const OptimizeState&)>& watch) {
     options.validate();
+    const VwsFunction& function = problem.function;
     OptimizeResult result;
     result.tf = function.base();
-    result.targets = normalizedTargets(targets, function.featureCount());
+    result.targets = normalizedTargets(problem.targets, function.featureCount());
     Search search(function, result.targets, options, job);
 
     const auto arrive = [&](OptimizeState state) {

@@ -10,9 +10,24 @@
 
 namespace pellucid {
 
-enum class SearchMethod { Fixed, Line, Parallel };
-const char* name(SearchMethod method);                      ///< "fixed", "line", "parallel"
+enum class SearchMethod {
+    Fixed,    ///< steps of one length
+    Line,     ///< the length doubled or halved while that helps
+    Parallel, ///< eight lengths at once, the best of them
+    Newton    ///< Levenberg–Marquardt with exact derivatives
+};
+const char* name(SearchMethod method);                      ///< "fixed", "line", "parallel", "newton"
 SearchMethod searchMethodFromName(const std::string& name); ///< throws UsageError
+
+/// Where a step of the searches goes (docs/method.md, "Optimization"; thesis 5.3.4). Newton has its own.
+enum class Direction {
+    Gradient, ///< method 1: ∂F/∂W_i·b, with ∂F/∂W_i as 2(W − t)
+    Backward, ///< ∂F/∂W_i·∇W_i/d, differences to the move before
+    Second,   ///< method 2: ∇F/∇F', differences to the two moves before
+    Exact     ///< Jᵀ·2(W − t), J the exact derivatives
+};
+const char* name(Direction direction);                ///< "gradient", "backward", "second", "exact"
+Direction directionFromName(const std::string& name); ///< throws UsageError
 
 enum class StopReason {
     Converged, ///< F < tolerance
@@ -24,12 +39,24 @@ const char* name(StopReason reason); ///< "converged", "max-iterations", "no-pro
 
 struct OptimizeOptions {
     SearchMethod method = SearchMethod::Parallel;
+    Direction direction = Direction::Gradient;
+    double b = 1;            ///< of method 1, (0, 1e6]
     bool normalize = false;  ///< the direction scaled to unit length, as §5.3.4 prints it
     double step = 0.05;      ///< (0, 10]
     double tolerance = 0.03; ///< on F, > 0
     int maxIterations = 200; ///< moves, ≥ 0
-    void validate() const;   ///< throws UsageError
+    bool coarse = true;      ///< Newton: the first moves on a coarser volume, where the problem has one
+    /// Newton: mean alpha that is wanted of the picture, (0, 1]; empty: as strong as shares allow.
+    std::optional<double> coverage = {};
+    void validate() const; ///< throws UsageError
     bool operator==(const OptimizeOptions&) const = default;
+};
+
+/// What the search may do to the opacity of a feature.
+struct OpacityLimits {
+    double lowest = 0, highest = 1; ///< 0 ≤ lowest ≤ highest ≤ 1
+    bool locked = false;            ///< it stays as it is
+    bool operator==(const OpacityLimits&) const = default;
 };
 
 /// One state of the search: the start first, then one after each move.
@@ -37,6 +64,7 @@ struct OptimizeState {
     double objective = 0;
     std::vector<double> vws;     ///< per feature
     std::vector<double> opacity; ///< per feature
+    int level = 0;               ///< 0: figures of the volume; 1: of a coarser copy
     bool operator==(const OptimizeState&) const = default;
 };
 
@@ -52,10 +80,17 @@ struct OptimizeResult {
     bool converged() const { return reason == StopReason::Converged; }
 };
 
+/// What is to be solved. Keeps references.
+struct OptimizeProblem {
+    const VwsFunction& function;
+    std::vector<double> targets;            ///< ≥ 0, scaled to sum 1
+    std::vector<OpacityLimits> limits = {}; ///< one per feature; empty: none has any
+    const VwsFunction* coarse = nullptr;    ///< the same features of a coarser volume; null: there is none
+};
+
 /// `watch` is called after the start and each move, on the calling thread. Cancelling through `job` returns what is
 /// there so far (StopReason::Cancelled); it does not throw.
-OptimizeResult optimize(const VwsFunction& function, const std::vector<double>& targets,
-                        const OptimizeOptions& options = {}, const JobControl& job = {},
+OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& options = {}, const JobControl& job = {},
                         const std::function<void(const OptimizeState&)>& watch = {});
 
 } // namespace pellucid

@@ -218,6 +218,17 @@ std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& go
     return shownShares(tf, std::move(targets));
 }
 
+std::vector<OpacityLimits> limitsOf(const TransferFunction& tf, const FeatureGoals& goals) {
+    std::vector<OpacityLimits> limits(tf.features.size());
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        const Feature& feature = tf.features[i];
+        if (const auto goal = goals.find(feature.id); goal != goals.end())
+            limits[i] = {goal->second.lowest, goal->second.highest, goal->second.locked};
+        limits[i].locked = limits[i].locked || feature.hidden;
+    }
+    return limits;
+}
+
 FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const std::vector<double>& targets) {
     for (std::size_t i = 0; i < targets.size() && i < tf.features.size(); ++i)
         if (!tf.features[i].hidden) goals[tf.features[i].id].target = targets[i];

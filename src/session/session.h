@@ -13,6 +13,7 @@
 #include "render/annotation.h"
 #include "render/engine_choice.h"
 #include "render/image_region.h"
+#include "render/profile.h"
 #include "render/render_settings.h"
 #include "render/view.h"
 #include "saliency/saliency_field.h"
@@ -79,6 +80,8 @@ struct MeasureSettings {
     VwsOptions vws;           ///< u1, u2
     Quality quality = Quality::Normal;
     EngineChoice engine = EngineChoice::Auto;
+    Profile profile = Profile::Default;
+    Along along = Along::Front; ///< of the published profile, which looks along an axis of the grid
     bool operator==(const MeasureSettings&) const = default;
 };
 
@@ -174,6 +177,8 @@ inline constexpr std::size_t kMostRuns = 50;
 std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& goals);
 /// The goals after the features of `tf` (which have identities) got `targets`, in their order.
 FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const std::vector<double>& targets);
+/// What an optimization may do to the opacities of the features of `tf`, in their order. A hidden feature is locked.
+std::vector<OpacityLimits> limitsOf(const TransferFunction& tf, const FeatureGoals& goals);
 /// One share set to `value` in [0,1]; the others divide the rest in their old proportion.
 std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value);
 

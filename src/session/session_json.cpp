@@ -277,7 +277,9 @@ json fromMeasure(const MeasureSettings& m) {
             {"u1", m.vws.u1},
             {"u2", m.vws.u2},
             {"quality", name(m.quality)},
-            {"engine", name(m.engine)}};
+            {"engine", name(m.engine)},
+            {"profile", name(m.profile)},
+            {"along", name(m.along)}};
 }
 
 /// What `parse` makes of a text; what it says against it is said of this place.
@@ -312,21 +314,32 @@ MeasureSettings toMeasure(const JsonValue& j) {
     }
     if (j.has("quality")) m.quality = named(j["quality"], qualityFromName);
     if (j.has("engine")) m.engine = named(j["engine"], engineChoiceFromName);
+    if (j.has("profile")) m.profile = named(j["profile"], profileFromName);
+    if (j.has("along")) m.along = named(j["along"], alongFromName);
     return m;
 }
 
 json fromOptimize(const OptimizeOptions& o) {
-    return {{"method", name(o.method)},
-            {"normalize", o.normalize},
-            {"step", o.step},
-            {"tolerance", o.tolerance},
-            {"max_iterations", o.maxIterations}};
+    json j{{"method", name(o.method)},
+           {"direction", name(o.direction)},
+           {"b", o.b},
+           {"normalize", o.normalize},
+           {"step", o.step},
+           {"tolerance", o.tolerance},
+           {"coarse", o.coarse},
+           {"max_iterations", o.maxIterations}};
+    if (o.coverage) j["coverage"] = *o.coverage;
+    return j;
 }
 
 OptimizeOptions toOptimize(const JsonValue& j) {
     j.requireObject();
     OptimizeOptions o;
     if (j.has("method")) o.method = named(j["method"], searchMethodFromName);
+    if (j.has("direction")) o.direction = named(j["direction"], directionFromName);
+    if (j.has("b")) o.b = j["b"].number();
+    if (j.has("coarse")) o.coarse = j["coarse"].boolean();
+    if (j.has("coverage")) o.coverage = j["coverage"].number();
     if (j.has("normalize")) o.normalize = j["normalize"].boolean();
     if (j.has("step")) o.step = j["step"].number();
     if (j.has("tolerance")) o.tolerance = j["tolerance"].number();
@@ -448,7 +461,7 @@ FieldView toField(const JsonValue& j) {
 json fromRun(const Run& r) {
     json history = json::array();
     for (const OptimizeState& s : r.history)
-        history.push_back({{"objective", s.objective}, {"vws", s.vws}, {"opacity", s.opacity}});
+        history.push_back({{"objective", s.objective}, {"vws", s.vws}, {"opacity", s.opacity}, {"level", s.level}});
     return {{"kind", r.kind},       {"ended", r.ended},   {"features", r.features},
             {"targets", r.targets}, {"history", history}, {"best", r.best},
             {"before", r.before},   {"after", r.after},   {"iterations", r.iterations}};
@@ -461,7 +474,8 @@ Run toRun(const JsonValue& j) {
     for (const JsonValue& name : j["features"].items()) r.features.push_back(name.text());
     r.targets = j["targets"].numbers();
     for (const JsonValue& s : j["history"].items())
-        r.history.push_back({s["objective"].number(), s["vws"].numbers(), s["opacity"].numbers()});
+        r.history.push_back({s["objective"].number(), s["vws"].numbers(), s["opacity"].numbers(),
+                             s.has("level") ? static_cast<int>(s["level"].integer(0, 1)) : 0});
     r.best = static_cast<std::size_t>(j["best"].integer(0, INT64_MAX));
     if (r.best > 0 && r.best >= r.history.size()) j["best"].fail("the history has no such state");
     r.before = j["before"].number();

@@ -141,15 +141,15 @@ Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, c
 }
 
 OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
-                                   const OptimizeOptions& options, const JobControl& job,
-                                   const std::function<void(const OptimizeState&)>& watch) {
+                                   const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                   const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
     return guarded(
         [&] {
             VisibilityEngine& e = engine(input);
             const WeightFields& w = weights(input, job);
             const auto start = Clock::now();
-            const VwsFunction function(e, input.view, input.tf, w, input.settings.vws);
-            OptimizeResult result = pellucid::optimize(function, targets, options, job, watch);
+            const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
+            OptimizeResult result = pellucid::optimize({function, targets, limits}, options, job, watch);
             m_seconds.visibility = secondsSince(start);
             return result;
         },

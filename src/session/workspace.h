@@ -24,12 +24,13 @@ public:
     Measures measure(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
-    /// What every voxel contributes, of one kind; where `feature` of the input's transfer function is not −1, of its voxels
-    /// alone, 0 elsewhere. Saliency needs no engine. Throws as measure() does.
+    /// What every voxel contributes, of one kind; where `feature` of the input's transfer function is not −1, of its
+    /// voxels alone, 0 elsewhere. Saliency needs no engine. Throws as measure() does.
     Field field(const MeasureInput& input, FieldKind kind, int feature = -1, const JobControl& job = {});
+    /// `limits`: one per feature, or empty.
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
-                            const OptimizeOptions& options, const JobControl& job = {},
-                            const std::function<void(const OptimizeState&)>& watch = {});
+                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                            const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
 
     VisibilityEngine& engine(const MeasureInput& input);
     /// The fields depend on colours and features alone, so that they outlive changes of opacity.

@@ -48,6 +48,9 @@ struct Geometry {
     Vec3 origin{0, 0, 0};
     Mat3 directions{1}; ///< unit columns: where the axes i, j, k point in the world; need not be at right angles
     Frame frame = Frame::File;
+    /// World units; 0: the smallest spacing. A coarser copy of a volume keeps the length of the volume that it was made
+    /// from, so that opacities and saliency mean the same in both.
+    double referenceLength = 0;
 
     Mat3 worldFromIndex() const; ///< A, for differences of voxel coordinates
     Mat3 indexFromWorld() const; ///< its inverse
@@ -63,7 +66,9 @@ struct Geometry {
     Vec3 boundsMax() const;                               ///< likewise
     bool contains(const Vec3& world) const;               ///< strictly inside the box
     /// The reference length: one unit of path for opacity, world units.
-    double d0() const { return std::min(spacing.x, std::min(spacing.y, spacing.z)); }
+    double d0() const {
+        return referenceLength > 0 ? referenceLength : std::min(spacing.x, std::min(spacing.y, spacing.z));
+    }
 };
 
 /// Voxels lo … hi − 1 along each axis.

@@ -92,7 +92,7 @@ TEST_CASE("a session optimizes towards its own targets, in its own way", "[cli][
     CHECK(j["method"] == "line");
     CHECK(j["iterations"].get<int>() <= 3);
     const OptimizeResult expected =
-        Workspace().optimize(measureInput(saved.scene()), {0.2, 0.3, 0.5}, *saved.session.optimize);
+        Workspace().optimize(measureInput(saved.scene()), {0.2, 0.3, 0.5}, {}, *saved.session.optimize);
     CHECK(j["objective"].back() == expected.history.back().objective);
     // The exact colour survives.
     CHECK(readTf(saved.w.path("o.tf.json").string()).features[1].color == Rgb{0.1 + 0.2, 0.5, 0.7});

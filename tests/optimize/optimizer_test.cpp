@@ -87,25 +87,25 @@ TEST_CASE("the objective is the root mean square distance (5.1)", "[optimize]") 
 TEST_CASE("a fixed step moves by 0.05·2(W − t), clamped", "[optimize]") {
     // x = ½ each, gains 1: W = ⅓ each. Targets (0, 0, 1): d = 2·(⅓, ⅓, −⅔).
     ProportionalEngine engine({1, 1, 1});
-    const VwsFunction f(engine, {}, tents(3, 0.5), kNoWeights);
+    const EngineVws f(engine, {}, tents(3, 0.5), kNoWeights);
     OptimizeOptions options = with(SearchMethod::Fixed);
     options.maxIterations = 1;
-    const OptimizeResult r = optimize(f, {0, 0, 1}, options);
+    const OptimizeResult r = optimize({f, {0, 0, 1}}, options);
     REQUIRE(r.history.size() == 2);
     CHECK(r.history[1].opacity[0] == Approx(0.5 - 0.05 * 2 / 3));
     CHECK(r.history[1].opacity[2] == Approx(0.5 + 0.05 * 4 / 3));
     CHECK(r.evaluations == 2);
     CHECK(r.reason == StopReason::MaxIterations);
     options.normalize = true; // the same direction at unit length: (⅓, ⅓, −⅔)/√(6/9)
-    CHECK(optimize(f, {0, 0, 1}, options).history[1].opacity[0] == Approx(0.5 - 0.05 / std::sqrt(6.0)));
+    CHECK(optimize({f, {0, 0, 1}}, options).history[1].opacity[0] == Approx(0.5 - 0.05 / std::sqrt(6.0)));
 }
 
 TEST_CASE("every method reaches the targets, searches in fewer moves", "[optimize]") {
     std::vector<int> moves;
     for (const auto method : {SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel}) {
         ProportionalEngine engine({20, 3, 1});
-        const VwsFunction f(engine, {}, tents(3, 0.5), kNoWeights);
-        const OptimizeResult r = optimize(f, {0.1, 0.3, 0.6}, with(method));
+        const EngineVws f(engine, {}, tents(3, 0.5), kNoWeights);
+        const OptimizeResult r = optimize({f, {0.1, 0.3, 0.6}}, with(method));
         INFO(name(method));
         CHECK(r.converged());
         CHECK(r.history[r.best].objective < 0.03);
@@ -121,8 +121,8 @@ TEST_CASE("a hidden feature is aimed at nothing and keeps its opacity", "[optimi
     tf.features[1].hidden = true;
     for (const auto method : {SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel}) {
         ProportionalEngine engine({20, 3, 1});
-        const VwsFunction f(engine, {}, shownTf(tf), kNoWeights);
-        const OptimizeResult r = optimize(f, shownShares(tf, {0.1, 0.6, 0.3}), with(method));
+        const EngineVws f(engine, {}, shownTf(tf), kNoWeights);
+        const OptimizeResult r = optimize({f, shownShares(tf, {0.1, 0.6, 0.3})}, with(method));
         INFO(name(method));
         CHECK(r.converged());
         for (const OptimizeState& state : r.history) {
@@ -139,8 +139,8 @@ TEST_CASE("a hidden feature is aimed at nothing and keeps its opacity", "[optimi
 
 TEST_CASE("the parallel search asks for its eight steps in one engine call", "[optimize]") {
     ProportionalEngine engine({20, 3, 1});
-    const VwsFunction f(engine, {}, tents(3, 0.5), kNoWeights);
-    const OptimizeResult r = optimize(f, {0.1, 0.3, 0.6}, with(SearchMethod::Parallel));
+    const EngineVws f(engine, {}, tents(3, 0.5), kNoWeights);
+    const OptimizeResult r = optimize({f, {0.1, 0.3, 0.6}}, with(SearchMethod::Parallel));
     CHECK(r.evaluations == 1 + 8 * r.iterations());
     CHECK(engine.calls == 1 + r.iterations());
 }
@@ -148,15 +148,15 @@ TEST_CASE("the parallel search asks for its eight steps in one engine call", "[o
 TEST_CASE("an answer is never worse than its start", "[optimize]") {
     // Feature 2 gives nothing however opaque: its target cannot be reached, and a huge fixed step overshoots.
     ProportionalEngine engine({1, 0, 1});
-    const VwsFunction f(engine, {}, tents(3, 0.5), kNoWeights);
+    const EngineVws f(engine, {}, tents(3, 0.5), kNoWeights);
     OptimizeOptions options = with(SearchMethod::Fixed);
     options.step = 10;
     options.maxIterations = 7;
-    const OptimizeResult r = optimize(f, {0.4, 0.2, 0.4}, options);
+    const OptimizeResult r = optimize({f, {0.4, 0.2, 0.4}}, options);
     for (const OptimizeState& state : r.history) CHECK(r.history[r.best].objective <= state.objective);
     CHECK_FALSE(r.converged());
     for (const auto method : {SearchMethod::Line, SearchMethod::Parallel}) {
-        const OptimizeResult stuck = optimize(f, {0.4, 0.2, 0.4}, with(method));
+        const OptimizeResult stuck = optimize({f, {0.4, 0.2, 0.4}}, with(method));
         CHECK(stuck.reason == StopReason::NoProgress); // 0.2 of what cannot be seen
         CHECK(stuck.history[stuck.best].objective <= stuck.history[0].objective);
     }
@@ -164,8 +164,8 @@ TEST_CASE("an answer is never worse than its start", "[optimize]") {
 
 TEST_CASE("a start at the target needs no move", "[optimize]") {
     ProportionalEngine engine({1, 1});
-    const VwsFunction f(engine, {}, tents(2, 0.5), kNoWeights);
-    const OptimizeResult r = optimize(f, {1, 1}, {});
+    const EngineVws f(engine, {}, tents(2, 0.5), kNoWeights);
+    const OptimizeResult r = optimize({f, {1, 1}}, {});
     CHECK(r.converged());
     CHECK(r.iterations() == 0);
     CHECK(r.tf == tents(2, 0.5));
@@ -173,18 +173,18 @@ TEST_CASE("a start at the target needs no move", "[optimize]") {
 
 TEST_CASE("cancelling returns what is there so far", "[optimize]") {
     ProportionalEngine engine({20, 3, 1});
-    const VwsFunction f(engine, {}, tents(3, 0.5), kNoWeights);
+    const EngineVws f(engine, {}, tents(3, 0.5), kNoWeights);
     std::stop_source stop;
     int seen = 0;
     const OptimizeResult r =
-        optimize(f, {0.1, 0.3, 0.6}, with(SearchMethod::Fixed), {stop.get_token(), {}}, [&](const OptimizeState&) {
+        optimize({f, {0.1, 0.3, 0.6}}, with(SearchMethod::Fixed), {stop.get_token(), {}}, [&](const OptimizeState&) {
             if (++seen == 3) stop.request_stop();
         });
     CHECK(r.reason == StopReason::Cancelled);
     CHECK(r.history.size() == 3);
     stop = {};
     stop.request_stop();
-    const OptimizeResult none = optimize(f, {0.1, 0.3, 0.6}, {}, {stop.get_token(), {}});
+    const OptimizeResult none = optimize({f, {0.1, 0.3, 0.6}}, {}, {stop.get_token(), {}});
     CHECK(none.reason == StopReason::Cancelled);
     CHECK(none.history.empty());
     CHECK(none.iterations() == 0);
@@ -200,7 +200,7 @@ TEST_CASE("optimizing a real volume makes its core visible", "[optimize]") {
     const WeightFields weights = saliencyFields(*volume, tf);
     const auto engine = makeCpuEngine(volume);
     const Camera camera = cameraFromView(volume->geometry(), 30, 20, 1, Projection::Perspective);
-    const OptimizeResult r = optimize(VwsFunction(*engine, camera, tf, weights), {0.1, 0.3, 0.6});
+    const OptimizeResult r = optimize({EngineVws(*engine, camera, tf, weights), {0.1, 0.3, 0.6}});
     CHECK(r.converged());
     CHECK(r.history[0].vws[2] < 0.2);
     const Measures after = measure(*engine, camera, r.tf, weights);
@@ -213,13 +213,13 @@ TEST_CASE("optimizing a real volume makes its core visible", "[optimize]") {
 
 TEST_CASE("impossible optimization options are refused", "[optimize]") {
     ProportionalEngine engine({1, 1});
-    const VwsFunction f(engine, {}, tents(2), kNoWeights);
+    const EngineVws f(engine, {}, tents(2), kNoWeights);
     OptimizeOptions options;
     options.step = 0;
-    CHECK_THROWS_AS(optimize(f, {1, 1}, options), UsageError);
+    CHECK_THROWS_AS(optimize({f, {1, 1}}, options), UsageError);
     options = {};
     options.tolerance = std::nan("");
-    CHECK_THROWS_AS(optimize(f, {1, 1}, options), UsageError);
+    CHECK_THROWS_AS(optimize({f, {1, 1}}, options), UsageError);
     CHECK_THROWS_AS(searchMethodFromName("newton2"), UsageError);
     CHECK(searchMethodFromName("line") == SearchMethod::Line);
 }

@@ -223,7 +223,7 @@ TEST_CASE("wrong sessions are refused", "[session][json]") {
     CHECK_THAT(with("/variables/0/window", {-1.7e308, 1.7e308}), Catch::Contains("/variables/0/window"));
     CHECK_THAT(with("/measure/sigma", 9), Catch::Contains("/measure/sigma"));
     CHECK_THAT(with("/measure/engine", "cuda"), Catch::Contains("/measure/engine") && Catch::Contains("cpu"));
-    CHECK_THAT(with("/optimize/method", "newton"), Catch::Contains("/optimize/method"));
+    CHECK_THAT(with("/optimize/method", "simplex"), Catch::Contains("/optimize/method"));
     CHECK_THAT(with("/optimize/step", 0), Catch::Contains("/optimize"));
     CHECK_THAT(with("/features/1/id", good["features"][0]["id"]), Catch::Contains("/features/1/id"));
     json two = good;

@@ -91,13 +91,13 @@ TEST_CASE("derivatives and searches do not depend on it either", "[session][work
     OptimizeOptions options;
     options.maxIterations = 2;
     Workspace another;
-    const OptimizeResult a = used.optimize(inputs[1], {1, 2, 3}, options);
-    const OptimizeResult b = another.optimize(inputs[1], {1, 2, 3}, options);
+    const OptimizeResult a = used.optimize(inputs[1], {1, 2, 3}, {}, options);
+    const OptimizeResult b = another.optimize(inputs[1], {1, 2, 3}, {}, options);
     CHECK(a.history == b.history);
     // And as without a workspace at all
     const auto engine = makeCpuEngine(inputs[1].volume);
     const WeightFields weights = saliencyFields(*inputs[1].volume, inputs[1].tf);
-    const OptimizeResult c = optimize(VwsFunction(*engine, inputs[1].view, inputs[1].tf, weights), {1, 2, 3}, options);
+    const OptimizeResult c = optimize({EngineVws(*engine, inputs[1].view, inputs[1].tf, weights), {1, 2, 3}}, options);
     CHECK(a.history == c.history);
 }
 

@@ -114,7 +114,7 @@ Run randomRun(Random& random) {
     };
     for (std::size_t i = 0; i < n; ++i) r.features.push_back("f" + std::to_string(i));
     r.targets = numbers();
-    for (int i = random.below(5); i > 0; --i) r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers()});
+    for (int i = random.below(5); i > 0; --i) r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(2)});
     if (!r.history.empty()) r.best = static_cast<std::size_t>(random.below(static_cast<int>(r.history.size())));
     r.before = oddNumber(random, 0, 1e10);
     r.after = oddNumber(random, 0, 1);
@@ -132,6 +132,8 @@ MeasureSettings randomMeasure(Random& random) {
     m.vws.u1 = oddNumber(random, 0, 1);
     m.vws.u2 = 1 - m.vws.u1;
     m.quality = random.chance(0.5) ? Quality::Normal : Quality::High;
+    m.profile = random.chance(0.5) ? Profile::Default : Profile::Published;
+    m.along = oneOf(random, std::array{Along::Top, Along::Bottom, Along::Front, Along::Left});
     m.engine = oneOf(random, std::array{EngineChoice::Auto, EngineChoice::Gl, EngineChoice::Cpu, EngineChoice::Slices,
                                         EngineChoice::Reference});
     return m;
@@ -139,7 +141,13 @@ MeasureSettings randomMeasure(Random& random) {
 
 OptimizeOptions randomOptimize(Random& random) {
     OptimizeOptions o;
-    o.method = oneOf(random, std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel});
+    o.method = oneOf(random, std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel,
+                                        SearchMethod::Newton});
+    o.direction =
+        oneOf(random, std::array{Direction::Gradient, Direction::Backward, Direction::Second, Direction::Exact});
+    o.b = random.between(1e-3, 1e3);
+    o.coarse = random.chance(0.5);
+    if (random.chance(0.5)) o.coverage = random.between(1e-3, 1);
     o.normalize = random.chance(0.5);
     o.step = random.between(1e-9, 10);
     o.tolerance = random.between(1e-9, 0.5);

@@ -38,7 +38,8 @@ OptimizeController::OptimizeController(Workbench& bench)
                   QMetaObject::invokeMethod(this,
                                             [this, task, state, number = move++] { showMove(task, number, state); });
               };
-              OptimizeResult result = workspace.optimize(task.input, task.targets, task.options, {job.stop, {}}, watch);
+              OptimizeResult result =
+                  workspace.optimize(task.input, task.targets, task.limits, task.options, {job.stop, {}}, watch);
               if (result.reason == StopReason::Cancelled) throw Cancelled{};
               return result;
           },
@@ -95,7 +96,8 @@ void OptimizeController::start() {
     m_move = -1;
     m_firstObjective = m_objective = 0;
     const About about = present();
-    m_job.start({about.input, m_bench.scene().tf, about.targets, *store.session().optimize, ++m_number},
+    m_job.start({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
+                 *store.session().optimize, ++m_number},
                 tr("the optimization"));
     Q_EMIT moved();
 }

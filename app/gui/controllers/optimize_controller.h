@@ -50,6 +50,7 @@ private:
         MeasureInput input;
         TransferFunction tf; ///< with what is hidden of it
         std::vector<double> targets;
+        std::vector<OpacityLimits> limits;
         OptimizeOptions options;
         int number = 0;
     };
