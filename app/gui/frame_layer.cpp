@@ -3,6 +3,7 @@
 #include <QPainter>
 #include <QPainterPath>
 
+#include "controllers/field_controller.h"
 #include "render/annotation.h"
 #include "theme.h"
 
@@ -45,9 +46,14 @@ void draw(QPainter& painter, const Mark& mark) {
 void FrameLayer::paint(QPainter& painter, const OverlayView& view) {
     const FrameOfReference& show = *view.scene.session.reference;
     const QSize size = view.size.toSize();
-    if (!show.any() || size.isEmpty()) return;
-    const PictureInput picture = pictureInput(view.scene, size.width(), size.height());
-    for (const Mark& mark : annotationMarks(annotationInput(picture, show))) draw(painter, mark);
+    if (size.isEmpty()) return;
+    AnnotationInput input;
+    if (m_fields)
+        input = m_fields->annotation(m_fields->picture(size.width(), size.height()), show);
+    else
+        input = annotationInput(pictureInput(view.scene, size.width(), size.height()), show);
+    if (!input.show.any()) return;
+    for (const Mark& mark : annotationMarks(input)) draw(painter, mark);
 }
 
 } // namespace pellucid::gui

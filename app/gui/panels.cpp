@@ -10,6 +10,7 @@
     PANEL(displayPanel) \
     PANEL(lightPanel) \
     PANEL(clipPanel) \
+    PANEL(fieldsPanel) \
     PANEL(galleryPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on

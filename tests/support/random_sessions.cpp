@@ -114,7 +114,8 @@ Run randomRun(Random& random) {
     };
     for (std::size_t i = 0; i < n; ++i) r.features.push_back("f" + std::to_string(i));
     r.targets = numbers();
-    for (int i = random.below(5); i > 0; --i) r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(2)});
+    for (int i = random.below(5); i > 0; --i)
+        r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(2)});
     if (!r.history.empty()) r.best = static_cast<std::size_t>(random.below(static_cast<int>(r.history.size())));
     r.before = oddNumber(random, 0, 1e10);
     r.after = oddNumber(random, 0, 1);
@@ -141,8 +142,8 @@ MeasureSettings randomMeasure(Random& random) {
 
 OptimizeOptions randomOptimize(Random& random) {
     OptimizeOptions o;
-    o.method = oneOf(random, std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel,
-                                        SearchMethod::Newton});
+    o.method = oneOf(random,
+                     std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel, SearchMethod::Newton});
     o.direction =
         oneOf(random, std::array{Direction::Gradient, Direction::Backward, Direction::Second, Direction::Exact});
     o.b = random.between(1e-3, 1e3);

@@ -15,21 +15,20 @@ constexpr int kRest = 150; ///< milliseconds without a change before a field is 
 } // namespace
 
 FieldController::FieldController(Workbench& bench)
-    : m_bench(bench),
-      m_computing(
-          [&workspace = bench.workspace()](const Request& request, const JobControl& job) {
-              Made made{workspace.field(request.input, request.kind, request.feature, job), {}};
-              job.throwIfStopped();
-              made.codes = sharedIntensityGrid(*made.field.volume);
-              return made;
-          },
-          [this](const Request& request, Made& made) {
-              m_field = std::move(made.field);
-              m_codes = std::move(made.codes);
-              m_shown = request;
-              setState(State::Current);
-          },
-          WhenBusy::StopOld, &bench.compute()),
+    : m_bench(bench), m_computing(
+                          [&workspace = bench.workspace()](const Request& request, const JobControl& job) {
+                              Made made{workspace.field(request.input, request.kind, request.feature, job), {}};
+                              job.throwIfStopped();
+                              made.codes = sharedIntensityGrid(*made.field.volume);
+                              return made;
+                          },
+                          [this](const Request& request, Made& made) {
+                              m_field = std::move(made.field);
+                              m_codes = std::move(made.codes);
+                              m_shown = request;
+                              setState(State::Current);
+                          },
+                          WhenBusy::StopOld, &bench.compute()),
       m_saving(
           [](const File& file, const JobControl&) {
               writeNrrd(*file.volume, file.path.toStdString());
@@ -117,9 +116,7 @@ void FieldController::compute() {
     setState(State::Computing);
 }
 
-void FieldController::begin() {
-    m_computing.start(m_wanted, QString::fromStdString(m_wanted.input.volume->title));
-}
+void FieldController::begin() { m_computing.start(m_wanted, QString::fromStdString(m_wanted.input.volume->title)); }
 
 void FieldController::cancel() {
     if (m_state != State::Computing) return;
@@ -138,8 +135,8 @@ AnnotationInput FieldController::annotation(const PictureInput& picture, const F
                                             double density) const {
     const Scene& scene = m_bench.scene();
     if (m_state == State::Off) return annotationInput(picture, show, density);
-    AnnotationInput input =
-        field() ? fieldAnnotationInput(picture, scene, *m_field, show, density) : annotationInput(picture, show, density);
+    AnnotationInput input = field() ? fieldAnnotationInput(picture, scene, *m_field, show, density)
+                                    : annotationInput(picture, show, density);
     if (!show.on) input.show = FrameOfReference::none();
     input.show.on = input.show.title = true;
     input.show.legend = input.show.legend || field() != nullptr;
@@ -149,8 +146,10 @@ AnnotationInput FieldController::annotation(const PictureInput& picture, const F
                                                          : tr("stopped"))
                                 .toStdString();
     const std::string present = infoOf(m_wanted.kind).title;
-    input.title = field() ? input.title + " " + tr("of an earlier state; the present one: %1").arg(QString::fromStdString(why)).toStdString()
-                          : present + ": " + why;
+    input.title =
+        field() ? input.title + " " +
+                      tr("of an earlier state; the present one: %1").arg(QString::fromStdString(why)).toStdString()
+                : present + ": " + why;
     return input;
 }
 
@@ -180,19 +179,17 @@ void FieldController::chooseFile() {
 void FieldController::addActions() {
     Actions& actions = m_bench.actions();
     SessionStore& store = m_bench.store();
-    const auto open = [&store] { return store.hasVolume(); };
+    const auto open = [this, &store] { return store.hasVolume() && !m_bench.isReadOnly(); };
     const QString menu = tr("&View") + "/" + tr("F&ield");
-    actions.add({.id = "fieldAction",
-                 .menu = menu,
-                 .text = tr("&Show a field"),
-                 .keys = {QKeySequence("V")},
-                 .tip = tr("What each voxel contributes in the place of the data, and back"),
-                 .trigger =
-                     [this, &store] {
-                         show(store.session().field->kind ? std::nullopt : std::optional(m_lastKind));
-                     },
-                 .enabled = open,
-                 .checked = [&store] { return store.session().field->kind.has_value(); }});
+    actions.add(
+        {.id = "fieldAction",
+         .menu = menu,
+         .text = tr("&Show a field"),
+         .keys = {QKeySequence("V")},
+         .tip = tr("What each voxel contributes in the place of the data, and back"),
+         .trigger = [this, &store] { show(store.session().field->kind ? std::nullopt : std::optional(m_lastKind)); },
+         .enabled = open,
+         .checked = [&store] { return store.session().field->kind.has_value(); }});
     bool first = true;
     for (const FieldKindInfo& info : kFieldKinds)
         actions.add({.id = QStringLiteral("field_%1").arg(QString::fromLatin1(info.fileStem)),

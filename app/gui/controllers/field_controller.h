@@ -13,8 +13,8 @@ namespace pellucid::gui {
 
 class Workbench;
 
-/// Computes the field that the session wants to see as soon as the scene rests, and tells everybody what is to be drawn:
-/// the one place where data and field change places. A field belongs to the state that it was computed of. While
+/// Computes the field that the session wants to see as soon as the scene rests, and tells everybody what is to be
+/// drawn: the one place where data and field change places. A field belongs to the state that it was computed of. While
 /// that is not the present one, it is drawn as what it is, under a title that says so.
 class FieldController : public QObject {
     Q_OBJECT

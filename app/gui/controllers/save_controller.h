@@ -42,7 +42,7 @@ Q_SIGNALS:
 private:
     struct Picture {
         PictureInput input;
-        FrameOfReference reference;
+        AnnotationInput around; ///< shows nothing where nothing is wanted
         QString path;
     };
     bool chooseSession(bool askForName);
