@@ -30,6 +30,11 @@ _pellucid_cli() {
             ;;
         --direction) choices="gradient" ;;
         --step-up) choices="auto" ;;
+        --field)
+            choices="visibility saliency saliency-brightness saliency-saturation vws"
+            [[ $command == render ]] && choices+=" none"
+            ;;
+        --field-colormap) choices="feature hue spiral ember sand grey blue-orange blue-red" ;;
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
@@ -54,7 +59,7 @@ _pellucid_cli() {
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
-            --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
+            --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | \
             --image-size | --fix | --target | --tolerance | --window | --tf-strength)
             return

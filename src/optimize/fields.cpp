@@ -111,8 +111,8 @@ double usualTop(const Grid<float>& field) {
     return static_cast<double>(positive[static_cast<std::size_t>(at)]);
 }
 
-Field fieldVolume(const Geometry& geometry, Grid<float> values, double top, std::string title) {
-    Volume volume(geometry, Samples(SampleArray<float>(std::move(values).take())));
+Field fieldVolume(const Geometry& geometry, const Grid<float>& values, double top, std::string title) {
+    Volume volume(geometry, Samples(SampleArray<float>(std::vector<float>(values.begin(), values.end()))));
     const double largest = volume.dataRange().hi;
     volume = volume.withRange({0, largest > 0 ? largest : 1.0});
     volume.title = std::move(title);

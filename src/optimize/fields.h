@@ -64,6 +64,6 @@ struct Field {
     bool operator==(const Field&) const = default;
 };
 /// `top` is usualTop() before keepFeature().
-Field fieldVolume(const Geometry& geometry, Grid<float> values, double top, std::string title);
+Field fieldVolume(const Geometry& geometry, const Grid<float>& values, double top, std::string title);
 
 } // namespace pellucid

@@ -12,8 +12,8 @@ namespace pellucid {
 inline constexpr double kMeasureBytesPerVoxel = 8, kLeanMeasureBytesPerVoxel = 2;
 /// 4 more for the visibility that is written. Lean: likewise, and for each weight in its turn.
 inline constexpr double kFieldsBytesPerVoxel = 12, kLeanFieldsBytesPerVoxel = 10;
-/// A field that is drawn: its values as floats, and their codes.
-inline constexpr double kFieldBytesPerVoxel = 6;
+/// A field that is drawn: its values as floats while they become a volume of floats, later that and its codes.
+inline constexpr double kFieldBytesPerVoxel = 8;
 /// The reference engine keeps intensities as doubles, and which are valid, in the place of codes: so much more.
 inline constexpr double kMoreByReferenceBytesPerVoxel = 5, kLeanMoreByReferenceBytesPerVoxel = 8;
 /// To look at a volume takes its codes, and which are valid.

@@ -135,7 +135,7 @@ Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, c
             rest.throwIfStopped();
             std::string title = infoOf(kind).title;
             if (feature >= 0) title += ", " + input.tf.features[static_cast<std::size_t>(feature)].name;
-            return fieldVolume(volume.geometry(), std::move(values), top, std::move(title));
+            return fieldVolume(volume.geometry(), values, top, std::move(title));
         },
         [this] { releaseEngine(); });
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include <glm/mat3x3.hpp>
@@ -52,7 +51,6 @@ public:
     auto end() noexcept { return m_values.end(); }
     auto begin() const noexcept { return m_values.begin(); }
     auto end() const noexcept { return m_values.end(); }
-    std::vector<T> take() && { return std::move(m_values); } ///< the values without a copy; the grid is of no use then
 
 private:
     Int3 m_dims{0, 0, 0};
