@@ -81,7 +81,7 @@ std::vector<int> featuresOf(const Options& o, const TransferFunction& tf) {
     };
     for (const std::string& name : o.features) {
         if (name != "all") {
-            add(featureNamed(tf, name, "--feature"));
+            add(static_cast<int>(parseFeature(name, "--feature", tf)));
             continue;
         }
         for (std::size_t f = 0; f < tf.features.size(); ++f) add(static_cast<int>(f));
@@ -156,6 +156,7 @@ Answer run(const Options& o, Progress& progress) {
               {"volume", jsonFromVolume(*input.volume)},
               {"files", names},
               {"seconds", {{"total", total.seconds()}}}};
+    addProfile(json, input.settings);
     return {text, std::move(json), opened.notices(), {}};
 }
 

@@ -9,6 +9,7 @@
 #include "options/engine_options.h"
 #include "options/field_options.h"
 #include "options/picture_options.h"
+#include "options/profile_options.h"
 #include "options/saliency_options.h"
 #include "options/session_options.h"
 #include "options/tf_options.h"
@@ -26,6 +27,7 @@ struct SceneOptions {
     ClipOptions clip;
     EngineOptions engine;
     SaliencyInput saliency;
+    ProfileOptions profile;
     PictureOptions picture;
     FieldOptions field;
 

@@ -1,6 +1,7 @@
 #include "results_json.h"
 
 #include "optimize/refine_words.h"
+#include "render/camera_motion.h"
 #include "tf/formats/tf_json.h"
 
 namespace pellucid::cli {
@@ -33,18 +34,35 @@ Json jsonFromRefinement(const TransferFunction& before, const RefineResult& r, R
 }
 
 Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& options) {
-    Json j{{"command", "optimize"},        {"method", name(options.method)},
-           {"direction", "gradient"},      {"converged", r.converged()},
-           {"stopped", name(r.reason)},    {"iterations", r.iterations()},
-           {"evaluations", r.evaluations}, {"target", r.targets},
-           {"objective", Json::array()},   {"vws", Json::array()},
-           {"opacity", Json::array()},     {"tf", Json(jsonFromTf(r.tf))}};
+    Json j{{"command", "optimize"},
+           {"method", name(options.method)},
+           {"direction", name(options.direction)},
+           {"converged", r.converged()},
+           {"stopped", name(r.reason)},
+           {"iterations", r.iterations()},
+           {"coarse_iterations", r.coarseIterations()},
+           {"evaluations", r.evaluations},
+           {"spread_starts", r.spreadStarts},
+           {"best", r.best},
+           {"target", r.targets},
+           {"objective", Json::array()},
+           {"level", Json::array()},
+           {"vws", Json::array()},
+           {"opacity", Json::array()},
+           {"tf", Json(jsonFromTf(r.tf))}};
     for (const OptimizeState& state : r.history) {
         j["objective"].push_back(state.objective);
+        j["level"].push_back(state.level);
         j["vws"].push_back(state.vws);
         j["opacity"].push_back(state.opacity);
     }
     return j;
+}
+
+Json jsonFromView(const Camera& camera, const Geometry& geometry) {
+    const ViewAngles angles = viewAngles(camera, geometry);
+    return {{"view", {{"azimuth", angles.azimuth}, {"elevation", angles.elevation}}},
+            {"camera", Json(jsonFromCamera(camera))}};
 }
 
 } // namespace pellucid::cli

@@ -48,10 +48,13 @@ void FrameLayer::paint(QPainter& painter, const OverlayView& view) {
     const QSize size = view.size.toSize();
     if (size.isEmpty()) return;
     AnnotationInput input;
-    if (m_fields)
-        input = m_fields->annotation(m_fields->picture(size.width(), size.height()), show);
-    else
+    if (m_fields) {
+        PictureInput picture = m_fields->picture(size.width(), size.height());
+        picture.camera = view.scene.camera; // a glimpse from elsewhere
+        input = m_fields->annotation(picture, show);
+    } else {
         input = annotationInput(pictureInput(view.scene, size.width(), size.height()), show);
+    }
     if (!input.show.any()) return;
     for (const Mark& mark : annotationMarks(input)) draw(painter, mark);
 }

@@ -7,6 +7,7 @@
 
 #include "optimize/fields.h"
 #include "optimize/measure.h"
+#include "optimize/occlusion.h"
 #include "session/scene.h"
 
 namespace pellucid {
@@ -27,6 +28,8 @@ public:
     /// What every voxel contributes, of one kind; where `feature` of the input's transfer function is not −1, of its
     /// voxels alone, 0 elsewhere. Saliency needs no engine. Throws as measure() does.
     Field field(const MeasureInput& input, FieldKind kind, int feature = -1, const JobControl& job = {});
+    /// Who hides whom.
+    OcclusionMatrix occlusion(const MeasureInput& input, const JobControl& job = {});
     /// `limits`: one per feature, or empty.
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
@@ -46,6 +49,7 @@ private:
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
     Quality m_quality = Quality::Normal;
+    Profile m_engineProfile = Profile::Default, m_weightsProfile = Profile::Default;
     std::unique_ptr<VisibilityEngine> m_engine;
     TransferFunction m_weightsTf; // its colorsOf()
     SaliencyOptions m_weightsOptions;

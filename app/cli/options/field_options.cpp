@@ -24,16 +24,6 @@ FieldKind parseField(const std::string& text, const std::string& option) {
     return ofOption(option, [&] { return fieldKindFromName(text); });
 }
 
-int featureNamed(const TransferFunction& tf, const std::string& name, const std::string& option) {
-    std::string known;
-    for (std::size_t i = 0; i < tf.features.size(); ++i) {
-        if (tf.features[i].name == name) return static_cast<int>(i);
-        known += (known.empty() ? "'" : ", '") + tf.features[i].name + "'";
-    }
-    throw UsageError("no feature is named '" + name + "'", option,
-                     known.empty() ? "leave it out: this transfer function has none" : "known: " + known);
-}
-
 void FieldOptions::add(CLI::App& app) {
     addValue(
         app, "--field", std::string(kFieldNames) + "|none",

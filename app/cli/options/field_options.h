@@ -13,9 +13,6 @@ namespace pellucid::cli {
 inline constexpr const char* kFieldNames = "visibility|saliency|saliency-brightness|saliency-saturation|vws";
 FieldKind parseField(const std::string& text, const std::string& option);
 
-/// Index of the feature of that name. Throws UsageError that lists them.
-int featureNamed(const TransferFunction& tf, const std::string& name, const std::string& option);
-
 struct FieldOptions {
     std::optional<std::optional<FieldKind>> kind; ///< an empty one inside: the data, whatever the session says
     std::optional<std::string> colorMap;

@@ -1,7 +1,5 @@
 #include "options/picture_options.h"
 
-#include "options/field_options.h"
-
 namespace pellucid::cli {
 
 void PictureOptions::add(CLI::App& app) {
@@ -50,8 +48,7 @@ void PictureOptions::applyTo(SceneInputs& inputs) const {
 
 void PictureOptions::applyTo(Scene& scene) const {
     if (!feature) return;
-    const auto f = static_cast<std::size_t>(featureNamed(scene.tf, *feature, "--feature"));
-    const FeatureId id = scene.tf.features[f].id;
+    const FeatureId id = scene.tf.features[parseFeature(*feature, "--feature", scene.tf)].id;
     scene.session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; });
     scene.session.field.edit([&](FieldView& view) { view.feature = id; });
 }

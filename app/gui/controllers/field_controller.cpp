@@ -140,7 +140,11 @@ AnnotationInput FieldController::annotation(const PictureInput& picture, const F
     if (!show.on) input.show = FrameOfReference::none();
     input.show.on = input.show.title = true;
     input.show.legend = input.show.legend || field() != nullptr;
-    if (m_state == State::Current) return input;
+    if (m_state == State::Current) {
+        if (dependsOnView(m_shown.kind) && !(picture.camera == scene.camera))
+            input.title += tr(" of another view").toStdString();
+        return input;
+    }
     const std::string why = (m_state == State::Computing ? tr("being computed")
                              : m_state == State::Failed  ? tr("cannot be computed")
                                                          : tr("stopped"))

@@ -29,6 +29,7 @@
 #include "number_box.h"
 #include "opacity_editor.h"
 #include "panel.h"
+#include "panels/profile_settings.h"
 #include "theme.h"
 #include "workbench.h"
 
@@ -198,11 +199,13 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 
     m_method->setObjectName("methodCombo");
+    m_method->addItem(tr("Newton"), static_cast<int>(SearchMethod::Newton));
     m_method->addItem(tr("Parallel line search"), static_cast<int>(SearchMethod::Parallel));
     m_method->addItem(tr("Line search"), static_cast<int>(SearchMethod::Line));
     m_method->addItem(tr("Fixed steps"), static_cast<int>(SearchMethod::Fixed));
-    m_method->setToolTip(tr("How far each move goes: the best of eight lengths tried at once,\n"
-                            "one length found by doubling or halving, or always the same"));
+    m_method->setToolTip(tr("How moves are found: by exact derivatives, first on coarser volumes; or along the\n"
+                            "differences to the targets, by the best of eight lengths tried at once, one length\n"
+                            "found by doubling or halving, or always the same"));
     m_tolerance->setObjectName("toleranceSpin");
     m_tolerance->setRange(0.0001, 1.0);
     m_tolerance->setKeyboardTracking(false);
@@ -260,6 +263,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     column->addWidget(makeColorRow());
     column->addLayout(status);
     column->addLayout(choices);
+    column->addWidget(new ProfileSettings(m_bench, this));
     column->addLayout(buttons);
 
     const auto triggers = [this](QPushButton* b, const char* action) {

@@ -1,0 +1,56 @@
+// Levenberg–Marquardt with the exact derivatives of W, bounds, and a search from spread starts where it is stuck
+// (docs/method.md, "Newton").
+#pragma once
+
+#include "optimize/optimizer.h"
+
+namespace pellucid {
+
+/// Below this F Newton is content, however large the tolerance is: one move more costs little and ends close by.
+inline constexpr double kNewtonGoal = 1e-3;
+
+/// The fixed part of optimize(): `targets` are normalised, `limits` complete, options valid. `arrive` takes every state
+/// of the history in its order. Throws Cancelled.
+class NewtonSearch {
+public:
+    using Arrive = std::function<void(const OptimizeState&)>;
+    /// `levels`: the volume first, then coarser ones. Keeps references.
+    NewtonSearch(const std::vector<const VwsFunction*>& levels, const std::vector<double>& targets,
+                 const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, const JobControl& job,
+                 Arrive arrive);
+
+    /// From `start`, which has arrived already.
+    StopReason run(const OptimizeState& start);
+
+    int evaluations() const { return m_evaluations; }
+    int spreadStarts() const { return m_spreadStarts; }
+
+private:
+    using Point = std::vector<double>;
+    /// A state with the derivatives of W by y = ln x.
+    struct Linear {
+        OptimizeState state;
+        std::vector<std::vector<double>> derivative; ///< [i][j]: ∂W_i/∂y_j
+    };
+
+    OptimizeState stateOf(const std::vector<double>& vws, const Point& x, std::size_t level) const;
+    std::vector<OptimizeState> evaluate(std::size_t level, const std::vector<Point>& candidates);
+    Linear linearize(std::size_t level, const Point& x);
+    Point inside(Point x) const;
+    std::vector<Point> candidates(const Linear& at, double caution) const;
+    Point steppedBy(const Linear& at, bool logarithmic, double damping, double reach) const;
+    OptimizeState descend(std::size_t level, OptimizeState from, double goal, int moves, bool tell);
+    OptimizeState spread(const OptimizeState& best);
+    std::vector<Point> spreadPoints(int count) const;
+
+    const std::vector<const VwsFunction*>& m_levels;
+    const std::vector<double>& m_targets;
+    const std::vector<OpacityLimits>& m_limits;
+    const OptimizeOptions& m_options;
+    const JobControl& m_job;
+    Arrive m_arrive;
+    std::vector<bool> m_held; ///< features that no move changes
+    int m_evaluations = 0, m_spreadStarts = 0, m_moves = 0;
+};
+
+} // namespace pellucid
