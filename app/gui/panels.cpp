@@ -14,6 +14,8 @@
     PANEL(fieldsPanel) \
     PANEL(galleryPanel) \
     PANEL(viewsPanel) \
+    PANEL(settingsPanel) \
+    PANEL(spacePanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

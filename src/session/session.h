@@ -50,6 +50,7 @@ struct FeatureGoal {
     double target = 0;              ///< wanted share of saliency, [0, 1e9]; shares are scaled to sum 1 over a TF
     bool locked = false;            ///< an optimization leaves its opacity alone
     double lowest = 0, highest = 1; ///< bounds of its opacity, 0 ≤ lowest ≤ highest ≤ 1
+    bool targetLocked = false;      ///< its target stays where those of other features are set
 
     /// What the feature was when it left the transfer function, by which it is known again; empty: it never left.
     struct Departed {
@@ -161,6 +162,7 @@ struct Session {
     Part<std::vector<Variable>> variables; ///< one today; empty: nothing is open
     int frame = 0;
     Part<FeatureGoals> goals;
+    bool holdTargets = false;     ///< live: opacities follow camera, colours and settings so that targets are held
     std::optional<Camera> camera; ///< empty: the home view of the volume
     Part<Clipping> clipping;      ///< what is cut away, of pictures and of figures
     Part<DisplaySettings> display;
@@ -192,14 +194,21 @@ struct Session {
 
 inline constexpr std::size_t kMostRuns = 50;
 
-/// Shares that the features of `tf` are wanted to have, in their order, sum 1: their goals, scaled. A feature without a
-/// goal has the mean of the others; where all are 0 or none has one, shares are equal. Empty without features.
+/// Shares that the features of `tf` are wanted to have, in their order, sum 1: their goals, scaled; those whose target
+/// is locked keep theirs as far as the sum is 1. A feature without a goal has the mean of the others; where all are 0 or
+/// none has one, shares are equal. Empty without features.
 std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& goals);
 /// The goals after the features of `tf` (which have identities) got `targets`, in their order.
 FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const std::vector<double>& targets);
 /// What an optimization may do to the opacities of the features of `tf`, in their order. A hidden feature is locked.
 std::vector<OpacityLimits> limitsOf(const TransferFunction& tf, const FeatureGoals& goals);
-/// One share set to `value` in [0,1]; the others divide the rest in their old proportion.
-std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value);
+/// Features of `tf`, in their order, whose share stays where others are set: locked or hidden ones.
+std::vector<bool> heldTargets(const TransferFunction& tf, const FeatureGoals& goals);
+/// One share set to `value`, as far as those that are `held` (one per feature, or empty: none is) leave room for it; the
+/// others divide the rest in their old proportion. As it is where nobody else could give way.
+std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value,
+                               const std::vector<bool>& held = {});
+/// The goals after the target of one feature was locked or let go: shares are what they were.
+FeatureGoals withTargetLocked(FeatureGoals goals, const TransferFunction& tf, std::size_t feature, bool locked);
 
 } // namespace pellucid

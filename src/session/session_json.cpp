@@ -243,6 +243,7 @@ json fromGoals(const FeatureGoals& goals) {
     for (const auto& [id, g] : goals) {
         all.push_back(
             {{"id", id}, {"target", g.target}, {"locked", g.locked}, {"lowest", g.lowest}, {"highest", g.highest}});
+        if (g.targetLocked) all.back()["target_locked"] = true;
         if (g.departed)
             all.back()["departed"] = {{"name", g.departed->name}, {"range", {g.departed->a, g.departed->b}}};
     }
@@ -257,6 +258,7 @@ FeatureGoals toGoals(const JsonValue& j) {
         if (item.has("locked")) g.locked = item["locked"].boolean();
         if (item.has("lowest")) g.lowest = item["lowest"].number(0, 1);
         if (item.has("highest")) g.highest = item["highest"].number(g.lowest, 1);
+        if (item.has("target_locked")) g.targetLocked = item["target_locked"].boolean();
         if (item.has("departed")) {
             const JsonValue departed = item["departed"];
             const auto range = departed["range"].items(2);
@@ -651,6 +653,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"variables", json::array()},
            {"frame", s.frame},
            {"features", fromGoals(*s.goals)},
+           {"hold_targets", s.holdTargets},
            {"clip", fromClipping(*s.clipping)},
            {"display", fromDisplay(*s.display)},
            {"reference", fromReference(*s.reference)},
@@ -678,6 +681,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     s.variables = std::move(variables);
     if (j.has("frame")) s.frame = static_cast<int>(j["frame"].integer(0, 1'000'000'000));
     if (j.has("features")) s.goals = toGoals(j["features"]);
+    if (j.has("hold_targets")) s.holdTargets = j["hold_targets"].boolean();
     if (j.has("camera")) s.camera = cameraFromJson(j["camera"]);
     if (j.has("clip")) s.clipping = toClipping(j["clip"]);
     if (j.has("display")) s.display = toDisplay(j["display"]);
@@ -699,8 +703,9 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         }
         s.runs = std::move(runs);
     }
-    s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "camera", "clip", "display",
-                                 "reference", "measure", "optimize", "refine", "slices", "field", "runs", "title"});
+    s.extraJson =
+        j.unknownKeys({"format", "version", "variables", "frame", "features", "hold_targets", "camera", "clip",
+                       "display", "reference", "measure", "optimize", "refine", "slices", "field", "runs", "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

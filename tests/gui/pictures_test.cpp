@@ -7,6 +7,7 @@
 #include <QDockWidget>
 #include <QDoubleSpinBox>
 
+#include "panels/space_panel.h"
 #include "render/camera_motion.h"
 #include "render/clip_handles.h"
 #include "selection.h"
@@ -77,6 +78,21 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     grab(w, "window_influence.png");
 }
 
+TEST_CASE("targets for the guide", "[.pictures][.targetspicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
+    if (source.isSample()) source.sampleSize = 160;
+    w.open(source);
+    w.settle();
+    w.child<QAction>("targetsDiagonal").trigger();
+    w.child<TargetBars>("targetBars").toggleLock(0);
+    w.child<QAction>("liveTargetsAction").trigger();
+    grab(w, "targets.png");
+}
+
 TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
@@ -142,4 +158,30 @@ TEST_CASE("a field for the guide", "[.pictures][.fieldpicture]") {
         session.field.edit([](FieldView& f) { f.kind = FieldKind::Vws; });
     });
     grab(w, "fields.png");
+}
+
+TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w(64);
+    w.window.resize(1280, 860);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
+    w.opening().openVolume(source, "tents:3");
+    w.settle();
+    w.child<QAction>("spaceAction").trigger();
+    w.document().setTargets({0.1, 0.3, 0.6});
+    for (const SearchMethod method : {SearchMethod::Parallel, SearchMethod::Fixed}) {
+        w.bench().store().edit("Method", {}, [method](Session& session) {
+            session.optimize.edit([method](OptimizeOptions& options) { options.method = method; });
+        });
+        w.document().setTf(tents(3), "Start");
+        w.settle();
+        w.optimizing().start();
+        REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    }
+    w.settle();
+    auto& panel = w.child<SpacePanel>("spacePanel");
+    panel.compute();
+    REQUIRE(waitFor([&] { return panel.isCurrent() && panel.isPictureComplete(); }));
+    grab(w, "parameter_space.png");
 }

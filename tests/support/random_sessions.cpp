@@ -90,6 +90,7 @@ FeatureGoals randomGoals(Random& random, int features) {
         FeatureGoal g;
         g.target = random.chance(0.2) ? 0 : oddNumber(random, 0, random.chance(0.5) ? 1 : kLargestTarget);
         g.locked = random.chance(0.3);
+        g.targetLocked = random.chance(0.2);
         if (random.chance(0.3)) {
             g.lowest = oddNumber(random, 0, 0.5);
             g.highest = oddNumber(random, 0.5, 1);
@@ -263,6 +264,7 @@ Session randomSession(std::uint32_t number) {
     if (number % 10 != 9) s.variables = std::vector<Variable>{randomVariable(random, features)};
     s.frame = random.chance(0.6) ? 0 : random.below(60);
     s.goals = randomGoals(random, features);
+    s.holdTargets = random.chance(0.3);
     if (random.chance(0.5)) s.camera = randomCamera(random);
     if (random.chance(0.5)) {
         Clipping clipping{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1), {}};
