@@ -8,6 +8,7 @@
 
 #include "optimize/coarser.h"
 #include "optimize/density_curve.h"
+#include "optimize/fields.h"
 #include "optimize/measure.h"
 #include "optimize/occlusion.h"
 #include "optimize/verdict.h"
@@ -28,6 +29,9 @@ public:
     Measures measure(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
+    /// What every voxel contributes, of one kind; where `feature` of the input's transfer function is not −1, of its
+    /// voxels alone, 0 elsewhere. Saliency needs no engine. Throws as measure() does.
+    Field field(const MeasureInput& input, FieldKind kind, int feature = -1, const JobControl& job = {});
     /// Who hides whom.
     OcclusionMatrix occlusion(const MeasureInput& input, const JobControl& job = {});
     /// `limits`: one per feature, or empty. The answer is made visible, see makeVisible().

@@ -145,6 +145,21 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
     grab(w, "refiner.png");
 }
 
+TEST_CASE("a field for the guide", "[.pictures][.fieldpicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    VolumeSource source;
+    source.path = "sample:shells";
+    w.open(source);
+    w.child<QAction>("fieldsAction").trigger();
+    w.bench().store().edit("Field", {}, [](Session& session) {
+        session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
+        session.field.edit([](FieldView& f) { f.kind = FieldKind::Vws; });
+    });
+    grab(w, "fields.png");
+}
+
 TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w(64);
