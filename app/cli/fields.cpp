@@ -102,6 +102,7 @@ Answer run(const Options& o, Progress& progress) {
               {"volume", jsonFromVolume(*input.volume)},
               {"files", names},
               {"seconds", {{"total", total.seconds()}}}};
+    addProfile(json, input.settings);
     return {text, std::move(json), opened.notices(), {}};
 }
 

@@ -2,13 +2,16 @@
 #include <algorithm>
 
 #include "commands.h"
+#include "optimize_report.h"
 #include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
+#include "render/camera_motion.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/view_workspace.h"
 #include "tf/formats/tf_json.h"
 #include "tf/shown_tf.h"
 
@@ -63,8 +66,9 @@ struct Options {
     std::vector<NamedLimits> limits;
     std::vector<std::string> locked;
     std::optional<TargetInput> targets;
-    std::optional<std::string> outTf;
+    std::optional<std::string> outTf, outCamera;
     bool requireConverged = false;
+    ReportOptions report;
 };
 
 struct Seconds {
@@ -127,32 +131,56 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
+    if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputFiles(o.scene));
+    if (o.report.any()) o.report.check(inputFiles(o.scene));
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
-    const Scene& scene = opened.scene;
+    Scene scene = opened.scene;
     const std::vector<double> named = o.targets ? o.targets->of(scene) : scene.targets();
     atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
     const std::vector<double> targets = shownShares(scene.tf, named);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
     const std::vector<OpacityLimits> limits = limitsOf(o, scene);
-    const MeasureInput input = measureInput(scene);
+    MeasureInput input = measureInput(scene);
     Workspace workspace;
     const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
 
     JobControl job = progress.phase("optimizing");
     job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
     int moves = -1;
-    OptimizeResult result = workspace.optimize(
-        input, targets, limits, options, job, [&](const OptimizeState& state) {
-            progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
-        });
+    const auto tell = [&](const OptimizeState& state) {
+        progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
+    };
+    OptimizeResult result;
+    if (o.scene.camera.best) {
+        ViewWorkspace views;
+        ViewAndOpacities found =
+            optimizeViewAndOpacities(workspace, views, input, targets, limits, options, progress.phase("views"),
+                                     [&](const MeasureInput&, const OptimizeState& state) { tell(state); });
+        input.view = found.input.view;
+        scene.camera = input.view.camera;
+        scene.session.camera = scene.camera;
+        result = std::move(found.result);
+    } else {
+        result = workspace.optimize(input, targets, limits, options, job, tell);
+    }
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(result, engine, seconds), jsonOf(result, options, *input.volume, engine, seconds), opened.notices(),
-            failureOf(o, options, result)};
+    if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
+    std::string text = textOf(result, engine + profileText(input.settings), seconds);
+    Json json = jsonOf(result, options, *input.volume, engine, seconds);
+    addProfile(json, input.settings);
+    if (o.scene.camera.best) {
+        const ViewAngles angles = viewAngles(input.view.camera, input.volume->geometry());
+        text += "view " + fixedText(angles.azimuth, 1) + "," + fixedText(angles.elevation, 1) + " degrees\n";
+        json.update(jsonFromView(input.view.camera, input.volume->geometry()));
+    }
+    Answer answer{std::move(text), std::move(json), opened.notices(), failureOf(o, options, result)};
+    o.report.write(scene, options, result, seconds.search, workspace, progress, answer);
+    return answer;
 }
 
 void SearchOptions::add(CLI::App& app) {
@@ -199,6 +227,7 @@ Command addOptimize(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("optimize", "Finds the opacities that give each feature its target saliency");
     const auto o = std::make_shared<Options>();
+    o->scene.camera.mayBeBest = true;
     o->scene.addForFigures(*app);
     addValue(
         *app, "--target", kTargetForms,
@@ -216,6 +245,10 @@ Command addOptimize(CLI::App& program) {
     addValue(
         *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
         "write the optimized transfer function (the best one seen)");
+    o->report.add(*app);
+    addValue(
+        *app, "--out-camera", "FILE", [o](const std::string& text, const std::string&) { o->outCamera = text; },
+        "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where the targets are not reached; the answer is written all the same");
     return {app, [o](Progress& progress) { return run(*o, progress); }};

@@ -23,6 +23,8 @@ _pellucid_cli() {
     case $previous in
         --engine) choices="auto gl cpu slices reference" ;;
         --quality) choices="normal high" ;;
+        --profile) choices="default published" ;;
+        --along) choices="top bottom front back left right" ;;
         --kernel) choices="thesis narrow" ;;
         --method)
             choices="fixed line parallel"
@@ -41,14 +43,18 @@ _pellucid_cli() {
         --background) choices="transparent" ;;
         --target) choices="equal diagonal inside-out only:" ;;
         --annotate) choices="all cube letters axes scale legend title" ;;
-        --view) choices="anterior posterior left right superior inferior front back top bottom" ;;
+        --view)
+            choices="anterior posterior left right superior inferior front back top bottom"
+            [[ $command == optimize ]] && choices+=" best"
+            ;;
+        --metric) choices="vws visibility" ;;
         --tf)
             choices="auto tents: ramp: $("$program" presets 2>/dev/null | sed -n 's/^\(preset:[^ ]*\) .*/\1/p')"
             COMPREPLY=($(compgen -W "$choices" -- "$current") $(compgen -f -- "$current"))
             choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --session | --out | --out-tf)
+        --camera | --session | --out | --out-tf | --out-camera | --map)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return
@@ -56,7 +62,7 @@ _pellucid_cli() {
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
-            --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | \
+            --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
             --image-size | --fix | --tolerance | --window | --tf-strength)
             return
             ;;

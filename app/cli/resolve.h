@@ -8,6 +8,7 @@
 #include "options/clip_options.h"
 #include "options/engine_options.h"
 #include "options/picture_options.h"
+#include "options/profile_options.h"
 #include "options/saliency_options.h"
 #include "options/session_options.h"
 #include "options/tf_options.h"
@@ -25,6 +26,7 @@ struct SceneOptions {
     ClipOptions clip;
     EngineOptions engine;
     SaliencyInput saliency;
+    ProfileOptions profile;
     PictureOptions picture;
 
     /// All that figures of a view depend on: the groups of `measure`, `fields` and `optimize`.

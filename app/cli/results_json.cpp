@@ -1,6 +1,7 @@
 #include "results_json.h"
 
 #include "optimize/refine_words.h"
+#include "render/camera_motion.h"
 #include "tf/formats/tf_json.h"
 
 namespace pellucid::cli {
@@ -56,6 +57,12 @@ Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& option
         j["opacity"].push_back(state.opacity);
     }
     return j;
+}
+
+Json jsonFromView(const Camera& camera, const Geometry& geometry) {
+    const ViewAngles angles = viewAngles(camera, geometry);
+    return {{"view", {{"azimuth", angles.azimuth}, {"elevation", angles.elevation}}},
+            {"camera", Json(jsonFromCamera(camera))}};
 }
 
 } // namespace pellucid::cli

@@ -4,6 +4,8 @@
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
 #include "output.h"
+#include "render/camera.h"
+#include "render/camera.h"
 
 namespace pellucid::cli {
 
@@ -12,5 +14,8 @@ namespace pellucid::cli {
 Json jsonFromRefinement(const TransferFunction& before, const RefineResult& result, RefineMethod method,
                         const RefineComparison& comparison, Json priority);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
+
+/// {"view":{"azimuth","elevation"},"camera":{…}}: where an eye is, in degrees, and all of the camera.
+Json jsonFromView(const Camera& camera, const Geometry& geometry);
 
 } // namespace pellucid::cli

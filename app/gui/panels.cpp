@@ -7,11 +7,13 @@
     PANEL(featuresPanel) \
     PANEL(refinePanel) \
     PANEL(influencePanel) \
+    PANEL(convergencePanel) \
     PANEL(displayPanel) \
     PANEL(lightPanel) \
     PANEL(clipPanel) \
     PANEL(galleryPanel) \
     PANEL(settingsPanel) \
+    PANEL(viewsPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

@@ -76,7 +76,10 @@ VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* pare
     layout->setContentsMargins(0, 0, 0, 0);
     m_overlay->add(std::make_unique<FrameLayer>());
     chooseRenderer(renderer);
-    connect(&store, &SessionStore::changed, this, &VolumeView::updateScene);
+    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.volume != after.volume) lookFrom({});
+        updateScene();
+    });
 }
 
 void VolumeView::chooseRenderer(ViewRenderer wanted) {
@@ -163,7 +166,17 @@ void VolumeView::surfaceFailed(const Error& error) {
 }
 
 void VolumeView::updateScene() {
-    if (m_store.hasVolume()) m_surface->setScene(pictureInput(m_store.scene(), 1, 1));
+    if (!m_store.hasVolume()) return;
+    PictureInput picture = pictureInput(m_store.scene(), 1, 1);
+    if (m_glimpse) picture.camera = *m_glimpse;
+    m_surface->setScene(picture);
+}
+
+void VolumeView::lookFrom(const std::optional<Camera>& camera) {
+    if (camera == m_glimpse) return;
+    m_glimpse = camera;
+    m_overlay->lookFrom(camera);
+    updateScene();
 }
 
 void VolumeView::mousePressEvent(QMouseEvent* event) {

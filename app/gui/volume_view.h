@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <QElapsedTimer>
 #include <QPointF>
@@ -30,6 +31,8 @@ public:
     const FrameInfo& frame() const { return m_surface->frame(); }
     bool isComplete() const { return m_surface->frame().complete; }
     ViewOverlay& overlay() { return *m_overlay; }
+    /// Shows the scene from another camera for a while; empty: from its own again. The store hears nothing of it.
+    void lookFrom(const std::optional<Camera>& camera);
     QString rendererName() const { return m_surface->rendererName(); }
     QString rendererReason() const { return m_reason; } ///< why it draws, a sentence
 
@@ -62,6 +65,7 @@ private:
     void updateScene();
 
     SessionStore& m_store;
+    std::optional<Camera> m_glimpse;
     std::unique_ptr<ViewSurface> m_surface;
     ViewOverlay* m_overlay; // a child
     Motion m_motion = Motion::None;

@@ -49,6 +49,9 @@ struct OptimizeOptions {
     bool restarts = true;    ///< Newton: where it is stuck it tries starts spread over all opacities
     /// Newton: mean alpha that is wanted of the picture, (0, 1]; empty: as strong as shares allow.
     std::optional<double> coverage = {};
+    /// Line and Parallel: the lengths 1, 2, 4 and 8 base steps (docs/method.md, "The published profile"). Follows from
+    /// the profile and is kept in no session.
+    bool publishedSteps = false;
     void validate() const; ///< throws UsageError
     bool operator==(const OptimizeOptions&) const = default;
 };

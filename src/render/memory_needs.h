@@ -14,6 +14,8 @@ inline constexpr double kMeasureBytesPerVoxel = 8, kLeanMeasureBytesPerVoxel = 2
 inline constexpr double kFieldsBytesPerVoxel = 12, kLeanFieldsBytesPerVoxel = 10;
 /// The reference engine keeps intensities as doubles, and which are valid, in the place of codes: so much more.
 inline constexpr double kMoreByReferenceBytesPerVoxel = 5, kLeanMoreByReferenceBytesPerVoxel = 8;
+/// The published profile's weights are never compact.
+inline constexpr double kMoreByPublishedLeanBytesPerVoxel = 3;
 /// To look at a volume takes its codes, and which are valid.
 inline constexpr double kViewBytesPerVoxel = 3, kLeanViewBytesPerVoxel = 1;
 
@@ -26,6 +28,11 @@ inline MemoryUse toView(std::string doing) { return {std::move(doing), kViewByte
 inline MemoryUse byReference(MemoryUse use) {
     use.bytesPerVoxel += kMoreByReferenceBytesPerVoxel;
     use.leanBytesPerVoxel += kLeanMoreByReferenceBytesPerVoxel;
+    return use;
+}
+/// The same by the published profile.
+inline MemoryUse byPublished(MemoryUse use) {
+    use.leanBytesPerVoxel += kMoreByPublishedLeanBytesPerVoxel;
     return use;
 }
 

@@ -3,7 +3,8 @@
 #include <utility>
 
 #include "optimize/first_sight.h"
-#include "tf/formats/tf_json.h"
+#include "render/published_engine.h"
+#include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 
@@ -104,6 +105,11 @@ bool needsData(const Session& session, const Scene& basis) {
     return !(now.source == basis.session.variable().source) || windowOf(now, *basis.data) != basis.volume->range();
 }
 
+void placeAsPublished(const Session& session, const Volume& data, TransferFunction& tf) {
+    if (session.measure->profile == Profile::Published && !tf.range && data.sampleType() == SampleType::U8)
+        tf.range = ValueRange{0, 255};
+}
+
 Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const JobControl& job) {
     Scene scene;
     scene.session = std::move(session);
@@ -181,8 +187,17 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (!window && tf && tf->range) window = tf->range;
     if (window) session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
     if (!tf && session.tf() == nullptr && inputs.start == SceneInputs::Start::Tents) tf = tents(3);
-    if (tf) session.setTf(std::move(*tf));
+    if (tf) session.setTf(*tf);
+    const bool windowIsOpen = !session.variable().window;
     Scene scene = resolve(std::move(session), {}, inputs.then, job);
+    if (tf && windowIsOpen) { // what kind of samples there are is known now
+        placeAsPublished(scene.session, *scene.data, *tf);
+        if (tf->range) {
+            scene.session.variables.edit([&](std::vector<Variable>& all) { all.front().window = tf->range; });
+            scene.session.setTf(std::move(*tf));
+            scene = resolve(scene.session, scene, inputs.then, job);
+        }
+    }
     if (inputs.start == SceneInputs::Start::Tuned && scene.proposal) {
         scene.session.setTf(tunedTf(scene, job));
         resolveTf(scene);
@@ -207,7 +222,23 @@ void prepareToShow(Scene& scene, const JobControl& job) {
 }
 
 MeasureInput measureInput(const Scene& scene) {
+    if (const MeasureSettings& wanted = *scene.session.measure; wanted.profile == Profile::Published && scene.volume) {
+        MeasureSettings settings;
+        settings.profile = wanted.profile;
+        settings.along = wanted.along;
+        const Camera camera = cameraAlong(scene.volume->geometry(), wanted.along);
+        return {scene.volume, shownTf(scene.tf), {camera, *scene.session.clipping}, settings};
+    }
     return {scene.volume, shownTf(scene.tf), {scene.camera, *scene.session.clipping}, *scene.session.measure};
+}
+
+RunStart runStartOf(const Scene& scene, const OptimizeOptions& options) {
+    return {scene.tf,
+            scene.camera,
+            *scene.session.clipping,
+            *scene.session.measure,
+            options,
+            limitsOf(scene.tf, *scene.session.goals)};
 }
 
 PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent) {

@@ -56,10 +56,14 @@ struct SceneInputs {
 /// home view. Throws Error where that is inside its box.
 Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry);
 
+/// In the published profile an intensity of 8-bit data is value/255: a transfer function that says of no values is of
+/// 0 to 255 there. Elsewhere `tf` stays as it is.
+void placeAsPublished(const Session& session, const Volume& data, TransferFunction& tf);
+
 /// Opens everything. The intensity window is `range`, else that of the named transfer-function file, else the
 /// session's (unless kAutomaticTf is asked for), else what the data propose where the transfer function comes from them
-/// too, else the range of the values. A transfer function keeps its data values whatever the window is. Throws
-/// FileError, Error (a camera inside the box), UsageError (no source), Cancelled.
+/// too, else as placeAsPublished() says, else the range of the values. A transfer function keeps its data values
+/// whatever the window is. Throws FileError, Error (a camera inside the box), UsageError (no source), Cancelled.
 Scene openScene(const SceneInputs& inputs, const JobControl& job = {});
 
 /// The transfer function of a scene that has a proposal, with opacities for the home view, whatever its camera is: a
@@ -96,7 +100,11 @@ struct MeasureInput {
     MeasureSettings settings;
     bool operator==(const MeasureInput&) const = default;
 };
+/// Of the published profile the view is that of its axis (cameraAlong()), wherever the camera is, and what the profile
+/// does not depend on is as by default.
 MeasureInput measureInput(const Scene& scene);
+/// What an optimization of the scene under `options` begins with.
+RunStart runStartOf(const Scene& scene, const OptimizeOptions& options);
 
 /// Everything that a picture depends on.
 struct PictureInput {

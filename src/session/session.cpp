@@ -181,9 +181,29 @@ void Session::identifyFeatures() {
 
 void Session::addRun(Run run) {
     runs.edit([&](std::vector<Run>& all) {
+        run.number = 1;
+        for (const Run& other : all) run.number = std::max(run.number, other.number + 1);
         all.push_back(std::move(run));
         if (all.size() > kMostRuns) all.erase(all.begin());
     });
+}
+
+Run runOf(const OptimizeResult& result, RunStart start) {
+    Run run;
+    run.kind = "optimize";
+    run.ended = name(result.reason);
+    for (const Feature& f : start.tf.features) run.features.push_back(f.name);
+    run.targets = result.targets;
+    run.history = result.history;
+    run.best = result.best;
+    if (!result.history.empty()) {
+        run.before = result.history.front().objective;
+        run.after = result.history[result.best].objective;
+    }
+    run.iterations = result.iterations();
+    run.evaluations = result.evaluations;
+    run.start = std::move(start);
+    return run;
 }
 
 std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& goals) {

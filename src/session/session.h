@@ -109,6 +109,17 @@ struct SliceViews {
     bool operator==(const SliceViews&) const = default;
 };
 
+/// What an optimization began with: enough to do it again with the same data.
+struct RunStart {
+    TransferFunction tf; ///< as people edit it, in its own range; without points: not known
+    Camera camera;
+    Clipping clipping;
+    MeasureSettings measure;
+    OptimizeOptions options;
+    std::vector<OpacityLimits> limits; ///< per feature, or empty
+    bool operator==(const RunStart&) const = default;
+};
+
 /// An optimization or refinement that was run, with what came of it.
 struct Run {
     std::string kind;                   ///< "optimize", "refine"
@@ -119,8 +130,17 @@ struct Run {
     std::size_t best = 0;               ///< index into history
     double before = 0, after = 0;       ///< F of an optimization, movable energy of a refinement
     int iterations = 0;
+    int number = 0;       ///< tells it from the other runs of its session, from 1 on; given by addRun()
+    std::string name;     ///< that somebody has given it; empty: none
+    std::string started;  ///< local time, ISO 8601 to the second: "2026-11-22T14:03:07"; empty: not known
+    double seconds = 0;   ///< of the search; 0: not known
+    int evaluations = 0;  ///< of W; 0: not known
+    Part<RunStart> start; ///< of an optimization; files of earlier versions do not tell
+    bool hasStart() const { return !start->tf.points.empty(); }
     bool operator==(const Run&) const = default;
 };
+/// The record of an optimization.
+Run runOf(const OptimizeResult& result, RunStart start);
 
 /// A value: copies share their parts, so that they cost next to nothing, and comparing parts tells what has changed.
 struct Session {
@@ -152,6 +172,7 @@ struct Session {
     void setTf(TransferFunction tf);
     /// Gives the features of all keys that have no identity one, as setTf() does from key to key.
     void identifyFeatures();
+    /// Gives the run a number above all others.
     void addRun(Run run);
 };
 

@@ -430,32 +430,6 @@ SliceViews toSlices(const JsonValue& j) {
     return s;
 }
 
-json fromRun(const Run& r) {
-    json history = json::array();
-    for (const OptimizeState& s : r.history)
-        history.push_back({{"objective", s.objective}, {"vws", s.vws}, {"opacity", s.opacity}, {"level", s.level}});
-    return {{"kind", r.kind},       {"ended", r.ended},   {"features", r.features},
-            {"targets", r.targets}, {"history", history}, {"best", r.best},
-            {"before", r.before},   {"after", r.after},   {"iterations", r.iterations}};
-}
-
-Run toRun(const JsonValue& j) {
-    Run r;
-    r.kind = j["kind"].text();
-    r.ended = j["ended"].text();
-    for (const JsonValue& name : j["features"].items()) r.features.push_back(name.text());
-    r.targets = j["targets"].numbers();
-    for (const JsonValue& s : j["history"].items())
-        r.history.push_back({s["objective"].number(), s["vws"].numbers(), s["opacity"].numbers(),
-                             s.has("level") ? static_cast<int>(s["level"].integer(0, 1)) : 0});
-    r.best = static_cast<std::size_t>(j["best"].integer(0, INT64_MAX));
-    if (r.best > 0 && r.best >= r.history.size()) j["best"].fail("the history has no such state");
-    r.before = j["before"].number();
-    r.after = j["after"].number();
-    r.iterations = static_cast<int>(j["iterations"].integer(0, 1'000'000'000));
-    return r;
-}
-
 /// A vector of the world.
 Vec3 toWorld(const JsonValue& j) { return toVec(j, -1e30, 1e30); }
 
@@ -553,6 +527,92 @@ Clipping toClipping(const JsonValue& j) {
     return c;
 }
 
+/// With what the other projection would take up again.
+json fromCamera(const Camera& camera) {
+    json j = jsonFromCamera(camera);
+    j["fov_y"] = camera.fovY;
+    j["height"] = camera.height;
+    return j;
+}
+
+json fromRunStart(const RunStart& start) {
+    json j{{"tf", jsonFromTf(start.tf, Identities::Keep)}, {"camera", fromCamera(start.camera)},
+           {"clip", fromClipping(start.clipping)},         {"measure", fromMeasure(start.measure)},
+           {"optimize", fromOptimize(start.options)},      {"limits", json::array()}};
+    for (const OpacityLimits& l : start.limits)
+        j["limits"].push_back({{"lowest", l.lowest}, {"highest", l.highest}, {"locked", l.locked}});
+    return j;
+}
+
+RunStart toRunStart(const JsonValue& j, std::size_t features) {
+    RunStart start;
+    start.tf = tfFromJson(j["tf"], Identities::Keep);
+    start.camera = cameraFromJson(j["camera"]);
+    start.clipping = toClipping(j["clip"]);
+    start.measure = toMeasure(j["measure"]);
+    start.options = toOptimize(j["optimize"]);
+    for (const JsonValue& l : j["limits"].items()) {
+        start.limits.push_back({l["lowest"].number(0, 1), l["highest"].number(0, 1), l["locked"].boolean()});
+        if (start.limits.back().lowest > start.limits.back().highest) l.fail("its bounds are the wrong way round");
+    }
+    if (start.tf.features.size() != features) j["tf"].fail("the run has another number of features");
+    if (!start.limits.empty() && start.limits.size() != features) j["limits"].fail("a feature has one each");
+    return start;
+}
+
+json fromRun(const Run& r) {
+    json history = json::array();
+    for (const OptimizeState& s : r.history)
+        history.push_back({{"objective", s.objective}, {"vws", s.vws}, {"opacity", s.opacity}, {"level", s.level}});
+    json j{{"kind", r.kind},
+           {"ended", r.ended},
+           {"features", r.features},
+           {"targets", r.targets},
+           {"history", history},
+           {"best", r.best},
+           {"before", r.before},
+           {"after", r.after},
+           {"iterations", r.iterations},
+           {"number", r.number},
+           {"name", r.name},
+           {"started", r.started},
+           {"seconds", r.seconds},
+           {"evaluations", r.evaluations}};
+    if (r.hasStart()) j["start"] = fromRunStart(*r.start);
+    return j;
+}
+
+Run toRun(const JsonValue& j) {
+    constexpr double kMost = 1'000'000'000;
+    Run r;
+    r.kind = j["kind"].text();
+    r.ended = j["ended"].text();
+    for (const JsonValue& name : j["features"].items()) r.features.push_back(name.text());
+    const auto perFeature = [&](const JsonValue& numbers) {
+        const std::vector<double> all = numbers.numbers();
+        if (all.size() != r.features.size()) numbers.fail("each feature of the run has one number");
+        return all;
+    };
+    r.targets = j["targets"].numbers();
+    for (const JsonValue& s : j["history"].items())
+        r.history.push_back({s["objective"].number(), perFeature(s["vws"]), perFeature(s["opacity"]),
+                             s.has("level") ? static_cast<int>(s["level"].integer(0, 1)) : 0});
+    if (!r.history.empty()) perFeature(j["targets"]);
+    r.best = static_cast<std::size_t>(j["best"].integer(0, INT64_MAX));
+    if (r.best > 0 && r.best >= r.history.size()) j["best"].fail("the history has no such state");
+    r.before = j["before"].number();
+    r.after = j["after"].number();
+    r.iterations = static_cast<int>(j["iterations"].integer(0, static_cast<std::int64_t>(kMost)));
+    if (j.has("number")) r.number = static_cast<int>(j["number"].integer(0, static_cast<std::int64_t>(kMost)));
+    if (j.has("name")) r.name = j["name"].text();
+    if (j.has("started")) r.started = j["started"].text();
+    if (j.has("seconds")) r.seconds = j["seconds"].number(0, kMost);
+    if (j.has("evaluations"))
+        r.evaluations = static_cast<int>(j["evaluations"].integer(0, static_cast<std::int64_t>(kMost)));
+    if (j.has("start")) r.start = toRunStart(j["start"], r.features.size());
+    return r;
+}
+
 } // namespace
 
 json jsonFromSession(const Session& s, const std::string& folder, DataPaths paths) {
@@ -572,12 +632,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
-    if (s.camera) {
-        j["camera"] = jsonFromCamera(*s.camera);
-        // What the other projection would take up again.
-        j["camera"]["fov_y"] = s.camera->fovY;
-        j["camera"]["height"] = s.camera->height;
-    }
+    if (s.camera) j["camera"] = fromCamera(*s.camera);
     addUnknownKeys(j, s.extraJson);
     return j;
 }
@@ -604,7 +659,14 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
     if (j.has("runs")) {
         std::vector<Run> runs;
-        for (const JsonValue& run : j["runs"].items()) runs.push_back(toRun(run));
+        int highest = 0;
+        for (const JsonValue& run : j["runs"].items()) {
+            runs.push_back(toRun(run));
+            const auto same = [&](const Run& other) { return other.number == runs.back().number; };
+            if (runs.back().number == 0 || std::find_if(runs.begin(), runs.end() - 1, same) != runs.end() - 1)
+                runs.back().number = highest + 1; // as in files of earlier versions
+            highest = std::max(highest, runs.back().number);
+        }
         s.runs = std::move(runs);
     }
     s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "hold_targets", "camera", "clip",

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "optimize/measure.h"
+#include "optimize/occlusion.h"
 #include "session/scene.h"
 
 namespace pellucid {
@@ -23,6 +24,8 @@ public:
     Measures measure(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
+    /// Who hides whom.
+    OcclusionMatrix occlusion(const MeasureInput& input, const JobControl& job = {});
     /// `limits`: one per feature, or empty.
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
@@ -42,6 +45,7 @@ private:
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
     Quality m_quality = Quality::Normal;
+    Profile m_engineProfile = Profile::Default, m_weightsProfile = Profile::Default;
     std::unique_ptr<VisibilityEngine> m_engine;
     TransferFunction m_weightsTf; // its colorsOf()
     SaliencyOptions m_weightsOptions;

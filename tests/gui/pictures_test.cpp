@@ -105,6 +105,19 @@ TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
     grab(w, "probe.png");
 }
 
+TEST_CASE("the globe for the guide", "[.pictures][.globepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
+    if (source.isSample()) source.sampleSize = 160;
+    w.open(source);
+    w.child<QAction>("viewsAction").trigger();
+    QTest::qWait(1000); // it begins when everything rests
+    grab(w, "best_view.png");
+}
+
 TEST_CASE("the refiner for the guide", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;

@@ -103,26 +103,6 @@ FeatureGoals randomGoals(Random& random, int features) {
     return goals;
 }
 
-Run randomRun(Random& random) {
-    Run r;
-    r.kind = random.chance(0.5) ? "optimize" : "refine";
-    r.ended = oneOf(random, std::array{"converged", "max-iterations", "no-progress", "cancelled", "done"});
-    const auto n = static_cast<std::size_t>(random.below(4));
-    const auto numbers = [&] {
-        std::vector<double> all;
-        for (std::size_t i = 0; i < n; ++i) all.push_back(oddNumber(random, 0, 1));
-        return all;
-    };
-    for (std::size_t i = 0; i < n; ++i) r.features.push_back("f" + std::to_string(i));
-    r.targets = numbers();
-    for (int i = random.below(5); i > 0; --i) r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(2)});
-    if (!r.history.empty()) r.best = static_cast<std::size_t>(random.below(static_cast<int>(r.history.size())));
-    r.before = oddNumber(random, 0, 1e10);
-    r.after = oddNumber(random, 0, 1);
-    r.iterations = random.below(1000);
-    return r;
-}
-
 MeasureSettings randomMeasure(Random& random) {
     MeasureSettings m;
     m.saliency.sigma = random.between(0.01, 8);
@@ -142,8 +122,8 @@ MeasureSettings randomMeasure(Random& random) {
 
 OptimizeOptions randomOptimize(Random& random) {
     OptimizeOptions o;
-    o.method = oneOf(random, std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel,
-                                        SearchMethod::Newton});
+    o.method = oneOf(random,
+                     std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel, SearchMethod::Newton});
     o.direction =
         oneOf(random, std::array{Direction::Gradient, Direction::Backward, Direction::Second, Direction::Exact});
     o.b = random.between(1e-3, 1e3);
@@ -155,6 +135,42 @@ OptimizeOptions randomOptimize(Random& random) {
     o.tolerance = random.between(1e-9, 0.5);
     o.maxIterations = random.below(100000);
     return o;
+}
+
+Run randomRun(Random& random) {
+    Run r;
+    r.kind = random.chance(0.5) ? "optimize" : "refine";
+    r.ended = oneOf(random, std::array{"converged", "max-iterations", "no-progress", "cancelled", "done"});
+    const auto n = static_cast<std::size_t>(random.below(4));
+    const auto numbers = [&] {
+        std::vector<double> all;
+        for (std::size_t i = 0; i < n; ++i) all.push_back(oddNumber(random, 0, 1));
+        return all;
+    };
+    for (std::size_t i = 0; i < n; ++i) r.features.push_back("f" + std::to_string(i));
+    r.targets = numbers();
+    for (int i = random.below(5); i > 0; --i)
+        r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(2)});
+    if (!r.history.empty()) r.best = static_cast<std::size_t>(random.below(static_cast<int>(r.history.size())));
+    r.before = oddNumber(random, 0, 1e10);
+    r.after = oddNumber(random, 0, 1);
+    r.iterations = random.below(1000);
+    r.seconds = oddNumber(random, 0, 1e6);
+    r.evaluations = random.below(100'000);
+    if (random.chance(0.5)) r.name = "run \"" + std::to_string(random.below(100)) + "\" of mine, ä";
+    if (random.chance(0.5)) r.started = "2026-11-22T14:03:07";
+    if (n > 0 && random.chance(0.5)) {
+        RunStart start;
+        start.tf = tents(static_cast<int>(n), random.between(0.01, 1));
+        start.camera = randomCamera(random);
+        start.clipping.lo.x = random.between(0, 0.4);
+        start.measure = randomMeasure(random);
+        start.options = randomOptimize(random);
+        if (random.chance(0.5))
+            start.limits.assign(n, {random.between(0, 0.3), random.between(0.4, 1), random.chance(0.5)});
+        r.start = std::move(start);
+    }
+    return r;
 }
 
 RefineSettings randomRefine(Random& random) {

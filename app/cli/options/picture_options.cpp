@@ -48,16 +48,8 @@ void PictureOptions::applyTo(SceneInputs& inputs) const {
 
 void PictureOptions::applyTo(Scene& scene) const {
     if (!feature) return;
-    std::string known;
-    for (const Feature& f : scene.tf.features) {
-        if (f.name == *feature) {
-            scene.session.display.edit([&](DisplaySettings& d) { d.onlyFeature = f.id; });
-            return;
-        }
-        known += (known.empty() ? "'" : ", '") + f.name + "'";
-    }
-    throw UsageError("no feature is named '" + *feature + "'", "--feature",
-                     known.empty() ? "leave it out: this transfer function has none" : "known: " + known);
+    const FeatureId id = scene.tf.features[parseFeature(*feature, "--feature", scene.tf)].id;
+    scene.session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; });
 }
 
 PictureInput PictureOptions::pictureOf(const Scene& scene) const {

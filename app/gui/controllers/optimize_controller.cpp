@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <QDateTime>
+
 #include "tf/shown_tf.h"
 #include "workbench.h"
 
@@ -15,20 +17,6 @@ QString counted(int n, const QString& one, const QString& many) {
 QString fixed4(double value) { return QString::number(value, 'f', 4); }
 
 constexpr double kLeastStart = 1e-4; ///< opacity of a restart: from 0 there is no way for what scales
-
-Run runOf(const OptimizeResult& result, const TransferFunction& tf) {
-    Run run;
-    run.kind = "optimize";
-    run.ended = name(result.reason);
-    for (const Feature& f : tf.features) run.features.push_back(f.name);
-    run.targets = result.targets;
-    run.history = result.history;
-    run.best = result.best;
-    run.before = result.history.front().objective;
-    run.after = result.history[result.best].objective;
-    run.iterations = result.iterations();
-    return run;
-}
 
 } // namespace
 
@@ -126,6 +114,9 @@ void OptimizeController::begin(Task task) {
     m_opacity.clear();
     task.number = ++m_number;
     m_task = task;
+    m_run = runOf({.tf = {}, .targets = task.targets, .history = {}}, runStartOf(m_bench.scene(), task.options));
+    m_run.started = QDateTime::currentDateTime().toString(Qt::ISODate).toStdString();
+    m_since.start();
     m_job.start(std::move(task), tr("the optimization"));
     Q_EMIT moved();
 }
@@ -153,7 +144,9 @@ void OptimizeController::showMove(const Task& task, int move, const OptimizeStat
     m_move = move;
     m_opacity = state.opacity;
     m_objective = state.objective;
-    if (move == 0) m_firstObjective = state.objective;
+    if (move == 0) m_firstObjective = m_run.before = state.objective;
+    m_run.history.push_back(state);
+    m_run.after = state.objective;
     const TransferFunction tf = withShownOpacities(task.tf, state.opacity);
     m_bench.store().preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     if (!isRunning()) return;        // whoever saw it has stopped it
@@ -167,9 +160,12 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     SessionStore& store = m_bench.store();
     const OptimizeState& best = result.history[result.best];
     const TransferFunction tf = withShownOpacities(task.tf, best.opacity);
+    Run run = runOf(result, task.start());
+    run.started = m_run.started;
+    run.seconds = static_cast<double>(m_since.elapsed()) / 1000;
     store.preview(tr("Optimize"), [&](Session& session) {
         session.setTf(tf);
-        session.addRun(runOf(result, tf));
+        session.addRun(run);
     });
     store.commit();
     MeasureInput input = task.input;

@@ -1,6 +1,7 @@
 // Optimization: start, watch, stop, and what is said of them.
 #pragma once
 
+#include <QElapsedTimer>
 #include <QObject>
 
 #include "jobs/job.h"
@@ -34,6 +35,8 @@ public:
     double objective() const { return m_objective; }
     double firstObjective() const { return m_firstObjective; }
     int restarts() const { return m_restarts; } ///< because the view has turned
+    /// Its record so far; null where none runs.
+    const Run* underWay() const { return isRunning() ? &m_run : nullptr; }
 
     /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present
     /// state any more.
@@ -59,6 +62,7 @@ private:
         std::vector<OpacityLimits> limits;
         OptimizeOptions options;
         int number = 0;
+        RunStart start() const { return {tf, input.view.camera, input.view.clipping, input.settings, options, limits}; }
     };
 
     About present() const;
@@ -75,6 +79,8 @@ private:
     int m_number = 0;              ///< of the latest run: answers of others are dropped
     int m_move = -1, m_restarts = 0;
     double m_objective = 0, m_firstObjective = 0;
+    Run m_run;
+    QElapsedTimer m_since; // the run's start
     Job<Task, OptimizeResult> m_job;
 };
 
