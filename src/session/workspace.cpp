@@ -28,6 +28,7 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
     if (m_engineVolume != input.volume || !m_engine || m_choice != settings.engine || m_quality != settings.quality ||
         m_engineProfile != settings.profile) {
         m_engine.reset();
+        m_coarser.reset();
         if (m_weightsVolume != input.volume) { // what was measured before needs no room any more
             m_weightsVolume.reset();
             m_weights = {};
@@ -45,6 +46,7 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
 
 void Workspace::releaseEngine() {
     m_engine.reset();
+    m_coarser.reset();
     m_engineVolume.reset();
 }
 
@@ -58,6 +60,7 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
     if (!haveWeights(input)) {
         const auto start = Clock::now();
         m_weightsVolume.reset();
+        m_coarserWeighted = false;
         const bool published = input.settings.profile == Profile::Published;
         if (published || m_weightsProfile != input.settings.profile) m_weights = {}; // of another form
         m_weightsProfile = input.settings.profile;
@@ -71,6 +74,22 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
         m_seconds.saliency = secondsSince(start);
     }
     return m_weights;
+}
+
+const CoarserVolumes& Workspace::coarser(const MeasureInput& input, const JobControl& job) {
+    if (!m_coarser) {
+        const MeasureSettings& settings = input.settings;
+        m_coarser = std::make_unique<CoarserVolumes>(
+            input.volume,
+            [&](std::shared_ptr<const Volume> volume) {
+                return makeEngine(settings.engine, std::move(volume), settings.quality);
+            },
+            job);
+        m_coarserWeighted = false;
+    }
+    if (!m_coarserWeighted) m_coarser->setWeights(m_weights, job);
+    m_coarserWeighted = true;
+    return *m_coarser;
 }
 
 namespace {
@@ -137,7 +156,13 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
-            OptimizeResult result = pellucid::optimize({function, targets, limits}, steps, job, watch);
+            std::vector<std::unique_ptr<VwsFunction>> held;
+            OptimizeProblem problem{function, targets, limits};
+            // The published profile has one slice per voxel plane: a coarser volume is another problem.
+            if (options.method == SearchMethod::Newton && options.coarse && !steps.publishedSteps)
+                held = coarser(input, job).functions(input.view, input.tf, input.settings.vws);
+            for (const auto& level : held) problem.coarser.push_back(level.get());
+            OptimizeResult result = pellucid::optimize(problem, steps, job, watch);
             m_seconds.visibility = secondsSince(start);
             return result;
         },

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "optimize/coarser.h"
 #include "optimize/measure.h"
 #include "optimize/occlusion.h"
 #include "session/scene.h"
@@ -41,6 +42,8 @@ public:
 
 private:
     bool haveWeights(const MeasureInput& input) const;
+    /// Of the volume that engine() and weights() are of now.
+    const CoarserVolumes& coarser(const MeasureInput& input, const JobControl& job);
 
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
@@ -50,6 +53,8 @@ private:
     TransferFunction m_weightsTf; // its colorsOf()
     SaliencyOptions m_weightsOptions;
     WeightFields m_weights;
+    std::unique_ptr<CoarserVolumes> m_coarser; // of m_engineVolume, by its engine's kind
+    bool m_coarserWeighted = false;            // by m_weights
     Seconds m_seconds;
 };
 

@@ -269,7 +269,7 @@ void SettingsPanel::follow() {
     for (QWidget* widget : findChildren<QWidget*>()) {
         const bool isControl = qobject_cast<QComboBox*>(widget) || qobject_cast<QAbstractSpinBox*>(widget) ||
                                qobject_cast<QAbstractButton*>(widget);
-        if (isControl && !qobject_cast<QComboBox*>(widget->parentWidget())) widget->setEnabled(ready);
+        if (isControl && !qobject_cast<ProfileSettings*>(widget->parentWidget())) widget->setEnabled(ready);
     }
     for (const auto& show : m_show) show();
     m_showing = false;
