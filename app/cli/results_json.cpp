@@ -1,6 +1,7 @@
 #include "results_json.h"
 
 #include "optimize/refine_words.h"
+#include "optimize/visibility_words.h"
 #include "render/camera_motion.h"
 #include "tf/formats/tf_json.h"
 
@@ -57,6 +58,22 @@ Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& option
         j["opacity"].push_back(state.opacity);
     }
     return j;
+}
+
+void addSeen(Json& json, const OptimizeResult& r) {
+    json["coverage"] = r.seen->coverage.coverage;
+    json["covers"] = r.seen->coverage.covers;
+    json["strongest_coverage"] = r.seen->strongest;
+    if (!r.seen->faint) return;
+    const Faintness& f = *r.seen->faint;
+    Json& faint = json["faint"] = {
+        {"picture", f.picture}, {"features", f.features}, {"limiting", f.limiting}, {"text", faintText(r)}};
+    if (f.remedy)
+        faint["visible"] = {{"target", f.remedy->shares},
+                            {"vws", f.remedy->vws},
+                            {"opacity", f.remedy->opacity},
+                            {"coverage", f.remedy->coverage.coverage},
+                            {"covers", f.remedy->coverage.covers}};
 }
 
 Json jsonFromView(const Camera& camera, const Geometry& geometry) {

@@ -14,6 +14,8 @@ namespace pellucid::cli {
 Json jsonFromRefinement(const TransferFunction& before, const RefineResult& result, RefineMethod method,
                         const RefineComparison& comparison, Json priority);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
+/// How strong the picture is: "coverage", "covers", "strongest_coverage", and "faint" where its shares cannot be seen.
+void addSeen(Json& json, const OptimizeResult& result);
 
 /// {"view":{"azimuth","elevation"},"camera":{…}}: where an eye is, in degrees, and all of the camera.
 Json jsonFromView(const Camera& camera, const Geometry& geometry);

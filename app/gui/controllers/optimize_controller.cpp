@@ -4,6 +4,7 @@
 
 #include <QDateTime>
 
+#include "optimize/visibility_words.h"
 #include "tf/shown_tf.h"
 #include "workbench.h"
 
@@ -26,6 +27,10 @@ QString sayOf(const OptimizeResult& result, int restarts) {
                           .arg(fixed4(best.objective), fixed4(result.history.front().objective),
                                counted(result.iterations(), QObject::tr("move"), QObject::tr("moves")));
     if (restarts > 0) figures += QObject::tr("; restarted from the new view");
+    if (const std::string faint = faintText(result); !faint.empty()) // not without what makes it visible
+        return QObject::tr("%1: %2 (%3)")
+            .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
+                 QString::fromStdString(faint), figures);
     switch (result.reason) {
     case StopReason::Converged:
         return QObject::tr("On target: %1.").arg(figures);
