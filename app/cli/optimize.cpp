@@ -83,24 +83,15 @@ std::string faintLine(const OptimizeResult& r) {
     return (r.converged() ? "on target, but faint: " : "faint: ") + faintText(r) + "\n";
 }
 
-std::size_t featureNamed(const TransferFunction& tf, const std::string& name, const std::string& option) {
-    const auto found =
-        std::find_if(tf.features.begin(), tf.features.end(), [&](const Feature& f) { return f.name == name; });
-    if (found != tf.features.end()) return static_cast<std::size_t>(found - tf.features.begin());
-    std::string known;
-    for (const Feature& f : tf.features) known += (known.empty() ? "" : ", ") + f.name;
-    throw UsageError("there is no feature '" + name + "'", option, "known: " + known);
-}
-
 /// Those of the session, and over them what is given.
 std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
     std::vector<OpacityLimits> limits = pellucid::limitsOf(scene.tf, *scene.session.goals);
     for (const NamedLimits& given : o.limits) {
-        OpacityLimits& l = limits[featureNamed(scene.tf, given.name, "--limits")];
+        OpacityLimits& l = limits[parseFeature(given.name, "--limits", scene.tf)];
         l.lowest = given.limits.lowest;
         l.highest = given.limits.highest;
     }
-    for (const std::string& name : o.locked) limits[featureNamed(scene.tf, name, "--lock")].locked = true;
+    for (const std::string& name : o.locked) limits[parseFeature(name, "--lock", scene.tf)].locked = true;
     return limits;
 }
 

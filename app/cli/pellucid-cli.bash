@@ -31,7 +31,10 @@ _pellucid_cli() {
             [[ $command == refine ]] && choices="greedy exact"
             ;;
         --direction) choices="gradient" ;;
-        --step-up) choices="auto" ;;
+        --step-up | --reduce) choices="auto" ;;
+        --scale) choices="linear log log:" ;;
+        --paths) choices="newton parallel line fixed runs" ;;
+        --show) choices="F" ;;
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
@@ -54,7 +57,7 @@ _pellucid_cli() {
             choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --session | --out | --out-tf | --out-camera | --map)
+        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return
@@ -63,7 +66,8 @@ _pellucid_cli() {
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
-            --image-size | --fix | --tolerance | --window | --tf-strength)
+            --image-size | --fix | --tolerance | --window | --tf-strength | \
+            --features | --samples | --space-view)
             return
             ;;
     esac

@@ -12,8 +12,9 @@
     PANEL(lightPanel) \
     PANEL(clipPanel) \
     PANEL(galleryPanel) \
-    PANEL(settingsPanel) \
     PANEL(viewsPanel) \
+    PANEL(settingsPanel) \
+    PANEL(spacePanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

@@ -210,12 +210,13 @@ OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<
             const WeightFields& w = weights(input, job);
             const auto start = Clock::now();
             const EngineVws full(e, input.view, input.tf, w, input.settings.vws);
+            const VwsFunction& base = full;
             std::vector<std::unique_ptr<VwsFunction>> held;
             if (coarse) held = coarserFunctions(input, OptimizeOptions{}, job);
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
             OptimizeResult result =
-                pellucid::optimize({held.empty() ? full : *held.front(), targets, limits}, steps, job);
+                pellucid::optimize({held.empty() ? base : *held.front(), targets, limits}, steps, job);
             m_seconds.visibility = secondsSince(start);
             return result;
         },

@@ -7,6 +7,7 @@
 #include <QDockWidget>
 #include <QDoubleSpinBox>
 
+#include "panels/space_panel.h"
 #include "render/camera_motion.h"
 #include "render/clip_handles.h"
 #include "selection.h"
@@ -142,4 +143,30 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
     REQUIRE(waitFor([&] { return !w.refining().isBusy(); }));
     QTest::qWait(1500); // the methods are compared
     grab(w, "refiner.png");
+}
+
+TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w(64);
+    w.window.resize(1280, 860);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
+    w.opening().openVolume(source, "tents:3");
+    w.settle();
+    w.child<QAction>("spaceAction").trigger();
+    w.document().setTargets({0.1, 0.3, 0.6});
+    for (const SearchMethod method : {SearchMethod::Parallel, SearchMethod::Fixed}) {
+        w.bench().store().edit("Method", {}, [method](Session& session) {
+            session.optimize.edit([method](OptimizeOptions& options) { options.method = method; });
+        });
+        w.document().setTf(tents(3), "Start");
+        w.settle();
+        w.optimizing().start();
+        REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    }
+    w.settle();
+    auto& panel = w.child<SpacePanel>("spacePanel");
+    panel.compute();
+    REQUIRE(waitFor([&] { return panel.isCurrent() && panel.isPictureComplete(); }));
+    grab(w, "parameter_space.png");
 }

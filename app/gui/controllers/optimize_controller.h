@@ -34,9 +34,9 @@ public:
     int move() const { return m_move; }
     double objective() const { return m_objective; }
     double firstObjective() const { return m_firstObjective; }
-    int restarts() const { return m_restarts; } ///< because the view has turned
     /// Its record so far; null where none runs.
     const Run* underWay() const { return isRunning() ? &m_run : nullptr; }
+    int restarts() const { return m_restarts; } ///< because the view has turned
 
     /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present
     /// state any more.
