@@ -238,6 +238,28 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
         [this] { releaseEngine(); });
 }
 
+OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<double>& targets,
+                                   const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                   bool coarse, const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, job);
+            const auto start = Clock::now();
+            const EngineVws full(e, input.view, input.tf, w, input.settings.vws);
+            const VwsFunction& base = full;
+            std::vector<std::unique_ptr<VwsFunction>> held;
+            if (coarse) held = coarserFunctions(input, OptimizeOptions{}, job);
+            OptimizeOptions steps = options;
+            steps.publishedSteps = input.settings.profile == Profile::Published;
+            OptimizeResult result =
+                pellucid::optimize({held.empty() ? base : *held.front(), targets, limits}, steps, job);
+            m_seconds.visibility = secondsSince(start);
+            return result;
+        },
+        [this] { releaseEngine(); });
+}
+
 DensityCurve Workspace::densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
                                      const JobControl& job) {
     return guarded(

@@ -44,6 +44,12 @@ public:
                     const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                     const OptimizeResult& found, const JobControl& job = {});
 
+    /// The same from nearby, as shares alone want it: no other picture's strength is looked for. `coarse`: on the copy of
+    /// half the resolution and nothing else, where there is one.
+    OptimizeResult approach(const MeasureInput& input, const std::vector<double>& targets,
+                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool coarse,
+                            const JobControl& job = {});
+
     /// Through the opacities of the input's transfer function, with the shares that it has.
     DensityCurve densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
                               const JobControl& job = {});

@@ -30,7 +30,6 @@
 #include "lock_mark.h"
 #include "opacity_editor.h"
 #include "panel.h"
-#include "panels/profile_settings.h"
 #include "theme.h"
 #include "workbench.h"
 
@@ -281,7 +280,6 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     column->addWidget(makeColorRow());
     column->addLayout(status);
     column->addLayout(choices);
-    column->addWidget(new ProfileSettings(m_bench, this));
     column->addLayout(buttons);
 
     const auto triggers = [this](QPushButton* b, const char* action) {
