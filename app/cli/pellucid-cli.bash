@@ -47,7 +47,7 @@ _pellucid_cli() {
             choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --session | --out | --out-tf)
+        --camera | --session | --out | --out-tf | --report | --curves)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return
@@ -56,7 +56,7 @@ _pellucid_cli() {
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | \
-            --image-size | --fix | --target | --tolerance | --window | --tf-strength)
+            --image-size | --report-size | --fix | --target | --tolerance | --window | --tf-strength)
             return
             ;;
     esac
