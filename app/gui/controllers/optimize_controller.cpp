@@ -168,10 +168,10 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     Run run = runOf(result, task.start());
     run.started = m_run.started;
     run.seconds = static_cast<double>(m_since.elapsed()) / 1000;
-    store.preview(tr("Optimize"), [&](Session& session) {
-        session.setTf(tf);
-        session.addRun(run);
-    });
+    // The start, where a run ends before its first move was shown.
+    if (!store.isPreviewing()) store.preview(tr("Optimize"), [](Session&) {});
+    store.record([&](Session& session) { session.addRun(run); }); // undo takes back what came of it
+    store.preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     store.commit();
     MeasureInput input = task.input;
     input.tf = shownTf(tf);
