@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "optimize/visibility_words.h"
 #include "tf/shown_tf.h"
 #include "workbench.h"
 
@@ -26,6 +27,10 @@ QString sayOf(const OptimizeResult& result, int restarts) {
                           .arg(fixed4(best.objective), fixed4(result.history.front().objective),
                                counted(result.iterations(), QObject::tr("move"), QObject::tr("moves")));
     if (restarts > 0) figures += QObject::tr("; restarted from the new view");
+    if (const std::string faint = faintText(result); !faint.empty()) // not without what makes it visible
+        return QObject::tr("%1: %2 (%3)")
+            .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
+                 QString::fromStdString(faint), figures);
     switch (result.reason) {
     case StopReason::Converged:
         return QObject::tr("On target: %1.").arg(figures);
@@ -163,10 +168,10 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     Run run = runOf(result, task.start());
     run.started = m_run.started;
     run.seconds = static_cast<double>(m_since.elapsed()) / 1000;
-    store.preview(tr("Optimize"), [&](Session& session) {
-        session.setTf(tf);
-        session.addRun(run);
-    });
+    // The start, where a run ends before its first move was shown.
+    if (!store.isPreviewing()) store.preview(tr("Optimize"), [](Session&) {});
+    store.record([&](Session& session) { session.addRun(run); }); // undo takes back what came of it
+    store.preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     store.commit();
     MeasureInput input = task.input;
     input.tf = shownTf(tf);
