@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <glm/common.hpp>
-
 #include "base/check.h"
 #include "volume/excerpt.h"
 
@@ -12,21 +10,8 @@ namespace pellucid {
 MeasureInput coarserInput(const MeasureInput& input, int factor) {
     PELLUCID_CHECK(factor >= 1);
     if (factor == 1) return input;
-    const Volume& whole = *input.volume;
-    ExcerptPlan plan;
-    plan.region = {Int3(0), whole.dims()};
-    plan.factors = glm::min(Int3(factor), whole.dims());
-    plan.dims = (whole.dims() + plan.factors - 1) / plan.factors;
-    plan.excerpt = {whole.dims(), plan.region, factor, false};
-    const Volume coarse = excerptOf(whole, plan);
-    Geometry geometry = coarse.geometry();
-    geometry.referenceLength = whole.geometry().d0();
-    Volume volume(geometry, coarse.samples(), coarse.missing());
-    volume.title = whole.title;
-    volume.format = whole.format;
-    volume.excerpt = plan.excerpt;
     MeasureInput coarser = input;
-    coarser.volume = std::make_shared<const Volume>(throughWindowOf(std::move(volume), whole.range()));
+    coarser.volume = std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
     return coarser;
 }
 
