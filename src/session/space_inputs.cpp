@@ -7,6 +7,17 @@
 
 namespace pellucid {
 
+namespace {
+
+/// `number`: of a run that has none.
+std::string nameOf(const Run& run, int number) {
+    if (!run.name.empty()) return run.name;
+    return "run " + std::to_string(run.number > 0 ? run.number : number) +
+           (run.hasStart() ? std::string(", ") + name(run.start->options.method) : std::string());
+}
+
+} // namespace
+
 MeasureInput coarserInput(const MeasureInput& input, int factor) {
     PELLUCID_CHECK(factor >= 1);
     if (factor == 1) return input;
@@ -29,7 +40,7 @@ std::vector<SpacePath> pathsOfRuns(const std::vector<Run>& runs, const TransferF
         if (std::any_of(axes.features.begin(), axes.features.end(),
                         [&](std::size_t f) { return placeOf(f) == run.features.size(); }))
             continue;
-        SpacePath path{"run " + std::to_string(number), pathColor(paths.size()), {}, run.best};
+        SpacePath path{nameOf(run, number), pathColor(paths.size()), {}, run.best};
         for (const OptimizeState& state : run.history) {
             OptimizeState one = state;
             one.opacity.assign(tf.features.size(), 0.0);

@@ -193,7 +193,7 @@ TEST_CASE("optimizations of the session are paths, and a click on a state goes t
     const OptimizeState& start = view.paths[0].states.front();
     const QPointF at = s.pixelOf(s.space().positionOf(start.opacity));
     move(s.canvas3d(), at);
-    CHECK(s.reading().startsWith("run 1, state 0"));
+    CHECK(s.reading().startsWith("run 1, newton, state 0"));
     QTest::mouseClick(&s.canvas3d(), Qt::LeftButton, {}, at.toPoint());
     for (const double x : featureOpacities(s.document().tf())) CHECK(x == Approx(0.5));
     s.document().undo();
