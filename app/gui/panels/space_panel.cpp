@@ -79,6 +79,7 @@ SpacePanel::SpacePanel(Workbench& bench, QWidget* parent)
           },
           [this](const Task& task, ParameterSpace& space) {
               m_space = std::make_shared<const ParameterSpace>(std::move(space));
+              m_targets = task.targets;
               m_inputs = task.inputs;
               m_computedFeatures = task.features;
               m_usedFactor = task.factor;
@@ -320,8 +321,10 @@ void SpacePanel::refresh() {
     const bool hasTwo = m_bench.store().hasVolume() && axes().features.size() >= 2;
     const bool current = isCurrent(), running = m_job.isRunning(), mayEdit = current && !m_bench.isReadOnly();
     if (current) // F follows from W
-        if (const auto wanted = normalizedTargets(targets(), m_space->vws.size()); wanted != m_space->targets)
+        if (std::vector<double> wanted = targets(); wanted != m_targets) {
             m_space = std::make_shared<const ParameterSpace>(withTargets(*m_space, wanted));
+            m_targets = std::move(wanted);
+        }
     m_compute->setEnabled(hasTwo && !running && !current);
     m_cancel->setVisible(running);
     m_progress->setVisible(running);
