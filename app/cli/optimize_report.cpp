@@ -68,7 +68,7 @@ void ReportOptions::write(const Scene& scene, const OptimizeOptions& options, co
         answer.json["curves"] = *curves;
     }
     if (!folder) return;
-    ReportRequest request{.run = run, .scene = scene, .remarks = {}, .command = commandLine(), .program = {}};
+    ReportRequest request{.run = run, .scene = scene, .command = commandLine()};
     request.width = size.value_or(ImageSize{}).width;
     request.height = size.value_or(ImageSize{}).height;
     request.program = std::string("Pellucid ") + PELLUCID_VERSION;

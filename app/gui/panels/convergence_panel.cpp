@@ -147,6 +147,7 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
         m_list->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
     m_list->setContextMenuPolicy(Qt::CustomContextMenu);
     m_list->setMinimumWidth(200);
+    m_list->installEventFilter(this);
     connect(m_list, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) { itemChanged(item); });
     connect(m_list, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
         if (m_filling || item == nullptr) return;
@@ -279,7 +280,7 @@ void ConvergencePanel::fillList() {
         item->setText(kDistance, shortNumber(run.after));
         item->setText(kSeconds, run.seconds > 0 ? shortNumber(run.seconds) : QString());
         for (const int column : {kMoves, kDistance, kSeconds})
-            item->setTextAlignment(column, static_cast<int>(Qt::AlignRight | Qt::AlignVCenter));
+            item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
         for (int column = 0; column <= kSeconds; ++column) item->setToolTip(column, tipOf(run));
         if (ended) {
             item->setFlags(item->flags() | Qt::ItemIsUserCheckable | Qt::ItemIsEditable);
@@ -356,9 +357,12 @@ void ConvergencePanel::clear() {
     changeRuns(m_bench, tr("Clear runs"), [](std::vector<Run>& runs) { std::erase_if(runs, isCurve); });
 }
 
-void ConvergencePanel::keyPressEvent(QKeyEvent* event) {
-    if (event->key() == Qt::Key_Delete && m_list->hasFocus()) return remove();
-    QWidget::keyPressEvent(event);
+bool ConvergencePanel::eventFilter(QObject* watched, QEvent* event) {
+    if (watched != m_list || event->type() != QEvent::KeyPress ||
+        static_cast<QKeyEvent*>(event)->key() != Qt::Key_Delete)
+        return QWidget::eventFilter(watched, event);
+    remove();
+    return true;
 }
 
 void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
