@@ -210,7 +210,9 @@ private:
         if (m_case.tf.features.empty()) return;
         add(row(BenchRow::Optimize, m_engine->name(), 8), 0, [this](BenchResult& r, const JobControl& j) {
             const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
-            const OptimizeResult found = optimize({function, benchTargets(m_case.tf.features.size())}, {}, j);
+            OptimizeOptions search;
+            search.method = SearchMethod::Parallel;
+            const OptimizeResult found = optimize({function, benchTargets(m_case.tf.features.size())}, search, j);
             if (found.reason == StopReason::Cancelled) throw Cancelled{};
             const int sweeps = 1 + (found.evaluations - 1) / 8; // the start, then eight at a time
             r.bytes = sweeps * sweepBytes();

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.h"
 #include "base/error.h"
+#include "optimize/newton.h"
 
 namespace pellucid {
 
@@ -13,12 +15,12 @@ constexpr int kSmallestParallelStep = -2, kLargestParallelStep = 5; ///< exponen
 constexpr int kHalvings = 5, kDoublings = 12;                       ///< of the sequential one
 constexpr int kPatience = 12;                                       ///< moves of a search without a new best
 
-/// The search so far and what its moves need.
+/// Thesis 5.3.4 and 5.3.5: the search so far and what its moves need.
 class Search {
 public:
-    Search(const VwsFunction& function, const std::vector<double>& targets, const OptimizeOptions& options,
-           const JobControl& job)
-        : m_function(function), m_targets(targets), m_options(options), m_job(job) {}
+    Search(const VwsFunction& function, const std::vector<double>& targets, const std::vector<OpacityLimits>& limits,
+           const OptimizeOptions& options, const JobControl& job)
+        : m_function(function), m_targets(targets), m_limits(limits), m_options(options), m_job(job) {}
 
     std::vector<OptimizeState> evaluate(const std::vector<std::vector<double>>& candidates) {
         const auto vws = m_function.evaluate(candidates, m_job);
@@ -29,41 +31,71 @@ public:
         return states;
     }
 
-    /// The state after one move from `at`. The direction is not the gradient (∂W/∂x is replaced by 1), so that at times
-    /// no step along it helps: then the search goes on from the best of them, worse than `at`.
-    OptimizeState move(const OptimizeState& at) {
-        const std::vector<double> d = direction(at);
+    /// The state after one move from the last of `history`. The direction need not be the gradient (method 1 replaces
+    /// ∂W/∂x by b), so that at times no step along it helps: then the search goes on from the best of them, worse than
+    /// where it was.
+    OptimizeState move(const std::vector<OptimizeState>& history) {
+        const OptimizeState& at = history.back();
+        const std::vector<double> d = direction(at, history.size() > 1 ? &history[history.size() - 2] : nullptr);
         switch (m_options.method) {
         case SearchMethod::Fixed:
             return fixedStep(at, d);
         case SearchMethod::Line:
             return lineSearch(at, d);
         case SearchMethod::Parallel:
-        case SearchMethod::Newton:
             return parallelLineSearch(at, d);
+        case SearchMethod::Newton:
+            break;
         }
+        PELLUCID_CHECK(false);
         return at;
     }
 
     int evaluations() const { return m_evaluations; }
 
 private:
-    /// Method 1: ∂F/∂W_i taken as 2(W − t), with ∂W_i/∂x_i replaced by 1.
-    std::vector<double> direction(const OptimizeState& at) const {
-        std::vector<double> d(m_targets.size());
+    static double lengthOf(const std::vector<double>& d) {
         double square = 0;
-        for (std::size_t i = 0; i < d.size(); ++i) {
-            d[i] = 2 * (at.vws[i] - m_targets[i]);
-            square += d[i] * d[i];
+        for (const double v : d) square += v * v;
+        return std::sqrt(square);
+    }
+
+    /// `before`: the state before `at`, null at the start.
+    std::vector<double> direction(const OptimizeState& at, const OptimizeState* before) {
+        constexpr double kLongest = 20; // of a secant: a base step of 0.05 along it moves an opacity by 1
+        const std::size_t n = m_targets.size();
+        std::vector<double> slope(n); // ∂F/∂W_i taken as 2(W − t)
+        for (std::size_t i = 0; i < n; ++i) slope[i] = 2 * (at.vws[i] - m_targets[i]);
+        std::vector<double> d(n, 0.0);
+        if (m_options.direction == Direction::Exact) {
+            const VwsFunction::Linear linear = m_function.jacobian(at.opacity, m_job);
+            ++m_evaluations;
+            for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t j = 0; j < n; ++j) d[j] += slope[i] * linear.derivative[i][j];
+        } else {
+            for (std::size_t i = 0; i < n; ++i) {
+                d[i] = m_options.b * slope[i];
+                if (m_options.direction == Direction::Gradient || before == nullptr) continue;
+                const double dx = at.opacity[i] - before->opacity[i], dw = at.vws[i] - before->vws[i];
+                if (dx == 0 || dw == 0) continue;
+                // F'_i = slope_i, ∇F = F'_i·∇x_i and ∇F'_i = 2∇W_i; downhill also where F'' < 0.
+                d[i] = m_options.direction == Direction::Backward
+                           ? slope[i] * dw / dx
+                           : std::clamp(slope[i] * std::abs(dx / (2 * dw)), -kLongest, kLongest);
+            }
         }
-        if (m_options.normalize && square > 0)
-            for (double& v : d) v /= std::sqrt(square);
+        // Of derivatives the direction counts alone: steps are as long as those of method 1.
+        const bool derivative = m_options.direction == Direction::Backward || m_options.direction == Direction::Exact;
+        const double length = lengthOf(d);
+        if ((m_options.normalize || derivative) && length > 0)
+            for (double& v : d) v *= (m_options.normalize ? 1 : m_options.b * lengthOf(slope)) / length;
         return d;
     }
 
-    static std::vector<double> stepped(const OptimizeState& at, const std::vector<double>& d, double step) {
+    std::vector<double> stepped(const OptimizeState& at, const std::vector<double>& d, double step) const {
         std::vector<double> x = at.opacity;
-        for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::clamp(x[i] - step * d[i], 0.0, 1.0);
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (!m_limits[i].locked) x[i] = std::clamp(x[i] - step * d[i], m_limits[i].lowest, m_limits[i].highest);
         return x;
     }
 
@@ -76,7 +108,27 @@ private:
         return trial(at, d, m_options.step);
     }
 
+    /// Line: until one is no better than the one before. Parallel: all of them, the best, of equal ones the shorter.
+    OptimizeState publishedSearch(const OptimizeState& at, const std::vector<double>& d) {
+        constexpr int kSteps = 4;
+        if (m_options.method == SearchMethod::Parallel) {
+            std::vector<std::vector<double>> candidates;
+            for (int i = 0; i < kSteps; ++i) candidates.push_back(stepped(at, d, m_options.step * std::exp2(i)));
+            const auto states = evaluate(candidates);
+            return *std::min_element(states.begin(), states.end(),
+                                     [](const auto& a, const auto& b) { return a.objective < b.objective; });
+        }
+        OptimizeState best = trial(at, d, m_options.step);
+        for (int i = 1; i < kSteps; ++i) {
+            OptimizeState next = trial(at, d, m_options.step * std::exp2(i));
+            if (!(next.objective < best.objective)) break;
+            best = std::move(next);
+        }
+        return best;
+    }
+
     OptimizeState lineSearch(const OptimizeState& at, const std::vector<double>& d) {
+        if (m_options.publishedSteps) return publishedSearch(at, d);
         double step = m_options.step;
         OptimizeState best = trial(at, d, step);
         if (best.objective < at.objective) {
@@ -98,6 +150,7 @@ private:
     }
 
     OptimizeState parallelLineSearch(const OptimizeState& at, const std::vector<double>& d) {
+        if (m_options.publishedSteps) return publishedSearch(at, d);
         constexpr int kCount = kLargestParallelStep - kSmallestParallelStep + 1;
         // Where the whole batch overshoots, the valley is narrower than its smallest step: one finer batch looks there.
         OptimizeState leastBad;
@@ -119,10 +172,52 @@ private:
 
     const VwsFunction& m_function;
     const std::vector<double>& m_targets;
+    const std::vector<OpacityLimits>& m_limits;
     const OptimizeOptions& m_options;
     const JobControl& m_job;
     int m_evaluations = 0;
 };
+
+/// One entry per feature. What is hidden, and what nothing can raise, is locked.
+std::vector<OpacityLimits> fullLimits(const VwsFunction& function, std::vector<OpacityLimits> limits) {
+    const TransferFunction& base = function.base();
+    const std::size_t n = base.features.size();
+    if (limits.empty()) limits.resize(n);
+    if (limits.size() != n)
+        throw UsageError(std::to_string(limits.size()) + " limits for " + std::to_string(n) + " features", "limits",
+                         "give one per feature");
+    const std::vector<double> most = featureOpacities(withFullPeaks(base));
+    for (std::size_t f = 0; f < n; ++f) {
+        if (!(limits[f].lowest >= 0 && limits[f].lowest <= limits[f].highest && limits[f].highest <= 1))
+            throw UsageError("the limits of '" + base.features[f].name + "' are no range within 0 and 1", "limits",
+                             "correct them");
+        if (base.features[f].hidden || most[f] == 0) limits[f].locked = true;
+    }
+    return limits;
+}
+
+std::vector<double> within(const std::vector<OpacityLimits>& limits, std::vector<double> x) {
+    for (std::size_t f = 0; f < x.size(); ++f)
+        if (!limits[f].locked) x[f] = std::clamp(x[f], limits[f].lowest, limits[f].highest);
+    return x;
+}
+
+/// Moves until the targets are met or nothing helps any more.
+StopReason descend(Search& search, const std::vector<OptimizeState>& history, const std::size_t& best,
+                   const OptimizeOptions& options, const JobControl& job,
+                   const std::function<void(OptimizeState)>& arrive) {
+    for (;;) {
+        const OptimizeState& at = history.back();
+        if (at.objective < options.tolerance) return StopReason::Converged;
+        if (static_cast<int>(history.size()) - 1 >= options.maxIterations) return StopReason::MaxIterations;
+        job.throwIfStopped();
+        OptimizeState next = search.move(history);
+        const bool searches = options.method != SearchMethod::Fixed;
+        const bool stalled = searches && history.size() - 1 - best >= kPatience;
+        if (next.opacity == at.opacity || stalled) return StopReason::NoProgress;
+        arrive(std::move(next));
+    }
+}
 
 } // namespace
 
@@ -191,6 +286,15 @@ void OptimizeOptions::validate() const {
     if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "optimize", "correct it");
 }
 
+int OptimizeResult::iterations() const {
+    const auto full = std::count_if(history.begin(), history.end(), [](const auto& s) { return s.level == 0; });
+    return std::max(0, static_cast<int>(full) - 1);
+}
+
+int OptimizeResult::coarseIterations() const {
+    return static_cast<int>(std::count_if(history.begin(), history.end(), [](const auto& s) { return s.level > 0; }));
+}
+
 OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& options, const JobControl& job,
                         const std::function<void(const OptimizeState&)>& watch) {
     options.validate();
@@ -198,41 +302,32 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     OptimizeResult result;
     result.tf = function.base();
     result.targets = normalizedTargets(problem.targets, function.featureCount());
-    Search search(function, result.targets, options, job);
+    const std::vector<OpacityLimits> limits = fullLimits(function, problem.limits);
+    Search search(function, result.targets, limits, options, job);
 
-    const auto arrive = [&](OptimizeState state) {
-        result.history.push_back(std::move(state));
-        if (result.history.back().objective < result.history[result.best].objective)
+    const auto arrive = [&](const OptimizeState& state) {
+        result.history.push_back(state);
+        if (state.level == 0 && state.objective < result.history[result.best].objective)
             result.best = result.history.size() - 1;
         if (watch) watch(result.history.back());
         job.report(options.maxIterations == 0 ? 1.0 : static_cast<double>(result.iterations()) / options.maxIterations);
     };
+    std::vector<const VwsFunction*> levels{&function};
+    if (options.coarse) levels.insert(levels.end(), problem.coarser.begin(), problem.coarser.end());
+    NewtonSearch newton(levels, result.targets, limits, options, job, arrive);
     try {
-        arrive(search.evaluate({featureOpacities(function.base())})[0]);
-        for (;;) {
-            const OptimizeState& at = result.history.back();
-            if (at.objective < options.tolerance) {
-                result.reason = StopReason::Converged;
-                break;
-            }
-            if (result.iterations() >= options.maxIterations) {
-                result.reason = StopReason::MaxIterations;
-                break;
-            }
-            job.throwIfStopped();
-            OptimizeState next = search.move(at);
-            const bool searches = options.method != SearchMethod::Fixed;
-            const bool stalled = searches && result.history.size() - 1 - result.best >= kPatience;
-            if (next.opacity == at.opacity || stalled) {
-                result.reason = StopReason::NoProgress;
-                break;
-            }
-            arrive(std::move(next));
+        const std::vector<double> start = within(limits, featureOpacities(function.base()));
+        if (options.method == SearchMethod::Newton) {
+            result.reason = newton.run(start);
+        } else {
+            arrive(search.evaluate({start})[0]);
+            result.reason = descend(search, result.history, result.best, options, job, arrive);
         }
     } catch (const Cancelled&) {
         result.reason = StopReason::Cancelled;
     }
-    result.evaluations = search.evaluations();
+    result.evaluations = search.evaluations() + newton.evaluations();
+    result.spreadStarts = newton.spreadStarts();
     if (!result.history.empty()) result.tf = withFeatureOpacities(function.base(), result.history[result.best].opacity);
     return result;
 }

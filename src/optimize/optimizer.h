@@ -1,4 +1,4 @@
-// Gradient descent of the features' opacities to target saliencies (docs/method.md, "Optimization", thesis chapter 5).
+// The features' opacities that give them target saliencies (docs/method.md, "Optimization", thesis chapter 5).
 #pragma once
 
 #include <functional>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "optimize/coverage.h"
 #include "optimize/objective.h"
 
 namespace pellucid {
@@ -22,8 +23,8 @@ SearchMethod searchMethodFromName(const std::string& name); ///< throws UsageErr
 /// Where a step of the searches goes (docs/method.md, "Optimization"; thesis 5.3.4). Newton has its own.
 enum class Direction {
     Gradient, ///< method 1: ∂F/∂W_i·b, with ∂F/∂W_i as 2(W − t)
-    Backward, ///< ∂F/∂W_i·∇W_i/d, differences to the move before
-    Second,   ///< method 2: ∇F/∇F', differences to the two moves before
+    Backward, ///< ∂F/∂W_i·∇W_i/d, differences to the state before
+    Second,   ///< method 2: ∇F/∇F', differences to the state before
     Exact     ///< Jᵀ·2(W − t), J the exact derivatives
 };
 const char* name(Direction direction);                ///< "gradient", "backward", "second", "exact"
@@ -38,16 +39,20 @@ enum class StopReason {
 const char* name(StopReason reason); ///< "converged", "max-iterations", "no-progress", "cancelled"
 
 struct OptimizeOptions {
-    SearchMethod method = SearchMethod::Parallel;
+    SearchMethod method = SearchMethod::Newton;
     Direction direction = Direction::Gradient;
     double b = 1;            ///< of method 1, (0, 1e6]
     bool normalize = false;  ///< the direction scaled to unit length, as §5.3.4 prints it
     double step = 0.05;      ///< (0, 10]
     double tolerance = 0.03; ///< on F, > 0
-    int maxIterations = 200; ///< moves, ≥ 0
-    bool coarse = true;      ///< Newton: the first moves on a coarser volume, where the problem has one
+    int maxIterations = 200; ///< moves on the volume, ≥ 0
+    bool coarse = true;      ///< Newton: the first moves on coarser volumes, where the problem has some
+    bool restarts = true;    ///< Newton: where it is stuck it tries starts spread over all opacities
     /// Newton: mean alpha that is wanted of the picture, (0, 1]; empty: as strong as shares allow.
     std::optional<double> coverage = {};
+    /// Line and Parallel: the lengths 1, 2, 4 and 8 base steps (docs/method.md, "The published profile"). Follows from
+    /// the profile and is kept in no session.
+    bool publishedSteps = false;
     void validate() const; ///< throws UsageError
     bool operator==(const OptimizeOptions&) const = default;
 };
@@ -64,7 +69,7 @@ struct OptimizeState {
     double objective = 0;
     std::vector<double> vws;     ///< per feature
     std::vector<double> opacity; ///< per feature
-    int level = 0;               ///< 0: figures of the volume; 1: of a coarser copy
+    int level = 0;               ///< 0: figures of the volume; n: of OptimizeProblem::coarser[n − 1]
     bool operator==(const OptimizeState&) const = default;
 };
 
@@ -72,11 +77,14 @@ struct OptimizeResult {
     TransferFunction tf;                ///< the best seen
     std::vector<double> targets;        ///< normalised
     std::vector<OptimizeState> history; ///< the start, then each move
-    std::size_t best = 0;               ///< index into history of `tf`
-    int evaluations = 0;                ///< of W
+    std::size_t best = 0;               ///< index into history of `tf`, a state of level 0
+    int evaluations = 0;                ///< of W, on any level
+    int spreadStarts = 0;               ///< Newton: starts tried all over the opacities, because it was stuck
     StopReason reason = StopReason::MaxIterations;
+    std::optional<Seen> seen = {}; ///< of `tf`: of those who ask for it (visible_answer.h)
 
-    int iterations() const { return history.empty() ? 0 : static_cast<int>(history.size()) - 1; }
+    int iterations() const;       ///< moves on the volume
+    int coarseIterations() const; ///< states on coarser ones
     bool converged() const { return reason == StopReason::Converged; }
 };
 
@@ -85,7 +93,8 @@ struct OptimizeProblem {
     const VwsFunction& function;
     std::vector<double> targets;            ///< ≥ 0, scaled to sum 1
     std::vector<OpacityLimits> limits = {}; ///< one per feature; empty: none has any
-    const VwsFunction* coarse = nullptr;    ///< the same features of a coarser volume; null: there is none
+    /// The same features of ever coarser volumes; W is nearly that of `function`, and costs less.
+    std::vector<const VwsFunction*> coarser = {};
 };
 
 /// `watch` is called after the start and each move, on the calling thread. Cancelling through `job` returns what is

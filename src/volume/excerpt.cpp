@@ -37,6 +37,7 @@ Geometry ExcerptPlan::geometryOf(const Geometry& full) const {
     Geometry geometry = full;
     geometry.dims = dims;
     geometry.spacing = full.spacing * Vec3(factors);
+    if (referenceLength > 0) geometry.referenceLength = referenceLength;
     geometry.origin = full.worldFromVoxel(Vec3(region.lo) + 0.5 * Vec3(factors - 1));
     return geometry;
 }
@@ -166,7 +167,7 @@ template class LayerMeans<std::int32_t>;
 template class LayerMeans<float>;
 template class LayerMeans<double>;
 
-Volume excerptOf(const Volume& whole, const ExcerptPlan& plan) {
+Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job) {
     const Int3 full = whole.dims(), first = plan.region.lo, size = plan.region.hi - first;
     Samples samples = std::visit(
         [&](const auto& values) -> Samples {
@@ -174,6 +175,7 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan) {
             std::vector<T> kept(voxelCount(plan.dims));
             const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
             parallelFor(static_cast<std::size_t>(plan.dims.z), [&](std::size_t k) {
+                job.throwIfStopped();
                 LayerMeans<T> means({size.x, size.y}, plan.factors, whole.missing());
                 const int z0 = static_cast<int>(k) * plan.factors.z, z1 = std::min(z0 + plan.factors.z, size.z);
                 for (int z = z0; z < z1; ++z)
@@ -197,6 +199,12 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan) {
     volume.notices = plan.notices();
     volume.notices.insert(volume.notices.end(), whole.notices.begin(), whole.notices.end());
     return throughWindowOf(std::move(volume), whole.range());
+}
+
+Volume coarserCopy(const Volume& whole, int factor) {
+    ExcerptPlan plan = planOf({Int3(0), whole.dims()}, whole.dims(), factor);
+    plan.referenceLength = whole.geometry().d0();
+    return excerptOf(whole, plan);
 }
 
 VoxelRegion regionBetween(const Volume& volume, const Vec3& lo, const Vec3& hi) {

@@ -1,0 +1,109 @@
+#include "optimize/coarser.h"
+
+#include <algorithm>
+
+#include <glm/common.hpp>
+
+#include "base/parallel.h"
+#include "volume/excerpt.h"
+
+namespace pellucid {
+
+namespace {
+
+Int3 halvingFactors(const Geometry& g) {
+    const double least = std::min(g.spacing.x, std::min(g.spacing.y, g.spacing.z));
+    Int3 factors(1);
+    for (int a = 0; a < 3; ++a)
+        if (g.spacing[a] < 1.5 * least && g.dims[a] > 1) factors[a] = 2;
+    return factors;
+}
+
+ExcerptPlan planOf(const Volume& volume) {
+    ExcerptPlan plan;
+    plan.region = {Int3(0), volume.dims()};
+    plan.factors = halvingFactors(volume.geometry());
+    plan.dims = (volume.dims() - 1) / plan.factors + 1;
+    plan.excerpt = {volume.dims(), plan.region, 2, false};
+    return plan;
+}
+
+} // namespace
+
+std::shared_ptr<const Volume> halved(const Volume& volume, const JobControl& job) {
+    const Volume coarse = excerptOf(volume, planOf(volume), job);
+    Geometry geometry = coarse.geometry();
+    geometry.referenceLength = volume.geometry().d0();
+    Volume result(geometry, coarse.samples(), volume.missing());
+    result.title = volume.title;
+    result.format = volume.format;
+    return std::make_shared<const Volume>(throughWindowOf(std::move(result), volume.range()));
+}
+
+WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, const JobControl& job) {
+    const ExcerptPlan plan = planOf(volume);
+    const Int3 full = weights.dims(), dims = plan.dims;
+    const float brightest = weights.scale(0) * 65535.0f, most = weights.scale(1) * 65535.0f;
+    WeightFields coarse(dims, brightest, most);
+    const auto at = [](const Int3& size, int i, int j, int k) {
+        return static_cast<std::size_t>(i) +
+               static_cast<std::size_t>(size.x) *
+                   (static_cast<std::size_t>(j) + static_cast<std::size_t>(size.y) * static_cast<std::size_t>(k));
+    };
+    parallelFor(static_cast<std::size_t>(dims.z), [&](std::size_t layer) {
+        job.throwIfStopped();
+        const int k = static_cast<int>(layer);
+        std::vector<std::uint32_t> row(static_cast<std::size_t>(dims.x));
+        for (int j = 0; j < dims.y; ++j) {
+            for (int i = 0; i < dims.x; ++i) {
+                const Int3 lo = Int3(i, j, k) * plan.factors, hi = glm::min(lo + plan.factors, full);
+                std::uint32_t brightness = 0, saturation = 0, count = 0;
+                for (int z = lo.z; z < hi.z; ++z)
+                    for (int y = lo.y; y < hi.y; ++y)
+                        for (int x = lo.x; x < hi.x; ++x) {
+                            const std::uint32_t units = weights.units(at(full, x, y, z));
+                            brightness += units & 0xffffu;
+                            saturation += units >> 16;
+                            ++count;
+                        }
+                row[static_cast<std::size_t>(i)] =
+                    (brightness + count / 2) / count | (saturation + count / 2) / count << 16;
+            }
+            coarse.store(at(dims, 0, j, k), row.data(), row.size());
+        }
+    });
+    return coarse;
+}
+
+CoarserVolumes::CoarserVolumes(std::shared_ptr<const Volume> volume, const MakeEngine& make, const JobControl& job)
+    : m_full(std::move(volume)) {
+    const Volume* finer = m_full.get();
+    while (finer->size() > kSmallest && m_levels.size() < kMost) {
+        Level level;
+        level.volume = halved(*finer, job);
+        job.throwIfStopped();
+        level.engine = make(level.volume);
+        m_levels.push_back(std::move(level));
+        finer = m_levels.back().volume.get();
+    }
+}
+
+void CoarserVolumes::setWeights(const WeightFields& weights, const JobControl& job) {
+    const WeightFields* finer = &weights;
+    const Volume* volume = m_full.get();
+    for (Level& level : m_levels) {
+        level.weights = halvedWeights(*finer, *volume, job);
+        finer = &level.weights;
+        volume = level.volume.get();
+    }
+}
+
+std::vector<std::unique_ptr<VwsFunction>> CoarserVolumes::functions(const View& view, const TransferFunction& base,
+                                                                    const VwsOptions& options) const {
+    std::vector<std::unique_ptr<VwsFunction>> all;
+    for (const Level& level : m_levels)
+        all.push_back(std::make_unique<EngineVws>(*level.engine, view, base, level.weights, options));
+    return all;
+}
+
+} // namespace pellucid
