@@ -6,10 +6,10 @@ set -euo pipefail
 packages=(
     # the build
     g++ cmake ninja-build ccache pkg-config git ca-certificates
-    # volume files, images, threads, maths, JSON, command line
+    # volume files, images, threads, maths, JSON, XML, command line
     zlib1g-dev
     libopenimageio-dev openimageio-tools libopencv-dev # OpenImageIO's CMake files name the last two
-    libtbb-dev libglm-dev nlohmann-json3-dev libcli11-dev
+    libtbb-dev libglm-dev nlohmann-json3-dev libpugixml-dev libcli11-dev
     # OpenGL, on a GPU or in software, with and without a display
     libepoxy-dev libgl-dev libegl-dev libopengl-dev libvulkan-dev libegl1 libgl1-mesa-dri libegl-mesa0 libosmesa6
     # the window

@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "command_line.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "parse.h"
@@ -196,6 +197,7 @@ int runCommand(const Command& command, const CommonOptions& common) {
 }
 
 int run(const std::vector<std::string>& arguments) {
+    keepCommandLine(arguments);
     CLI::App program("Pellucid on the command line: measures and shapes what a volume rendering shows.", kProgram);
     program.set_version_flag("--version", std::string(kProgram) + " " + PELLUCID_VERSION, "print the version");
     program.require_subcommand(1);
@@ -205,7 +207,9 @@ int run(const std::vector<std::string>& arguments) {
 
     const std::array commands{addInfo(program),     addSamples(program), addPresets(program), addGenerate(program),
                               addRender(program),   addMeasure(program), addFields(program),  addRefine(program),
-                              addOptimize(program), addPropose(program), addProbe(program),   addBench(program)};
+                              addOptimize(program), addSpace(program),   addPropose(program), addProbe(program),
+                              addViews(program),
+                              addBench(program)};
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);
 

@@ -10,7 +10,7 @@ namespace {
 
 struct Options {
     SceneOptions scene;
-    bool jacobian = false;
+    bool jacobian = false, occlusion = false;
 };
 
 struct Seconds {
@@ -20,37 +20,45 @@ struct Seconds {
 
 using Matrix = std::vector<std::vector<double>>;
 
-/// Row i, column j: ∂W_i/∂x_j.
-std::string textOf(const TransferFunction& tf, const Matrix& jacobian) {
-    std::vector<std::string> head{"dVWS / dopacity of"};
+/// What is asked for besides, one row and column for each feature.
+struct Matrices {
+    std::optional<Matrix> jacobian;  ///< ∂W_i/∂x_j
+    std::optional<Matrix> occlusion; ///< the part of i that j hides
+};
+
+std::string textOf(const TransferFunction& tf, const std::optional<Matrix>& matrix, const std::string& corner) {
+    if (!matrix || matrix->empty()) return {};
+    std::vector<std::string> head{corner};
     for (const Feature& f : tf.features) head.push_back(f.name);
     Table table(head);
-    for (std::size_t i = 0; i < jacobian.size(); ++i) {
+    for (std::size_t i = 0; i < matrix->size(); ++i) {
         std::vector<std::string> row{tf.features[i].name};
-        for (const double d : jacobian[i]) row.push_back(fixedText(d, 4));
+        for (const double d : (*matrix)[i]) row.push_back(fixedText(d, 4));
         table.add(row);
     }
     return table.text();
 }
 
-std::string textOf(const TransferFunction& tf, const Measures& m, const std::optional<Matrix>& jacobian,
-                   const std::string& engine, const Seconds& seconds) {
-    Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation"});
+std::string textOf(const TransferFunction& tf, const Measures& m, const Matrices& matrices, const std::string& engine,
+                   const Seconds& seconds) {
+    Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation", "cover"});
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];
         table.add({tf.features[i].name, fixedText(tf.features[i].a, 3) + " .. " + fixedText(tf.features[i].b, 3),
                    fixedText(m.opacities[i], 4), fixedText(f.visibility, 4), fixedText(f.vws, 4),
-                   fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4)});
+                   fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4), fixedText(m.coverage->covers[i], 4)});
     }
-    const std::string features = tf.features.empty() ? "the transfer function has no features\n" : table.text();
-    const std::string derivatives = jacobian && !jacobian->empty() ? textOf(tf, *jacobian) : "";
-    return features + derivatives + "engine " + engine + ": visibility " + secondsText(seconds.visibility) +
-           ", saliency " + secondsText(seconds.saliency) +
+    const std::string features = tf.features.empty()
+                                     ? "the transfer function has no features\n"
+                                     : table.text() + "coverage " + fixedText(m.coverage->coverage, 4) + "\n";
+    return features + textOf(tf, matrices.jacobian, "dVWS / dopacity of") +
+           textOf(tf, matrices.occlusion, "part hidden by") + "engine " + engine + ": visibility " +
+           secondsText(seconds.visibility) + ", saliency " + secondsText(seconds.saliency) +
            (seconds.jacobian ? ", jacobian " + secondsText(*seconds.jacobian) : "") + ", total " +
            secondsText(seconds.total) + "\n";
 }
 
-Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m, const std::optional<Matrix>& jacobian,
+Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m, const Matrices& matrices,
             const std::string& engine, const Seconds& seconds) {
     Json features = Json::array();
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
@@ -61,14 +69,17 @@ Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m,
                             {"visibility", f.visibility},
                             {"vws", f.vws},
                             {"vws_brightness", f.vwsBrightness},
-                            {"vws_saturation", f.vwsSaturation}});
+                            {"vws_saturation", f.vwsSaturation},
+                            {"cover", m.coverage->covers[i]}});
     }
     Json json{{"command", "measure"},
               {"engine", engine},
               {"volume", jsonFromVolume(volume)},
               {"features", features},
+              {"coverage", m.coverage->coverage},
               {"visibility_histogram", m.visibilityHistogram}};
-    if (jacobian) json["jacobian"] = *jacobian;
+    if (matrices.jacobian) json["jacobian"] = *matrices.jacobian;
+    if (matrices.occlusion) json["occlusion"] = *matrices.occlusion;
     Json& times = json["seconds"] = {{"visibility", seconds.visibility}, {"saliency", seconds.saliency}};
     if (seconds.jacobian) times["jacobian"] = *seconds.jacobian;
     times["total"] = seconds.total;
@@ -86,14 +97,17 @@ Answer run(const Options& o, Progress& progress) {
     seconds.saliency = saliencySeconds;
     const Measures m = workspace.measure(input, progress.phase("visibility"));
     seconds.visibility = workspace.seconds().visibility;
-    std::optional<Matrix> jacobian;
+    Matrices matrices;
     if (o.jacobian) {
-        jacobian = workspace.jacobian(input, progress.phase("derivatives"));
+        matrices.jacobian = workspace.jacobian(input, progress.phase("derivatives"));
         seconds.jacobian = workspace.seconds().visibility;
     }
+    if (o.occlusion) matrices.occlusion = workspace.occlusion(input, progress.phase("occlusion"));
     seconds.total = total.seconds();
-    return {textOf(input.tf, m, jacobian, engine, seconds),
-            jsonOf(*input.volume, input.tf, m, jacobian, engine, seconds),
+    Json json = jsonOf(*input.volume, input.tf, m, matrices, engine, seconds);
+    addProfile(json, input.settings);
+    return {textOf(input.tf, m, matrices, engine + profileText(input.settings), seconds),
+            std::move(json),
             opened.notices(),
             {}};
 }
@@ -105,6 +119,7 @@ Command addMeasure(CLI::App& program) {
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
     app->add_flag("--jacobian", o->jacobian, "the derivatives of each VWS with respect to each feature's opacity too");
+    app->add_flag("--occlusion", o->occlusion, "which part of each feature's visibility each other one takes away");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -2,12 +2,17 @@
 #include <algorithm>
 
 #include "commands.h"
+#include "optimize/visibility_words.h"
+#include "optimize_report.h"
+#include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
+#include "render/camera_motion.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "results_json.h"
+#include "session/view_workspace.h"
 #include "tf/formats/tf_json.h"
 #include "tf/shown_tf.h"
 
@@ -20,7 +25,7 @@ struct SearchOptions {
     std::optional<SearchMethod> method;
     std::optional<Direction> direction;
     bool normalize = false, noCoarse = false, noRestarts = false;
-    std::optional<double> b, step, tolerance;
+    std::optional<double> b, step, tolerance, coverage;
     std::optional<int> maxIterations;
 
     void add(CLI::App& app);
@@ -34,6 +39,7 @@ struct SearchOptions {
         options.step = step.value_or(options.step);
         options.tolerance = tolerance.value_or(options.tolerance);
         options.maxIterations = maxIterations.value_or(options.maxIterations);
+        if (coverage) options.coverage = coverage;
         return options;
     }
 };
@@ -61,58 +67,46 @@ struct Options {
     SearchOptions search;
     std::vector<NamedLimits> limits;
     std::vector<std::string> locked;
-    std::optional<std::vector<double>> targets;
-    std::optional<std::string> outTf;
+    std::optional<TargetInput> targets;
+    std::optional<std::string> outTf, outCamera;
     bool requireConverged = false;
+    ReportOptions report;
 };
 
 struct Seconds {
     double saliency = 0, search = 0, total = 0;
 };
 
-/// What can be told about the targets before their features are known.
-std::vector<double> parseTargets(const std::string& text, const std::string& option) {
-    auto targets = parseReals(text, option);
-    double sum = 0;
-    for (const double t : targets) {
-        if (t < 0) throw UsageError("the target " + plainText(t) + " is negative", option, "give numbers from 0 on");
-        if (t > 1e9) throw UsageError("the target " + plainText(t) + " is too large", option, "only proportions count");
-        sum += t;
-    }
-    if (sum == 0) throw UsageError("all targets are 0", option, "give at least one above 0");
-    return targets;
-}
-
-std::size_t featureNamed(const TransferFunction& tf, const std::string& name, const std::string& option) {
-    const auto found =
-        std::find_if(tf.features.begin(), tf.features.end(), [&](const Feature& f) { return f.name == name; });
-    if (found != tf.features.end()) return static_cast<std::size_t>(found - tf.features.begin());
-    std::string known;
-    for (const Feature& f : tf.features) known += (known.empty() ? "" : ", ") + f.name;
-    throw UsageError("there is no feature '" + name + "'", option, "known: " + known);
+/// "on target" and invisible do not stand together without this.
+std::string faintLine(const OptimizeResult& r) {
+    if (!r.seen->faint) return {};
+    return (r.converged() ? "on target, but faint: " : "faint: ") + faintText(r) + "\n";
 }
 
 /// Those of the session, and over them what is given.
 std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
     std::vector<OpacityLimits> limits = pellucid::limitsOf(scene.tf, *scene.session.goals);
     for (const NamedLimits& given : o.limits) {
-        OpacityLimits& l = limits[featureNamed(scene.tf, given.name, "--limits")];
+        OpacityLimits& l = limits[parseFeature(given.name, "--limits", scene.tf)];
         l.lowest = given.limits.lowest;
         l.highest = given.limits.highest;
     }
-    for (const std::string& name : o.locked) limits[featureNamed(scene.tf, name, "--lock")].locked = true;
+    for (const std::string& name : o.locked) limits[parseFeature(name, "--lock", scene.tf)].locked = true;
     return limits;
 }
 
 std::string textOf(const OptimizeResult& r, const std::string& engine, const Seconds& seconds) {
-    Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after"});
+    Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after", "cover"});
     const OptimizeState& start = r.history.front();
     const OptimizeState& best = r.history[r.best];
     for (std::size_t i = 0; i < r.targets.size(); ++i)
         table.add({r.tf.features[i].name, fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
-                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4)});
-    return table.text() + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
-           name(r.reason) + " after " + std::to_string(r.iterations()) + " iterations, " +
+                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
+                   fixedText(r.seen->coverage.covers[i], 4)});
+    return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + ", at most " +
+           fixedText(r.seen->strongest, 4) + " with these shares\n" + faintLine(r) + "objective " +
+           plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
+           std::to_string(r.iterations()) + " iterations, " +
            (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " on coarser volumes, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
            secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) + ", total " +
@@ -122,6 +116,7 @@ std::string textOf(const OptimizeResult& r, const std::string& engine, const Sec
 Json jsonOf(const OptimizeResult& r, const OptimizeOptions& options, const Volume& volume, const std::string& engine,
             const Seconds& seconds) {
     Json json = jsonFromOptimization(r, options);
+    addSeen(json, r);
     json["engine"] = engine;
     json["volume"] = jsonFromVolume(volume);
     json["seconds"] = {{"saliency", seconds.saliency}, {"search", seconds.search}, {"total", seconds.total}};
@@ -139,32 +134,62 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
+    if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputFiles(o.scene));
+    o.report.check(o.scene);
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
-    const Scene& scene = opened.scene;
-    const std::vector<double> named = o.targets.value_or(scene.targets());
+    Scene scene = opened.scene;
+    const std::vector<double> named = o.targets ? o.targets->of(scene) : scene.targets();
     atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
     const std::vector<double> targets = shownShares(scene.tf, named);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
     const std::vector<OpacityLimits> limits = limitsOf(o, scene);
-    const MeasureInput input = measureInput(scene);
+    MeasureInput input = measureInput(scene);
     Workspace workspace;
     const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
 
     JobControl job = progress.phase("optimizing");
     job.progress = nullptr; // engines tell the fraction of one evaluation; how many will be needed nobody knows
     int moves = -1;
-    OptimizeResult result = workspace.optimize(
-        input, targets, limits, options, job, [&](const OptimizeState& state) {
-            progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
-        });
+    const auto tell = [&](const OptimizeState& state) {
+        progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
+    };
+    OptimizeResult result;
+    if (o.scene.camera.best) {
+        ViewWorkspace views;
+        ViewAndOpacities found =
+            optimizeViewAndOpacities(workspace, views, input, targets, limits, options, progress.phase("views"),
+                                     [&](const MeasureInput&, const OptimizeState& state) { tell(state); });
+        input.view = found.input.view;
+        scene.camera = input.view.camera;
+        scene.session.camera = scene.camera;
+        result = std::move(found.result);
+    } else {
+        result = workspace.optimize(input, targets, limits, options, job, tell);
+    }
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(result, engine, seconds), jsonOf(result, options, *input.volume, engine, seconds), opened.notices(),
-            failureOf(o, options, result)};
+    if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
+    std::string text = textOf(result, engine + profileText(input.settings), seconds);
+    Json json = jsonOf(result, options, *input.volume, engine, seconds);
+    addProfile(json, input.settings);
+    if (result.history[result.best].objective >= options.tolerance) {
+        const Verdict verdict =
+            workspace.explain(input, targets, limits, options, result, progress.phase("explaining"));
+        for (const std::string& sentence : verdict.sentences) text += sentence + "\n";
+        json["verdict"] = jsonFromVerdict(verdict, scene.tf);
+    }
+    if (o.scene.camera.best) {
+        const ViewAngles angles = viewAngles(input.view.camera, input.volume->geometry());
+        text += "view " + fixedText(angles.azimuth, 1) + "," + fixedText(angles.elevation, 1) + " degrees\n";
+        json.update(jsonFromView(input.view.camera, input.volume->geometry()));
+    }
+    Answer answer{std::move(text), std::move(json), opened.notices(), failureOf(o, options, result)};
+    o.report.write(scene, options, result, seconds.search, workspace, progress, answer);
+    return answer;
 }
 
 void SearchOptions::add(CLI::App& app) {
@@ -196,6 +221,10 @@ void SearchOptions::add(CLI::App& app) {
         [this](const std::string& text, const std::string& option) { tolerance = parseRealAbove(text, option, 0, 1); },
         "converged below this distance from the targets (default 0.03)");
     addValue(
+        app, "--coverage", "C",
+        [this](const std::string& text, const std::string& option) { coverage = parseRealAbove(text, option, 0, 1); },
+        "mean alpha of the picture, moved to at equal shares (default with newton: as strong as they allow)");
+    addValue(
         app, "--max-iterations", "N",
         [this](const std::string& text, const std::string& option) {
             maxIterations = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
@@ -211,11 +240,13 @@ Command addOptimize(CLI::App& program) {
     CLI::App* app =
         program.add_subcommand("optimize", "Finds the opacities that give each feature its target saliency");
     const auto o = std::make_shared<Options>();
+    o->scene.camera.mayBeBest = true;
     o->scene.addForFigures(*app);
     addValue(
-        *app, "--target", "T1,T2,...",
-        [o](const std::string& text, const std::string& option) { o->targets = parseTargets(text, option); },
-        "one number for each feature, from 0 on; scaled to sum 1; required unless a session has targets");
+        *app, "--target", kTargetForms,
+        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        "one number for each feature, from 0 on, scaled to sum 1; or all equal, by the value of their peaks, turned "
+        "round, or all for one; required unless a session has targets");
     o->search.add(*app);
     addRepeated(
         *app, "--limits", "NAME:LO:HI",
@@ -227,6 +258,10 @@ Command addOptimize(CLI::App& program) {
     addValue(
         *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
         "write the optimized transfer function (the best one seen)");
+    o->report.add(*app);
+    addValue(
+        *app, "--out-camera", "FILE", [o](const std::string& text, const std::string&) { o->outCamera = text; },
+        "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where the targets are not reached; the answer is written all the same");
     return {app, [o](Progress& progress) { return run(*o, progress); }};

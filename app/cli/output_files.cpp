@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "output.h"
 
 namespace pellucid::cli {
 
@@ -60,6 +61,10 @@ void checkOutputFolder(const std::string& path, const std::string& option, std::
     if (fs::exists(fs::symlink_status(folder, ec))) // a link that leads nowhere too
         throw FileError("a file has the folder's name", path, "choose another name");
     requireWritable(folder.string());
+}
+
+void writeCamera(const Camera& camera, const std::string& path) {
+    writeTextAtomically(path, jsonText(Json(jsonFromCamera(camera))) + "\n");
 }
 
 } // namespace pellucid::cli

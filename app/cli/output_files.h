@@ -21,4 +21,7 @@ void checkOutputFile(const std::string& path, const std::string& option, std::sp
 void checkOutputFolder(const std::string& path, const std::string& option, std::span<const std::string> fileNames,
                        std::span<const std::string> inputs);
 
+/// *.camera.json. Throws FileError.
+void writeCamera(const Camera& camera, const std::string& path);
+
 } // namespace pellucid::cli

@@ -84,6 +84,28 @@ std::vector<double> parseReals(const std::string& text, const std::string& optio
     return parseReals(text, option);
 }
 
+std::vector<double> parseTargets(const std::string& text, const std::string& option) {
+    auto targets = parseReals(text, option);
+    double sum = 0;
+    for (const double t : targets) {
+        if (t < 0) throw UsageError("the target " + plainText(t) + " is negative", option, "give numbers from 0 on");
+        if (t > 1e9) throw UsageError("the target " + plainText(t) + " is too large", option, "only proportions count");
+        sum += t;
+    }
+    if (sum == 0) throw UsageError("all targets are 0", option, "give at least one above 0");
+    return targets;
+}
+
+std::size_t parseFeature(const std::string& text, const std::string& option, const TransferFunction& tf) {
+    std::string known;
+    for (std::size_t i = 0; i < tf.features.size(); ++i) {
+        if (tf.features[i].name == text) return i;
+        known += (known.empty() ? "'" : ", '") + tf.features[i].name + "'";
+    }
+    throw UsageError("no feature is named '" + text + "'", option,
+                     known.empty() ? "leave it out: this transfer function has none" : "known: " + known);
+}
+
 ValueRange parseRange(const std::string& text, const std::string& option) {
     const auto v = parseReals(text, option, 2, "LO,HI in data units");
     if (!(v[0] < v[1]))

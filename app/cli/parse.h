@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "render/clipping.h"
-#include "tf/color.h"
+#include "tf/transfer_function.h"
 #include "volume/volume.h"
 
 namespace pellucid::cli {
@@ -31,6 +31,13 @@ std::vector<double> parseReals(const std::string& text, const std::string& optio
                                const std::string& what);
 /// "LO,HI" with LO < HI.
 ValueRange parseRange(const std::string& text, const std::string& option);
+
+/// Shares that features are wanted to have: what can be told of them before the features are known. Numbers ≥ 0, not
+/// all 0.
+std::vector<double> parseTargets(const std::string& text, const std::string& option);
+
+/// The index of the feature of this name. Throws UsageError that lists all there are.
+std::size_t parseFeature(const std::string& text, const std::string& option, const TransferFunction& tf);
 
 struct ImageSize {
     int width = 512, height = 512; ///< pixels, each in [1, 16384]

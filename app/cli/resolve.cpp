@@ -12,6 +12,7 @@ void SceneOptions::addForFigures(CLI::App& app) {
     clip.add(app);
     engine.add(app, "high: half the error, more time");
     saliency.add(app);
+    profile.add(app);
 }
 
 SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<std::string>& notices) {
@@ -26,8 +27,18 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.engine.applyTo(inputs);
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);
-    const bool reference = work.byEngine && inputs.session.measure->engine == EngineChoice::Reference;
-    inputs.then = reference ? byReference(work.use) : work.use;
+    options.field.applyTo(inputs);
+    options.profile.applyTo(inputs);
+    options.profile.requireNone(inputs, options.engine, options.saliency);
+    inputs.then = work.use;
+    if (work.byEngine) {
+        const MeasureSettings& settings = *inputs.session.measure;
+        if (settings.profile == Profile::Published)
+            inputs.then = byPublished(work.use);
+        else if (settings.engine == EngineChoice::Reference)
+            inputs.then = byReference(work.use);
+        if (const auto notice = profileNotice(settings, options.camera)) notices.push_back(*notice);
+    }
     if (!work.needsTf) inputs.start = SceneInputs::Start::Tents;
     return inputs;
 }

@@ -7,7 +7,9 @@
 #include "options/camera_options.h"
 #include "options/clip_options.h"
 #include "options/engine_options.h"
+#include "options/field_options.h"
 #include "options/picture_options.h"
+#include "options/profile_options.h"
 #include "options/saliency_options.h"
 #include "options/session_options.h"
 #include "options/tf_options.h"
@@ -25,7 +27,9 @@ struct SceneOptions {
     ClipOptions clip;
     EngineOptions engine;
     SaliencyInput saliency;
+    ProfileOptions profile;
     PictureOptions picture;
+    FieldOptions field;
 
     /// All that figures of a view depend on: the groups of `measure`, `fields` and `optimize`.
     void addForFigures(CLI::App& app);

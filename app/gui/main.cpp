@@ -15,6 +15,7 @@
 #include "controllers/theme_actions.h"
 #include "input_habits.h"
 #include "main_window.h"
+#include "tf/formats/tf_file.h"
 #include "theme.h"
 #include "version.h"
 
@@ -57,7 +58,8 @@ void describe(QCommandLineParser& parser) {
         "FILE", "volumes or sessions, a window each: NRRD, MetaImage, NIfTI, raw data, *.pellucid.json, or sample:NAME",
         "[FILE…]");
     parser.addOption({"tf",
-                      "Transfer function: a *.tf.json file, auto (what the data propose, the default), tents:N[:PEAK], "
+                      "Transfer function: a *.tf.json or Voreen *.tfi file, auto (what the data propose, the default), "
+                      "tents:N[:PEAK], "
                       "ramp:N or preset:NAME.",
                       "SPEC"});
     parser.addOption({"session", "Go on with a saved session, a *.pellucid.json file.", "FILE"});
@@ -125,7 +127,7 @@ int main(int argc, char** argv) {
     QString tf = parser.value("tf");
     QStringList volumes;
     for (const QString& file : parser.positionalArguments()) {
-        if (file.endsWith(".tf.json", Qt::CaseInsensitive)) {
+        if (hasTfSuffix(file.toStdString())) {
             if (!tf.isEmpty()) return complain("more than one transfer function, " + file + ", give one", kUsage);
             tf = file;
         } else {

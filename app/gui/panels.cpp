@@ -7,10 +7,15 @@
     PANEL(featuresPanel) \
     PANEL(refinePanel) \
     PANEL(influencePanel) \
+    PANEL(convergencePanel) \
     PANEL(displayPanel) \
     PANEL(lightPanel) \
     PANEL(clipPanel) \
+    PANEL(fieldsPanel) \
     PANEL(galleryPanel) \
+    PANEL(viewsPanel) \
+    PANEL(settingsPanel) \
+    PANEL(spacePanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

@@ -21,9 +21,12 @@ Results::Results(SessionStore& store, Lane& lane, Workspace& workspace, QObject*
     : QObject(parent), m_store(store),
       m_measuring(
           [&workspace](const Request& request, const JobControl& job) {
-              Figures figures{request.input, {}, {}, {}};
+              Figures figures{request.input, {}, {}, {}, {}};
               if (request.measures) figures.measures = workspace.measure(request.input, job);
-              if (request.influence) figures.influence = workspace.jacobian(request.input, job);
+              if (request.influence) {
+                  figures.influence = workspace.jacobian(request.input, job);
+                  figures.occlusion = workspace.occlusion(request.input, job);
+              }
               figures.engine = QString::fromStdString(workspace.engine(request.input).name());
               return figures;
           },
@@ -82,7 +85,10 @@ void Results::keep(Figures figures) {
         std::find_if(m_known.begin(), m_known.end(), [&](const Figures& f) { return f.input == figures.input; });
     if (at != m_known.end()) {
         if (!figures.measures) figures.measures = at->measures;
-        if (!figures.influence) figures.influence = at->influence;
+        if (!figures.influence) {
+            figures.influence = at->influence;
+            figures.occlusion = at->occlusion;
+        }
         m_known.erase(at);
     }
     m_known.push_front(std::move(figures));
@@ -131,6 +137,8 @@ const std::vector<std::vector<double>>* Results::influence() const {
         return nullptr;
     return &*m_derived.influence;
 }
+
+const OcclusionMatrix* Results::occlusion() const { return influence() ? &m_derived.occlusion : nullptr; }
 
 bool Results::influenceIsCurrent() const {
     return m_derived.influence && m_store.hasVolume() && m_derived.input == m_present;

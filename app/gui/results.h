@@ -32,6 +32,8 @@ public:
     /// The latest ∂W_i/∂x_j as [i][j], likewise.
     const std::vector<std::vector<double>>* influence() const;
     bool influenceIsCurrent() const;
+    /// Who hides whom, measured with the influence and as current as that.
+    const OcclusionMatrix* occlusion() const;
     /// F, of the latest figures and the present targets; empty without figures.
     std::optional<double> objective() const;
 
@@ -57,6 +59,7 @@ private:
         MeasureInput input;
         std::optional<Measures> measures;
         std::optional<std::vector<std::vector<double>>> influence;
+        OcclusionMatrix occlusion; // where there is an influence
         QString engine;
     };
     struct Request {

@@ -11,8 +11,18 @@ ViewOverlay::ViewOverlay(SessionStore& store, QWidget* view) : QWidget(view), m_
     setFocusPolicy(Qt::NoFocus);
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.data != after.data) cancel(); // what was taken hold of is gone
+        if (m_glimpse) lookFrom(m_glimpse->camera);
         update();
     });
+}
+
+void ViewOverlay::lookFrom(const std::optional<Camera>& camera) {
+    m_glimpse.reset();
+    if (camera) {
+        m_glimpse = m_store.scene();
+        m_glimpse->camera = *camera;
+    }
+    update();
 }
 
 void ViewOverlay::add(std::unique_ptr<OverlayLayer> layer) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <QWidget>
@@ -41,6 +42,8 @@ public:
     ViewOverlay(SessionStore& store, QWidget* view);
 
     void add(std::unique_ptr<OverlayLayer> layer);
+    /// What is drawn lies where another camera sees it; empty: the scene's own.
+    void lookFrom(const std::optional<Camera>& camera);
 
     bool press(const QPointF& point, Qt::KeyboardModifiers keys);
     bool isDragging() const { return m_holder != nullptr; }
@@ -54,10 +57,11 @@ protected:
     void paintEvent(QPaintEvent* event) override;
 
 private:
-    OverlayView overlayView() const { return {m_store.scene(), QSizeF(size())}; }
+    OverlayView overlayView() const { return {m_glimpse ? *m_glimpse : m_store.scene(), QSizeF(size())}; }
 
     SessionStore& m_store;
     std::vector<std::unique_ptr<OverlayLayer>> m_layers;
+    std::optional<Scene> m_glimpse;   ///< the scene from elsewhere
     OverlayLayer* m_holder = nullptr; ///< has taken the press
 };
 

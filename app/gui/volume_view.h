@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <QElapsedTimer>
 #include <QPointF>
@@ -15,6 +16,8 @@
 
 namespace pellucid::gui {
 
+class FieldController;
+
 enum class ViewRenderer { Auto, Gl, Cpu };
 
 /// Shows the store's scene, moves its camera: left-drag rotates, middle or Shift+left pans, wheel and right-drag
@@ -24,12 +27,16 @@ class VolumeView : public QWidget {
 public:
     /// Auto draws with whichever is faster here. As long as that has not been measured, which happens beside the first
     /// pictures, it is OpenGL on a GPU and the CPU else. Gl throws Error where there is none.
-    explicit VolumeView(SessionStore& store, ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr);
+    /// `fields`, which outlives this, says what is drawn in the place of the data; null: never anything.
+    explicit VolumeView(SessionStore& store, ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr,
+                        FieldController* fields = nullptr);
     ~VolumeView() override;
 
     const FrameInfo& frame() const { return m_surface->frame(); }
     bool isComplete() const { return m_surface->frame().complete; }
     ViewOverlay& overlay() { return *m_overlay; }
+    /// Shows the scene from another camera for a while; empty: from its own again. The store hears nothing of it.
+    void lookFrom(const std::optional<Camera>& camera);
     QString rendererName() const { return m_surface->rendererName(); }
     QString rendererReason() const { return m_reason; } ///< why it draws, a sentence
 
@@ -62,6 +69,8 @@ private:
     void updateScene();
 
     SessionStore& m_store;
+    FieldController* const m_fields;
+    std::optional<Camera> m_glimpse;
     std::unique_ptr<ViewSurface> m_surface;
     ViewOverlay* m_overlay; // a child
     Motion m_motion = Motion::None;

@@ -63,6 +63,8 @@ void writeImage(const Image& image, const std::string& path) {
     writeBytesAtomically(path, encoded(image, suffixOf(path), path));
 }
 
+std::vector<unsigned char> pngOf(const Image& image) { return encoded(image, ".png", "a picture in memory"); }
+
 Image readImage(const std::string& path) {
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);

@@ -108,7 +108,27 @@ private:
         return trial(at, d, m_options.step);
     }
 
+    /// Line: until one is no better than the one before. Parallel: all of them, the best, of equal ones the shorter.
+    OptimizeState publishedSearch(const OptimizeState& at, const std::vector<double>& d) {
+        constexpr int kSteps = 4;
+        if (m_options.method == SearchMethod::Parallel) {
+            std::vector<std::vector<double>> candidates;
+            for (int i = 0; i < kSteps; ++i) candidates.push_back(stepped(at, d, m_options.step * std::exp2(i)));
+            const auto states = evaluate(candidates);
+            return *std::min_element(states.begin(), states.end(),
+                                     [](const auto& a, const auto& b) { return a.objective < b.objective; });
+        }
+        OptimizeState best = trial(at, d, m_options.step);
+        for (int i = 1; i < kSteps; ++i) {
+            OptimizeState next = trial(at, d, m_options.step * std::exp2(i));
+            if (!(next.objective < best.objective)) break;
+            best = std::move(next);
+        }
+        return best;
+    }
+
     OptimizeState lineSearch(const OptimizeState& at, const std::vector<double>& d) {
+        if (m_options.publishedSteps) return publishedSearch(at, d);
         double step = m_options.step;
         OptimizeState best = trial(at, d, step);
         if (best.objective < at.objective) {
@@ -130,6 +150,7 @@ private:
     }
 
     OptimizeState parallelLineSearch(const OptimizeState& at, const std::vector<double>& d) {
+        if (m_options.publishedSteps) return publishedSearch(at, d);
         constexpr int kCount = kLargestParallelStep - kSmallestParallelStep + 1;
         // Where the whole batch overshoots, the valley is narrower than its smallest step: one finer batch looks there.
         OptimizeState leastBad;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "optimize/coverage.h"
 #include "optimize/objective.h"
 
 namespace pellucid {
@@ -49,6 +50,9 @@ struct OptimizeOptions {
     bool restarts = true;    ///< Newton: where it is stuck it tries starts spread over all opacities
     /// Newton: mean alpha that is wanted of the picture, (0, 1]; empty: as strong as shares allow.
     std::optional<double> coverage = {};
+    /// Line and Parallel: the lengths 1, 2, 4 and 8 base steps (docs/method.md, "The published profile"). Follows from
+    /// the profile and is kept in no session.
+    bool publishedSteps = false;
     void validate() const; ///< throws UsageError
     bool operator==(const OptimizeOptions&) const = default;
 };
@@ -77,6 +81,7 @@ struct OptimizeResult {
     int evaluations = 0;                ///< of W, on any level
     int spreadStarts = 0;               ///< Newton: starts tried all over the opacities, because it was stuck
     StopReason reason = StopReason::MaxIterations;
+    std::optional<Seen> seen = {}; ///< of `tf`: of those who ask for it (visible_answer.h)
 
     int iterations() const;       ///< moves on the volume
     int coarseIterations() const; ///< states on coarser ones

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "optimize/fields.h"
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
 #include "render/annotation.h"
@@ -49,6 +50,7 @@ struct FeatureGoal {
     double target = 0;              ///< wanted share of saliency, [0, 1e9]; shares are scaled to sum 1 over a TF
     bool locked = false;            ///< an optimization leaves its opacity alone
     double lowest = 0, highest = 1; ///< bounds of its opacity, 0 ≤ lowest ≤ highest ≤ 1
+    bool targetLocked = false;      ///< its target stays where those of other features are set
 
     /// What the feature was when it left the transfer function, by which it is known again; empty: it never left.
     struct Departed {
@@ -108,6 +110,31 @@ struct SliceViews {
     bool operator==(const SliceViews&) const = default;
 };
 
+/// A field in the place of the data in the picture, under colours of its own. No figure depends on it.
+struct FieldView {
+    std::optional<FieldKind> kind;  ///< empty: the data
+    FeatureId feature = 0;          ///< of its voxels alone; 0: of all
+    std::string colorMap = "ember"; ///< one of colorMaps(), or kFeatureColorMap
+    double strength = 0.3;          ///< opacity of a path of d0 at `top`, (0,1]
+    double threshold = 0;           ///< of `top`, [0,1): up to there nothing is drawn
+    std::optional<double> top;      ///< value that the colours reach to, > 0, in the field's unit; empty: Field::top
+    bool operator==(const FieldView&) const = default;
+};
+/// In place of a colour map: from black over the feature's colour to white; of all features, the default map.
+inline constexpr const char* kFeatureColorMap = "feature";
+/// Throws UsageError where `name` is no colour map and not kFeatureColorMap.
+void checkFieldColorMap(const std::string& name);
+/// What an optimization began with: enough to do it again with the same data.
+struct RunStart {
+    TransferFunction tf; ///< as people edit it, in its own range; without points: not known
+    Camera camera;
+    Clipping clipping;
+    MeasureSettings measure;
+    OptimizeOptions options;
+    std::vector<OpacityLimits> limits; ///< per feature, or empty
+    bool operator==(const RunStart&) const = default;
+};
+
 /// An optimization or refinement that was run, with what came of it.
 struct Run {
     std::string kind;                   ///< "optimize", "refine"
@@ -118,14 +145,24 @@ struct Run {
     std::size_t best = 0;               ///< index into history
     double before = 0, after = 0;       ///< F of an optimization, movable energy of a refinement
     int iterations = 0;
+    int number = 0;       ///< tells it from the other runs of its session, from 1 on; given by addRun()
+    std::string name;     ///< that somebody has given it; empty: none
+    std::string started;  ///< local time, ISO 8601 to the second: "2026-11-22T14:03:07"; empty: not known
+    double seconds = 0;   ///< of the search; 0: not known
+    int evaluations = 0;  ///< of W; 0: not known
+    Part<RunStart> start; ///< of an optimization; files of earlier versions do not tell
+    bool hasStart() const { return !start->tf.points.empty(); }
     bool operator==(const Run&) const = default;
 };
+/// The record of an optimization.
+Run runOf(const OptimizeResult& result, RunStart start);
 
 /// A value: copies share their parts, so that they cost next to nothing, and comparing parts tells what has changed.
 struct Session {
     Part<std::vector<Variable>> variables; ///< one today; empty: nothing is open
     int frame = 0;
     Part<FeatureGoals> goals;
+    bool holdTargets = false;     ///< live: opacities follow camera, colours and settings so that targets are held
     std::optional<Camera> camera; ///< empty: the home view of the volume
     Part<Clipping> clipping;      ///< what is cut away, of pictures and of figures
     Part<DisplaySettings> display;
@@ -134,6 +171,7 @@ struct Session {
     Part<OptimizeOptions> optimize;
     Part<RefineSettings> refine;
     Part<SliceViews> slices;
+    Part<FieldView> field;       ///< what is drawn in the place of the data
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns
     std::string extraJson;       ///< unknown keys of the file it came from, as one JSON object; written back
 
@@ -150,19 +188,27 @@ struct Session {
     void setTf(TransferFunction tf);
     /// Gives the features of all keys that have no identity one, as setTf() does from key to key.
     void identifyFeatures();
+    /// Gives the run a number above all others.
     void addRun(Run run);
 };
 
 inline constexpr std::size_t kMostRuns = 50;
 
-/// Shares that the features of `tf` are wanted to have, in their order, sum 1: their goals, scaled. A feature without a
-/// goal has the mean of the others; where all are 0 or none has one, shares are equal. Empty without features.
+/// Shares that the features of `tf` are wanted to have, in their order, sum 1: their goals, scaled; those whose target
+/// is locked keep theirs as far as the sum is 1. A feature without a goal has the mean of the others; where all are 0 or
+/// none has one, shares are equal. Empty without features.
 std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& goals);
 /// The goals after the features of `tf` (which have identities) got `targets`, in their order.
 FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const std::vector<double>& targets);
 /// What an optimization may do to the opacities of the features of `tf`, in their order. A hidden feature is locked.
 std::vector<OpacityLimits> limitsOf(const TransferFunction& tf, const FeatureGoals& goals);
-/// One share set to `value` in [0,1]; the others divide the rest in their old proportion.
-std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value);
+/// Features of `tf`, in their order, whose share stays where others are set: locked or hidden ones.
+std::vector<bool> heldTargets(const TransferFunction& tf, const FeatureGoals& goals);
+/// One share set to `value`, as far as those that are `held` (one per feature, or empty: none is) leave room for it; the
+/// others divide the rest in their old proportion. As it is where nobody else could give way.
+std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value,
+                               const std::vector<bool>& held = {});
+/// The goals after the target of one feature was locked or let go: shares are what they were.
+FeatureGoals withTargetLocked(FeatureGoals goals, const TransferFunction& tf, std::size_t feature, bool locked);
 
 } // namespace pellucid

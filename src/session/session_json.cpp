@@ -243,6 +243,7 @@ json fromGoals(const FeatureGoals& goals) {
     for (const auto& [id, g] : goals) {
         all.push_back(
             {{"id", id}, {"target", g.target}, {"locked", g.locked}, {"lowest", g.lowest}, {"highest", g.highest}});
+        if (g.targetLocked) all.back()["target_locked"] = true;
         if (g.departed)
             all.back()["departed"] = {{"name", g.departed->name}, {"range", {g.departed->a, g.departed->b}}};
     }
@@ -257,6 +258,7 @@ FeatureGoals toGoals(const JsonValue& j) {
         if (item.has("locked")) g.locked = item["locked"].boolean();
         if (item.has("lowest")) g.lowest = item["lowest"].number(0, 1);
         if (item.has("highest")) g.highest = item["highest"].number(g.lowest, 1);
+        if (item.has("target_locked")) g.targetLocked = item["target_locked"].boolean();
         if (item.has("departed")) {
             const JsonValue departed = item["departed"];
             const auto range = departed["range"].items(2);
@@ -428,30 +430,36 @@ SliceViews toSlices(const JsonValue& j) {
     return s;
 }
 
-json fromRun(const Run& r) {
-    json history = json::array();
-    for (const OptimizeState& s : r.history)
-        history.push_back({{"objective", s.objective}, {"vws", s.vws}, {"opacity", s.opacity}, {"level", s.level}});
-    return {{"kind", r.kind},       {"ended", r.ended},   {"features", r.features},
-            {"targets", r.targets}, {"history", history}, {"best", r.best},
-            {"before", r.before},   {"after", r.after},   {"iterations", r.iterations}};
+json fromField(const FieldView& f) {
+    json j{{"feature", f.feature}, {"color_map", f.colorMap}, {"strength", f.strength}, {"threshold", f.threshold}};
+    if (f.kind) j["kind"] = name(*f.kind);
+    if (f.top) j["top"] = *f.top;
+    return j;
 }
 
-Run toRun(const JsonValue& j) {
-    Run r;
-    r.kind = j["kind"].text();
-    r.ended = j["ended"].text();
-    for (const JsonValue& name : j["features"].items()) r.features.push_back(name.text());
-    r.targets = j["targets"].numbers();
-    for (const JsonValue& s : j["history"].items())
-        r.history.push_back({s["objective"].number(), s["vws"].numbers(), s["opacity"].numbers(),
-                             s.has("level") ? static_cast<int>(s["level"].integer(0, 1)) : 0});
-    r.best = static_cast<std::size_t>(j["best"].integer(0, INT64_MAX));
-    if (r.best > 0 && r.best >= r.history.size()) j["best"].fail("the history has no such state");
-    r.before = j["before"].number();
-    r.after = j["after"].number();
-    r.iterations = static_cast<int>(j["iterations"].integer(0, 1'000'000'000));
-    return r;
+FieldView toField(const JsonValue& j) {
+    j.requireObject();
+    FieldView f;
+    if (j.has("kind")) f.kind = named(j["kind"], fieldKindFromName);
+    if (j.has("feature")) f.feature = static_cast<FeatureId>(j["feature"].integer(0, INT64_MAX / 2));
+    if (j.has("color_map"))
+        f.colorMap = named(j["color_map"], [](const std::string& text) {
+            checkFieldColorMap(text);
+            return text;
+        });
+    if (j.has("strength")) {
+        f.strength = j["strength"].number(0, 1);
+        if (f.strength == 0) j["strength"].fail("a strength is above 0");
+    }
+    if (j.has("threshold")) {
+        f.threshold = j["threshold"].number(0, 1);
+        if (f.threshold == 1) j["threshold"].fail("a threshold is below 1");
+    }
+    if (j.has("top")) {
+        f.top = j["top"].number(0, kHuge);
+        if (*f.top == 0) j["top"].fail("the top is above 0");
+    }
+    return f;
 }
 
 /// A vector of the world.
@@ -551,6 +559,92 @@ Clipping toClipping(const JsonValue& j) {
     return c;
 }
 
+/// With what the other projection would take up again.
+json fromCamera(const Camera& camera) {
+    json j = jsonFromCamera(camera);
+    j["fov_y"] = camera.fovY;
+    j["height"] = camera.height;
+    return j;
+}
+
+json fromRunStart(const RunStart& start) {
+    json j{{"tf", jsonFromTf(start.tf, Identities::Keep)}, {"camera", fromCamera(start.camera)},
+           {"clip", fromClipping(start.clipping)},         {"measure", fromMeasure(start.measure)},
+           {"optimize", fromOptimize(start.options)},      {"limits", json::array()}};
+    for (const OpacityLimits& l : start.limits)
+        j["limits"].push_back({{"lowest", l.lowest}, {"highest", l.highest}, {"locked", l.locked}});
+    return j;
+}
+
+RunStart toRunStart(const JsonValue& j, std::size_t features) {
+    RunStart start;
+    start.tf = tfFromJson(j["tf"], Identities::Keep);
+    start.camera = cameraFromJson(j["camera"]);
+    start.clipping = toClipping(j["clip"]);
+    start.measure = toMeasure(j["measure"]);
+    start.options = toOptimize(j["optimize"]);
+    for (const JsonValue& l : j["limits"].items()) {
+        start.limits.push_back({l["lowest"].number(0, 1), l["highest"].number(0, 1), l["locked"].boolean()});
+        if (start.limits.back().lowest > start.limits.back().highest) l.fail("its bounds are the wrong way round");
+    }
+    if (start.tf.features.size() != features) j["tf"].fail("the run has another number of features");
+    if (!start.limits.empty() && start.limits.size() != features) j["limits"].fail("a feature has one each");
+    return start;
+}
+
+json fromRun(const Run& r) {
+    json history = json::array();
+    for (const OptimizeState& s : r.history)
+        history.push_back({{"objective", s.objective}, {"vws", s.vws}, {"opacity", s.opacity}, {"level", s.level}});
+    json j{{"kind", r.kind},
+           {"ended", r.ended},
+           {"features", r.features},
+           {"targets", r.targets},
+           {"history", history},
+           {"best", r.best},
+           {"before", r.before},
+           {"after", r.after},
+           {"iterations", r.iterations},
+           {"number", r.number},
+           {"name", r.name},
+           {"started", r.started},
+           {"seconds", r.seconds},
+           {"evaluations", r.evaluations}};
+    if (r.hasStart()) j["start"] = fromRunStart(*r.start);
+    return j;
+}
+
+Run toRun(const JsonValue& j) {
+    constexpr double kMost = 1'000'000'000;
+    Run r;
+    r.kind = j["kind"].text();
+    r.ended = j["ended"].text();
+    for (const JsonValue& name : j["features"].items()) r.features.push_back(name.text());
+    const auto perFeature = [&](const JsonValue& numbers) {
+        const std::vector<double> all = numbers.numbers();
+        if (all.size() != r.features.size()) numbers.fail("each feature of the run has one number");
+        return all;
+    };
+    r.targets = j["targets"].numbers();
+    for (const JsonValue& s : j["history"].items())
+        r.history.push_back({s["objective"].number(), perFeature(s["vws"]), perFeature(s["opacity"]),
+                             s.has("level") ? static_cast<int>(s["level"].integer(0, 1)) : 0});
+    if (!r.history.empty()) perFeature(j["targets"]);
+    r.best = static_cast<std::size_t>(j["best"].integer(0, INT64_MAX));
+    if (r.best > 0 && r.best >= r.history.size()) j["best"].fail("the history has no such state");
+    r.before = j["before"].number();
+    r.after = j["after"].number();
+    r.iterations = static_cast<int>(j["iterations"].integer(0, static_cast<std::int64_t>(kMost)));
+    if (j.has("number")) r.number = static_cast<int>(j["number"].integer(0, static_cast<std::int64_t>(kMost)));
+    if (j.has("name")) r.name = j["name"].text();
+    if (j.has("started")) r.started = j["started"].text();
+    if (j.has("seconds")) r.seconds = j["seconds"].number(0, kMost);
+    if (j.has("evaluations"))
+        r.evaluations = static_cast<int>(j["evaluations"].integer(0, static_cast<std::int64_t>(kMost)));
+    if (j.has("start")) r.start = toRunStart(j["start"], r.features.size());
+    return r;
+}
+
 } // namespace
 
 json jsonFromSession(const Session& s, const std::string& folder, DataPaths paths) {
@@ -559,6 +653,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"variables", json::array()},
            {"frame", s.frame},
            {"features", fromGoals(*s.goals)},
+           {"hold_targets", s.holdTargets},
            {"clip", fromClipping(*s.clipping)},
            {"display", fromDisplay(*s.display)},
            {"reference", fromReference(*s.reference)},
@@ -566,15 +661,11 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"optimize", fromOptimize(*s.optimize)},
            {"refine", fromRefine(*s.refine)},
            {"slices", fromSlices(*s.slices)},
+           {"field", fromField(*s.field)},
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
-    if (s.camera) {
-        j["camera"] = jsonFromCamera(*s.camera);
-        // What the other projection would take up again.
-        j["camera"]["fov_y"] = s.camera->fovY;
-        j["camera"]["height"] = s.camera->height;
-    }
+    if (s.camera) j["camera"] = fromCamera(*s.camera);
     addUnknownKeys(j, s.extraJson);
     return j;
 }
@@ -590,6 +681,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     s.variables = std::move(variables);
     if (j.has("frame")) s.frame = static_cast<int>(j["frame"].integer(0, 1'000'000'000));
     if (j.has("features")) s.goals = toGoals(j["features"]);
+    if (j.has("hold_targets")) s.holdTargets = j["hold_targets"].boolean();
     if (j.has("camera")) s.camera = cameraFromJson(j["camera"]);
     if (j.has("clip")) s.clipping = toClipping(j["clip"]);
     if (j.has("display")) s.display = toDisplay(j["display"]);
@@ -598,13 +690,22 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("optimize")) s.optimize = toOptimize(j["optimize"]);
     if (j.has("refine")) s.refine = toRefine(j["refine"]);
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
+    if (j.has("field")) s.field = toField(j["field"]);
     if (j.has("runs")) {
         std::vector<Run> runs;
-        for (const JsonValue& run : j["runs"].items()) runs.push_back(toRun(run));
+        int highest = 0;
+        for (const JsonValue& run : j["runs"].items()) {
+            runs.push_back(toRun(run));
+            const auto same = [&](const Run& other) { return other.number == runs.back().number; };
+            if (runs.back().number == 0 || std::find_if(runs.begin(), runs.end() - 1, same) != runs.end() - 1)
+                runs.back().number = highest + 1; // as in files of earlier versions
+            highest = std::max(highest, runs.back().number);
+        }
         s.runs = std::move(runs);
     }
-    s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "camera", "clip", "display",
-                                 "reference", "measure", "optimize", "refine", "slices", "runs", "title"});
+    s.extraJson =
+        j.unknownKeys({"format", "version", "variables", "frame", "features", "hold_targets", "camera", "clip",
+                       "display", "reference", "measure", "optimize", "refine", "slices", "field", "runs", "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -1,9 +1,13 @@
 #include "session/workspace.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "engines/engines.h"
+#include "optimize/visible_answer.h"
 #include "render/memory_needs.h"
+#include "render/published_engine.h"
+#include "saliency/published_saliency.h"
 
 namespace pellucid {
 
@@ -14,22 +18,30 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 
 } // namespace
 
+/// What measuring takes under these settings.
+MemoryUse useUnder(const MeasureSettings& settings) {
+    const MemoryUse use = toMeasure("measuring");
+    if (settings.profile == Profile::Published) return byPublished(use);
+    return settings.engine == EngineChoice::Reference ? byReference(use) : use;
+}
+
 VisibilityEngine& Workspace::engine(const MeasureInput& input) {
     const MeasureSettings& settings = input.settings;
-    if (m_engineVolume != input.volume || !m_engine || m_choice != settings.engine || m_quality != settings.quality) {
+    if (m_engineVolume != input.volume || !m_engine || m_choice != settings.engine || m_quality != settings.quality ||
+        m_engineProfile != settings.profile) {
         m_engine.reset();
         m_coarser.reset();
         if (m_weightsVolume != input.volume) { // what was measured before needs no room any more
             m_weightsVolume.reset();
             m_weights = {};
         }
-        const MemoryUse use = toMeasure("measuring");
-        requireMemory(settings.engine == EngineChoice::Reference ? byReference(use) : use, input.volume->title,
-                      input.volume->dims(), input.volume->sampleType());
-        m_engine = makeEngine(settings.engine, input.volume, settings.quality);
+        requireMemory(useUnder(settings), input.volume->title, input.volume->dims(), input.volume->sampleType());
+        m_engine = settings.profile == Profile::Published ? makePublishedEngine(input.volume)
+                                                          : makeEngine(settings.engine, input.volume, settings.quality);
         m_engineVolume = input.volume;
         m_choice = settings.engine;
         m_quality = settings.quality;
+        m_engineProfile = settings.profile;
     }
     return *m_engine;
 }
@@ -42,7 +54,7 @@ void Workspace::releaseEngine() {
 
 bool Workspace::haveWeights(const MeasureInput& input) const {
     return m_weightsVolume == input.volume && m_weightsOptions == input.settings.saliency &&
-           m_weightsTf == colorsOf(input.tf);
+           m_weightsProfile == input.settings.profile && m_weightsTf == colorsOf(input.tf);
 }
 
 const WeightFields& Workspace::weights(const MeasureInput& input, const JobControl& job) {
@@ -51,13 +63,31 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
         const auto start = Clock::now();
         m_weightsVolume.reset();
         m_coarserWeighted = false;
-        updateSaliencyFields(m_weights, *input.volume, input.tf, input.settings.saliency, job);
+        const bool published = input.settings.profile == Profile::Published;
+        if (published || m_weightsProfile != input.settings.profile) m_weights = {}; // of another form
+        m_weightsProfile = input.settings.profile;
+        if (published)
+            m_weights = publishedSaliencyFields(*input.volume, input.tf, job);
+        else
+            updateSaliencyFields(m_weights, *input.volume, input.tf, input.settings.saliency, job);
         m_weightsTf = colorsOf(input.tf);
         m_weightsOptions = input.settings.saliency;
         m_weightsVolume = input.volume;
         m_seconds.saliency = secondsSince(start);
     }
     return m_weights;
+}
+
+const RayBundle& Workspace::rays(const MeasureInput& input, const JobControl& job) {
+    TransferFunction shapes = withFullPeaks(input.tf);
+    if (!m_rays || m_raysVolume != input.volume || !(m_raysView == input.view) || !(m_raysTf == shapes)) {
+        m_rays.reset();
+        m_rays.emplace(*input.volume, input.tf, input.view, kCoverageRays, job);
+        m_raysVolume = input.volume;
+        m_raysView = input.view;
+        m_raysTf = std::move(shapes);
+    }
+    return *m_rays;
 }
 
 const CoarserVolumes& Workspace::coarser(const MeasureInput& input, const JobControl& job) {
@@ -91,6 +121,13 @@ auto guarded(const Work& work, const Release& release) {
     }
 }
 
+/// The curve is followed on the second copy, where there is one: each has an eighth of the voxels of the one before.
+DensityProblem densityProblem(const VwsFunction& full, const std::vector<std::unique_ptr<VwsFunction>>& coarser,
+                              const RayBundle& rays, const std::vector<OpacityLimits>& limits) {
+    const std::size_t level = std::min<std::size_t>(coarser.size(), 2);
+    return {full, level == 0 ? nullptr : coarser[level - 1].get(), rays, limits, static_cast<int>(level)};
+}
+
 } // namespace
 
 Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
@@ -99,8 +136,11 @@ Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
             VisibilityEngine& e = engine(input);
             const bool all = !haveWeights(input); // half of the work, or none
             const WeightFields& w = weights(input, all ? job.part(0, 2) : job);
-            const Measures measures =
+            Measures measures =
                 pellucid::measure(e, input.view, input.tf, w, input.settings.vws, all ? job.part(1, 2) : job);
+            measures.coverage = coverageOf(rays(input, {job.stop, {}}), input.tf);
+            if (input.settings.profile == Profile::Published) // closed intervals, where bins of a histogram are not
+                measures.features = featureMeasures(e.sums(input.view, {&input.tf, 1}, &w)[0], input.settings.vws);
             m_seconds.visibility = measures.visibilitySeconds;
             return measures;
         },
@@ -122,6 +162,57 @@ std::vector<std::vector<double>> Workspace::jacobian(const MeasureInput& input, 
         [this] { releaseEngine(); });
 }
 
+OcclusionMatrix Workspace::occlusion(const MeasureInput& input, const JobControl& job) {
+    return guarded([&] { return pellucid::occlusion(engine(input), input.view, input.tf, job); },
+                   [this] { releaseEngine(); });
+}
+
+std::vector<std::unique_ptr<VwsFunction>>
+Workspace::coarserFunctions(const MeasureInput& input, const OptimizeOptions& options, const JobControl& job) {
+    // The published profile has one slice per voxel plane: a coarser volume is another problem.
+    if ((options.method != SearchMethod::Newton && !options.coverage) || !options.coarse ||
+        input.settings.profile != Profile::Default)
+        return {};
+    return coarser(input, job).functions(input.view, input.tf, input.settings.vws);
+}
+
+Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, const JobControl& job) {
+    return guarded(
+        [&] {
+            const Volume& volume = *input.volume;
+            const bool swept = dependsOnView(kind), weighted = kind != FieldKind::Visibility;
+            VisibilityEngine* const e = swept ? &engine(input) : nullptr;
+            const bool all = weighted && !haveWeights(input);
+            requireMemory(toDrawField(all), volume.title, volume.dims(), volume.sampleType());
+            // Saliency, sweep and what is made of them are about as long.
+            std::size_t done = 0;
+            const std::size_t parts = (all ? 1u : 0u) + (swept ? 1u : 0u) + 1u;
+            const WeightFields* w = nullptr;
+            if (weighted) {
+                w = &weights(input, job.part(done, parts));
+                done += all ? 1 : 0;
+            }
+            Grid<float> values;
+            const auto start = Clock::now();
+            if (swept) {
+                values = e->field(input.view, input.tf, job.part(done++, parts)).values;
+                m_seconds.visibility = secondsSince(start);
+            }
+            const JobControl rest = job.part(done, parts);
+            if (kind == FieldKind::Vws)
+                visibilityToVws(values, *w, input.settings.vws, rest);
+            else if (!swept)
+                values = saliencyGrid(*w, kind, input.settings.vws, rest);
+            const double top = usualTop(values);
+            keepFeature(values, volume, input.tf, feature, rest);
+            rest.throwIfStopped();
+            std::string title = infoOf(kind).title;
+            if (feature >= 0) title += ", " + input.tf.features[static_cast<std::size_t>(feature)].name;
+            return fieldVolume(volume.geometry(), values, top, std::move(title));
+        },
+        [this] { releaseEngine(); });
+}
+
 OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
                                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                                    const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
@@ -131,16 +222,54 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             const WeightFields& w = weights(input, job);
             const auto start = Clock::now();
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
-            std::vector<std::unique_ptr<VwsFunction>> held;
+            OptimizeOptions steps = options;
+            steps.publishedSteps = input.settings.profile == Profile::Published;
+            const auto held = coarserFunctions(input, options, job);
             OptimizeProblem problem{function, targets, limits};
-            // The published profile has one slice per voxel plane: a coarser volume is another problem.
-            if (options.method == SearchMethod::Newton && options.coarse &&
-                input.settings.profile == Profile::Default)
-                held = coarser(input, job).functions(input.view, input.tf, input.settings.vws);
             for (const auto& level : held) problem.coarser.push_back(level.get());
-            OptimizeResult result = pellucid::optimize(problem, options, job, watch);
+            OptimizeResult result = pellucid::optimize(problem, steps, job, watch);
+            // That profile looks along the grid and counts moves; its answer stays as it is.
+            if (steps.publishedSteps) steps.maxIterations = 0;
+            makeVisible(result, densityProblem(function, held, rays(input, {job.stop, {}}), limits), steps,
+                        {job.stop, {}}, watch);
             m_seconds.visibility = secondsSince(start);
             return result;
+        },
+        [this] { releaseEngine(); });
+}
+
+OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<double>& targets,
+                                   const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                   bool coarse, const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, job);
+            const auto start = Clock::now();
+            const EngineVws full(e, input.view, input.tf, w, input.settings.vws);
+            const VwsFunction& base = full;
+            std::vector<std::unique_ptr<VwsFunction>> held;
+            if (coarse) held = coarserFunctions(input, OptimizeOptions{}, job);
+            OptimizeOptions steps = options;
+            steps.publishedSteps = input.settings.profile == Profile::Published;
+            OptimizeResult result =
+                pellucid::optimize({held.empty() ? base : *held.front(), targets, limits}, steps, job);
+            m_seconds.visibility = secondsSince(start);
+            return result;
+        },
+        [this] { releaseEngine(); });
+}
+
+DensityCurve Workspace::densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
+                                     const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, {job.stop, {}});
+            const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
+            const auto held = coarserFunctions(input, OptimizeOptions{}, {job.stop, {}});
+            return pellucid::densityCurve(densityProblem(function, held, rays(input, {job.stop, {}}), limits),
+                                          featureOpacities(input.tf), {}, job);
         },
         [this] { releaseEngine(); });
 }

@@ -8,11 +8,6 @@ namespace pellucid {
 
 namespace {
 
-double labCurve(double t) {
-    constexpr double kDelta = 6.0 / 29.0;
-    return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0 / 29.0;
-}
-
 double labCurveInverse(double f) {
     constexpr double kDelta = 6.0 / 29.0;
     return f > kDelta ? f * f * f : 3 * kDelta * kDelta * (f - 4.0 / 29.0);
@@ -37,6 +32,11 @@ bool isLight(const Rgb& linear) {
 }
 
 } // namespace
+
+double labCurve(double t) {
+    constexpr double kDelta = 6.0 / 29.0;
+    return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0 / 29.0;
+}
 
 double linearFromSrgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 double srgbFromLinear(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }

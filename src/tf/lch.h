@@ -15,6 +15,9 @@ Lch lchFromSrgb(const Rgb& srgb);
 /// The colour nearest in chroma that sRGB has, lightness clamped to [0,100], hue as given.
 Rgb srgbFromLch(const Lch& lch);
 
+/// The curve f(t) of CIELAB, t a tristimulus value as a part of the white point's.
+double labCurve(double t);
+
 /// One component of sRGB, and the linear light that it stands for; both in [0,1].
 double linearFromSrgb(double value);
 double srgbFromLinear(double value);

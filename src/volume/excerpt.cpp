@@ -37,6 +37,7 @@ Geometry ExcerptPlan::geometryOf(const Geometry& full) const {
     Geometry geometry = full;
     geometry.dims = dims;
     geometry.spacing = full.spacing * Vec3(factors);
+    if (referenceLength > 0) geometry.referenceLength = referenceLength;
     geometry.origin = full.worldFromVoxel(Vec3(region.lo) + 0.5 * Vec3(factors - 1));
     return geometry;
 }
@@ -198,6 +199,12 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl&
     volume.notices = plan.notices();
     volume.notices.insert(volume.notices.end(), whole.notices.begin(), whole.notices.end());
     return throughWindowOf(std::move(volume), whole.range());
+}
+
+Volume coarserCopy(const Volume& whole, int factor) {
+    ExcerptPlan plan = planOf({Int3(0), whole.dims()}, whole.dims(), factor);
+    plan.referenceLength = whole.geometry().d0();
+    return excerptOf(whole, plan);
 }
 
 VoxelRegion regionBetween(const Volume& volume, const Vec3& lo, const Vec3& hi) {

@@ -23,6 +23,7 @@ struct ExcerptPlan {
     Int3 factors{1, 1, 1}; ///< voxels of the data to one, along each axis
     Int3 dims{1, 1, 1};    ///< of the volume
     Excerpt excerpt;
+    double referenceLength = 0; ///< as Geometry has it; 0: that of the data, or the new smallest spacing
 
     bool isWhole() const { return dims == excerpt.fullDims; }
     /// Of the volume, where the data have this one.
@@ -64,6 +65,10 @@ private:
 /// The same part of a volume in memory, with its missing value, title and format; the window stays that of `whole`.
 /// Throws Cancelled.
 Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job = {});
+
+/// Means over blocks of `factor`³ voxels (≥ 1) of all of it, which keeps the reference length: opacities, saliency and
+/// figures mean what they do in `whole`, and differ by what the finer voxels say.
+Volume coarserCopy(const Volume& whole, int factor);
 
 /// The voxels of the data that lie, wholly or in part, between the fractions `lo` and `hi` of the volume's box along
 /// each axis; 0 ≤ lo < hi ≤ 1.

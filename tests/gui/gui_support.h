@@ -55,6 +55,7 @@ public:
     const Measures* measures() const { return m_results.measures(); }
     bool measuresAreCurrent() const { return m_results.measuresAreCurrent(); }
     const std::vector<std::vector<double>>* influence() const { return m_results.influence(); }
+    const OcclusionMatrix* occlusion() const { return m_results.occlusion(); }
     bool influenceIsCurrent() const { return m_results.influenceIsCurrent(); }
     bool isPreviewing() const { return m_store.isPreviewing(); }
     bool isClean() const { return m_store.isClean(); }

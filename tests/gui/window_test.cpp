@@ -386,6 +386,26 @@ TEST_CASE("the influence dock foretells what raising an opacity does", "[window]
     CHECK(lines[1].split('\t').size() == 4);
     CHECK(lines[1].split('\t')[1].toDouble() == Approx((*w.document().influence())[0][0]));
 
+    // The same table tells who hides whom: what comes back of a feature without another one.
+    auto& what = w.child<QComboBox>("influenceCombo");
+    const QImage shown = table.grab().toImage();
+    what.setFocus();
+    QTest::keyClick(&what, Qt::Key_Down);
+    REQUIRE(what.currentIndex() == 1);
+    const OcclusionMatrix hidden = *w.document().occlusion();
+    CHECK(hidden[2][0] > 0.05); // the outermost tent of the shells lies before the innermost
+    CHECK(hidden[0][0] == 0);
+    CHECK(table.item(2, 0)->text() == QString("%1 %").arg(std::lround(100 * hidden[2][0])));
+    CHECK(table.item(2, 0)->toolTip().contains("f1 hides"));
+    CHECK(table.grab().toImage() != shown);
+    std::vector<double> without = featureOpacities(w.document().tf());
+    without[0] = 0;
+    const auto visible = [&] { return w.document().measures()->features[2].visibility; };
+    const double before2 = visible();
+    w.document().setTf(withFeatureOpacities(w.document().tf(), without), "remove");
+    REQUIRE(waitFor([&] { return w.document().measuresAreCurrent(); }));
+    CHECK(visible() > before2);
+
     dock.close(); // what nobody sees is not measured
     w.document().setCamera(cameraFromView(w.document().volume()->geometry(), 70, 10, 1, Projection::Perspective));
     w.settle();

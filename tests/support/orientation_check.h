@@ -6,10 +6,10 @@
 #include <catch2/catch.hpp>
 
 #include "render/image_renderer.h"
+#include "render/ssim.h"
 #include "render/visibility.h"
 #include "saliency/saliency_field.h"
 #include "support/orientations.h"
-#include "support/ssim.h"
 #include "volume/procedural.h"
 
 namespace pellucid::test {

@@ -90,6 +90,7 @@ FeatureGoals randomGoals(Random& random, int features) {
         FeatureGoal g;
         g.target = random.chance(0.2) ? 0 : oddNumber(random, 0, random.chance(0.5) ? 1 : kLargestTarget);
         g.locked = random.chance(0.3);
+        g.targetLocked = random.chance(0.2);
         if (random.chance(0.3)) {
             g.lowest = oddNumber(random, 0, 0.5);
             g.highest = oddNumber(random, 0.5, 1);
@@ -100,26 +101,6 @@ FeatureGoals randomGoals(Random& random, int features) {
         goals[static_cast<FeatureId>(i)] = g;
     }
     return goals;
-}
-
-Run randomRun(Random& random) {
-    Run r;
-    r.kind = random.chance(0.5) ? "optimize" : "refine";
-    r.ended = oneOf(random, std::array{"converged", "max-iterations", "no-progress", "cancelled", "done"});
-    const auto n = static_cast<std::size_t>(random.below(4));
-    const auto numbers = [&] {
-        std::vector<double> all;
-        for (std::size_t i = 0; i < n; ++i) all.push_back(oddNumber(random, 0, 1));
-        return all;
-    };
-    for (std::size_t i = 0; i < n; ++i) r.features.push_back("f" + std::to_string(i));
-    r.targets = numbers();
-    for (int i = random.below(5); i > 0; --i) r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(2)});
-    if (!r.history.empty()) r.best = static_cast<std::size_t>(random.below(static_cast<int>(r.history.size())));
-    r.before = oddNumber(random, 0, 1e10);
-    r.after = oddNumber(random, 0, 1);
-    r.iterations = random.below(1000);
-    return r;
 }
 
 MeasureSettings randomMeasure(Random& random) {
@@ -141,8 +122,8 @@ MeasureSettings randomMeasure(Random& random) {
 
 OptimizeOptions randomOptimize(Random& random) {
     OptimizeOptions o;
-    o.method = oneOf(random, std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel,
-                                        SearchMethod::Newton});
+    o.method = oneOf(random,
+                     std::array{SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel, SearchMethod::Newton});
     o.direction =
         oneOf(random, std::array{Direction::Gradient, Direction::Backward, Direction::Second, Direction::Exact});
     o.b = random.between(1e-3, 1e3);
@@ -154,6 +135,42 @@ OptimizeOptions randomOptimize(Random& random) {
     o.tolerance = random.between(1e-9, 0.5);
     o.maxIterations = random.below(100000);
     return o;
+}
+
+Run randomRun(Random& random) {
+    Run r;
+    r.kind = random.chance(0.5) ? "optimize" : "refine";
+    r.ended = oneOf(random, std::array{"converged", "max-iterations", "no-progress", "cancelled", "done"});
+    const auto n = static_cast<std::size_t>(random.below(4));
+    const auto numbers = [&] {
+        std::vector<double> all;
+        for (std::size_t i = 0; i < n; ++i) all.push_back(oddNumber(random, 0, 1));
+        return all;
+    };
+    for (std::size_t i = 0; i < n; ++i) r.features.push_back("f" + std::to_string(i));
+    r.targets = numbers();
+    for (int i = random.below(5); i > 0; --i)
+        r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(2)});
+    if (!r.history.empty()) r.best = static_cast<std::size_t>(random.below(static_cast<int>(r.history.size())));
+    r.before = oddNumber(random, 0, 1e10);
+    r.after = oddNumber(random, 0, 1);
+    r.iterations = random.below(1000);
+    r.seconds = oddNumber(random, 0, 1e6);
+    r.evaluations = random.below(100'000);
+    if (random.chance(0.5)) r.name = "run \"" + std::to_string(random.below(100)) + "\" of mine, ä";
+    if (random.chance(0.5)) r.started = "2026-11-22T14:03:07";
+    if (n > 0 && random.chance(0.5)) {
+        RunStart start;
+        start.tf = tents(static_cast<int>(n), random.between(0.01, 1));
+        start.camera = randomCamera(random);
+        start.clipping.lo.x = random.between(0, 0.4);
+        start.measure = randomMeasure(random);
+        start.options = randomOptimize(random);
+        if (random.chance(0.5))
+            start.limits.assign(n, {random.between(0, 0.3), random.between(0.4, 1), random.chance(0.5)});
+        r.start = std::move(start);
+    }
+    return r;
 }
 
 RefineSettings randomRefine(Random& random) {
@@ -181,6 +198,17 @@ SliceViews randomSlices(Random& random) {
     if (random.chance(0.5)) s.window = randomRange(random);
     s.tfStrength = oddNumber(random, 0, 1);
     return s;
+}
+
+FieldView randomField(Random& random) {
+    FieldView f;
+    if (random.chance(0.7)) f.kind = kFieldKinds[static_cast<std::size_t>(random.below(5))].kind;
+    f.feature = static_cast<FeatureId>(random.below(4));
+    f.colorMap = oneOf(random, std::array{"ember", "sand", kFeatureColorMap});
+    f.strength = random.between(1e-6, 1);
+    f.threshold = random.between(0, 0.999);
+    if (random.chance(0.5)) f.top = random.between(1e-12, 1e3);
+    return f;
 }
 
 } // namespace
@@ -236,6 +264,7 @@ Session randomSession(std::uint32_t number) {
     if (number % 10 != 9) s.variables = std::vector<Variable>{randomVariable(random, features)};
     s.frame = random.chance(0.6) ? 0 : random.below(60);
     s.goals = randomGoals(random, features);
+    s.holdTargets = random.chance(0.3);
     if (random.chance(0.5)) s.camera = randomCamera(random);
     if (random.chance(0.5)) {
         Clipping clipping{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1), {}};
@@ -265,6 +294,7 @@ Session randomSession(std::uint32_t number) {
     if (random.chance(0.7)) s.optimize = randomOptimize(random);
     if (random.chance(0.7)) s.refine = randomRefine(random);
     if (random.chance(0.7)) s.slices = randomSlices(random);
+    s.field = randomField(random);
     for (int i = random.below(4); i > 0; --i) s.addRun(randomRun(random));
     s.extraJson = randomExtra(random);
     return s;

@@ -48,14 +48,20 @@ void CameraOptions::add(CLI::App& app) {
         app, "--camera", "FILE", [this](const std::string& text, const std::string&) { file = text; },
         "camera file (JSON)", kGroup);
     addValue(
-        app, "--view", "AZIMUTH,ELEVATION[,ZOOM]|SIDE[,ZOOM]",
+        app, "--view", std::string("AZIMUTH,ELEVATION[,ZOOM]|SIDE[,ZOOM]") + (mayBeBest ? "|best" : ""),
         [this](const std::string& text, const std::string& option) {
+            best = text == "best";
+            if (best && !mayBeBest)
+                throw UsageError("no best view is looked for here", option,
+                                 "ask pellucid-cli views for it, or optimize with --view best");
+            if (best) return;
             namedView = parseNamedView(text, option);
             if (!namedView) view = parseView(text, option);
         },
         "degrees; 0,0 looks along +y from the front, z up; or anterior, posterior, left, right, superior, inferior, "
-        "front, back, top, bottom; zoom 1 fits the sphere around the box (default: the "
-        "session's camera, else " +
+        "front, back, top, bottom; zoom 1 fits the sphere around the box" +
+            std::string(mayBeBest ? "; best: found together with the opacities" : "") +
+            " (default: the session's camera, else " +
             std::string(fallback ? "30,20)" : "30,20 with the box as large as it fits, as the window opens)"),
         kGroup);
     app.add_flag("--orthographic", orthographic, "parallel rays (default: perspective)")->group(kGroup);
@@ -67,7 +73,7 @@ void CameraOptions::applyTo(SceneInputs& inputs) const {
         return;
     }
     if (file) {
-        if (view || namedView) throw UsageError("two views are given", "--camera and --view", "leave one out");
+        if (view || namedView || best) throw UsageError("two views are given", "--camera and --view", "leave one out");
         if (orthographic)
             throw UsageError("a camera file states its own projection", "--orthographic", "leave it out or use --view");
         inputs.camera = readCamera(*file);

@@ -39,9 +39,9 @@ void TfOptions::addSource(CLI::App& app) {
                                  "give a file, auto, tents:N[:PEAK], ramp:N or preset:NAME");
             spec = text;
         },
-        "transfer function (default: the session's, else auto: what the data propose, see propose); auto and the "
-        "\"range\" of a file set the window unless --range says otherwise; points stay at their data values whatever "
-        "the window",
+        "transfer function, *.tf.json or Voreen's *.tfi (default: the session's, else auto: what the data propose, see "
+        "propose); auto and the \"range\" of a file set the window unless --range says otherwise; points stay at their "
+        "data values whatever the window",
         "Volume");
 }
 

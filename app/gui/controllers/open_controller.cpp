@@ -13,7 +13,7 @@
 #include "number_text.h"
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
-#include "tf/formats/tf_json.h"
+#include "tf/formats/tf_file.h"
 #include "tf/presets.h"
 #include "volume/excerpt.h"
 #include "volume/procedural.h"
@@ -27,7 +27,12 @@ constexpr auto kRecentKey = "recentFiles";
 
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
-bool isTf(const QString& path) { return path.endsWith(".tf.json", Qt::CaseInsensitive); }
+bool isTf(const QString& path) { return hasTfSuffix(path.toStdString()); }
+QString tfPatterns() {
+    QStringList patterns;
+    for (const char* suffix : tfSuffixes()) patterns << QString("*%1").arg(suffix);
+    return patterns.join(' ');
+}
 bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
 
 bool hasKnownSuffix(const QString& path) {
@@ -221,7 +226,7 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 
 void OpenController::show(const Request& request, Opened& opened) {
     const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && isTfFile(request.tfPath);
-    m_tfPath = tfFromFile ? request.tfPath : QString();
+    m_tfPath = tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString();
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
@@ -282,8 +287,9 @@ void OpenController::openTf(const QString& specOrPath) {
     try {
         const TransferFunction tf = loadTf(specOrPath.toStdString());
         const bool isFile = isTfFile(specOrPath);
-        const auto change = [tf](Session& session) {
+        const auto change = [tf, data = store.scene().data](Session& session) {
             TransferFunction placed = tf;
+            placeAsPublished(session, *data, placed);
             session.variables.edit([&](std::vector<Variable>& all) {
                 if (placed.range) all.front().window = placed.range; // what it was made for
             });
@@ -291,7 +297,7 @@ void OpenController::openTf(const QString& specOrPath) {
         };
         editData(tr("Open transfer function"), change, [this, tf, isFile, specOrPath] {
             if (isFile) {
-                m_tfPath = specOrPath;
+                m_tfPath = isForeignTf(specOrPath.toStdString()) ? QString() : specOrPath;
                 m_bench.store().setTfSaved();
             }
             noteWindow(tf);
@@ -372,10 +378,10 @@ void OpenController::chooseVolume() {
     for (const char* raw : {"*.raw", "*.dat", "*.bin", "*.vol"}) {
         if (!patterns.contains(raw)) patterns << raw;
     }
-    const QString path = QFileDialog::getOpenFileName(
-        m_bench.window(), tr("Open"), QSettings().value("volumeFolder").toString(),
-        tr("Volumes, sessions, transfer functions (%1 *.pellucid.json *.tf.json);;All files (*)")
-            .arg(patterns.join(' ')));
+    const QString path =
+        QFileDialog::getOpenFileName(m_bench.window(), tr("Open"), QSettings().value("volumeFolder").toString(),
+                                     tr("Volumes, sessions, transfer functions (%1 *.pellucid.json %2);;All files (*)")
+                                         .arg(patterns.join(' '), tfPatterns()));
     if (path.isEmpty()) return;
     QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
     openPath(path);
@@ -395,9 +401,9 @@ void OpenController::chooseRaw() {
 }
 
 void OpenController::chooseTf() {
-    const QString path = QFileDialog::getOpenFileName(m_bench.window(), tr("Open transfer function"),
-                                                      QSettings().value("tfFolder").toString(),
-                                                      tr("Transfer functions (*.tf.json *.json);;All files (*)"));
+    const QString path = QFileDialog::getOpenFileName(
+        m_bench.window(), tr("Open transfer function"), QSettings().value("tfFolder").toString(),
+        tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
     QSettings().setValue("tfFolder", QFileInfo(path).absolutePath());
     openTf(path);

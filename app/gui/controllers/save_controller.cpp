@@ -6,12 +6,15 @@
 #include <QPushButton>
 #include <QSettings>
 
+#include "controllers/field_controller.h"
 #include "controllers/open_controller.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "render/annotation_raster.h"
+#include "report/report.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_json.h"
+#include "version.h"
 #include "workbench.h"
 
 namespace pellucid::gui {
@@ -30,8 +33,7 @@ SaveController::SaveController(Workbench& bench)
               const auto renderer = makeRenderer(EngineChoice::Auto, picture.input.volume);
               Image image = renderer->render(picture.input.camera, picture.input.tf, picture.input.settings, job);
               job.throwIfStopped();
-              if (picture.reference.any())
-                  drawMarks(image, annotationMarks(annotationInput(picture.input, picture.reference)));
+              if (picture.around.show.any()) drawMarks(image, annotationMarks(picture.around));
               writeImage(image, picture.path.toStdString());
               return picture.path;
           },
@@ -39,10 +41,28 @@ SaveController::SaveController(Workbench& bench)
               Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
               Q_EMIT imageSaved(path);
           },
-          WhenBusy::Queue) {
-    connect(&m_images, &JobBase::busyChanged, this, &SaveController::busyChanged);
-    connect(&m_images, &JobBase::progress, this, &SaveController::progress);
-    connect(&m_images, &JobBase::cancelled, this, &SaveController::cancelled);
+          WhenBusy::Queue),
+      m_reports(
+          [&workspace = bench.workspace()](const ReportTask& task, const JobControl& job) {
+              ReportRequest request{.run = task.run, .scene = sceneAtStart(task.run, task.now, job)};
+              request.session = sessionAtStart(task.run, task.now.session);
+              request.command = std::string("pellucid-cli optimize --session ") + kStartFile;
+              request.program = std::string("Pellucid ") + kVersion;
+              writeReport(makeReport(request, workspace, job), task.folder.toStdString());
+              return task.folder;
+          },
+          [this](const ReportTask&, const QString& folder) {
+              Q_EMIT m_bench.message(tr("Saved the report in %1").arg(QFileInfo(folder).fileName()));
+              Q_EMIT reportSaved(folder);
+          },
+          WhenBusy::Queue, &bench.compute()) {
+    for (JobBase* job : std::initializer_list<JobBase*>{&m_images, &m_reports}) {
+        connect(job, &JobBase::busyChanged, this, &SaveController::busyChanged);
+        connect(job, &JobBase::progress, this, &SaveController::progress);
+        connect(job, &JobBase::cancelled, this, &SaveController::cancelled);
+    }
+    connect(&m_reports, &JobBase::failed, this,
+            [this](const Error& error) { m_bench.showError(tr("Cannot save the report"), error); });
     connect(&m_images, &JobBase::failed, this,
             [this](const Error& error) { m_bench.showError(tr("Cannot save the image"), error); });
 }
@@ -75,6 +95,18 @@ void SaveController::addActions() {
         [this] { chooseTf(true); });
     add("saveImageAction", tr("Save &image…"), {QKeySequence("Ctrl+E")}, tr("Save the picture"), true, true,
         [this] { chooseImage(); });
+    m_bench.actions().add({.id = "saveReportAction",
+                           .menu = menu,
+                           .text = tr("Save &report of the last run…"),
+                           .tip = tr("One page about the latest optimization: pictures, bars, curves, settings"),
+                           .trigger =
+                               [this] {
+                                   if (const Run* run = latestRun()) chooseReport(*run);
+                               },
+                           .enabled = [this] { return latestRun() != nullptr && !m_bench.isReadOnly(); }});
+    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (!before.session.runs.isSame(after.session.runs)) m_bench.actions().refresh();
+    });
 }
 
 bool SaveController::saveSession(const QString& path) {
@@ -108,9 +140,12 @@ bool SaveController::saveTf(const QString& path) {
 
 void SaveController::saveImage(const SaveImageOptions& options) {
     if (!m_bench.store().hasVolume()) return;
-    const Picture picture{
-        pictureInput(m_bench.scene(), options.size.width(), options.size.height(), options.transparent),
-        options.reference ? *m_bench.scene().session.reference : FrameOfReference::none(), options.path};
+    Picture picture{
+        m_bench.fields().picture(options.size.width(), options.size.height(), options.transparent), {}, options.path};
+    if (options.reference)
+        picture.around = m_bench.fields().annotation(picture.input, *m_bench.scene().session.reference);
+    else
+        picture.around.show = FrameOfReference::none();
     try {
         picture.input.settings.validate();
         checkImageSuffix(options.path.toStdString());
@@ -120,6 +155,33 @@ void SaveController::saveImage(const SaveImageOptions& options) {
     m_busyText = tr("Saving %1…").arg(QFileInfo(options.path).fileName());
     m_images.start(picture, options.path);
     Q_EMIT busyChanged();
+}
+
+const Run* SaveController::latestRun() const {
+    const std::vector<Run>& runs = *m_bench.scene().session.runs;
+    const auto latest =
+        std::find_if(runs.rbegin(), runs.rend(), [](const Run& run) { return run.hasStart() && !run.history.empty(); });
+    return latest == runs.rend() ? nullptr : &*latest;
+}
+
+void SaveController::saveReport(const Run& run, const QString& folder) {
+    m_busyText = tr("Saving the report…");
+    m_reports.start({run, m_bench.scene(), folder}, folder);
+    Q_EMIT busyChanged();
+}
+
+void SaveController::chooseReport(const Run& run) {
+    const Run kept = run; // a dialog is open for long
+    const QString folder = QFileDialog::getExistingDirectory(
+        m_bench.window(), tr("Folder for the report"), QSettings().value("reportFolder", QDir::homePath()).toString());
+    if (folder.isEmpty()) return;
+    if (QFileInfo::exists(QDir(folder).filePath(kReportFile)) &&
+        QMessageBox::question(m_bench.window(), tr("Save report"),
+                              tr("There is a report in %1. Replace it?").arg(QFileInfo(folder).fileName())) !=
+            QMessageBox::Yes)
+        return;
+    QSettings().setValue("reportFolder", folder);
+    saveReport(kept, folder);
 }
 
 bool SaveController::chooseSession(bool askForName) {
@@ -157,7 +219,8 @@ void SaveController::chooseImage() {
     if (!m_bench.store().hasVolume()) return;
     const QString folder = QSettings().value("imageFolder", QDir::homePath()).toString();
     SaveImageDialog dialog(QDir(folder).filePath(baseName(m_bench.scene()) + ".png"), m_seen,
-                           m_bench.scene().session.reference->any(), m_bench.window());
+                           m_bench.scene().session.reference->any() || m_bench.fields().field() != nullptr,
+                           m_bench.window());
     while (dialog.exec() == QDialog::Accepted) {
         const SaveImageOptions options = dialog.options();
         if (options.path.isEmpty()) continue;

@@ -23,28 +23,42 @@ public:
     bool saveTf(const QString& path);
     /// As seen by the present camera, in the background; several one after the other.
     void saveImage(const SaveImageOptions& options);
+    /// Of a run with a start: the folder gets report.html, curves.csv, and the session that the run began with; in the
+    /// background.
+    void saveReport(const Run& run, const QString& folder);
+    void chooseReport(const Run& run); ///< asks for the folder
     /// Asks about unsaved work; false: the user wants to stay.
     bool maybeSave();
     /// Pixels of the view on the screen, which are offered first for pictures.
     void setSeenSize(const QSize& pixels) { m_seen = pixels; }
 
-    bool isBusy() const { return m_images.isRunning(); }
+    bool isBusy() const { return m_images.isRunning() || m_reports.isRunning(); }
     const QString& busyText() const { return m_busyText; }
-    void cancel() { m_images.cancel(); }
+    void cancel() {
+        m_images.cancel();
+        m_reports.cancel();
+    }
 
 Q_SIGNALS:
     void busyChanged();
     void progress(double fraction);
     void imageSaved(const QString& path);
+    void reportSaved(const QString& folder);
     void sessionSaved();
     void cancelled();
 
 private:
     struct Picture {
         PictureInput input;
-        FrameOfReference reference;
+        AnnotationInput around; ///< shows nothing where nothing is wanted
         QString path;
     };
+    struct ReportTask {
+        Run run;
+        Scene now;
+        QString folder;
+    };
+    const Run* latestRun() const; ///< that a report can be made of; null: none
     bool chooseSession(bool askForName);
     bool chooseTf(bool askForName);
     void chooseImage();
@@ -53,6 +67,7 @@ private:
     QString m_busyText;
     QSize m_seen;
     Job<Picture, QString> m_images;
+    Job<ReportTask, QString> m_reports;
 };
 
 } // namespace pellucid::gui

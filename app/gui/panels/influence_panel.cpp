@@ -6,9 +6,9 @@
 #include <QAction>
 #include <QApplication>
 #include <QClipboard>
+#include <QComboBox>
 #include <QEvent>
 #include <QHeaderView>
-#include <QLabel>
 #include <QTableWidget>
 #include <QVBoxLayout>
 
@@ -35,7 +35,7 @@ PanelInfo influencePanel() {
             .visible = false, // costs a sweep more
             .size = 0,
             .keys = QKeySequence("Ctrl+I"),
-            .tip = QObject::tr("How each feature's VWS follows each opacity"),
+            .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
             .make =
                 [](Workbench& bench, QWidget* parent) {
                     bench.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
@@ -45,12 +45,27 @@ PanelInfo influencePanel() {
 }
 
 InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)
-    : QWidget(parent), m_store(store), m_results(results), m_table(new QTableWidget(this)),
+    : QWidget(parent), m_store(store), m_results(results), m_what(new QComboBox(this)), m_table(new QTableWidget(this)),
       m_copyAction(new QAction(tr("Copy the table"), m_table)) {
-    auto* label = new QLabel(tr("How fast each VWS (rows) follows each opacity (columns)"), this);
-    label->setWordWrap(true);
-    label->setToolTip(tr("∂W/∂x: the change of a feature's share per change of an opacity, both from 0 to 1,\n"
-                         "from this view and at the present opacities"));
+    m_what->setObjectName("influenceCombo");
+    m_what->addItem(tr("How fast each VWS (rows) follows each opacity (columns)"));
+    m_what->addItem(tr("How much of a feature (rows) another one hides (columns)"));
+    m_what->setItemData(0,
+                        tr("∂W/∂x: the change of a feature's share per change of an opacity, both from 0 to 1,\n"
+                           "from this view and at the present opacities"),
+                        Qt::ToolTipRole);
+    m_what->setItemData(1,
+                        tr("The part of the row's visibility that comes back where the column's opacity is 0,\n"
+                           "from this view and at the present opacities"),
+                        Qt::ToolTipRole);
+    m_what->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    m_what->setMinimumContentsLength(20);
+    const auto tell = [this] { m_what->setToolTip(m_what->currentData(Qt::ToolTipRole).toString()); };
+    connect(m_what, &QComboBox::currentIndexChanged, this, [this, tell] {
+        tell();
+        rebuild();
+    });
+    tell();
     m_table->setObjectName("influenceTable");
     m_table->setEditTriggers(QAbstractItemView::NoEditTriggers);
     m_table->setSelectionMode(QAbstractItemView::NoSelection);
@@ -66,7 +81,7 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
     m_table->setContextMenuPolicy(Qt::ActionsContextMenu);
     connect(m_copyAction, &QAction::triggered, this, &InfluencePanel::copy);
     auto* column = new QVBoxLayout(this);
-    column->addWidget(label);
+    column->addWidget(m_what);
     column->addWidget(m_table, 1);
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.tf.features == after.tf.features) {
@@ -100,7 +115,10 @@ void InfluencePanel::rebuild() {
         for (const Qt::Orientation side : {Qt::Vertical, Qt::Horizontal}) {
             auto* header = new QTableWidgetItem(name);
             header->setData(Qt::DecorationRole, colorFromRgb(feature.color));
-            header->setToolTip(side == Qt::Vertical ? tr("VWS of %1").arg(name) : tr("Opacity of %1").arg(name));
+            const bool influence = m_what->currentIndex() == 0;
+            header->setToolTip(side == Qt::Vertical
+                                   ? (influence ? tr("VWS of %1") : tr("How much %1 is hidden")).arg(name)
+                                   : (influence ? tr("Opacity of %1") : tr("What %1 hides")).arg(name));
             side == Qt::Vertical ? m_table->setVerticalHeaderItem(i, header)
                                  : m_table->setHorizontalHeaderItem(i, header);
         }
@@ -113,15 +131,32 @@ void InfluencePanel::rebuild() {
     refresh();
 }
 
+const std::vector<std::vector<double>>* InfluencePanel::matrix() const {
+    return m_what->currentIndex() == 0 ? m_results.influence() : m_results.occlusion();
+}
+
+QString InfluencePanel::cellText(double value) const {
+    return m_what->currentIndex() == 0 ? signedText(value) : tr("%1 %").arg(std::lround(100 * value));
+}
+
+QString InfluencePanel::cellTip(int row, int column, double value) const {
+    const QString of = m_table->verticalHeaderItem(row)->text(), by = m_table->horizontalHeaderItem(column)->text();
+    if (m_what->currentIndex() == 0)
+        return tr("Raising the opacity of %1 by 0.01 changes the VWS of %2 by about %3")
+            .arg(by, of, signedText(0.01 * value));
+    if (row == column) return tr("A feature does not hide itself here");
+    return tr("%1 hides %2 % of the visibility of %3").arg(by).arg(100 * value, 0, 'f', 1).arg(of);
+}
+
 void InfluencePanel::refresh() {
-    const auto* const influence = m_results.influence();
+    const auto* const values = matrix();
     const int n = m_table->rowCount();
-    const bool known = influence && static_cast<int>(influence->size()) == n, current = m_results.influenceIsCurrent();
+    const bool known = values && static_cast<int>(values->size()) == n, current = m_results.influenceIsCurrent();
     m_copyAction->setEnabled(known && current);
     if (!isVisible()) return;
     double largest = 0;
     if (known)
-        for (const auto& row : *influence)
+        for (const auto& row : *values)
             for (const double value : row) largest = std::max(largest, std::abs(value));
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
@@ -132,13 +167,10 @@ void InfluencePanel::refresh() {
                 cell->setBackground({});
                 continue;
             }
-            const double value = (*influence)[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+            const double value = (*values)[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
             const double share = largest > 0 ? std::abs(value) / largest : 0;
-            cell->setText(signedText(value));
-            cell->setToolTip(current ? tr("Raising the opacity of %1 by 0.01 changes the VWS of %2 by about %3")
-                                           .arg(m_table->horizontalHeaderItem(j)->text(),
-                                                m_table->verticalHeaderItem(i)->text(), signedText(0.01 * value))
-                                     : tr("Of an older state; being measured"));
+            cell->setText(cellText(value));
+            cell->setToolTip(current ? cellTip(i, j, value) : tr("Of an older state; being measured"));
             cell->setBackground(
                 blend(theme::kPanel, value < 0 ? theme::kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
             cell->setForeground(current ? theme::kText : theme::kFaint);
@@ -146,17 +178,15 @@ void InfluencePanel::refresh() {
 }
 
 void InfluencePanel::copy() const {
-    const auto* const influence = m_results.influence();
-    if (influence == nullptr || !m_results.influenceIsCurrent() ||
-        static_cast<int>(influence->size()) != m_table->rowCount())
+    const auto* const values = matrix();
+    if (values == nullptr || !m_results.influenceIsCurrent() || static_cast<int>(values->size()) != m_table->rowCount())
         return;
     QString text;
     for (int j = 0; j < m_table->columnCount(); ++j) text += '\t' + m_table->horizontalHeaderItem(j)->text();
     text += '\n';
     for (int i = 0; i < m_table->rowCount(); ++i) {
         text += m_table->verticalHeaderItem(i)->text();
-        for (const double value : (*influence)[static_cast<std::size_t>(i)])
-            text += '\t' + QString::number(value, 'g', 9);
+        for (const double value : (*values)[static_cast<std::size_t>(i)]) text += '\t' + QString::number(value, 'g', 9);
         text += '\n';
     }
     QApplication::clipboard()->setText(text);

@@ -206,8 +206,8 @@ private:
 
 class CpuEngine final : public VisibilityEngine {
 public:
-    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality, SweepKernel kernel)
-        : m_volume(std::move(volume)), m_quality(quality), m_kernel(kernel) {
+    CpuEngine(std::shared_ptr<const Volume> volume, Quality quality, SweepKernel kernel, bool draft = false)
+        : m_volume(std::move(volume)), m_quality(quality), m_kernel(kernel), m_draft(draft) {
         m_shared = sharedIntensityGrid(*m_volume);
         const IntensityGrid& grid = *m_shared;
         const bool someInvalid = !grid.valid.empty();
@@ -390,7 +390,7 @@ private:
         return glm::round(m_volume->geometry().voxelFromWorld(camera.eye) * 1048576.0) / 1048576.0;
     }
 
-    bool isSmall() const { return m_volume->size() < kSmallVolume; }
+    bool isSmall() const { return !m_draft && m_volume->size() < kSmallVolume; }
 
     void setRays(SweepInput& in, const Camera& camera, const Pass& pass) const {
         const Axes& axes = pass.axes;
@@ -613,6 +613,7 @@ private:
     std::shared_ptr<const Volume> m_volume;
     Quality m_quality;
     SweepKernel m_kernel;
+    bool m_draft; ///< as if the volume were large
     Codes m_codeSpace;
     std::shared_ptr<const IntensityGrid> m_shared; ///< whose codes are read as they are; null: m_codes are
     ZeroedVector<std::uint16_t> m_codes; ///< x fastest, and kCodePadding more: without gaps, or with invalid ones
@@ -632,6 +633,10 @@ std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> vo
 std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality,
                                                 SweepKernel kernel) {
     return std::make_unique<CpuEngine>(std::move(volume), quality, kernel);
+}
+
+std::unique_ptr<VisibilityEngine> makeDraftEngine(std::shared_ptr<const Volume> volume) {
+    return std::make_unique<CpuEngine>(std::move(volume), Quality::Normal, sweepKernels().front(), true);
 }
 
 } // namespace pellucid

@@ -9,4 +9,8 @@ namespace pellucid {
 std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality,
                                                 SweepKernel kernel);
 
+/// To compare hundreds of views: samples every volume as sparsely as large ones are sampled, which makes small ones
+/// several times faster and their figures less exact (docs/method.md, "The best view").
+std::unique_ptr<VisibilityEngine> makeDraftEngine(std::shared_ptr<const Volume> volume);
+
 } // namespace pellucid

@@ -7,7 +7,6 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_file.h"
-#include "tf/presets.h"
 
 namespace pellucid {
 
@@ -116,12 +115,6 @@ TransferFunction readTf(const std::string& path) {
 
 void writeTf(const TransferFunction& tf, const std::string& path) {
     writeTextAtomically(path, jsonFromTf(tf).dump(2) + "\n");
-}
-
-TransferFunction loadTf(const std::string& specOrPath) {
-    if (auto tf = tfFromSpec(specOrPath)) return *tf;
-    if (auto tf = tfFromPresetSpec(specOrPath)) return *tf;
-    return readTf(specOrPath);
 }
 
 } // namespace pellucid

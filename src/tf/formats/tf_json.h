@@ -32,7 +32,4 @@ TransferFunction readTf(const std::string& path);
 /// Through a temporary file beside `path` that is renamed.
 void writeTf(const TransferFunction& tf, const std::string& path);
 
-/// What a user may name: "tents:N[:PEAK]", "ramp:N", "preset:NAME" (see presets.h) or a file.
-TransferFunction loadTf(const std::string& specOrPath);
-
 } // namespace pellucid

@@ -1,0 +1,94 @@
+#include "optimize_report.h"
+
+#include <array>
+#include <filesystem>
+
+#include "base/atomic_file.h"
+#include "command_line.h"
+#include "output_files.h"
+#include "report/convergence.h"
+#include "report/csv.h"
+#include "report/report.h"
+#include "report/svg_plot.h"
+
+namespace pellucid::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool isSvg(const std::string& path) { return fs::path(path).extension() == ".svg"; }
+
+void writeCurves(const Run& run, const std::string& path) {
+    const Run* const only = &run;
+    writeTextAtomically(path, isSvg(path) ? svgOf(convergencePlots(run)) : csvOf(std::span(&only, 1)));
+}
+
+} // namespace
+
+void ReportOptions::add(CLI::App& app) {
+    addValue(
+        app, "--report", "DIR", [this](const std::string& text, const std::string&) { folder = text; },
+        "write report.html, one self-contained page (pictures before and after, bars, curves, how alike the moves "
+        "look, "
+        "settings, this command), and curves.csv");
+    addValue(
+        app, "--report-size", "WxH",
+        [this](const std::string& text, const std::string& option) { size = parseImageSize(text, option); },
+        "pixels of the report's pictures (default 512x512)");
+    addValue(
+        app, "--curves", "FILE", [this](const std::string& text, const std::string&) { curves = text; },
+        "write distance, VWS and opacities over the moves: .csv or .svg");
+}
+
+void ReportOptions::check(const SceneOptions& scene) const {
+    if (size && !folder)
+        throw UsageError("--report-size is the size of a report's pictures", "--report-size", "give --report DIR too");
+    if (curves) {
+        requireFileName(*curves, "--curves");
+        const std::string suffix = fs::path(*curves).extension().string();
+        if (suffix != ".csv" && suffix != ".svg")
+            throw UsageError("curves are written as .csv or .svg", *curves, "give one of these suffixes");
+        checkOutputFile(*curves, "--curves", inputFiles(scene));
+    }
+    if (folder) {
+        const std::array<std::string, 2> names{kReportFile, kCurvesFile};
+        checkOutputFolder(*folder, "--report", names, inputFiles(scene));
+    }
+}
+
+void ReportOptions::write(const Scene& scene, const OptimizeOptions& options, const OptimizeResult& result,
+                          double seconds, Workspace& workspace, Progress& progress, Answer& answer) const {
+    if (!folder && !curves) return;
+    Run run = runOf(result, runStartOf(scene, options));
+    run.seconds = seconds;
+    if (curves) {
+        writeCurves(run, *curves);
+        answer.text += "wrote " + *curves + "\n";
+        answer.json["curves"] = *curves;
+    }
+    if (!folder) return;
+    ReportRequest request{.run = run, .scene = scene, .command = commandLine()};
+    request.width = size.value_or(ImageSize{}).width;
+    request.height = size.value_or(ImageSize{}).height;
+    request.program = std::string("Pellucid ") + PELLUCID_VERSION;
+    const Report report = makeReport(request, workspace, progress.phase("drawing the report"));
+    const ThresholdCheck check = thresholdCheck(run, report.states);
+    progress.phase("writing");
+    writeReport(report, *folder);
+    const std::string file = (fs::path(*folder) / kReportFile).string();
+    answer.text += "wrote " + file + "\n";
+    Json states = Json::array();
+    for (const ReportState& s : report.states) states.push_back({{"move", s.move}, {"ssim", s.ssim}});
+    answer.json["report"] = {{"file", file},
+                             {"size", {request.width, request.height}},
+                             {"states", states},
+                             {"threshold",
+                              {{"objective", ThresholdCheck::kObjective},
+                               {"ssim", ThresholdCheck::kAlike},
+                               {"states", check.below},
+                               {"alike", check.alike},
+                               {"least", check.below > 0 ? Json(check.least) : Json()}}}};
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,27 @@
+// --report, --report-size and --curves of `optimize`.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "commands.h"
+#include "parse.h"
+#include "resolve.h"
+#include "session/workspace.h"
+
+namespace pellucid::cli {
+
+struct ReportOptions {
+    std::optional<std::string> folder, curves;
+    std::optional<ImageSize> size; ///< of the two large pictures
+
+    void add(CLI::App& app);
+    /// What can be told before the work: throws UsageError and FileError.
+    void check(const SceneOptions& scene) const;
+    /// Draws, measures and writes what was asked for, and tells of it in `answer`. `scene` is that of the start,
+    /// `seconds` those of the search.
+    void write(const Scene& scene, const OptimizeOptions& options, const OptimizeResult& result, double seconds,
+               Workspace& workspace, Progress& progress, Answer& answer) const;
+};
+
+} // namespace pellucid::cli

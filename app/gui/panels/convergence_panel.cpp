@@ -1,0 +1,461 @@
+#include "panels/convergence_panel.h"
+
+#include <algorithm>
+
+#include <QBoxLayout>
+#include <QBuffer>
+#include <QCheckBox>
+#include <QDir>
+#include <QDockWidget>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QHeaderView>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QMenu>
+#include <QPainter>
+#include <QSettings>
+#include <QToolButton>
+#include <QTreeWidget>
+
+#include "base/atomic_file.h"
+#include "controllers/optimize_controller.h"
+#include "controllers/save_controller.h"
+#include "panel.h"
+#include "plot_view.h"
+#include "report/convergence.h"
+#include "report/csv.h"
+#include "report/svg_plot.h"
+#include "store/edits.h"
+#include "tf/shown_tf.h"
+#include "theme.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kNumber = Qt::UserRole; ///< of a row's run
+enum Column { kTitle, kMoves, kDistance, kSeconds };
+
+bool isCurve(const Run& run) { return run.kind == "optimize" && !run.history.empty(); }
+
+QIcon swatch(const QColor& color) {
+    QPixmap pixmap(14, 14);
+    pixmap.fill(Qt::transparent);
+    QPainter painter(&pixmap);
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(color);
+    painter.drawRoundedRect(QRectF(1, 4, 12, 6), 2, 2);
+    return pixmap;
+}
+
+Rgb colorOf(const Run& run) { return curveColor(static_cast<std::size_t>(std::max(0, run.number - 1))); }
+
+QString shortNumber(double value) { return QString::number(value, 'g', 3); }
+
+QString tipOf(const Run& run) {
+    QStringList lines{QObject::tr("F %1, from %2; %3")
+                          .arg(shortNumber(run.after), shortNumber(run.before), QString::fromStdString(run.ended))};
+    if (run.evaluations > 0) lines << QObject::tr("%1 evaluations of the features' saliency").arg(run.evaluations);
+    if (run.seconds > 0) lines << QObject::tr("%1 s").arg(shortNumber(run.seconds));
+    if (!run.started.empty())
+        lines << QObject::tr("begun %1").arg(QString::fromStdString(run.started).replace('T', ' '));
+    QStringList targets;
+    for (std::size_t f = 0; f < run.features.size() && f < run.targets.size(); ++f)
+        targets << QStringLiteral("%1 %2").arg(QString::fromStdString(run.features[f]), shortNumber(run.targets[f]));
+    lines << QObject::tr("targets: %1").arg(targets.join(", "));
+    return lines.join('\n');
+}
+
+void changeRuns(Workbench& bench, const QString& text, const std::function<void(std::vector<Run>&)>& change) {
+    bench.store().edit(text, {}, [&](Session& session) { session.runs.edit(change); });
+}
+
+} // namespace
+
+PanelInfo convergencePanel() {
+    return {.id = "convergence",
+            .title = QObject::tr("Convergence"),
+            .area = Qt::BottomDockWidgetArea,
+            .visible = false,
+            .tabOf = "tf",
+            .keys = QKeySequence("Ctrl+Shift+C"),
+            .tip = QObject::tr("How optimizations go: distance, VWS and opacities over the moves; runs compared"),
+            .make = [](Workbench& bench, QWidget* parent) {
+                bench.actions().add({.id = "showConvergence",
+                                     .menu = QObject::tr("&Transfer function"),
+                                     .text = QObject::tr("Con&vergence of the optimization"),
+                                     .tip = QObject::tr("Distance, VWS and opacities over the moves"),
+                                     .trigger =
+                                         [&bench] {
+                                             auto* dock = bench.window()->findChild<QDockWidget*>("convergenceDock");
+                                             dock->show();
+                                             dock->raise();
+                                         },
+                                     .enabled = [&bench] { return bench.store().hasVolume(); }});
+                bench.actions().addGestures(
+                    {{QObject::tr("Convergence"), QObject::tr("Click on a dot"), QObject::tr("show that move")},
+                     {QObject::tr("Convergence"), QObject::tr("Double-click"), QObject::tr("export")},
+                     {QObject::tr("Convergence"), "F2, Del", QObject::tr("rename, delete the run")}});
+                return new ConvergencePanel(bench, parent);
+            }};
+}
+
+ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_row(new QBoxLayout(QBoxLayout::LeftToRight)), m_list(new QTreeWidget(this)),
+      m_log(new QCheckBox(tr("Logarithmic"), this)), m_readOut(new QLabel(this)), m_start(new QToolButton(this)),
+      m_export(new QToolButton(this)) {
+    const char* const names[] = {"objectivePlot", "vwsPlot", "opacityPlot"};
+    const QString tips[] = {
+        tr("F: the root mean square distance of the features' VWS from their targets, after each move;\n"
+           "dashed: the tolerance. Dots of moves on the halved volume are hollow.\n"
+           "Click on a dot: show that move. Double-click: export."),
+        tr("VWS, each feature's share of what catches the eye, 0 to 1; dashed: the targets"),
+        tr("The peak opacity of each feature, 0 to 1, of a path of one reference length d0")};
+    for (std::size_t i = 0; i < m_plots.size(); ++i) {
+        PlotView* const plot = m_plots[i] = new PlotView(this);
+        plot->setObjectName(names[i]);
+        plot->setToolTip(tips[i]);
+        plot->setContextMenuPolicy(Qt::CustomContextMenu);
+        m_row->addWidget(plot, 1);
+        connect(plot, &PlotView::readOut, m_readOut, &QLabel::setText);
+        connect(plot, &PlotView::exportWanted, this, [this] { chooseFile({}); });
+        connect(plot, &QWidget::customContextMenuRequested, this,
+                [this, plot](const QPoint& at) { showMenu(plot->mapToGlobal(at), false); });
+        connect(plot, &PlotView::dotClicked, this, [this, i](int series, int point) {
+            const auto compared = comparedRuns();
+            // Dotted series of the first plot are the compared runs, in their order.
+            const Run* run = i > 0                                        ? shownRun()
+                             : series < static_cast<int>(compared.size()) ? compared[static_cast<std::size_t>(series)]
+                                                                          : nullptr;
+            if (run != nullptr) showMove(*run, point);
+        });
+    }
+
+    m_list->setObjectName("runList");
+    m_list->setRootIsDecorated(false);
+    m_list->setHeaderLabels({tr("Run"), tr("Moves"), tr("F"), tr("s")});
+    m_list->headerItem()->setToolTip(kTitle, tr("Checked runs are compared in the first plot; the selected one has\n"
+                                                "the other two. F2 renames, Del deletes."));
+    m_list->headerItem()->setToolTip(kMoves, tr("Moves of the search, those on the halved volume too"));
+    m_list->headerItem()->setToolTip(kDistance, tr("Distance from the targets at the end"));
+    m_list->headerItem()->setToolTip(kSeconds, tr("Seconds that the search took"));
+    m_list->header()->setStretchLastSection(false);
+    m_list->header()->setSectionResizeMode(kTitle, QHeaderView::Stretch);
+    for (const int column : {kMoves, kDistance, kSeconds})
+        m_list->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
+    m_list->setContextMenuPolicy(Qt::CustomContextMenu);
+    m_list->setMinimumWidth(200);
+    m_list->installEventFilter(this);
+    m_list->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    connect(m_list, &QTreeWidget::itemDoubleClicked, this, &ConvergencePanel::rename);
+    connect(m_list, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) { itemChanged(item); });
+    connect(m_list, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
+        if (m_filling || item == nullptr) return;
+        m_shown = item->data(0, kNumber).toInt();
+        drawPlots();
+    });
+    connect(m_list, &QWidget::customContextMenuRequested, this,
+            [this](const QPoint& at) { showMenu(m_list->viewport()->mapToGlobal(at), true); });
+
+    m_log->setObjectName("convergenceLog");
+    m_log->setToolTip(tr("F and opacities on logarithmic axes"));
+    connect(m_log, &QCheckBox::toggled, this, &ConvergencePanel::drawPlots);
+    m_readOut->setObjectName("convergenceReadOut");
+    m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    m_readOut->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    m_start->setObjectName("showStart");
+    m_start->setText(tr("To the start"));
+    m_start->setToolTip(tr("Show the transfer function that the selected run began with:\n"
+                           "another method can go on from there, to be compared"));
+    connect(m_start, &QToolButton::clicked, this, [this] {
+        if (const Run* run = shownRun()) showMove(*run, 0);
+    });
+    connect(&bench, &Workbench::readOnlyChanged, this, &ConvergencePanel::drawPlots);
+    m_export->setObjectName("exportCurves");
+    m_export->setText(tr("Export…"));
+    m_export->setToolTip(tr("The curves as a table, the plots as a picture or drawing"));
+    m_export->setPopupMode(QToolButton::InstantPopup);
+    auto* menu = new QMenu(m_export);
+    for (const auto& [suffix, text] :
+         {std::pair{"csv", tr("Table (CSV)…")}, {"png", tr("Picture (PNG)…")}, {"svg", tr("Drawing (SVG)…")}})
+        menu->addAction(text, this, [this, suffix = QString(suffix)] { chooseFile(suffix); })
+            ->setObjectName(QStringLiteral("exportCurves_%1").arg(suffix));
+    m_export->setMenu(menu);
+
+    auto* side = new QVBoxLayout;
+    side->addWidget(m_list, 1);
+    auto* below = new QHBoxLayout;
+    below->addWidget(m_log);
+    below->addStretch(1);
+    below->addWidget(m_start);
+    below->addWidget(m_export);
+    side->addLayout(below);
+    m_row->addLayout(side);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(4, 4, 4, 2);
+    column->setSpacing(2);
+    column->addLayout(m_row, 1);
+    column->addWidget(m_readOut);
+
+    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.data != after.data) {
+            m_compared.clear();
+            m_shown = -1;
+            m_latest = 0;
+        }
+        if (before.data != after.data || !before.session.runs.isSame(after.session.runs)) follow();
+    });
+    connect(&bench.optimizing(), &OptimizeController::moved, this, [this] { drawPlots(); });
+    connect(&bench.optimizing(), &OptimizeController::runningChanged, this, &ConvergencePanel::follow);
+    follow();
+}
+
+const Run* ConvergencePanel::runNumbered(int number) const {
+    if (number == kUnderWay) return m_bench.optimizing().underWay();
+    for (const Run& run : *m_bench.scene().session.runs)
+        if (run.number == number && isCurve(run)) return &run;
+    return nullptr;
+}
+
+const Run* ConvergencePanel::shownRun() const {
+    if (const Run* run = m_bench.optimizing().underWay()) return isCurve(*run) ? run : nullptr;
+    if (const Run* run = runNumbered(m_shown)) return run;
+    const std::vector<Run>& runs = *m_bench.scene().session.runs;
+    const auto latest = std::find_if(runs.rbegin(), runs.rend(), isCurve);
+    return latest == runs.rend() ? nullptr : &*latest;
+}
+
+std::vector<const Run*> ConvergencePanel::comparedRuns() const {
+    std::vector<const Run*> runs;
+    for (const int number : m_compared)
+        if (const Run* run = number == kUnderWay ? nullptr : runNumbered(number)) runs.push_back(run);
+    const Run* const now = m_bench.optimizing().underWay();
+    if (now != nullptr && isCurve(*now)) runs.push_back(now);
+    if (runs.empty())
+        if (const Run* run = shownRun()) runs.push_back(run);
+    return runs;
+}
+
+std::vector<Plot> ConvergencePanel::plots() const {
+    std::vector<RunCurve> curves;
+    for (const Run* run : comparedRuns()) curves.push_back({run, colorOf(*run)});
+    static const Run kNone;
+    const Run* const shown = shownRun();
+    const Run& run = shown != nullptr ? *shown : kNone;
+    return {objectivePlot(curves, m_log->isChecked()), vwsPlot(run), opacityPlot(run, m_log->isChecked())};
+}
+
+void ConvergencePanel::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    drawPlots(); // while hidden it has drawn nothing
+}
+
+void ConvergencePanel::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    // Beside each other where it is wide, below each other where it is a column.
+    m_row->setDirection(width() > height() ? QBoxLayout::LeftToRight : QBoxLayout::TopToBottom);
+}
+
+void ConvergencePanel::follow() {
+    for (const Run& run : *m_bench.scene().session.runs)
+        if (run.number > m_latest) { // it is what one wants to see now
+            m_latest = run.number;
+            if (!isCurve(run)) continue;
+            m_compared.insert(run.number);
+            m_shown = run.number;
+        }
+    fillList();
+    drawPlots();
+}
+
+void ConvergencePanel::fillList() {
+    m_filling = true;
+    m_list->clear();
+    const auto add = [this](const Run& run, bool ended) {
+        auto* item = new QTreeWidgetItem;
+        item->setData(kTitle, kNumber, ended ? run.number : kUnderWay);
+        item->setText(kTitle, ended ? QString::fromStdString(titleOf(run)) : tr("under way"));
+        item->setIcon(kTitle, swatch(colorFromRgb(colorOf(run))));
+        item->setText(kMoves, QString::number(run.history.size() - 1));
+        item->setText(kDistance, shortNumber(run.after));
+        item->setText(kSeconds, run.seconds > 0 ? shortNumber(run.seconds) : QString());
+        for (const int column : {kMoves, kDistance, kSeconds})
+            item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+        for (int column = 0; column <= kSeconds; ++column) item->setToolTip(column, tipOf(run));
+        if (ended) {
+            item->setFlags(item->flags() | Qt::ItemIsUserCheckable | Qt::ItemIsEditable);
+            item->setCheckState(kTitle, m_compared.count(run.number) != 0 ? Qt::Checked : Qt::Unchecked);
+        }
+        m_list->insertTopLevelItem(0, item); // the latest first
+        if (shownRun() == &run) m_list->setCurrentItem(item);
+    };
+    for (const Run& run : *m_bench.scene().session.runs)
+        if (isCurve(run)) add(run, true);
+    m_filling = false;
+}
+
+void ConvergencePanel::drawPlots() {
+    const bool any = shownRun() != nullptr;
+    m_export->setEnabled(any);
+    m_start->setEnabled(any && !m_bench.isReadOnly());
+    m_log->setEnabled(any);
+    if (!isVisible()) return;
+    std::vector<Plot> all = plots();
+    for (std::size_t i = 0; i < m_plots.size(); ++i) m_plots[i]->setPlot(std::move(all[i]));
+    if (!any)
+        m_readOut->setText(tr("Optimize, and the moves are drawn here."));
+    else if (!m_plots[0]->underMouse() && !m_plots[1]->underMouse() && !m_plots[2]->underMouse())
+        m_readOut->setText({});
+}
+
+void ConvergencePanel::showMove(const Run& run, int move) {
+    if (m_bench.isReadOnly() || move < 0 || move >= static_cast<int>(run.history.size())) return;
+    const TransferFunction& base = run.hasStart() ? run.start->tf : m_bench.scene().tf;
+    const OptimizeState& state = run.history[static_cast<std::size_t>(move)];
+    if (base.features.size() != state.opacity.size()) return;
+    try {
+        editTf(m_bench.store(), withShownOpacities(base, state.opacity),
+               move == 0 ? tr("Show the start") : tr("Show move %1").arg(move));
+    } catch (const Error& error) {
+        m_bench.showError(tr("The move cannot be shown"), error);
+    }
+}
+
+void ConvergencePanel::itemChanged(QTreeWidgetItem* item) {
+    if (m_filling) return;
+    const int number = item->data(kTitle, kNumber).toInt();
+    const Run* const run = runNumbered(number);
+    if (run == nullptr) return;
+    item->checkState(kTitle) == Qt::Checked ? (void)m_compared.insert(number) : (void)m_compared.erase(number);
+    const std::string name = item->text(kTitle).trimmed().toStdString();
+    if (name != titleOf(*run) && !m_bench.isReadOnly()) {
+        // Later: the list is made anew by it, and this is called from inside the list.
+        QMetaObject::invokeMethod(
+            this,
+            [this, number, name] {
+                changeRuns(m_bench, tr("Rename run"), [&](std::vector<Run>& runs) {
+                    for (Run& r : runs)
+                        if (r.number == number) r.name = name;
+                });
+                fillList();
+            },
+            Qt::QueuedConnection);
+    }
+    drawPlots();
+}
+
+void ConvergencePanel::remove() {
+    const QTreeWidgetItem* const item = m_list->currentItem();
+    if (item == nullptr || m_bench.isReadOnly()) return;
+    const int number = item->data(kTitle, kNumber).toInt();
+    changeRuns(m_bench, tr("Delete run"),
+               [&](std::vector<Run>& runs) { std::erase_if(runs, [&](const Run& r) { return r.number == number; }); });
+}
+
+void ConvergencePanel::clear() {
+    if (m_bench.isReadOnly()) return;
+    changeRuns(m_bench, tr("Clear runs"), [](std::vector<Run>& runs) { std::erase_if(runs, isCurve); });
+}
+
+bool ConvergencePanel::eventFilter(QObject* watched, QEvent* event) {
+    if (watched != m_list || event->type() != QEvent::KeyPress) return QWidget::eventFilter(watched, event);
+    switch (static_cast<QKeyEvent*>(event)->key()) {
+    case Qt::Key_F2:
+        rename();
+        return true;
+    case Qt::Key_Delete:
+        remove();
+        return true;
+    default:
+        return QWidget::eventFilter(watched, event);
+    }
+}
+
+void ConvergencePanel::rename() {
+    QTreeWidgetItem* const item = m_list->currentItem();
+    if (item != nullptr && item->flags().testFlag(Qt::ItemIsEditable) && !m_bench.isReadOnly())
+        m_list->editItem(item, kTitle); // whatever column the mouse was on
+}
+
+void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
+    QMenu menu(this);
+    menu.setObjectName("convergenceMenu");
+    const QTreeWidgetItem* const item = m_list->currentItem();
+    const Run* const run = shownRun();
+    if (ofList && item != nullptr) {
+        const bool ended = item->flags().testFlag(Qt::ItemIsEditable) && !m_bench.isReadOnly();
+        menu.addAction(tr("Rename"), this, &ConvergencePanel::rename)->setEnabled(ended);
+        menu.addAction(tr("Delete"), this, &ConvergencePanel::remove)->setEnabled(ended);
+        menu.addAction(tr("Delete all"), this, &ConvergencePanel::clear)->setEnabled(ended);
+        menu.addSeparator();
+    }
+    if (run != nullptr) {
+        menu.addAction(tr("Show the start"), this,
+                       [this, number = run->number] {
+                           if (const Run* r = runNumbered(number)) showMove(*r, 0);
+                       })
+            ->setEnabled(!m_bench.isReadOnly());
+        menu.addAction(tr("Show the answer"), this,
+                       [this, number = run->number] {
+                           if (const Run* r = runNumbered(number)) showMove(*r, static_cast<int>(r->best));
+                       })
+            ->setEnabled(!m_bench.isReadOnly());
+        menu.addAction(tr("Save report…"), this,
+                       [this, number = run->number] {
+                           if (const Run* r = runNumbered(number)) m_bench.saving().chooseReport(*r);
+                       })
+            ->setEnabled(run->hasStart() && !m_bench.isReadOnly());
+        menu.addSeparator();
+        menu.addActions(m_export->menu()->actions());
+    }
+    if (!menu.isEmpty()) menu.exec(global);
+}
+
+void ConvergencePanel::chooseFile(const QString& suffix) {
+    if (shownRun() == nullptr) return;
+    const QString folder = QSettings().value("curvesFolder", QDir::homePath()).toString();
+    const QString csv = tr("Table (*.csv)"), png = tr("Picture (*.png)"), svg = tr("Drawing (*.svg)");
+    const QString filters = suffix.isEmpty()  ? QStringList{csv, png, svg}.join(";;")
+                            : suffix == "csv" ? csv
+                            : suffix == "png" ? png
+                                              : svg;
+    const QString kind = suffix.isEmpty() ? QStringLiteral("csv") : suffix;
+    QString path = QFileDialog::getSaveFileName(m_bench.window(), tr("Export the curves"),
+                                                QDir(folder).filePath("curves." + kind), filters);
+    if (path.isEmpty()) return;
+    if (QFileInfo(path).suffix().isEmpty()) path += "." + kind;
+    QSettings().setValue("curvesFolder", QFileInfo(path).absolutePath());
+    exportTo(path);
+}
+
+void ConvergencePanel::exportTo(const QString& path) {
+    constexpr int kWidth = 640, kHeight = 400;
+    const std::string file = path.toStdString();
+    const QString suffix = QFileInfo(path).suffix().toLower();
+    const std::vector<Plot> all = plots();
+    try {
+        if (suffix == "csv") {
+            std::vector<const Run*> runs = comparedRuns();
+            if (const Run* shown = shownRun(); shown && std::find(runs.begin(), runs.end(), shown) == runs.end())
+                runs.push_back(shown);
+            writeTextAtomically(file, csvOf(runs));
+        } else if (suffix == "svg") {
+            writeTextAtomically(file, svgOf(all, {.width = kWidth, .height = kHeight}));
+        } else if (suffix == "png") {
+            QByteArray bytes;
+            QBuffer buffer(&bytes);
+            buffer.open(QIODevice::WriteOnly);
+            imageOf(all, {kWidth, kHeight}, 2).save(&buffer, "PNG");
+            writeTextAtomically(file, {bytes.constData(), static_cast<std::size_t>(bytes.size())});
+        } else {
+            throw UsageError("curves are written as .csv, .png or .svg", file, "give one of these suffixes");
+        }
+        Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot export the curves"), error);
+    }
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,204 @@
+#include "panels/views_panel.h"
+
+#include <algorithm>
+
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+#include "controllers/optimize_controller.h"
+#include "controllers/view_search_controller.h"
+#include "panel.h"
+#include "render/view_direction.h"
+#include "theme.h"
+#include "view_globe.h"
+#include "volume_view.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr double kDegreesPerRadius = 60; ///< of a drag on the sphere: about what the surface under the mouse turns by
+
+QString degrees(double value) { return QString::number(value, 'f', 0).replace('-', QChar(0x2212)) + QChar(0x00b0); }
+
+QString anglesText(const Vec3& towardEye) {
+    const ViewAngles angles = anglesOf(towardEye);
+    return QObject::tr("azimuth %1, elevation %2").arg(degrees(angles.azimuth), degrees(angles.elevation));
+}
+
+QString figureText(const ViewMetric& metric, double value, bool about) {
+    const QString name = metric.figure == ViewMetric::Figure::Objective ? QObject::tr("F") : QObject::tr("VWS");
+    return QStringLiteral("%1 %2 %3").arg(name, about ? "≈" : "=", QString::number(value, 'f', about ? 2 : 4));
+}
+
+} // namespace
+
+PanelInfo viewsPanel() {
+    return {.id = "views",
+            .title = QObject::tr("Best view"),
+            .area = Qt::LeftDockWidgetArea,
+            .visible = false, // costs some hundred sweeps
+            .size = 240,
+            .keys = QKeySequence("Ctrl+B"),
+            .tip = QObject::tr("How good each view is, as a sphere beside the picture"),
+            .make =
+                [](Workbench& bench, QWidget* parent) {
+                    const QString sphere = QObject::tr("Sphere of views");
+                    bench.actions().addGestures({{sphere, QObject::tr("Hover"), QObject::tr("look from there")},
+                                                 {sphere, QObject::tr("Click"), QObject::tr("go there")},
+                                                 {sphere, QObject::tr("Left drag"), QObject::tr("rotate")}});
+                    return new ViewsPanel(bench, parent);
+                },
+            .shown =
+                [](Workbench& bench, bool visible) {
+                    if (auto* panel = bench.window()->findChild<ViewsPanel*>()) panel->search().setWanted(visible);
+                }};
+}
+
+ViewsPanel::ViewsPanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_search(new ViewSearchController(bench, this)), m_figure(new QComboBox(this)),
+      m_globe(new ViewGlobe(this)), m_words(new QLabel(this)), m_progress(new QProgressBar(this)),
+      m_look(new QPushButton(this)), m_go(new QPushButton(tr("Go there"), this)),
+      m_optimize(new QPushButton(tr("Optimize view and opacities"), this)) {
+    setObjectName("viewsPanel");
+    m_figure->setObjectName("viewsFigure");
+    m_figure->setToolTip(tr("What a view is judged by: F, the distance of all shares of saliency from their targets\n"
+                            "(less is better), or the share (VWS, 0 to 1) of one feature (more is better)"));
+    m_figure->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    m_words->setObjectName("viewsWords");
+    m_words->setWordWrap(true);
+    m_words->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    m_progress->setObjectName("viewsProgress");
+    m_progress->setRange(0, 100);
+    m_progress->setTextVisible(false);
+    m_progress->setFixedHeight(6);
+    m_look->setObjectName("viewsLook");
+    m_go->setObjectName("viewsGo");
+    m_go->setToolTip(tr("The camera goes to the best view; Alt+Left comes back"));
+    m_optimize->setObjectName("viewsOptimize");
+    m_optimize->setToolTip(tr("The view and the opacities that together come nearest to the targets;\n"
+                              "opacities can be undone, and Alt+Left comes back to this view"));
+
+    auto* buttons = new QHBoxLayout;
+    buttons->addWidget(m_look);
+    buttons->addWidget(m_go);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(8, 8, 8, 8);
+    column->addWidget(m_figure);
+    column->addWidget(m_globe, 1);
+    column->addWidget(m_progress);
+    column->addWidget(m_words);
+    column->addLayout(buttons);
+    column->addWidget(m_optimize);
+
+    ViewSearchController& search = *m_search;
+    search.addActions();
+    if (auto* view = bench.window()->findChild<VolumeView*>())
+        connect(&search, &ViewSearchController::glimpsed, view, &VolumeView::lookFrom);
+    connect(m_figure, &QComboBox::activated, this,
+            [this, &search](int row) { search.setFeature(m_figure->itemData(row).value<FeatureId>()); });
+    connect(m_look, &QPushButton::clicked, this, [&search] { search.isRunning() ? search.cancel() : search.start(); });
+    connect(m_go, &QPushButton::clicked, this, [&search] { search.goToBest(); });
+    connect(m_optimize, &QPushButton::clicked, this,
+            [&search] { search.isOptimizing() ? search.cancelOptimizing() : search.optimize(); });
+    connect(m_globe, &ViewGlobe::hovered, this, [this, &search](const Vec3& toward) {
+        if (m_bench.store().hasVolume()) search.setGlimpse(search.cameraFor(toward));
+    });
+    connect(m_globe, &ViewGlobe::left, this, [&search] { search.setGlimpse({}); });
+    connect(m_globe, &ViewGlobe::chosen, this, [this, &search](const Vec3& toward) {
+        if (m_bench.store().hasVolume()) search.goTo(search.cameraFor(toward));
+    });
+    connect(m_globe, &ViewGlobe::dragBegan, this, [this] { m_gesture = SessionStore::newGesture(); });
+    connect(m_globe, &ViewGlobe::dragged, this, [this](const QPointF& way) {
+        SessionStore& store = m_bench.store();
+        if (!store.hasVolume()) return;
+        store.setCamera(rotated(store.scene().camera, store.scene().volume->geometry(), -way.x() * kDegreesPerRadius,
+                                way.y() * kDegreesPerRadius),
+                        m_gesture);
+    });
+    m_globe->setWords([this](const Vec3& toward) {
+        const ViewSearchController& views = *m_search;
+        if (views.map().isEmpty()) return anglesText(toward);
+        const QString figure = figureText(views.map().metric, views.map().interpolated(toward), true);
+        return tr("From %1: %2").arg(anglesText(toward), figure) +
+               (views.isCurrent() ? QString() : tr("\nof an older state"));
+    });
+    connect(&search, &ViewSearchController::changed, this, &ViewsPanel::refresh);
+    connect(&bench.optimizing(), &OptimizeController::runningChanged, this, &ViewsPanel::refresh);
+    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (!std::equal(before.tf.features.begin(), before.tf.features.end(), after.tf.features.begin(),
+                        after.tf.features.end(),
+                        [](const Feature& f, const Feature& g) { return f.id == g.id && f.name == g.name; }))
+            fillFigures();
+        refresh();
+    });
+    fillFigures();
+    refresh();
+}
+
+void ViewsPanel::fillFigures() {
+    const QSignalBlocker quiet(m_figure);
+    m_figure->clear();
+    m_figure->addItem(tr("Distance from the targets (F)"), QVariant::fromValue(FeatureId(0)));
+    for (const Feature& f : m_bench.scene().tf.features)
+        m_figure->addItem(tr("Saliency (VWS) of %1").arg(QString::fromStdString(f.name)), QVariant::fromValue(f.id));
+}
+
+QString ViewsPanel::words() const {
+    const ViewSearchController& search = *m_search;
+    const SessionStore& store = m_bench.store();
+    if (!store.hasVolume()) return {};
+    if (store.session().measure->profile == Profile::Published)
+        return tr("The published profile looks along the grid alone: it has no other views.");
+    if (store.scene().tf.features.empty()) return tr("The transfer function has no features to judge views by.");
+    if (search.isOptimizing()) return tr("Looking for the view and the opacities…");
+    if (search.isRunning()) return tr("Looking from all over the sphere…");
+    if (search.map().isEmpty()) return tr("Nothing has been looked for yet.");
+    if (!search.isCurrent()) return tr("Of an older state.");
+    if (!search.best()) return tr("The best view was not looked for to the end.");
+    const ViewMetric& metric = search.map().metric;
+    const BestView& best = *search.best();
+    const Camera& camera = store.scene().camera;
+    const bool sameView = camera == best.present.camera, there = camera == best.best.camera;
+    const double here = there      ? best.best.value
+                        : sameView ? best.present.value
+                                   : search.map().interpolated(-camera.forward());
+    return tr("Best: %1, %2. From here: %3.")
+        .arg(anglesText(-best.best.camera.forward()), figureText(metric, best.best.value, false),
+             figureText(metric, here, !there && !sameView));
+}
+
+void ViewsPanel::refresh() {
+    const ViewSearchController& search = *m_search;
+    const SessionStore& store = m_bench.store();
+    const bool ready = store.hasVolume() && !store.scene().tf.features.empty() && !m_bench.isReadOnly() &&
+                       store.session().measure->profile != Profile::Published;
+    const bool current = search.isCurrent() && search.best();
+    m_figure->setCurrentIndex(std::max(0, m_figure->findData(QVariant::fromValue(search.feature()))));
+    m_figure->setEnabled(ready);
+    std::optional<Vec3> best;
+    if (search.best()) best = -search.best()->best.camera.forward();
+    m_globe->setMap(search.map(), search.isCurrent() || search.isRunning(), best);
+    if (store.hasVolume()) m_globe->setCamera(store.scene().camera, store.scene().volume->geometry().frame);
+    m_globe->setEnabled(store.hasVolume());
+    m_progress->setValue(search.isRunning() || search.isOptimizing() ? static_cast<int>(100 * search.progress())
+                         : current                                   ? 100
+                                                                     : 0);
+    m_words->setText(words());
+    m_look->setText(search.isRunning() ? tr("Stop") : tr("Look"));
+    m_look->setToolTip(search.isRunning()
+                           ? tr("Stops looking; nothing else changes")
+                           : tr("Looks from all over the sphere: some hundred views of a coarser copy of "
+                                "the volume,\nthe best of them at full resolution"));
+    m_look->setEnabled(search.isRunning() || (ready && !current));
+    m_go->setEnabled(ready && current);
+    m_optimize->setText(search.isOptimizing() ? tr("Stop") : tr("Optimize view and opacities"));
+    m_optimize->setEnabled(ready);
+}
+
+} // namespace pellucid::gui

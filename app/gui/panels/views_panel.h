@@ -1,0 +1,40 @@
+// The dock with the sphere of views.
+#pragma once
+
+#include <QWidget>
+
+class QComboBox;
+class QLabel;
+class QProgressBar;
+class QPushButton;
+
+namespace pellucid::gui {
+
+class ViewGlobe;
+class ViewSearchController;
+class Workbench;
+
+/// What is judged, the sphere in its colours, the best view in words, and the ways there.
+class ViewsPanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit ViewsPanel(Workbench& bench, QWidget* parent = nullptr);
+
+    ViewSearchController& search() { return *m_search; }
+
+private:
+    void fillFigures();
+    void refresh();
+    QString words() const;
+
+    Workbench& m_bench;
+    ViewSearchController* m_search; ///< a child
+    QComboBox* m_figure;
+    ViewGlobe* m_globe;
+    QLabel* m_words;
+    QProgressBar* m_progress;
+    QPushButton *m_look, *m_go, *m_optimize;
+    int m_gesture = 0;
+};
+
+} // namespace pellucid::gui

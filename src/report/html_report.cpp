@@ -1,0 +1,246 @@
+#include "report/html_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "report/convergence.h"
+#include "report/csv.h"
+#include "report/report_text.h"
+#include "report/share_bars.h"
+#include "report/svg_plot.h"
+#include "session/session.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr const char* kStyle = R"(
+:root{color-scheme:light dark;--text:#1b1d20;--faint:#585c62;--line:#cfd2d7;--ground:#fff;--raised:#f4f5f7}
+@media screen and (prefers-color-scheme:dark){:root{--text:#e4e5e7;--faint:#9a9da3;--line:#45474b;--ground:#1c1d1f;--raised:#262729}}
+body{margin:0 auto;padding:1.5rem;max-width:68rem;background:var(--ground);color:var(--text);font:15px/1.5 system-ui,sans-serif}
+h1{font-size:1.6rem;margin:0}h2{font-size:1.2rem;margin:2.2rem 0 .6rem}
+p.said{font-size:1.05rem}p.faint,figcaption,small{color:var(--faint)}
+.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(20rem,1fr));gap:1.2rem}
+.states{display:grid;grid-template-columns:repeat(auto-fill,minmax(9rem,1fr));gap:.8rem}
+figure{margin:0;break-inside:avoid}img,svg{max-width:100%;height:auto;display:block}
+.states img{width:100%}.states .answer figcaption{color:var(--text);font-weight:bold}
+table{border-collapse:collapse;width:100%}.wide{overflow-x:auto}
+th,td{text-align:right;padding:.25rem .6rem;border-bottom:1px solid var(--line);font-variant-numeric:tabular-nums}
+th:first-child,td:first-child{text-align:left}table.settings td{text-align:left}
+.swatch{display:inline-block;width:.8em;height:.8em;border:1px solid var(--faint);margin-right:.5em;print-color-adjust:exact;-webkit-print-color-adjust:exact}
+pre{background:var(--raised);border:1px solid var(--line);padding:.8rem;white-space:pre-wrap;overflow-wrap:anywhere}
+a{color:inherit}
+@media print{body{max-width:none;padding:0;font-size:10pt}h2{break-after:avoid}}
+)";
+
+std::string dataUri(const char* type, std::span<const unsigned char> bytes) {
+    return std::string("data:") + type + ";base64," + base64(bytes);
+}
+
+std::string imageOf(const ReportPicture& picture, const std::string& alt) {
+    return "<img src=\"" + dataUri("image/png", picture.png) + "\" width=\"" + std::to_string(picture.width) +
+           "\" height=\"" + std::to_string(picture.height) + "\" alt=\"" + escapedXml(alt) + "\">";
+}
+
+std::string svgOfPlot(const Plot& plot, double width, double height) {
+    const PlotPage page{.width = width, .height = height};
+    return "<figure>" + svgElement(drawingOf(plot, page), plot.title) + "</figure>\n";
+}
+
+std::vector<ShareBar> barsOf(const Report& report, const OptimizeState& state,
+                             const std::vector<FeatureMeasures>& measures) {
+    std::vector<ShareBar> bars;
+    for (std::size_t f = 0; f < report.run.features.size(); ++f) {
+        ShareBar bar{report.run.features[f],
+                     f < report.tfBefore.features.size() ? report.tfBefore.features[f].color : curveColor(f),
+                     state.vws[f],
+                     {},
+                     report.run.targets[f]};
+        if (f < measures.size()) bar.visibility = measures[f].visibility;
+        bars.push_back(bar);
+    }
+    return bars;
+}
+
+/// Opacity over the values, each feature in its colour.
+Plot tfPlot(const Report& report, const TransferFunction& tf, double most) {
+    const auto value = [&](double x) { return report.window.lo + x * (report.window.hi - report.window.lo); };
+    Plot plot{
+        .title = "Transfer function",
+        .x = {.label = report.unit.empty() ? "value" : "value (" + report.unit + ")", .lo = value(0), .hi = value(1)},
+        .y = {.label = "opacity per d0", .hi = most},
+        .series = {}};
+    PlotSeries all;
+    for (const ControlPoint& p : tf.pointsWithEnds()) all.points.push_back({value(p.x), p.opacity});
+    plot.series.push_back(all);
+    for (const Feature& f : tf.features) {
+        PlotSeries series{.name = f.name, .color = f.color, .points = {{value(f.a), tf.opacity(f.a)}}};
+        for (const ControlPoint& p : tf.points)
+            if (f.contains(p.x)) series.points.push_back({value(p.x), p.opacity});
+        // Its end belongs to what follows.
+        const double end = f.b < 1 ? std::nextafter(f.b, 0.0) : 1;
+        series.points.push_back({value(end), tf.opacity(end)});
+        plot.series.push_back(series);
+    }
+    return plot;
+}
+
+/// SSIM over the moves, and where §5.4 says that it should lie.
+Plot ssimPlot(const Report& report) {
+    Plot plot{.title = "Likeness to the answer", .x = {}, .y = {.label = "SSIM"}, .series = {}};
+    PlotSeries series{.name = "SSIM", .color = curveColor(0), .dotted = true, .points = {}};
+    double least = 1;
+    for (const ReportState& s : report.states) {
+        series.points.push_back({static_cast<double>(s.move), s.ssim, report.run.history[s.move].level > 0});
+        least = std::min(least, s.ssim);
+    }
+    const std::array runs{RunCurve{&report.run, curveColor(0)}};
+    plot.x = objectivePlot(runs).x;
+    plot.y.lo = std::min(0.9, least - 0.05 * (1 - least));
+    plot.series = {
+        series,
+        {.name = "0.99", .dashed = true, .points = {{0, ThresholdCheck::kAlike}, {plot.x.hi, ThresholdCheck::kAlike}}}};
+    return plot;
+}
+
+std::string headline(const Run& run) {
+    const std::string f = shortText(run.after), from = shortText(run.before),
+                      moves = std::to_string(run.iterations) + (run.iterations == 1 ? " move" : " moves");
+    const std::string figures = "F = " + f + ", from " + from + ", in " + moves;
+    if (run.ended == "converged") return "On target: " + figures + ".";
+    if (run.ended == "max-iterations") return "Stopped at the most moves allowed: " + figures + ".";
+    if (run.ended == "cancelled") return "Stopped by hand: " + figures + ".";
+    return "As near as it came from this view: " + figures + ".";
+}
+
+std::string featureTable(const Report& report) {
+    const Run& run = report.run;
+    const OptimizeState &start = run.history.front(), &answer = run.history[run.best];
+    std::string html =
+        "<div class=\"wide\"><table><tr><th>Feature</th><th>Target</th><th>VWS before</th><th>VWS after</th>"
+        "<th>Visibility before</th><th>Visibility after</th><th>Opacity before</th>"
+        "<th>Opacity after</th><th>Bounds</th></tr>\n";
+    const auto cell = [](const std::string& text) { return "<td>" + text + "</td>"; };
+    for (std::size_t f = 0; f < run.features.size(); ++f) {
+        const auto visibility = [&](const std::vector<FeatureMeasures>& measures) {
+            return f < measures.size() ? fixedText(measures[f].visibility, 4) : std::string("–");
+        };
+        std::string bounds = "–";
+        if (f < run.start->limits.size()) {
+            const OpacityLimits& l = run.start->limits[f];
+            if (l.locked)
+                bounds = "locked";
+            else if (l.lowest > 0 || l.highest < 1)
+                bounds = shortText(l.lowest) + " to " + shortText(l.highest);
+        }
+        const Rgb color = f < report.tfBefore.features.size() ? report.tfBefore.features[f].color : curveColor(f);
+        html += "<tr><td><span class=\"swatch\" style=\"background:" + hexFromRgb(color) + "\"></span>" +
+                escapedXml(run.features[f]) + "</td>" + cell(fixedText(run.targets[f], 4)) +
+                cell(fixedText(start.vws[f], 4)) + cell(fixedText(answer.vws[f], 4)) +
+                cell(visibility(report.measuresBefore)) + cell(visibility(report.measuresAfter)) +
+                cell(shortText(start.opacity[f])) + cell(shortText(answer.opacity[f])) + cell(bounds) + "</tr>\n";
+    }
+    return html + "</table></div>\n";
+}
+
+std::string beforeAndAfter(const Report& report) {
+    double mostShare = 0, mostOpacity = 0;
+    const OptimizeState &start = report.run.history.front(), &answer = report.run.history[report.run.best];
+    for (std::size_t f = 0; f < report.run.features.size(); ++f)
+        mostShare = std::max({mostShare, start.vws[f], answer.vws[f], report.run.targets[f]});
+    for (const auto* measures : {&report.measuresBefore, &report.measuresAfter})
+        for (const FeatureMeasures& m : *measures) mostShare = std::max(mostShare, m.visibility);
+    for (const TransferFunction* tf : {&report.tfBefore, &report.tfAfter})
+        for (const ControlPoint& p : tf->points) mostOpacity = std::max(mostOpacity, p.opacity);
+    mostShare = mostShare > 0 ? std::min(1.0, 1.05 * mostShare) : 1;
+    mostOpacity = mostOpacity > 0 ? std::min(1.0, 1.05 * mostOpacity) : 1;
+
+    const auto side = [&](const char* title, const ReportPicture& picture, const TransferFunction& tf,
+                          const OptimizeState& state, const std::vector<FeatureMeasures>& measures) {
+        const PlotPage page{.width = 480};
+        return "<div><h3>" + std::string(title) + "</h3><figure>" + imageOf(picture, title) + "</figure>\n" +
+               svgOfPlot(tfPlot(report, tf, mostOpacity), 480, 220) + "<figure>" +
+               svgElement(drawingOf(barsOf(report, state, measures), mostShare, page), "Shares of the features") +
+               "</figure></div>\n";
+    };
+    return "<div class=\"pair\">\n" + side("Before", report.before, report.tfBefore, start, report.measuresBefore) +
+           side("After", report.after, report.tfAfter, answer, report.measuresAfter) +
+           "</div>\n<p class=\"faint\">Thick bars: visibility-weighted saliency (VWS), each feature's share of what "
+           "catches "
+           "the eye, and an upright line at its target. Thin bars: visibility, its share of what is seen at all. Both "
+           "sides have the same scale.</p>\n";
+}
+
+std::string statesOf(const Report& report) {
+    const Run& run = report.run;
+    std::string html = "<div class=\"states\">\n";
+    for (const ReportState& s : report.states) {
+        const OptimizeState& state = run.history[s.move];
+        const std::string what = (s.move == 0 ? std::string("start") : "move " + std::to_string(s.move)) +
+                                 (state.level > 0 ? ", half resolution" : "") +
+                                 (s.move == run.best ? ", the answer" : "");
+        html += std::string("<figure") + (s.move == run.best ? " class=\"answer\"" : "") + ">" +
+                imageOf(s.picture, what) + "<figcaption>" + what + "<br>F " + shortText(state.objective) + ", SSIM " +
+                fixedText(s.ssim, 4) + "</figcaption></figure>\n";
+    }
+    html += "</div>\n";
+    if (report.states.size() < run.history.size())
+        html += "<p class=\"faint\">" + std::to_string(report.states.size()) + " of " +
+                std::to_string(run.history.size()) + " states, evenly chosen.</p>\n";
+    return html;
+}
+
+} // namespace
+
+std::string base64(std::span<const unsigned char> bytes) {
+    static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
+        unsigned group = 0;
+        for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < left ? bytes[i + j] : 0u);
+        for (std::size_t j = 0; j < 4; ++j) text += j <= left ? kDigits[group >> (18 - 6 * j) & 63u] : '=';
+    }
+    return text;
+}
+
+std::string htmlOf(const Report& report) {
+    const Run& run = report.run;
+    const std::string title = report.title + ": saliency optimization";
+    std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+                       escapedXml(title) + "</title>\n<style>" + kStyle + plotStyle() +
+                       "</style>\n</head>\n<body>\n<h1>" + escapedXml(title) + "</h1>\n<p class=\"said\">" +
+                       headline(run) + "</p>\n";
+    for (const std::string& remark : report.remarks) html += "<p>" + escapedXml(remark) + "</p>\n";
+    html += "<h2>Before and after</h2>\n" + beforeAndAfter(report) + featureTable(report);
+
+    html += "<h2>Convergence</h2>\n<div class=\"pair\">\n";
+    for (const Plot& plot : convergencePlots(run)) html += svgOfPlot(plot, 480, 300);
+    html += svgOfPlot(ssimPlot(report), 480, 300) + "</div>\n";
+    const Run* const pointer = &run;
+    const std::string csv = csvOf(std::span(&pointer, 1));
+    html += "<p class=\"faint\">F is the root mean square distance of the VWS from the targets; dashed lines are the "
+            "tolerance and the targets. <a download=\"" +
+            std::string(kCurvesFile) + "\" href=\"" +
+            dataUri("text/csv", {reinterpret_cast<const unsigned char*>(csv.data()), csv.size()}) +
+            "\">The curves as a table</a></p>\n";
+
+    html += "<h2>The states, and how alike they look</h2>\n<p>" + wordsOf(thresholdCheck(run, report.states)) +
+            "</p>\n" + statesOf(report) +
+            "<p class=\"faint\">SSIM: structural similarity of the picture of a state and that of the answer, of the "
+            "luminance in windows of 11×11 pixels, before the pictures were made small.</p>\n";
+
+    html += "<h2>Settings</h2>\n<table class=\"settings\">\n";
+    for (const auto& [what, how] : report.settings)
+        html += "<tr><td>" + escapedXml(what) + "</td><td>" + escapedXml(how) + "</td></tr>\n";
+    html += "</table>\n<h2>To repeat it</h2>\n";
+    if (report.session) html += "<p>In the folder of this page:</p>\n";
+    html += "<pre><code>" + escapedXml(report.command) + "</code></pre>\n<p class=\"faint\">" +
+            escapedXml(report.program) + "</p>\n</body>\n</html>\n";
+    return html;
+}
+
+} // namespace pellucid

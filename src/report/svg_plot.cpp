@@ -1,0 +1,164 @@
+#include "report/svg_plot.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace pellucid {
+
+namespace {
+
+/// Hundredths of a pixel, the same in every locale.
+std::string number(double value) {
+    std::array<char, 64> buffer{};
+    const double rounded = std::round(value * 100) / 100 + 0.0;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), rounded).ptr;
+    return {buffer.data(), end};
+}
+
+struct Ink {
+    const char *name, *light, *dark;
+};
+
+const Ink& inkOf(PlotInk ink) {
+    static constexpr std::array<Ink, 7> kInks{{{"text", "#1b1d20", "#e4e5e7"},
+                                               {"faint", "#585c62", "#9a9da3"},
+                                               {"grid", "#dfe1e5", "#35373a"},
+                                               {"shade", "#eef0f3", "#26282b"},
+                                               {"rim", "#8a8d92", "#6a6d72"},
+                                               {"ground", "#ffffff", "#1c1d1f"},
+                                               {"", "", ""}}};
+    return kInks[static_cast<std::size_t>(ink)];
+}
+
+/// `class="plot-text" fill="#1b1d20"`; the attribute counts where there is no style.
+std::string painted(const char* attribute, PlotInk ink, const Rgb& color) {
+    if (ink == PlotInk::Own) return std::string(attribute) + "=\"" + hexFromRgb(color) + "\"";
+    const Ink& known = inkOf(ink);
+    return "class=\"plot-" + std::string(known.name) + (attribute[0] == 's' ? "-line" : "") + "\" " + attribute +
+           "=\"" + known.light + "\"";
+}
+
+void addArea(std::string& svg, const PlotArea& a) {
+    svg += "<rect x=\"" + number(a.lo.x) + "\" y=\"" + number(a.lo.y) + "\" width=\"" + number(a.hi.x - a.lo.x) +
+           "\" height=\"" + number(a.hi.y - a.lo.y) + "\" " + painted("fill", a.ink, a.color) + "/>\n";
+}
+
+void addStroke(std::string& svg, const PlotStroke& s) {
+    svg += "<polyline fill=\"none\" stroke-linejoin=\"round\" " + painted("stroke", s.ink, s.color) +
+           " stroke-width=\"" + number(s.width) + "\"" + (s.dashed ? " stroke-dasharray=\"5 4\"" : "") + " points=\"";
+    for (std::size_t i = 0; i < s.points.size(); ++i)
+        svg += (i > 0 ? " " : "") + number(s.points[i].x) + "," + number(s.points[i].y);
+    svg += "\"/>\n";
+}
+
+void addDot(std::string& svg, const PlotDot& d) {
+    const std::string place =
+        "cx=\"" + number(d.at.x) + "\" cy=\"" + number(d.at.y) + "\" r=\"" + number(d.radius) + "\"";
+    if (d.hollow) // the ground below, then the ring: an element has one class
+        svg += "<circle " + place + " " + painted("fill", PlotInk::Ground, {}) + "/>\n<circle " + place +
+               " fill=\"none\" stroke-width=\"1.5\" " + painted("stroke", d.ink, d.color) + "/>\n";
+    else
+        svg += "<circle " + place + " " + painted("fill", d.ink, d.color) + "/>\n";
+}
+
+void addText(std::string& svg, const PlotText& t) {
+    static constexpr std::array<const char*, 3> kAnchors{"start", "middle", "end"};
+    svg += "<text x=\"" + number(t.at.x) + "\" y=\"" + number(t.at.y) + "\" font-size=\"" + number(t.size) +
+           "\" text-anchor=\"" + kAnchors[static_cast<std::size_t>(t.anchor)] + "\" " + painted("fill", t.ink, {}) +
+           (t.bold ? " font-weight=\"bold\"" : "") +
+           (t.upward ? " transform=\"rotate(-90 " + number(t.at.x) + " " + number(t.at.y) + ")\"" : "") + ">" +
+           escapedXml(t.text) + "</text>\n";
+}
+
+std::string elementsOf(const PlotDrawing& drawing) {
+    std::string svg;
+    for (const PlotArea& a : drawing.areas) addArea(svg, a);
+    for (const PlotStroke& s : drawing.strokes) addStroke(svg, s);
+    for (const PlotDot& d : drawing.dots) addDot(svg, d);
+    for (const PlotText& t : drawing.texts) addText(svg, t);
+    return svg;
+}
+
+constexpr const char* kFont = "font-family=\"system-ui, sans-serif\"";
+
+/// Length of the UTF-8 sequence at the beginning of `text`, 0 where there is none: overlong ones, surrogates and what
+/// lies beyond U+10FFFF are none.
+std::size_t sequenceAt(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char first = byte(0);
+    if (first < 0x80) return 1;
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    if (first < 0xC2 || first > 0xF4 || text.size() < length) return 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((byte(i) & 0xC0) != 0x80) return 0;
+    const unsigned char second = byte(1);
+    if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) || (first == 0xF0 && second < 0x90) ||
+        (first == 0xF4 && second > 0x8F))
+        return 0;
+    return length;
+}
+
+} // namespace
+
+std::string escapedXml(const std::string& text) {
+    std::string safe;
+    const std::string_view all = text;
+    for (std::size_t i = 0; i < all.size();) {
+        const std::size_t length = sequenceAt(all.substr(i));
+        const char c = all[i];
+        if (length == 0)
+            safe += "\xEF\xBF\xBD";
+        else if (length > 1)
+            safe += all.substr(i, length);
+        else if (c == '&')
+            safe += "&amp;";
+        else if (c == '<')
+            safe += "&lt;";
+        else if (c == '>')
+            safe += "&gt;";
+        else if (c == '"')
+            safe += "&quot;";
+        else if (c == '\'')
+            safe += "&#39;";
+        else
+            safe += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
+        i += std::max<std::size_t>(1, length);
+    }
+    return safe;
+}
+
+std::string plotStyle() {
+    std::string dark;
+    for (const PlotInk ink :
+         {PlotInk::Text, PlotInk::Faint, PlotInk::Grid, PlotInk::Shade, PlotInk::Rim, PlotInk::Ground}) {
+        const Ink& known = inkOf(ink);
+        dark += ".plot-" + std::string(known.name) + "{fill:" + known.dark + "}.plot-" + known.name +
+                "-line{stroke:" + known.dark + "}";
+    }
+    return "@media screen and (prefers-color-scheme: dark){" + dark + "}";
+}
+
+std::string svgElement(const PlotDrawing& drawing, const std::string& label) {
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(drawing.width) + " " +
+           number(drawing.height) + "\" width=\"" + number(drawing.width) + "\" height=\"" + number(drawing.height) +
+           "\" role=\"img\" aria-label=\"" + escapedXml(label) + "\" " + kFont + ">\n" + elementsOf(drawing) +
+           "</svg>\n";
+}
+
+std::string svgOf(std::span<const Plot> plots, const PlotPage& page) {
+    const std::string width = number(page.width), height = number(page.height * static_cast<double>(plots.size()));
+    std::string svg =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + width +
+        " " + height + "\" width=\"" + width + "\" height=\"" + height + "\" " + kFont + ">\n<style>" + plotStyle() +
+        "</style>\n<rect width=\"" + width + "\" height=\"" + height + "\" " + painted("fill", PlotInk::Ground, {}) +
+        "/>\n";
+    for (std::size_t i = 0; i < plots.size(); ++i)
+        svg += "<g transform=\"translate(0 " + number(page.height * static_cast<double>(i)) + ")\">\n" +
+               elementsOf(drawingOf(plots[i], page)) + "</g>\n";
+    return svg + "</svg>\n";
+}
+
+} // namespace pellucid

@@ -1,0 +1,25 @@
+// Plots as SVG: files of their own, or parts of an HTML page.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "report/plot_drawing.h"
+
+namespace pellucid {
+
+/// `text` as it may stand in XML and HTML, between tags and in attributes with double quotes. Control characters, which
+/// XML has no way to write, become blanks; bytes that are no UTF-8 become U+FFFD.
+std::string escapedXml(const std::string& text);
+
+/// Style rules for the classes of the drawings: dark texts on white; the reverse where whoever looks at it prefers
+/// dark. Without them drawings have the colours for a white ground.
+std::string plotStyle();
+
+/// One `<svg>` element, without a style of its own: for pages that have plotStyle(). `label` is read out in its place.
+std::string svgElement(const PlotDrawing& drawing, const std::string& label);
+
+/// A file: plots below each other, each of `page`, on a ground.
+std::string svgOf(std::span<const Plot> plots, const PlotPage& page = {});
+
+} // namespace pellucid

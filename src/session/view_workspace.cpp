@@ -1,0 +1,118 @@
+#include "session/view_workspace.h"
+
+#include <optional>
+
+#include <glm/common.hpp>
+
+#include "base/error.h"
+#include "optimize/objective.h"
+#include "render/cpu/cpu_engine.h"
+#include "volume/excerpt.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::size_t kFullTries = 2;  ///< views whose opacities are optimized on the full volume, at most
+constexpr double kWellReached = 0.002; ///< F that makes no difference
+
+} // namespace
+
+int coarseningForViews(const Int3& dims) {
+    int factor = 1;
+    while (voxelCount((dims - 1) / glm::min(Int3(factor), dims) + 1) > kMostViewVoxels) ++factor;
+    return factor;
+}
+
+ViewSubject viewSubject(const MeasureInput& input) {
+    if (input.settings.profile == Profile::Published)
+        throw UsageError("the published profile looks along the grid alone, from no other view", "views",
+                         "take the default profile");
+    return {input.view, input.tf, input.settings.vws};
+}
+
+void ViewWorkspace::release() {
+    m_engine.reset();
+    m_volume.reset();
+    m_haveWeights = false;
+    m_weights = {};
+}
+
+ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job) {
+    if (m_volume != input.volume || !m_engine) {
+        release();
+        const int factor = coarseningForViews(input.volume->dims());
+        const auto coarse =
+            factor == 1 ? input.volume : std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
+        job.throwIfStopped();
+        m_engine = makeDraftEngine(coarse);
+        m_volume = input.volume;
+    }
+    const TransferFunction colors = colorsOf(input.tf);
+    if (!m_haveWeights || !(m_weightsTf == colors) || !(m_weightsOptions == input.settings.saliency)) {
+        m_haveWeights = false;
+        updateSaliencyFields(m_weights, m_engine->volume(), input.tf, input.settings.saliency, {job.stop, {}});
+        m_weightsTf = colors;
+        m_weightsOptions = input.settings.saliency;
+        m_haveWeights = true;
+    }
+    return {*m_engine, m_weights};
+}
+
+ViewSearch ViewWorkspace::search(const MeasureInput& input, const ViewMetric& metric, int count, const JobControl& job,
+                                 const std::function<void(const ViewMap&)>& watch) {
+    const ViewSubject subject = viewSubject(input);
+    return searchViews(level(input, job), subject, metric, count, job, watch);
+}
+
+std::vector<ReachableView> ViewWorkspace::reach(const MeasureInput& input, const ViewSearch& search,
+                                                const std::vector<OpacityLimits>& limits,
+                                                const OptimizeOptions& options, const JobControl& job) {
+    return reachableViews(level(input, job), viewSubject(input), search, limits, options, job);
+}
+
+BestView bestView(Workspace& workspace, const MeasureInput& input, const ViewSearch& search, const JobControl& job) {
+    const ViewSubject subject = viewSubject(input);
+    VisibilityEngine& engine = workspace.engine(input);
+    return bestView(ViewLevel{engine, workspace.weights(input, {job.stop, {}})}, subject, search, 3, job);
+}
+
+ViewAndOpacities optimizeViewAndOpacities(Workspace& workspace, ViewWorkspace& views, const MeasureInput& input,
+                                          const std::vector<double>& targets, const std::vector<OpacityLimits>& limits,
+                                          const OptimizeOptions& options, const JobControl& job,
+                                          const std::function<void(const MeasureInput&, const OptimizeState&)>& watch) {
+    ViewMetric metric;
+    metric.targets = normalizedTargets(targets, input.tf.features.size());
+    const ViewSearch search = views.search(input, metric, kSphereViews, job.part(0, 2));
+    const std::vector<ReachableView> reached = views.reach(input, search, limits, options, job.part(1, 2));
+
+    const auto optimizeFrom = [&](const Camera& camera, const std::vector<double>* opacity) {
+        MeasureInput from = input;
+        from.view.camera = camera;
+        if (opacity != nullptr) from.tf = withFeatureOpacities(from.tf, *opacity);
+        OptimizeResult result =
+            workspace.optimize(from, targets, limits, options, {job.stop, {}}, [&](const OptimizeState& state) {
+                if (watch) watch(from, state);
+            });
+        if (result.reason == StopReason::Cancelled) throw Cancelled{};
+        return ViewAndOpacities{from, std::move(result), search.views};
+    };
+    const auto objectiveAt = [](const ViewAndOpacities& v) { return v.result.history[v.result.best].objective; };
+
+    // From the present opacities, as everywhere; where that leads elsewhere, from those that the search has found.
+    std::optional<ViewAndOpacities> best;
+    const auto take = [&](ViewAndOpacities next) {
+        if (!best || objectiveAt(next) < objectiveAt(*best)) best = std::move(next);
+    };
+    const auto reachedIt = [&](double objective) { return objective < options.tolerance || objective <= kWellReached; };
+    for (std::size_t i = 0; i < reached.size() && i < kFullTries; ++i) {
+        take(optimizeFrom(reached[i].camera, nullptr));
+        if (objectiveAt(*best) > reached[i].objective + kWellReached && !reachedIt(objectiveAt(*best)))
+            take(optimizeFrom(reached[i].camera, &reached[i].opacity));
+        if (reachedIt(objectiveAt(*best))) return std::move(*best);
+    }
+    take(optimizeFrom(input.view.camera, nullptr));
+    return std::move(*best);
+}
+
+} // namespace pellucid

@@ -1,0 +1,61 @@
+// Where views are compared: a copy of the volume that is coarse enough for hundreds of them.
+#pragma once
+
+#include "optimize/view_search.h"
+#include "session/scene.h"
+#include "session/workspace.h"
+
+namespace pellucid {
+
+/// As fine as the sphere of views is looked at: more voxels are joined to blocks.
+inline constexpr std::size_t kMostViewVoxels = 1'500'000;
+
+/// The smallest factor by which the volume has no more than kMostViewVoxels.
+int coarseningForViews(const Int3& dims);
+
+/// What of `input` all views have in common.
+ViewSubject viewSubject(const MeasureInput& input);
+
+/// Keeps the coarse copy of a volume, an engine for it and its saliency from one search to the next. Used by one thread
+/// at a time. The same input gives the same map, whatever was searched before.
+class ViewWorkspace {
+public:
+    /// By the draft engine, whichever `input` asks for. Throws Cancelled.
+    ViewLevel level(const MeasureInput& input, const JobControl& job = {});
+    ViewSearch search(const MeasureInput& input, const ViewMetric& metric, int count = kSphereViews,
+                      const JobControl& job = {}, const std::function<void(const ViewMap&)>& watch = {});
+    /// reachableViews() of a search for targets, after search() of the same input.
+    std::vector<ReachableView> reach(const MeasureInput& input, const ViewSearch& search,
+                                     const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                     const JobControl& job = {});
+    void release(); ///< its memory, and that of the volume it was made for
+
+private:
+    std::shared_ptr<const Volume> m_volume; ///< the one that the copy was made of
+    std::unique_ptr<VisibilityEngine> m_engine;
+    TransferFunction m_weightsTf; ///< its colorsOf()
+    SaliencyOptions m_weightsOptions;
+    bool m_haveWeights = false;
+    WeightFields m_weights;
+};
+
+/// BestView of the full volume, by the session's engine.
+BestView bestView(Workspace& workspace, const MeasureInput& input, const ViewSearch& search,
+                  const JobControl& job = {});
+
+/// What optimizing view and opacities together has found.
+struct ViewAndOpacities {
+    MeasureInput input; ///< that was optimized: `input` of the search from the view that was found
+    OptimizeResult result;
+    int views = 0; ///< that were looked at before
+};
+/// Opacities for the view among reachableViews() from which they come nearest to the targets, on the full volume; where
+/// that is not on target, the present view is tried too. `watch` gets each move and what it is a move of. Throws
+/// Cancelled.
+ViewAndOpacities
+optimizeViewAndOpacities(Workspace& workspace, ViewWorkspace& views, const MeasureInput& input,
+                         const std::vector<double>& targets, const std::vector<OpacityLimits>& limits,
+                         const OptimizeOptions& options, const JobControl& job = {},
+                         const std::function<void(const MeasureInput&, const OptimizeState&)>& watch = {});
+
+} // namespace pellucid

@@ -1,0 +1,38 @@
+#include "tf/formats/tf_file.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/text.h"
+#include "tf/formats/tf_json.h"
+#include "tf/formats/voreen_tfi.h"
+#include "tf/presets.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr const char* kVoreenSuffix = ".tfi";
+constexpr std::array<const char*, 2> kSuffixes{".tf.json", kVoreenSuffix};
+
+bool endsWith(const std::string& path, const char* suffix) { return lowerCase(path).ends_with(suffix); }
+
+} // namespace
+
+std::span<const char* const> tfSuffixes() { return kSuffixes; }
+
+bool hasTfSuffix(const std::string& path) {
+    return std::any_of(kSuffixes.begin(), kSuffixes.end(), [&](const char* suffix) { return endsWith(path, suffix); });
+}
+
+bool isForeignTf(const std::string& path) { return endsWith(path, kVoreenSuffix); }
+
+TransferFunction readTfFile(const std::string& path) { return isForeignTf(path) ? readVoreenTf(path) : readTf(path); }
+
+TransferFunction loadTf(const std::string& specOrPath) {
+    if (auto tf = tfFromSpec(specOrPath)) return *tf;
+    if (auto tf = tfFromPresetSpec(specOrPath)) return *tf;
+    return readTfFile(specOrPath);
+}
+
+} // namespace pellucid
