@@ -246,7 +246,8 @@ private:
                 for (const auto& copy : copies) problem.coarser.push_back(copy.get());
                 const OptimizeResult found = optimize(problem, {}, j);
                 if (found.reason == StopReason::Cancelled) throw Cancelled{};
-                // The start, and with each move derivatives and candidates; coarser copies have an eighth of the voxels.
+                // The start, and with each move derivatives and candidates; coarser copies have an eighth of the
+                // voxels.
                 const int sweeps = 1 + found.iterations();
                 r.bytes = sweeps * sweepBytes();
                 r.extra = {{"iterations", found.iterations()},
