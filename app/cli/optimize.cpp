@@ -76,19 +76,6 @@ struct Seconds {
     double saliency = 0, search = 0, total = 0;
 };
 
-/// What can be told about the targets before their features are known.
-std::vector<double> parseTargets(const std::string& text, const std::string& option) {
-    auto targets = parseReals(text, option);
-    double sum = 0;
-    for (const double t : targets) {
-        if (t < 0) throw UsageError("the target " + plainText(t) + " is negative", option, "give numbers from 0 on");
-        if (t > 1e9) throw UsageError("the target " + plainText(t) + " is too large", option, "only proportions count");
-        sum += t;
-    }
-    if (sum == 0) throw UsageError("all targets are 0", option, "give at least one above 0");
-    return targets;
-}
-
 /// "on target" and invisible do not stand together without this.
 std::string faintLine(const OptimizeResult& r) {
     if (!r.seen->faint) return {};
