@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "optimize/visibility_words.h"
 #include "optimize_report.h"
+#include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -66,7 +67,7 @@ struct Options {
     SearchOptions search;
     std::vector<NamedLimits> limits;
     std::vector<std::string> locked;
-    std::optional<std::vector<double>> targets;
+    std::optional<TargetInput> targets;
     std::optional<std::string> outTf, outCamera;
     bool requireConverged = false;
     ReportOptions report;
@@ -82,24 +83,15 @@ std::string faintLine(const OptimizeResult& r) {
     return (r.converged() ? "on target, but faint: " : "faint: ") + faintText(r) + "\n";
 }
 
-std::size_t featureNamed(const TransferFunction& tf, const std::string& name, const std::string& option) {
-    const auto found =
-        std::find_if(tf.features.begin(), tf.features.end(), [&](const Feature& f) { return f.name == name; });
-    if (found != tf.features.end()) return static_cast<std::size_t>(found - tf.features.begin());
-    std::string known;
-    for (const Feature& f : tf.features) known += (known.empty() ? "" : ", ") + f.name;
-    throw UsageError("there is no feature '" + name + "'", option, "known: " + known);
-}
-
 /// Those of the session, and over them what is given.
 std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
     std::vector<OpacityLimits> limits = pellucid::limitsOf(scene.tf, *scene.session.goals);
     for (const NamedLimits& given : o.limits) {
-        OpacityLimits& l = limits[featureNamed(scene.tf, given.name, "--limits")];
+        OpacityLimits& l = limits[parseFeature(given.name, "--limits", scene.tf)];
         l.lowest = given.limits.lowest;
         l.highest = given.limits.highest;
     }
-    for (const std::string& name : o.locked) limits[featureNamed(scene.tf, name, "--lock")].locked = true;
+    for (const std::string& name : o.locked) limits[parseFeature(name, "--lock", scene.tf)].locked = true;
     return limits;
 }
 
@@ -143,12 +135,12 @@ Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
     if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputFiles(o.scene));
-    if (o.report.any()) o.report.check(inputFiles(o.scene));
+    o.report.check(o.scene);
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
     Scene scene = opened.scene;
-    const std::vector<double> named = o.targets.value_or(scene.targets());
+    const std::vector<double> named = o.targets ? o.targets->of(scene) : scene.targets();
     atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
     const std::vector<double> targets = shownShares(scene.tf, named);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
@@ -184,6 +176,12 @@ Answer run(const Options& o, Progress& progress) {
     std::string text = textOf(result, engine + profileText(input.settings), seconds);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
     addProfile(json, input.settings);
+    if (result.history[result.best].objective >= options.tolerance) {
+        const Verdict verdict =
+            workspace.explain(input, targets, limits, options, result, progress.phase("explaining"));
+        for (const std::string& sentence : verdict.sentences) text += sentence + "\n";
+        json["verdict"] = jsonFromVerdict(verdict, scene.tf);
+    }
     if (o.scene.camera.best) {
         const ViewAngles angles = viewAngles(input.view.camera, input.volume->geometry());
         text += "view " + fixedText(angles.azimuth, 1) + "," + fixedText(angles.elevation, 1) + " degrees\n";
@@ -245,9 +243,10 @@ Command addOptimize(CLI::App& program) {
     o->scene.camera.mayBeBest = true;
     o->scene.addForFigures(*app);
     addValue(
-        *app, "--target", "T1,T2,...",
-        [o](const std::string& text, const std::string& option) { o->targets = parseTargets(text, option); },
-        "one number for each feature, from 0 on; scaled to sum 1; required unless a session has targets");
+        *app, "--target", kTargetForms,
+        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        "one number for each feature, from 0 on, scaled to sum 1; or all equal, by the value of their peaks, turned "
+        "round, or all for one; required unless a session has targets");
     o->search.add(*app);
     addRepeated(
         *app, "--limits", "NAME:LO:HI",

@@ -31,7 +31,15 @@ _pellucid_cli() {
             [[ $command == refine ]] && choices="greedy exact"
             ;;
         --direction) choices="gradient" ;;
-        --step-up) choices="auto" ;;
+        --field)
+            choices="visibility saliency saliency-brightness saliency-saturation vws"
+            [[ $command == render ]] && choices+=" none"
+            ;;
+        --field-colormap) choices="feature hue spiral ember sand grey blue-orange blue-red" ;;
+        --step-up | --reduce) choices="auto" ;;
+        --scale) choices="linear log log:" ;;
+        --paths) choices="newton parallel line fixed runs" ;;
+        --show) choices="F" ;;
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
@@ -41,6 +49,7 @@ _pellucid_cli() {
         --slice) choices="x: y: z:" ;;
         --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
+        --target) choices="equal diagonal inside-out only:" ;;
         --annotate) choices="all cube letters axes scale legend title" ;;
         --view)
             choices="anterior posterior left right superior inferior front back top bottom"
@@ -53,16 +62,17 @@ _pellucid_cli() {
             choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --session | --out | --out-tf | --out-camera | --map)
+        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv | --report | --curves)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
-            --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
+            --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
-            --image-size | --fix | --target | --tolerance | --coverage | --window | --tf-strength)
+            --image-size | --report-size | --fix | --tolerance | --coverage | --window | --tf-strength | \
+            --features | --samples | --space-view)
             return
             ;;
     esac

@@ -3,8 +3,8 @@
 
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
+#include "optimize/verdict.h"
 #include "output.h"
-#include "render/camera.h"
 #include "render/camera.h"
 
 namespace pellucid::cli {
@@ -13,6 +13,8 @@ namespace pellucid::cli {
 /// `before`: the transfer function that was refined. `priority`: an object that says what was asked for.
 Json jsonFromRefinement(const TransferFunction& before, const RefineResult& result, RefineMethod method,
                         const RefineComparison& comparison, Json priority);
+/// What limits, what would help, who hides whom; features by their names in `tf`.
+Json jsonFromVerdict(const Verdict& verdict, const TransferFunction& tf);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
 /// How strong the picture is: "coverage", "covers", "strongest_coverage", and "faint" where its shares cannot be seen.
 void addSeen(Json& json, const OptimizeResult& result);

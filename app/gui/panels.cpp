@@ -11,8 +11,11 @@
     PANEL(displayPanel) \
     PANEL(lightPanel) \
     PANEL(clipPanel) \
+    PANEL(fieldsPanel) \
     PANEL(galleryPanel) \
     PANEL(viewsPanel) \
+    PANEL(settingsPanel) \
+    PANEL(spacePanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

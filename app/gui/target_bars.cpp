@@ -5,38 +5,72 @@
 
 #include <QHelpEvent>
 #include <QKeyEvent>
+#include <QLineEdit>
 #include <QMouseEvent>
 #include <QPainter>
+#include <QPainterPath>
 #include <QToolTip>
 
+#include "lock_mark.h"
 #include "store/edits.h"
 #include "theme.h"
 
 namespace pellucid::gui {
 namespace {
 
-constexpr int kRow = 42;                           // height of a feature, pixels
-constexpr int kHead = 20;                          // height of the legend
-constexpr double kName = 104, kNumbers = 100;      // width left and right of the bars
-constexpr double kVwsBar = 13, kVisibilityBar = 6; // heights
+constexpr double kRow = 42, kLowRow = 30;                          // height of a feature, pixels; of many features
+constexpr int kMany = 8;                                           // features that have the room of kRow each
+constexpr int kHead = 20;                                          // height of the legend
+constexpr double kName = 100, kNow = 42, kTarget = 44, kLock = 22; // widths left and right of the bars
+constexpr double kNumbers = kNow + kTarget + kLock + 8;
+constexpr double kVisibilityBar = 6;
 
 QString share(double value) { return QString::number(value, 'f', 3); }
 
+/// What of a VWS is that of brightness, from 0 to 1.
+double brightnessPart(const FeatureMeasures& m, const VwsOptions& options) {
+    double b = options.u1 * m.vwsBrightness, s = options.u2 * m.vwsSaturation;
+    // An attribute that is nowhere salient has no say, the other one all of it.
+    if (std::abs(b + s - m.vws) > 1e-9 && m.vwsSaturation == 0 && m.vwsBrightness > 0) s = 0;
+    return b + s > 0 ? b / (b + s) : 1;
+}
+
 } // namespace
 
+std::optional<double> shareFromText(const QString& text) {
+    QString number = text.trimmed();
+    const bool percent = number.endsWith('%');
+    if (percent) number.chop(1);
+    bool good = false;
+    const double value = number.trimmed().replace(',', '.').toDouble(&good) / (percent ? 100 : 1);
+    if (!good || !(value >= 0 && value <= 1)) return {};
+    return value;
+}
+
 TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
-    : QWidget(parent), m_store(store), m_results(results) {
+    : QWidget(parent), m_store(store), m_results(results), m_box(new QLineEdit(this)) {
     setObjectName("targetBars");
     setAccessibleName(tr("Saliency of the features and their targets"));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Minimum);
+    m_box->setObjectName("targetBox");
+    m_box->setToolTip(
+        tr("Share of the saliency from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"));
+    m_box->setAlignment(Qt::AlignRight);
+    m_box->hide();
+    m_box->installEventFilter(this);
+    connect(m_box, &QLineEdit::returnPressed, this, &TargetBars::takeTyped);
+    connect(m_box, &QLineEdit::textEdited, this, [this](const QString& text) {
+        m_box->setStyleSheet(shareFromText(text) ? QString() : QStringLiteral("color: %1").arg(theme::kFalls.name()));
+    });
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         m_current = std::clamp(m_current, 0, std::max(0, count() - 1));
         // A change that this drag did not make ends it.
         if (m_dragged >= count() || !m_store.isPreviewing()) m_dragged = m_pressed ? m_dragged : -1;
         if (before.tf.features.size() != after.tf.features.size()) {
             m_hovered = m_dragged = -1;
+            endTyping();
             updateGeometry();
         }
         update();
@@ -47,13 +81,25 @@ TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
 void TargetBars::setReadOnly(bool on) {
     m_readOnly = on;
     m_dragged = -1;
+    if (on) endTyping();
     update();
 }
 
 int TargetBars::count() const { return static_cast<int>(m_store.scene().tf.features.size()); }
+double TargetBars::rowHeight() const { return count() > kMany ? kLowRow : kRow; }
 
 bool TargetBars::isHidden(int feature) const {
     return m_store.scene().tf.features.at(static_cast<std::size_t>(feature)).hidden;
+}
+
+bool TargetBars::isLocked(int feature) const {
+    const FeatureGoals& goals = *m_store.session().goals;
+    const auto goal = goals.find(m_store.scene().tf.features.at(static_cast<std::size_t>(feature)).id);
+    return goal != goals.end() && goal->second.targetLocked;
+}
+
+bool TargetBars::canEdit(int feature) const {
+    return !m_readOnly && feature >= 0 && feature < count() && !isHidden(feature);
 }
 
 void TargetBars::setCurrentFeature(int feature) {
@@ -69,14 +115,32 @@ void TargetBars::choose(int feature) {
     Q_EMIT currentChanged(feature);
 }
 
-QSize TargetBars::sizeHint() const { return {320, kHead + kRow * std::max(1, count()) + 4}; }
-QSize TargetBars::minimumSizeHint() const { return {280, kHead + kRow * std::max(1, count()) + 4}; }
+QSize TargetBars::sizeHint() const { return {320, kHead + static_cast<int>(rowHeight()) * std::max(1, count()) + 4}; }
+QSize TargetBars::minimumSizeHint() const { return {280, sizeHint().height()}; }
 
 QRectF TargetBars::rowRect(int feature) const {
-    return {0, static_cast<double>(kHead + feature * kRow), static_cast<double>(width()), static_cast<double>(kRow)};
+    return {0, kHead + feature * rowHeight(), static_cast<double>(width()), rowHeight()};
 }
 
-QRectF TargetBars::trackRect(int feature) const { return rowRect(feature).adjusted(kName, 8, -kNumbers, -8); }
+QRectF TargetBars::trackRect(int feature) const {
+    const double gap = count() > kMany ? 4 : 8;
+    return rowRect(feature).adjusted(kName, gap, -kNumbers, -gap);
+}
+
+QRectF TargetBars::vwsRect(int feature) const {
+    const QRectF track = trackRect(feature);
+    return {track.left(), track.top() + 1, track.width(), track.height() - kVisibilityBar - 5};
+}
+
+QRectF TargetBars::lockRect(int feature) const {
+    const QRectF row = rowRect(feature);
+    return {row.right() - kLock - 2, row.center().y() - kLock / 2, kLock, kLock};
+}
+
+QRectF TargetBars::targetRect(int feature) const {
+    const QRectF row = rowRect(feature);
+    return {row.right() - kLock - 2 - kTarget, row.center().y() - 11, kTarget, 22};
+}
 
 double TargetBars::pixelOfShare(double value) const {
     const QRectF track = trackRect(0);
@@ -94,22 +158,86 @@ QPointF TargetBars::handlePosition(int feature) const {
 }
 
 int TargetBars::featureAtPosition(const QPointF& position) const {
-    const int row = static_cast<int>(std::floor((position.y() - kHead) / kRow));
+    const int row = static_cast<int>(std::floor((position.y() - kHead) / rowHeight()));
     return row >= 0 && row < count() ? row : -1;
+}
+
+void TargetBars::toggleLock(int feature) {
+    if (!canEdit(feature)) return;
+    setTargetLocked(m_store, feature, !isLocked(feature));
+}
+
+void TargetBars::typeTarget(int feature, const QString& text) {
+    if (!canEdit(feature)) return;
+    m_store.commit();
+    choose(feature);
+    m_typed = feature;
+    m_box->setStyleSheet({});
+    m_box->setGeometry(targetRect(feature).adjusted(-8, -1, 4, 1).toRect());
+    m_box->setText(text.isEmpty() ? share(m_store.scene().targets().at(static_cast<std::size_t>(feature))) : text);
+    m_box->show();
+    m_box->setFocus();
+    if (text.isEmpty()) m_box->selectAll();
+}
+
+void TargetBars::takeTyped() {
+    const std::optional<double> value = shareFromText(m_box->text());
+    if (!value) {
+        QToolTip::showText(m_box->mapToGlobal(QPoint(0, m_box->height())), m_box->toolTip(), m_box);
+        return; // it stays open
+    }
+    const int feature = m_typed;
+    const bool edited = m_box->text() != share(m_store.scene().targets().at(static_cast<std::size_t>(feature)));
+    endTyping();
+    if (edited) editTarget(m_store, feature, *value, tr("Target of feature"));
+}
+
+void TargetBars::endTyping() {
+    if (m_typed < 0) return;
+    m_typed = -1;
+    const bool hadFocus = m_box->hasFocus();
+    m_box->hide();
+    if (hadFocus) setFocus();
+    update();
+}
+
+bool TargetBars::eventFilter(QObject* watched, QEvent* event) {
+    if (watched == m_box && m_typed >= 0) {
+        if (event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {
+            endTyping();
+            return true;
+        }
+        if (event->type() == QEvent::FocusOut && static_cast<QFocusEvent*>(event)->reason() != Qt::PopupFocusReason) {
+            if (shareFromText(m_box->text()))
+                takeTyped();
+            else
+                endTyping();
+        }
+    }
+    return QWidget::eventFilter(watched, event);
 }
 
 void TargetBars::mousePressEvent(QMouseEvent* event) {
     const int feature = featureAtPosition(event->position());
     if (feature < 0 || event->button() != Qt::LeftButton) return event->ignore();
     choose(feature);
+    if (lockRect(feature).contains(event->position())) return toggleLock(feature);
     const QRectF reach = trackRect(feature).adjusted(-10, -8, 10, 8);
-    if (m_readOnly || isHidden(feature) || !reach.contains(event->position())) return;
+    if (!canEdit(feature) || !reach.contains(event->position())) return;
     m_dragged = feature;
     m_pressed = true;
     // A press beside the handle brings it there, as a press on a slider's groove does in most people's hands.
     if (std::abs(event->position().x() - handlePosition(feature).x()) > 8)
         previewTarget(m_store, feature, shareAt(event->position().x()), tr("Target of feature"));
     m_pressed = false;
+}
+
+void TargetBars::mouseDoubleClickEvent(QMouseEvent* event) {
+    const int feature = featureAtPosition(event->position());
+    if (feature < 0 || event->button() != Qt::LeftButton) return event->ignore();
+    if (lockRect(feature).contains(event->position())) return mousePressEvent(event);
+    if (event->position().x() > trackRect(feature).right() + 10) return typeTarget(feature);
+    mousePressEvent(event);
 }
 
 void TargetBars::mouseMoveEvent(QMouseEvent* event) {
@@ -121,9 +249,13 @@ void TargetBars::mouseMoveEvent(QMouseEvent* event) {
     }
     const int row = featureAtPosition(event->position());
     const int hovered =
-        row >= 0 && !m_readOnly && !isHidden(row) && std::abs(event->position().x() - handlePosition(row).x()) < 8 ? row
-                                                                                                                   : -1;
-    setCursor(hovered >= 0 ? Qt::SizeHorCursor : Qt::ArrowCursor);
+        row >= 0 && canEdit(row) && std::abs(event->position().x() - handlePosition(row).x()) < 8 ? row : -1;
+    const bool onLock = row >= 0 && canEdit(row) && lockRect(row).contains(event->position());
+    const bool onNumber = row >= 0 && canEdit(row) && targetRect(row).contains(event->position());
+    setCursor(hovered >= 0 ? Qt::SizeHorCursor
+              : onLock     ? Qt::PointingHandCursor
+              : onNumber   ? Qt::IBeamCursor
+                           : Qt::ArrowCursor);
     if (hovered != m_hovered) {
         m_hovered = hovered;
         update();
@@ -146,7 +278,7 @@ void TargetBars::keyPressEvent(QKeyEvent* event) {
     const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 0.1 : 0.01;
     const double target = m_store.scene().targets().at(static_cast<std::size_t>(m_current));
     const auto move = [&](double by) {
-        if (!m_readOnly && !isHidden(m_current))
+        if (canEdit(m_current))
             editTarget(m_store, m_current, target + by, tr("Target of feature"),
                        QStringLiteral("target-%1").arg(m_current));
     };
@@ -159,12 +291,26 @@ void TargetBars::keyPressEvent(QKeyEvent* event) {
         return move(-step);
     case Qt::Key_Right:
         return move(step);
+    case Qt::Key_Return:
+    case Qt::Key_Enter:
+        return typeTarget(m_current);
+    case Qt::Key_L:
+        return toggleLock(m_current);
     default:
-        QWidget::keyPressEvent(event);
+        break;
     }
+    const QString text = event->text();
+    if (text.size() == 1 && (text[0].isDigit() || text[0] == '.' || text[0] == ',')) return typeTarget(m_current, text);
+    QWidget::keyPressEvent(event);
 }
 
 bool TargetBars::event(QEvent* event) {
+    // Where the bars have the focus, L is theirs and not the light's.
+    if (event->type() == QEvent::ShortcutOverride) {
+        const auto* key = static_cast<QKeyEvent*>(event);
+        if (key->modifiers() == Qt::NoModifier && key->key() == Qt::Key_L && count() > 0) event->accept();
+        return QWidget::event(event);
+    }
     if (event->type() != QEvent::ToolTip) return QWidget::event(event);
     const auto* help = static_cast<QHelpEvent*>(event);
     const int feature = featureAtPosition(help->pos());
@@ -173,12 +319,29 @@ bool TargetBars::event(QEvent* event) {
         return true;
     }
     QToolTip::showText(help->globalPos(),
-                       tr("Thick bar: VWS, the feature's share of what catches the eye (0 to 1)\n"
-                          "Thin bar: its visibility, the share of the picture that it makes (0 to 1)\n"
-                          "Handle: the VWS that Optimize aims at; the targets add up to 1.\n"
-                          "Drag it, or press Left and Right (Shift: larger steps)"),
+                       lockRect(feature).contains(help->pos())
+                           ? tr("Lock: this target stays where others are set (L). An optimization still moves the\n"
+                                "feature's opacity; to hold that, lock the opacity in the feature's menu")
+                           : tip(feature),
                        this);
     return true;
+}
+
+QString TargetBars::tip(int feature) const {
+    const auto f = static_cast<std::size_t>(feature);
+    QString text = QString::fromStdString(m_store.scene().tf.features[f].name);
+    if (const Measures* m = m_results.measures(); m && f < m->features.size()) {
+        const FeatureMeasures& now = m->features[f];
+        const double b = brightnessPart(now, m_store.session().measure->vws);
+        text += tr("\nVWS %1 = %2 by brightness + %3 by saturation\nvisibility %4")
+                    .arg(share(now.vws), share(now.vws * b), share(now.vws * (1 - b)), share(now.visibility));
+    }
+    if (!isHidden(feature)) text += tr(", target %1").arg(share(m_store.scene().targets()[f]));
+    return text +
+           tr("\n\nThick bar: VWS, the feature's share of what catches the eye (0 to 1); striped: by saturation\n"
+              "Thin bar: its visibility, the share of the picture that it makes (0 to 1)\n"
+              "Handle: the VWS that Optimize aims at; the targets add up to 1.\n"
+              "Drag it, press Left and Right (Shift: larger steps), or type it: double click, Enter, a digit");
 }
 
 void TargetBars::paintEvent(QPaintEvent*) {
@@ -189,80 +352,98 @@ void TargetBars::paintEvent(QPaintEvent*) {
     const QFontMetricsF metrics(small);
     painter.setFont(small);
     painter.setPen(theme::kFaint);
-    const QRectF head(0, 2, width(), kHead - 4);
-    const QRectF numbers(width() - kNumbers + 8, head.top(), (kNumbers - 14) / 2, head.height());
-    painter.drawText(head.adjusted(kName, 0, -kNumbers, 0), Qt::AlignLeft | Qt::AlignVCenter,
-                     metrics.elidedText(tr("VWS; thin: visibility"), Qt::ElideRight, width() - kName - kNumbers));
-    painter.drawText(numbers, Qt::AlignRight | Qt::AlignVCenter, tr("now"));
-    painter.drawText(numbers.translated(numbers.width(), 0), Qt::AlignRight | Qt::AlignVCenter, tr("target"));
+    const double head = kHead - 4;
+    painter.drawText(QRectF(kName, 2, width() - kName - kNumbers, head), Qt::AlignLeft | Qt::AlignVCenter,
+                     metrics.elidedText(tr("VWS (striped: by saturation); thin: visibility"), Qt::ElideRight,
+                                        width() - kName - kNumbers));
+    const double left = width() - 2 - kLock - kTarget;
+    painter.drawText(QRectF(left - kNow, 2, kNow, head), Qt::AlignRight | Qt::AlignVCenter, tr("now"));
+    painter.drawText(QRectF(left, 2, kTarget, head), Qt::AlignRight | Qt::AlignVCenter, tr("target"));
     if (count() == 0) {
         painter.drawText(QRectF(0, kHead, width(), kRow), Qt::AlignCenter, tr("The curve has no features"));
         return;
     }
-
-    const Measures* const measures = m_results.measures();
     const std::vector<double> targets = m_store.scene().targets();
+    for (int i = 0; i < count(); ++i) paintRow(painter, i, small, targets[static_cast<std::size_t>(i)]);
+}
+
+void TargetBars::paintRow(QPainter& painter, int i, const QFont& small, double target) {
+    const auto f = static_cast<std::size_t>(i);
+    const Feature& feature = m_store.scene().tf.features[f];
+    const Measures* const measures = m_results.measures();
     // Faint: of an older state, being measured anew.
     const double strength = m_results.vwsIsCurrent() ? 1.0 : 0.45;
     const double thinStrength = m_results.measuresAreCurrent() ? 0.55 : 0.25;
-    for (int i = 0; i < count(); ++i) {
-        const auto f = static_cast<std::size_t>(i);
-        const Feature& feature = m_store.scene().tf.features[f];
-        const QRectF row = rowRect(i), track = trackRect(i);
-        if (i == m_current && (m_marked || hasFocus())) {
-            painter.setPen(Qt::NoPen);
-            painter.setBrush(theme::kHover);
-            painter.drawRoundedRect(row.adjusted(3, 2, -3, -2), 4, 4);
-        }
-        QColor color = colorFromRgb(feature.color);
-        if (feature.hidden) color.setAlphaF(0.35F);
+    const QRectF row = rowRect(i), track = trackRect(i);
+    if (i == m_current && (m_marked || hasFocus())) {
         painter.setPen(Qt::NoPen);
-        painter.setBrush(color);
-        painter.drawRoundedRect(QRectF(10, track.center().y() - 5, 10, 10), 2, 2);
-        painter.setFont(font());
-        painter.setPen(feature.hidden ? theme::kFaint : theme::kText);
-        painter.drawText(
-            QRectF(26, row.top(), kName - 32, row.height()), Qt::AlignVCenter | Qt::AlignLeft,
-            QFontMetricsF(font()).elidedText(QString::fromStdString(feature.name), Qt::ElideRight, kName - 32));
-        painter.setPen(Qt::NoPen);
-        const QRectF vwsTrack(track.left(), track.top() + 2, track.width(), kVwsBar);
-        const QRectF visTrack(track.left(), vwsTrack.bottom() + 3, track.width(), kVisibilityBar);
-        painter.setBrush(theme::kTrack);
-        painter.drawRoundedRect(vwsTrack, 2, 2);
-        painter.drawRoundedRect(visTrack, 2, 2);
-        painter.setFont(small);
-        if (measures && f < measures->features.size()) {
-            const FeatureMeasures& m = measures->features[f];
-            QColor fill = color;
-            fill.setAlphaF(static_cast<float>(strength));
-            painter.setBrush(fill);
-            painter.drawRoundedRect(QRectF(vwsTrack.topLeft(), QSizeF(vwsTrack.width() * m.vws, kVwsBar)), 2, 2);
-            fill.setAlphaF(static_cast<float>(thinStrength));
-            painter.setBrush(fill);
-            painter.drawRoundedRect(QRectF(visTrack.topLeft(), QSizeF(visTrack.width() * m.visibility, kVisibilityBar)),
-                                    2, 2);
-            painter.setPen(strength < 1 ? theme::kFaint : theme::kText);
-            const double half = metrics.height() * 0.95;
-            const QRectF now(numbers.left(), row.center().y() - half, numbers.width(), half);
-            painter.drawText(now, Qt::AlignRight | Qt::AlignVCenter, share(m.vws));
-            painter.setPen(theme::kFaint);
-            painter.drawText(now.translated(0, half), Qt::AlignRight | Qt::AlignVCenter, share(m.visibility));
-        }
-        const QRectF target(numbers.left() + numbers.width(), row.top(), numbers.width(), row.height());
-        if (feature.hidden) { // it is aimed at nothing
-            painter.setPen(theme::kFaint);
-            painter.drawText(target, Qt::AlignRight | Qt::AlignVCenter, QStringLiteral("–"));
-            continue;
-        }
-        const QPointF handle = handlePosition(i);
-        const bool active = i == m_dragged || i == m_hovered;
-        painter.setPen(QPen(QColor(0, 0, 0, 160), 1));
-        painter.setBrush(m_readOnly ? theme::kFaint : active ? theme::kAccent.lighter(130) : theme::kKnob);
-        const double reach = track.height() / 2 + 1;
-        painter.drawRoundedRect(QRectF(handle.x() - 2.5, handle.y() - reach, 5, 2 * reach), 2.5, 2.5);
-        painter.setPen(theme::kText);
-        painter.drawText(target, Qt::AlignRight | Qt::AlignVCenter, share(targets[f]));
+        painter.setBrush(theme::kHover);
+        painter.drawRoundedRect(row.adjusted(3, 1, -3, -1), 4, 4);
     }
+    QColor color = colorFromRgb(feature.color);
+    if (feature.hidden) color.setAlphaF(0.35F);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(color);
+    painter.drawRoundedRect(QRectF(10, track.center().y() - 5, 10, 10), 2, 2);
+    painter.setFont(font());
+    painter.setPen(feature.hidden ? theme::kFaint : theme::kText);
+    painter.drawText(
+        QRectF(26, row.top(), kName - 32, row.height()), Qt::AlignVCenter | Qt::AlignLeft,
+        QFontMetricsF(font()).elidedText(QString::fromStdString(feature.name), Qt::ElideRight, kName - 32));
+    painter.setPen(Qt::NoPen);
+    const QRectF vws = vwsRect(i);
+    const QRectF visibility(track.left(), track.bottom() - kVisibilityBar - 1, track.width(), kVisibilityBar);
+    painter.setBrush(theme::kTrack);
+    painter.drawRoundedRect(vws, 2, 2);
+    painter.drawRoundedRect(visibility, 2, 2);
+    painter.setFont(small);
+    const QRectF number = targetRect(i);
+    if (measures && f < measures->features.size()) {
+        const FeatureMeasures& m = measures->features[f];
+        const QRectF bar(vws.topLeft(), QSizeF(vws.width() * std::clamp(m.vws, 0.0, 1.0), vws.height()));
+        const double b = bar.width() * brightnessPart(m, m_store.session().measure->vws);
+        QPainterPath shape;
+        shape.addRoundedRect(bar, 2, 2);
+        painter.save();
+        painter.setClipPath(shape);
+        QColor fill = color;
+        fill.setAlphaF(static_cast<float>(strength));
+        painter.fillRect(QRectF(bar.left(), bar.top(), b, bar.height()), fill);
+        fill.setAlphaF(static_cast<float>(0.35 * strength));
+        const QRectF saturation(bar.left() + b, bar.top(), bar.width() - b, bar.height());
+        painter.fillRect(saturation, fill);
+        fill.setAlphaF(static_cast<float>(strength));
+        painter.setClipRect(saturation, Qt::IntersectClip);
+        painter.setPen(QPen(fill, 2));
+        for (double x = saturation.left() - bar.height(); x < saturation.right(); x += 5)
+            painter.drawLine(QPointF(x, bar.bottom()), QPointF(x + bar.height(), bar.top()));
+        painter.restore();
+        fill.setAlphaF(static_cast<float>(thinStrength));
+        painter.setBrush(fill);
+        painter.drawRoundedRect(QRectF(visibility.topLeft(), QSizeF(visibility.width() * m.visibility, kVisibilityBar)),
+                                2, 2);
+        painter.setPen(strength < 1 ? theme::kFaint : theme::kText);
+        const double half = std::min(QFontMetricsF(small).height() * 0.95, row.height() / 2);
+        const QRectF now(number.left() - kNow, row.center().y() - half, kNow, half);
+        painter.drawText(now, Qt::AlignRight | Qt::AlignVCenter, share(m.vws));
+        painter.setPen(theme::kFaint);
+        painter.drawText(now.translated(0, half), Qt::AlignRight | Qt::AlignVCenter, share(m.visibility));
+    }
+    if (feature.hidden) { // it is aimed at nothing
+        painter.setPen(theme::kFaint);
+        painter.drawText(number, Qt::AlignRight | Qt::AlignVCenter, QStringLiteral("–"));
+        return;
+    }
+    const bool locked = isLocked(i);
+    const QPointF handle(pixelOfShare(target), track.center().y());
+    const bool active = i == m_dragged || i == m_hovered;
+    painter.setPen(QPen(QColor(0, 0, 0, 160), 1));
+    painter.setBrush(m_readOnly ? theme::kFaint : active ? theme::kAccent.lighter(130) : theme::kKnob);
+    const double reach = track.height() / 2 + 1;
+    painter.drawRoundedRect(QRectF(handle.x() - 2.5, handle.y() - reach, 5, 2 * reach), 2.5, 2.5);
+    painter.setPen(theme::kText);
+    painter.drawText(number, Qt::AlignRight | Qt::AlignVCenter, share(target));
+    paintLock(painter, lockRect(i).center(), locked, locked ? theme::kText : theme::kFaint);
 }
 
 } // namespace pellucid::gui

@@ -1,7 +1,9 @@
 #include "workbench.h"
 
 #include "controllers/feature_actions.h"
+#include "controllers/field_controller.h"
 #include "controllers/frame_actions.h"
+#include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/recovery_controller.h"
@@ -9,6 +11,7 @@
 #include "controllers/save_controller.h"
 #include "controllers/slice_actions.h"
 #include "controllers/start_controller.h"
+#include "controllers/target_actions.h"
 #include "controllers/tf_actions.h"
 #include "controllers/theme_actions.h"
 #include "controllers/view_actions.h"
@@ -19,6 +22,8 @@ namespace pellucid::gui {
 Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
     m_optimizing = std::make_unique<OptimizeController>(*this);
     m_refining = std::make_unique<RefineController>(*this);
+    m_fields = std::make_unique<FieldController>(*this);
+    m_live = std::make_unique<LiveController>(*this);
     m_saving = std::make_unique<SaveController>(*this);
     m_opening = std::make_unique<OpenController>(*this);
     m_start = std::make_unique<StartController>(*this);
@@ -32,9 +37,12 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     addTfActions(*this);
     addFeatureActions(*this);
     m_refining->addActions();
+    addTargetActions(*this);
     m_optimizing->addActions();
+    m_live->addActions();
     addViewActions(*this);
     addFrameActions(*this);
+    m_fields->addActions();
     addSliceActions(*this);
     addThemeActions(*this);
 
@@ -42,7 +50,8 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     connect(&m_store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features.empty() != after.tf.features.empty() ||
             before.camera.projection != after.camera.projection ||
-            before.session.reference != after.session.reference || !before.session.slices.isSame(after.session.slices))
+            before.session.reference != after.session.reference ||
+            !before.session.slices.isSame(after.session.slices) || !before.session.field.isSame(after.session.field))
             m_actions.refresh();
     });
     connect(&m_results, &Results::changed, this, &Workbench::idleChanged);
@@ -54,10 +63,13 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
         Q_EMIT readOnlyChanged();
         Q_EMIT idleChanged();
     });
+    connect(m_optimizing.get(), &OptimizeController::messageChanged, this, &Workbench::idleChanged);
     connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
     connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_live.get(), &LiveController::busyChanged, this, &Workbench::idleChanged);
     connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_fields.get(), &FieldController::busyChanged, this, &Workbench::idleChanged);
 }
 
 Workbench::~Workbench() {
@@ -67,6 +79,8 @@ Workbench::~Workbench() {
     m_start.reset();
     m_opening.reset();
     m_saving.reset();
+    m_fields.reset();
+    m_live.reset();
     m_refining.reset();
     m_optimizing.reset();
 }
@@ -95,7 +109,8 @@ bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
-           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_results.isBusy();
+           !m_optimizing->isRunning() && !m_optimizing->isExplaining() && !m_refining->isBusy() && !m_live->isBusy() && !m_results.isBusy() &&
+           !m_fields->isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

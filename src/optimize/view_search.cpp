@@ -278,7 +278,7 @@ std::vector<ReachableView> reachableViews(const ViewLevel& level, const ViewSubj
     const Geometry& geometry = level.engine.volume().geometry();
     OptimizeOptions few = options;
     few.maxIterations = std::min(options.maxIterations, kReachMoves);
-    few.coarse = false;
+    few.coarse = few.restarts = false;
 
     const auto reach = [&](const Camera& camera) {
         const View view(camera, subject.view.clipping);

@@ -2,80 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include <glm/geometric.hpp>
 
 #include "base/round_numbers.h"
+#include "render/mark_maker.h"
+#include "render/named_box.h"
+#include "render/projected.h"
 #include "volume/orientation.h"
 
 namespace pellucid {
 
 namespace {
 
-constexpr double kSmallestText = 7;       // pixels of the screen, height of a capital
-constexpr double kTextOfPicture = 0.0115; // the same, of the picture's shorter side
-constexpr Rgb kLight{0.93, 0.94, 0.95}, kDark{0.07, 0.08, 0.09};
 constexpr Rgb kAmber{1.0, 0.83, 0.42}, kBrown{0.48, 0.27, 0.02}; // of the letters at the edges
 
-Rgb mixed(const Rgb& a, const Rgb& b, double share) {
-    return {a.r + (b.r - a.r) * share, a.g + (b.g - a.g) * share, a.b + (b.b - a.b) * share};
+/// What the marks lie on.
+Rgb groundOf(const RenderSettings& picture) {
+    const Rgb bottom = picture.background.value_or(Rgb{});
+    return picture.background && picture.backgroundTop ? mixed(bottom, *picture.backgroundTop, 0.5) : bottom;
 }
 
-enum class Align { Start, Middle, End };
-double shareOf(Align align) { return align == Align::Start ? 0.0 : align == Align::Middle ? 0.5 : 1.0; }
-
-/// The world in the picture.
-class Projected {
-public:
-    Projected(const Camera& camera, double width, double height)
-        : m_camera(camera), m_forward(camera.forward()), m_right(camera.right()), m_up(camera.trueUp()), m_width(width),
-          m_height(height), m_tangent(std::tan(camera.fovY * std::numbers::pi / 360)) {}
-
-    bool isPerspective() const { return m_camera.projection == Projection::Perspective; }
-    double depth(const Vec3& p) const { return glm::dot(p - m_camera.eye, m_forward); }
-    /// World units per pixel at a depth.
-    double unitsPerPixel(double depth) const {
-        return (isPerspective() ? 2 * depth * m_tangent : m_camera.height) / m_height;
-    }
-    /// depth(p) > 0 where perspective.
-    Vec2 operator()(const Vec3& p) const {
-        const Vec3 way = p - m_camera.eye;
-        const double scale = 1 / unitsPerPixel(depth(p));
-        return {m_width / 2 + glm::dot(way, m_right) * scale, m_height / 2 - glm::dot(way, m_up) * scale};
-    }
-    /// Whether a plane through `p` is seen from the side that its normal points to.
-    bool faces(const Vec3& normal, const Vec3& p) const {
-        const Vec3 towardEye = isPerspective() ? m_camera.eye - p : -m_forward;
-        return glm::dot(normal, towardEye) > 1e-9 * glm::length(towardEye);
-    }
-    /// A direction, seen from far away: right and up in the picture, and toward the viewer.
-    Vec3 turned(const Vec3& d) const { return {glm::dot(d, m_right), glm::dot(d, m_up), -glm::dot(d, m_forward)}; }
-    const Vec3& right() const { return m_right; }
-    const Vec3& up() const { return m_up; }
-
-private:
-    Camera m_camera;
-    Vec3 m_forward, m_right, m_up;
-    double m_width, m_height, m_tangent;
-};
-
 /// The sheet that everything is laid out on.
-class Sheet {
+class Sheet : private MarkMaker {
 public:
-    explicit Sheet(const AnnotationInput& input)
-        : m_in(input), m_width(input.picture.width), m_height(input.picture.height),
-          m_project(input.camera, m_width, m_height) {
-        m_cap = std::max(kSmallestText * input.density, kTextOfPicture * std::min(m_width, m_height));
-        m_margin = 1.3 * m_cap;
-        Rgb ground = input.picture.background.value_or(Rgb{});
-        if (input.picture.background && input.picture.backgroundTop)
-            ground = mixed(ground, *input.picture.backgroundTop, 0.5);
-        m_onDark = 0.3 * ground.r + 0.59 * ground.g + 0.11 * ground.b < 0.5;
-        m_ink = m_onDark ? kLight : kDark;
-        m_halo = m_onDark ? kDark : kLight;
-    }
+    explicit Sheet(const AnnotationInput& input, const NamedBox* box = nullptr)
+        : MarkMaker(input.picture.width, input.picture.height, input.density, groundOf(input.picture)), m_in(input),
+          m_width(input.picture.width), m_height(input.picture.height), m_project(input.camera, m_width, m_height),
+          m_cap(capHeight), m_margin(margin),
+          m_box(box) {}
 
     std::vector<Mark> marks() {
         const FrameOfReference& show = m_in.show;
@@ -96,41 +52,6 @@ public:
 
 private:
     // ---- marks
-
-    Mark lineMark(FramePart part, std::vector<Vec2> points, double width) const {
-        Mark mark;
-        mark.part = part;
-        mark.points = std::move(points);
-        mark.color = m_ink;
-        mark.width = width;
-        mark.halo = 0.14 * m_cap;
-        mark.haloColor = m_halo;
-        return mark;
-    }
-    Mark areaMark(FramePart part, std::vector<Vec2> corners, const Rgb& color, double alpha = 1) const {
-        Mark mark;
-        mark.part = part;
-        mark.kind = Mark::Kind::Area;
-        mark.points = std::move(corners);
-        mark.color = color;
-        mark.alpha = alpha;
-        return mark;
-    }
-    Mark boxMark(FramePart part, const PixelBox& b, const Rgb& color, double alpha = 1) const {
-        return areaMark(part, {{b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}}, color,
-                        alpha);
-    }
-    /// `at`: the start, middle or end of its capitals' box in each direction; vertically Start is the top.
-    Mark textMark(FramePart part, const std::string& text, const Vec2& at, Align horizontal, Align vertical,
-                  double cap) const {
-        Mark mark = lineMark(part, {}, 0.14 * cap);
-        mark.kind = Mark::Kind::Text;
-        mark.points = {{at.x - shareOf(horizontal) * cap * textWidth(text), at.y + (1 - shareOf(vertical)) * cap}};
-        mark.text = text;
-        mark.across = {cap, 0};
-        mark.up = {0, -cap};
-        return mark;
-    }
 
     bool isFree(const PixelBox& box) const {
         if (box.left < 0 || box.top < 0 || box.right > m_width || box.bottom > m_height) return false;
@@ -179,11 +100,11 @@ private:
                 const Vec3 right = glm::cross(up, normal);
                 const std::vector<Vec2> corners{at(normal - right - up), at(normal + right - up),
                                                 at(normal + right + up), at(normal - right + up)};
-                const Rgb color = mixed(kDark, kColors[static_cast<std::size_t>(axis)], 0.45 + 0.55 * facing);
+                const Rgb color = mixed(kDarkInk, kColors[static_cast<std::size_t>(axis)], 0.45 + 0.55 * facing);
                 cube.push_back(areaMark(FramePart::Cube, corners, color));
                 Mark edges = lineMark(FramePart::Cube, corners, std::max(m_in.density, 0.09 * m_cap));
                 edges.points.push_back(corners.front());
-                edges.color = mixed(kLight, color, 0.35);
+                edges.color = mixed(kLightInk, color, 0.35);
                 edges.halo = 0;
                 cube.push_back(edges);
                 std::string text(1, patient ? patientLetter(axis, sign > 0) : "XYZ"[axis]);
@@ -194,7 +115,7 @@ private:
                 letter.points = {at(start)};
                 letter.across = onPicture(right * cap);
                 letter.up = onPicture(up * cap);
-                letter.color = kLight;
+                letter.color = kLightInk;
                 letter.alpha = std::clamp((facing - 0.1) / 0.25, 0.0, 1.0);
                 letter.width = 0.14 * cap * half;
                 letter.halo = 0;
@@ -273,7 +194,7 @@ private:
             all.push_back(legendRow(tf, peaks, (i + 0.5) / std::floor(rows)));
             most = std::max(most, all.back().opacity);
         }
-        legend.push_back(boxMark(FramePart::Legend, {left, top, right, top + height}, kDark, 0.55));
+        legend.push_back(boxMark(FramePart::Legend, {left, top, right, top + height}, kDarkInk, 0.55));
         for (std::size_t i = 0; i < all.size(); ++i) {
             const LegendRow& row = all[i];
             if (!(row.opacity > 0)) continue;
@@ -314,7 +235,7 @@ private:
             if (y + 0.5 * m_cap > lowest) continue;
             const std::string name = shortenedText(f.name, 0.2 * m_width / m_cap);
             Mark text = textMark(FramePart::Legend, name, {left - 0.7 * m_cap, y}, Align::End, Align::Middle, m_cap);
-            text.color = mixed(f.color, m_ink, 0.35);
+            text.color = mixed(f.color, ink, 0.35);
             m_names.push_back(text);
             lowest = y - 0.9 * m_cap;
         }
@@ -324,7 +245,7 @@ private:
         const double cap = 1.5 * m_cap;
         const auto letter = [&](const Vec3& direction, const Vec2& at, Align horizontal, Align vertical) {
             Mark mark = textMark(FramePart::Letters, directionLetters(direction), at, horizontal, vertical, cap);
-            mark.color = m_onDark ? kAmber : kBrown;
+            mark.color = onDark ? kAmber : kBrown;
             mark.width = 0.15 * cap;
             return mark;
         };
@@ -420,7 +341,7 @@ private:
 
     void addAxes() {
         const Geometry& g = m_in.geometry;
-        const Vec3 lo = g.boundsMin(), hi = g.boundsMax();
+        const Vec3 lo = m_box ? m_box->lo : g.boundsMin(), hi = m_box ? m_box->hi : g.boundsMax();
         const double line = std::max(m_in.density, 0.1 * m_cap);
         for (int axis = 0; axis < 3; ++axis)
             for (const Edge& edge : edgesAlong(axis, lo, hi))
@@ -433,6 +354,13 @@ private:
         const Vec3 middle = (lo + hi) * 0.5;
         if (m_project.isPerspective() && m_project.depth(middle) <= 0) return;
         for (int axis = 0; axis < 3; ++axis) addTicks(axis, lo, hi, m_project(middle));
+    }
+
+    std::vector<AxisTick> ticksOf(int axis, double lo, double hi, int wanted) const {
+        if (m_box) return m_box->ticks[static_cast<std::size_t>(axis)];
+        std::vector<AxisTick> all;
+        for (const double value : axisTicks(lo, hi, wanted)) all.push_back({value, numberText(value, hi - lo)});
+        return all;
     }
 
     void addTicks(int axis, const Vec3& lo, const Vec3& hi, const Vec2& middle) {
@@ -456,23 +384,25 @@ private:
         const Vec2 a = m_project(chosen->from), b = m_project(chosen->to), along = glm::normalize(b - a);
         Vec2 outward{-along.y, along.x};
         if (glm::dot(outward, (a + b) * 0.5 - middle) < 0) outward = -outward;
-        const double span = hi[axis] - lo[axis], tick = 0.55 * m_cap;
+        const double tick = 0.55 * m_cap;
         double widest = 0;
         const int wanted = std::clamp(static_cast<int>(glm::length(b - a) / (6 * m_cap)), 2, 10);
-        for (const double value : axisTicks(lo[axis], hi[axis], wanted)) {
+        for (const AxisTick& t : ticksOf(axis, lo[axis], hi[axis], wanted)) {
             Vec3 p = chosen->from;
-            p[axis] = value;
+            p[axis] = t.at;
             const Vec2 at = m_project(p);
             if (at.x < 0 || at.y < 0 || at.x > m_width || at.y > m_height) continue;
             m_marks.push_back(
                 lineMark(FramePart::Axes, {at, at + outward * tick}, std::max(m_in.density, 0.1 * m_cap)));
-            const std::string text = numberText(value, span);
-            if (placeLabel(text, at, outward, tick + 0.5 * m_cap, true))
-                widest = std::max(widest, std::abs(outward.x) * m_cap * textWidth(text) + std::abs(outward.y) * m_cap);
+            if (placeLabel(t.text, at, outward, tick + 0.5 * m_cap, true))
+                widest =
+                    std::max(widest, std::abs(outward.x) * m_cap * textWidth(t.text) + std::abs(outward.y) * m_cap);
         }
-        const std::string caption = m_in.geometry.frame == Frame::Patient ? std::string(1, patientLetter(axis, false)) +
-                                                                                "→" + patientLetter(axis, true) + "  mm"
-                                                                          : std::string(1, "xyz"[axis]);
+        const std::string caption =
+            m_box ? m_box->captions[static_cast<std::size_t>(axis)]
+            : m_in.geometry.frame == Frame::Patient
+                ? std::string(1, patientLetter(axis, false)) + "→" + patientLetter(axis, true) + "  mm"
+                : std::string(1, "xyz"[axis]);
         for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8})
             if (placeLabel(caption, a + (b - a) * share, outward, tick + 1.2 * m_cap + widest, false)) return;
         for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8}) // within the outline, then
@@ -482,9 +412,8 @@ private:
     const AnnotationInput& m_in;
     double m_width, m_height;
     Projected m_project;
-    double m_cap, m_margin; ///< height of a capital; distance from the picture's edges
-    bool m_onDark = true;
-    Rgb m_ink, m_halo;
+    const double m_cap, m_margin; ///< of the MarkMaker
+    const NamedBox* m_box;        ///< null: the axes of the world
     std::vector<PixelBox> m_taken;
     std::vector<Mark> m_names; ///< of features, beside the legend
     std::vector<Mark> m_marks;
@@ -513,5 +442,9 @@ PixelBox extentOf(const Mark& mark) {
 }
 
 std::vector<Mark> annotationMarks(const AnnotationInput& input) { return Sheet(input).marks(); }
+
+std::vector<Mark> annotationMarks(const AnnotationInput& input, const NamedBox& box) {
+    return Sheet(input, &box).marks();
+}
 
 } // namespace pellucid

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "tf/color_maps.h"
 #include "tf/shown_tf.h"
 
 namespace pellucid {
@@ -24,6 +25,15 @@ RefineOptions RefineSettings::options() const {
     options.maxIterations = maxIterations;
     options.method = method;
     return options;
+}
+
+void checkFieldColorMap(const std::string& name) {
+    if (name == kFeatureColorMap) return;
+    try {
+        colorMapNamed(name);
+    } catch (const UsageError& e) {
+        throw UsageError(e.problem(), e.where(), e.whatToDo() + "; or " + kFeatureColorMap);
+    }
 }
 
 const TransferFunction* Session::tf() const {
@@ -139,7 +149,9 @@ void Session::setTf(TransferFunction tf) {
     // Every feature has a goal from its first day on, and is remembered when it leaves.
     goals.edit([&](FeatureGoals& all) {
         const double target = averageTarget(tf, all);
-        for (const Feature& f : tf.features) all.try_emplace(f.id, FeatureGoal{target, false, 0, 1});
+        FeatureGoal fresh;
+        fresh.target = target;
+        for (const Feature& f : tf.features) all.try_emplace(f.id, fresh);
         if (before == nullptr) return;
         for (const Feature& f : before->features)
             if (f.id != 0 && featureOf(tf, f.id) == nullptr) all[f.id].departed = {f.name, f.a, f.b};
@@ -222,7 +234,25 @@ std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& go
             t = mean;
             sum += mean;
         }
-    // Shares that sum to 1 already keep their bits.
+    // Locked targets are shares; the others divide what they leave.
+    double locked = 0, free = 0;
+    std::vector<bool> isFree(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (tf.features[i].hidden) continue;
+        const auto goal = goals.find(tf.features[i].id);
+        isFree[i] = goal == goals.end() || !goal->second.targetLocked;
+        (isFree[i] ? free : locked) += targets[i];
+    }
+    if (locked > 0 && locked <= 1 && free > 0) {
+        // Shares that sum to 1 already keep their bits.
+        const double factor = std::abs(locked + free - 1) > 1e-12 ? (1 - locked) / free : 1;
+        for (std::size_t i = 0; i < n; ++i)
+            if (tf.features[i].hidden)
+                targets[i] = 0;
+            else if (isFree[i])
+                targets[i] *= factor;
+        return targets;
+    }
     if (std::abs(sum - 1) > 1e-12)
         for (double& t : targets) t /= sum;
     return shownShares(tf, std::move(targets));
@@ -245,17 +275,42 @@ FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const s
     return goals;
 }
 
-std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value) {
-    if (feature >= targets.size() || targets.size() == 1) return targets; // one feature has it all
-    value = std::clamp(value, 0.0, 1.0);
-    const double others = std::accumulate(targets.begin(), targets.end(), 0.0) - targets[feature];
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-        if (i == feature) continue;
-        targets[i] = others > 1e-9 ? targets[i] / others * (1.0 - value)
-                                   : (1.0 - value) / static_cast<double>(targets.size() - 1);
+std::vector<bool> heldTargets(const TransferFunction& tf, const FeatureGoals& goals) {
+    std::vector<bool> held;
+    for (const Feature& f : tf.features) {
+        const auto goal = goals.find(f.id);
+        held.push_back(f.hidden || (goal != goals.end() && goal->second.targetLocked));
     }
+    return held;
+}
+
+std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value,
+                               const std::vector<bool>& held) {
+    if (feature >= targets.size()) return targets;
+    double kept = 0, others = 0, free = 0;
+    const auto isFree = [&](std::size_t i) { return i != feature && (held.empty() || !held[i]); };
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        if (isFree(i)) {
+            others += targets[i];
+            ++free;
+        } else if (i != feature) {
+            kept += targets[i];
+        }
+    }
+    if (free == 0) return targets; // what is left is its own
+    const double room = std::max(0.0, 1 - kept);
+    value = std::clamp(value, 0.0, room);
+    for (std::size_t i = 0; i < targets.size(); ++i)
+        if (isFree(i)) targets[i] = others > 1e-9 ? targets[i] / others * (room - value) : (room - value) / free;
     targets[feature] = value;
     return targets;
+}
+
+FeatureGoals withTargetLocked(FeatureGoals goals, const TransferFunction& tf, std::size_t feature, bool locked) {
+    const std::vector<double> shares = targetsOf(tf, goals); // stored as such, which a lock holds
+    goals = withTargets(std::move(goals), tf, shares);
+    goals[tf.features.at(feature).id].targetLocked = locked;
+    return goals;
 }
 
 } // namespace pellucid

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "optimize/fields.h"
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
 #include "render/annotation.h"
@@ -49,6 +50,7 @@ struct FeatureGoal {
     double target = 0;              ///< wanted share of saliency, [0, 1e9]; shares are scaled to sum 1 over a TF
     bool locked = false;            ///< an optimization leaves its opacity alone
     double lowest = 0, highest = 1; ///< bounds of its opacity, 0 ≤ lowest ≤ highest ≤ 1
+    bool targetLocked = false;      ///< its target stays where those of other features are set
 
     /// What the feature was when it left the transfer function, by which it is known again; empty: it never left.
     struct Departed {
@@ -108,6 +110,20 @@ struct SliceViews {
     bool operator==(const SliceViews&) const = default;
 };
 
+/// A field in the place of the data in the picture, under colours of its own. No figure depends on it.
+struct FieldView {
+    std::optional<FieldKind> kind;  ///< empty: the data
+    FeatureId feature = 0;          ///< of its voxels alone; 0: of all
+    std::string colorMap = "ember"; ///< one of colorMaps(), or kFeatureColorMap
+    double strength = 0.3;          ///< opacity of a path of d0 at `top`, (0,1]
+    double threshold = 0;           ///< of `top`, [0,1): up to there nothing is drawn
+    std::optional<double> top;      ///< value that the colours reach to, > 0, in the field's unit; empty: Field::top
+    bool operator==(const FieldView&) const = default;
+};
+/// In place of a colour map: from black over the feature's colour to white; of all features, the default map.
+inline constexpr const char* kFeatureColorMap = "feature";
+/// Throws UsageError where `name` is no colour map and not kFeatureColorMap.
+void checkFieldColorMap(const std::string& name);
 /// What an optimization began with: enough to do it again with the same data.
 struct RunStart {
     TransferFunction tf; ///< as people edit it, in its own range; without points: not known
@@ -146,6 +162,7 @@ struct Session {
     Part<std::vector<Variable>> variables; ///< one today; empty: nothing is open
     int frame = 0;
     Part<FeatureGoals> goals;
+    bool holdTargets = false;     ///< live: opacities follow camera, colours and settings so that targets are held
     std::optional<Camera> camera; ///< empty: the home view of the volume
     Part<Clipping> clipping;      ///< what is cut away, of pictures and of figures
     Part<DisplaySettings> display;
@@ -154,6 +171,7 @@ struct Session {
     Part<OptimizeOptions> optimize;
     Part<RefineSettings> refine;
     Part<SliceViews> slices;
+    Part<FieldView> field;       ///< what is drawn in the place of the data
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns
     std::string extraJson;       ///< unknown keys of the file it came from, as one JSON object; written back
 
@@ -176,14 +194,21 @@ struct Session {
 
 inline constexpr std::size_t kMostRuns = 50;
 
-/// Shares that the features of `tf` are wanted to have, in their order, sum 1: their goals, scaled. A feature without a
-/// goal has the mean of the others; where all are 0 or none has one, shares are equal. Empty without features.
+/// Shares that the features of `tf` are wanted to have, in their order, sum 1: their goals, scaled; those whose target
+/// is locked keep theirs as far as the sum is 1. A feature without a goal has the mean of the others; where all are 0 or
+/// none has one, shares are equal. Empty without features.
 std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& goals);
 /// The goals after the features of `tf` (which have identities) got `targets`, in their order.
 FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const std::vector<double>& targets);
 /// What an optimization may do to the opacities of the features of `tf`, in their order. A hidden feature is locked.
 std::vector<OpacityLimits> limitsOf(const TransferFunction& tf, const FeatureGoals& goals);
-/// One share set to `value` in [0,1]; the others divide the rest in their old proportion.
-std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value);
+/// Features of `tf`, in their order, whose share stays where others are set: locked or hidden ones.
+std::vector<bool> heldTargets(const TransferFunction& tf, const FeatureGoals& goals);
+/// One share set to `value`, as far as those that are `held` (one per feature, or empty: none is) leave room for it; the
+/// others divide the rest in their old proportion. As it is where nobody else could give way.
+std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value,
+                               const std::vector<bool>& held = {});
+/// The goals after the target of one feature was locked or let go: shares are what they were.
+FeatureGoals withTargetLocked(FeatureGoals goals, const TransferFunction& tf, std::size_t feature, bool locked);
 
 } // namespace pellucid

@@ -243,6 +243,7 @@ json fromGoals(const FeatureGoals& goals) {
     for (const auto& [id, g] : goals) {
         all.push_back(
             {{"id", id}, {"target", g.target}, {"locked", g.locked}, {"lowest", g.lowest}, {"highest", g.highest}});
+        if (g.targetLocked) all.back()["target_locked"] = true;
         if (g.departed)
             all.back()["departed"] = {{"name", g.departed->name}, {"range", {g.departed->a, g.departed->b}}};
     }
@@ -257,6 +258,7 @@ FeatureGoals toGoals(const JsonValue& j) {
         if (item.has("locked")) g.locked = item["locked"].boolean();
         if (item.has("lowest")) g.lowest = item["lowest"].number(0, 1);
         if (item.has("highest")) g.highest = item["highest"].number(g.lowest, 1);
+        if (item.has("target_locked")) g.targetLocked = item["target_locked"].boolean();
         if (item.has("departed")) {
             const JsonValue departed = item["departed"];
             const auto range = departed["range"].items(2);
@@ -426,6 +428,38 @@ SliceViews toSlices(const JsonValue& j) {
     if (j.has("crosshair")) s.crosshair = toVec(j["crosshair"], -0.5, 1e9);
     if (j.has("window")) s.window = toRange(j["window"]);
     return s;
+}
+
+json fromField(const FieldView& f) {
+    json j{{"feature", f.feature}, {"color_map", f.colorMap}, {"strength", f.strength}, {"threshold", f.threshold}};
+    if (f.kind) j["kind"] = name(*f.kind);
+    if (f.top) j["top"] = *f.top;
+    return j;
+}
+
+FieldView toField(const JsonValue& j) {
+    j.requireObject();
+    FieldView f;
+    if (j.has("kind")) f.kind = named(j["kind"], fieldKindFromName);
+    if (j.has("feature")) f.feature = static_cast<FeatureId>(j["feature"].integer(0, INT64_MAX / 2));
+    if (j.has("color_map"))
+        f.colorMap = named(j["color_map"], [](const std::string& text) {
+            checkFieldColorMap(text);
+            return text;
+        });
+    if (j.has("strength")) {
+        f.strength = j["strength"].number(0, 1);
+        if (f.strength == 0) j["strength"].fail("a strength is above 0");
+    }
+    if (j.has("threshold")) {
+        f.threshold = j["threshold"].number(0, 1);
+        if (f.threshold == 1) j["threshold"].fail("a threshold is below 1");
+    }
+    if (j.has("top")) {
+        f.top = j["top"].number(0, kHuge);
+        if (*f.top == 0) j["top"].fail("the top is above 0");
+    }
+    return f;
 }
 
 /// A vector of the world.
@@ -619,6 +653,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"variables", json::array()},
            {"frame", s.frame},
            {"features", fromGoals(*s.goals)},
+           {"hold_targets", s.holdTargets},
            {"clip", fromClipping(*s.clipping)},
            {"display", fromDisplay(*s.display)},
            {"reference", fromReference(*s.reference)},
@@ -626,6 +661,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"optimize", fromOptimize(*s.optimize)},
            {"refine", fromRefine(*s.refine)},
            {"slices", fromSlices(*s.slices)},
+           {"field", fromField(*s.field)},
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
@@ -645,6 +681,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     s.variables = std::move(variables);
     if (j.has("frame")) s.frame = static_cast<int>(j["frame"].integer(0, 1'000'000'000));
     if (j.has("features")) s.goals = toGoals(j["features"]);
+    if (j.has("hold_targets")) s.holdTargets = j["hold_targets"].boolean();
     if (j.has("camera")) s.camera = cameraFromJson(j["camera"]);
     if (j.has("clip")) s.clipping = toClipping(j["clip"]);
     if (j.has("display")) s.display = toDisplay(j["display"]);
@@ -653,6 +690,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("optimize")) s.optimize = toOptimize(j["optimize"]);
     if (j.has("refine")) s.refine = toRefine(j["refine"]);
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
+    if (j.has("field")) s.field = toField(j["field"]);
     if (j.has("runs")) {
         std::vector<Run> runs;
         int highest = 0;
@@ -665,8 +703,9 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         }
         s.runs = std::move(runs);
     }
-    s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "camera", "clip", "display",
-                                 "reference", "measure", "optimize", "refine", "slices", "runs", "title"});
+    s.extraJson =
+        j.unknownKeys({"format", "version", "variables", "frame", "features", "hold_targets", "camera", "clip",
+                       "display", "reference", "measure", "optimize", "refine", "slices", "field", "runs", "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

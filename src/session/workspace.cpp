@@ -176,6 +176,43 @@ Workspace::coarserFunctions(const MeasureInput& input, const OptimizeOptions& op
     return coarser(input, job).functions(input.view, input.tf, input.settings.vws);
 }
 
+Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, const JobControl& job) {
+    return guarded(
+        [&] {
+            const Volume& volume = *input.volume;
+            const bool swept = dependsOnView(kind), weighted = kind != FieldKind::Visibility;
+            VisibilityEngine* const e = swept ? &engine(input) : nullptr;
+            const bool all = weighted && !haveWeights(input);
+            requireMemory(toDrawField(all), volume.title, volume.dims(), volume.sampleType());
+            // Saliency, sweep and what is made of them are about as long.
+            std::size_t done = 0;
+            const std::size_t parts = (all ? 1u : 0u) + (swept ? 1u : 0u) + 1u;
+            const WeightFields* w = nullptr;
+            if (weighted) {
+                w = &weights(input, job.part(done, parts));
+                done += all ? 1 : 0;
+            }
+            Grid<float> values;
+            const auto start = Clock::now();
+            if (swept) {
+                values = e->field(input.view, input.tf, job.part(done++, parts)).values;
+                m_seconds.visibility = secondsSince(start);
+            }
+            const JobControl rest = job.part(done, parts);
+            if (kind == FieldKind::Vws)
+                visibilityToVws(values, *w, input.settings.vws, rest);
+            else if (!swept)
+                values = saliencyGrid(*w, kind, input.settings.vws, rest);
+            const double top = usualTop(values);
+            keepFeature(values, volume, input.tf, feature, rest);
+            rest.throwIfStopped();
+            std::string title = infoOf(kind).title;
+            if (feature >= 0) title += ", " + input.tf.features[static_cast<std::size_t>(feature)].name;
+            return fieldVolume(volume.geometry(), values, top, std::move(title));
+        },
+        [this] { releaseEngine(); });
+}
+
 OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
                                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                                    const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
@@ -195,6 +232,28 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             if (steps.publishedSteps) steps.maxIterations = 0;
             makeVisible(result, densityProblem(function, held, rays(input, {job.stop, {}}), limits), steps,
                         {job.stop, {}}, watch);
+            m_seconds.visibility = secondsSince(start);
+            return result;
+        },
+        [this] { releaseEngine(); });
+}
+
+OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<double>& targets,
+                                   const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                   bool coarse, const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, job);
+            const auto start = Clock::now();
+            const EngineVws full(e, input.view, input.tf, w, input.settings.vws);
+            const VwsFunction& base = full;
+            std::vector<std::unique_ptr<VwsFunction>> held;
+            if (coarse) held = coarserFunctions(input, OptimizeOptions{}, job);
+            OptimizeOptions steps = options;
+            steps.publishedSteps = input.settings.profile == Profile::Published;
+            OptimizeResult result =
+                pellucid::optimize({held.empty() ? base : *held.front(), targets, limits}, steps, job);
             m_seconds.visibility = secondsSince(start);
             return result;
         },

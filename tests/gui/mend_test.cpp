@@ -272,10 +272,11 @@ TEST_CASE("turning the view during an optimization shows the figures of before a
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     REQUIRE(turned);
     CHECK(shownAsOld);
-    CHECK_FALSE(w.optimizing().message().startsWith("On target"));
-    CHECK(w.optimizing().message().contains("where it began"));
+    CHECK(w.optimizing().message().contains("restarted from the new view"));
     w.settle();
     CHECK(w.document().measuresAreCurrent());
+    if (w.optimizing().message().startsWith("On target")) // of this view
+        CHECK(*w.bench().results().objective() < w.bench().store().session().optimize->tolerance);
 }
 
 TEST_CASE("raw files are among the recent ones, with their layout", "[mend]") {

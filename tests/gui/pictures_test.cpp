@@ -6,7 +6,9 @@
 #include <QCheckBox>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
+#include <QToolButton>
 
+#include "panels/space_panel.h"
 #include "render/camera_motion.h"
 #include "render/clip_handles.h"
 #include "selection.h"
@@ -77,6 +79,21 @@ TEST_CASE("pictures for the guide", "[.pictures]") {
     grab(w, "window_influence.png");
 }
 
+TEST_CASE("targets for the guide", "[.pictures][.targetspicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:knee").toStdString();
+    if (source.isSample()) source.sampleSize = 160;
+    w.open(source);
+    w.settle();
+    w.child<QAction>("targetsDiagonal").trigger();
+    w.child<TargetBars>("targetBars").toggleLock(0);
+    w.child<QAction>("liveTargetsAction").trigger();
+    grab(w, "targets.png");
+}
+
 TEST_CASE("picture of the probe for the guide", "[.pictures][.probepicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
@@ -103,6 +120,29 @@ TEST_CASE("the globe for the guide", "[.pictures][.globepicture]") {
     grab(w, "best_view.png");
 }
 
+TEST_CASE("curves for the guide", "[.pictures][.convergencepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    w.settle();
+    w.document().setTargets({0.1, 0.3, 0.6});
+    const auto run = [&](SearchMethod method) {
+        w.bench().store().edit("Method", {}, [&](Session& session) {
+            session.optimize.edit([&](OptimizeOptions& options) {
+                options.method = method;
+                options.maxIterations = 20;
+            });
+        });
+        w.optimizing().start();
+        REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    };
+    run(SearchMethod::Fixed);
+    w.child<QAction>("showConvergence").trigger();
+    w.child<QToolButton>("showStart").click();
+    run(SearchMethod::Parallel);
+    grab(w, "convergence.png");
+}
+
 TEST_CASE("the refiner for the guide", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
@@ -127,4 +167,45 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
     REQUIRE(waitFor([&] { return !w.refining().isBusy(); }));
     QTest::qWait(1500); // the methods are compared
     grab(w, "refiner.png");
+}
+
+TEST_CASE("a field for the guide", "[.pictures][.fieldpicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    VolumeSource source;
+    source.path = "sample:shells";
+    w.open(source);
+    w.child<QAction>("fieldsAction").trigger();
+    w.bench().store().edit("Field", {}, [](Session& session) {
+        session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
+        session.field.edit([](FieldView& f) { f.kind = FieldKind::Vws; });
+    });
+    grab(w, "fields.png");
+}
+
+TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w(64);
+    w.window.resize(1280, 860);
+    VolumeSource source;
+    source.path = qEnvironmentVariable("PELLUCID_VOLUME", "sample:shells").toStdString();
+    w.opening().openVolume(source, "tents:3");
+    w.settle();
+    w.child<QAction>("spaceAction").trigger();
+    w.document().setTargets({0.1, 0.3, 0.6});
+    for (const SearchMethod method : {SearchMethod::Parallel, SearchMethod::Fixed}) {
+        w.bench().store().edit("Method", {}, [method](Session& session) {
+            session.optimize.edit([method](OptimizeOptions& options) { options.method = method; });
+        });
+        w.document().setTf(tents(3), "Start");
+        w.settle();
+        w.optimizing().start();
+        REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    }
+    w.settle();
+    auto& panel = w.child<SpacePanel>("spacePanel");
+    panel.compute();
+    REQUIRE(waitFor([&] { return panel.isCurrent() && panel.isPictureComplete(); }));
+    grab(w, "parameter_space.png");
 }

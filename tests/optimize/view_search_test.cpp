@@ -159,7 +159,8 @@ TEST_CASE("the best view of a hidden box is from its free side", "[views]") {
         // From there α = 0.9 per voxel and a plate of three leave 1e-3 of the light.
         CHECK(found.present.value < 0.01);
         CHECK(found.worst.value <= found.present.value);
-        CHECK(found.best.value > 0.3);
+        // Edge-on the plate shows 3·24 voxels of its faces, the box 6·6: a third of all, less by what stands aslant.
+        CHECK(found.best.value > 0.15);
         CHECK(found.best.value >= search.map.values[search.map.best()] - 1e-9);
         // The plate is thin: edge-on it shows least. The box is free for every eye on the other side of it.
         const Vec3 toward = -found.best.camera.forward();
@@ -222,24 +223,43 @@ TEST_CASE("a search of views tells how far it is, grows its map and stops when a
     CHECK_THROWS_AS(searchViews(s.level(), s.from(s.home()), {ViewMetric::Figure::Objective, {1}, 0}, 40), UsageError);
 }
 
-TEST_CASE("targets are reached by turning the view where opacities alone cannot", "[views]") {
-    // Straight onto the plate nothing is seen of the box while the plate keeps its opacity (locked): F ≥ 0.5. From the
-    // free side the box alone is there to be seen first.
+TEST_CASE("of views that reach the targets the one with the most to see comes first", "[views]") {
     const Subject s = boxBehindPlate();
-    const Camera hidden = lookingFrom(s.home(), s.volume->geometry(), {-1, 0, 0});
+    const Camera hidden = lookingFrom(s.home(), s.volume->geometry(), {-1, 0, 0}); // straight onto the plate
     const ViewMetric metric{ViewMetric::Figure::Objective, {0.5, 0.5}, 0};
     const ViewSearch search = searchViews(s.level(), s.from(hidden), metric, 64);
-    const std::vector<OpacityLimits> limits{{0, 1, true}, {}};
     OptimizeOptions options;
     options.tolerance = 0.001;
-    const std::vector<ReachableView> all = reachableViews(s.level(), s.from(hidden), search, limits, options);
+    const std::vector<ReachableView> all = reachableViews(s.level(), s.from(hidden), search, {}, options);
     REQUIRE(all.size() > 4);
-    CHECK(all.front().objective < 0.1);
+    // A thin plate and a dense box have equal shares from everywhere.
+    CHECK(all.front().objective < 0.005);
+    for (const ReachableView& v : all) {
+        const bool near = v.objective <= 0.005;
+        CHECK((!near || v.seen <= all.front().seen));
+        // What it says of itself is true.
+        const TransferFunction tf = withFeatureOpacities(s.tf, v.opacity);
+        const FeatureSums sums = s.engine->sums(View(v.camera), {&tf, 1}, &s.weights)[0];
+        CHECK(metric.valueOf(sums, {}) == Approx(v.objective).margin(1e-9));
+        CHECK(sums.allVisibility == Approx(v.seen));
+    }
+    CHECK(std::any_of(all.begin(), all.end(), [&](const ReachableView& v) { return v.camera == hidden; }));
+}
+
+TEST_CASE("targets are reached by turning the view where opacities alone cannot", "[views]") {
+    // Straight onto the plate nothing is seen of the box while the plate keeps its opacity: W = (1, 0), and F = 0.2 for
+    // the targets (0.8, 0.2), of which only 1e-3 of the light leaks. From its free side the box has what it needs.
+    const Subject s = boxBehindPlate();
+    const Camera hidden = lookingFrom(s.home(), s.volume->geometry(), {-1, 0, 0});
+    const ViewMetric metric{ViewMetric::Figure::Objective, {0.8, 0.2}, 0};
+    const ViewSearch search = searchViews(s.level(), s.from(hidden), metric, 64);
+    const std::vector<OpacityLimits> limits{{0, 1, true}, {}};
+    const std::vector<ReachableView> all = reachableViews(s.level(), s.from(hidden), search, limits, {});
+    CHECK(all.front().objective < 0.03);
     CHECK(all.front().opacity[0] == Approx(0.9));
     CHECK((-all.front().camera.forward()).x > -0.5);
-    // The present view is one of them, and reaches nothing.
     const auto present =
         std::find_if(all.begin(), all.end(), [&](const ReachableView& v) { return v.camera == hidden; });
     REQUIRE(present != all.end());
-    CHECK(present->objective > 0.4);
+    CHECK(present->objective == Approx(0.2).margin(0.01));
 }

@@ -7,6 +7,7 @@
 #include <QToolButton>
 #include <QWidgetAction>
 
+#include "controllers/target_actions.h"
 #include "store/edits.h"
 #include "tf/shapes.h"
 #include "theme.h"
@@ -328,6 +329,7 @@ void fillFeatureMenu(QMenu& menu, Workbench& bench) {
     }
     QMenu* const change = menu.addMenu(QObject::tr("&Change to"));
     for (const ShapeText& shape : kShapes) change->addAction(bench.actions().find(kindId(shape.kind)));
+    fillLimitsMenu(menu, bench);
     menu.addSeparator();
     fillShapeMenu(*menu.addMenu(QObject::tr("&Add")), bench);
 }

@@ -2,6 +2,8 @@
 
 #include <QDateTime>
 
+#include <algorithm>
+
 #include "optimize/visibility_words.h"
 #include "tf/shown_tf.h"
 #include "workbench.h"
@@ -15,7 +17,29 @@ QString counted(int n, const QString& one, const QString& many) {
 
 QString fixed4(double value) { return QString::number(value, 'f', 4); }
 
+constexpr double kLeastStart = 1e-4; ///< opacity of a restart: from 0 there is no way for what scales
+
 } // namespace
+
+QString sayOf(const OptimizeResult& result, int restarts) {
+    const OptimizeState& best = result.history[result.best];
+    QString figures = QObject::tr("F = %1, from %2, in %3")
+                          .arg(fixed4(best.objective), fixed4(result.history.front().objective),
+                               counted(result.iterations(), QObject::tr("move"), QObject::tr("moves")));
+    if (restarts > 0) figures += QObject::tr("; restarted from the new view");
+    if (const std::string faint = faintText(result); !faint.empty()) // not without what makes it visible
+        return QObject::tr("%1: %2 (%3)")
+            .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
+                 QString::fromStdString(faint), figures);
+    switch (result.reason) {
+    case StopReason::Converged:
+        return QObject::tr("On target: %1.").arg(figures);
+    case StopReason::NoProgress:
+        return QObject::tr("Not on target: nothing came nearer; %1. Looking for the reason…").arg(figures);
+    default:
+        return QObject::tr("Stopped at the most moves allowed: %1.").arg(figures);
+    }
+}
 
 OptimizeController::OptimizeController(Workbench& bench)
     : m_bench(bench),
@@ -33,7 +57,18 @@ OptimizeController::OptimizeController(Workbench& bench)
               return result;
           },
           [this](const Task& task, OptimizeResult& result) { finish(task, result); }, WhenBusy::StopOld,
-          &bench.compute()) {
+          &bench.compute()),
+      m_explaining(
+          [&workspace = bench.workspace()](const Question& q, const JobControl& job) {
+              return workspace.explain(q.task.input, q.task.targets, q.task.limits, q.task.options, q.found,
+                                       {job.stop, {}});
+          },
+          [this](const Question&, Verdict& verdict) {
+              QStringList sentences;
+              for (const std::string& sentence : verdict.sentences) sentences << QString::fromStdString(sentence);
+              say(sentences.join(' '));
+          },
+          WhenBusy::StopOld, &bench.compute()) {
     connect(&m_job, &JobBase::busyChanged, this, [this] {
         m_bench.results().setPaused(isRunning());
         Q_EMIT runningChanged();
@@ -48,8 +83,17 @@ OptimizeController::OptimizeController(Workbench& bench)
     });
     connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.data != after.data) cancel();
-        if (!m_message.isEmpty() && !isRunning() && !(present() == m_about)) say({});
+        if (isRunning() && !(measureInput(after).view == m_task.input.view)) restart(measureInput(after).view);
+        if (!m_message.isEmpty() && !isRunning() && !(present() == m_about)) {
+            m_question.reset();
+            m_explaining.cancel();
+            say({});
+        }
     });
+    connect(&bench.results(), &Results::changed, this, &OptimizeController::askWhy);
+    connect(&m_explaining, &JobBase::busyChanged, this, &OptimizeController::messageChanged);
+    connect(&m_explaining, &JobBase::failed, this,
+            [this](const Error& error) { say(tr("Not on target; why is not known: %1.").arg(QString(error.what()))); });
 }
 
 OptimizeController::~OptimizeController() { ++m_number; }
@@ -82,17 +126,41 @@ void OptimizeController::start() {
     if (!store.hasVolume() || isRunning() || m_bench.scene().tf.features.empty()) return;
     store.commit();
     say({});
+    m_restarts = 0;
+    m_question.reset();
+    m_explaining.cancel();
+    const About about = present();
+    begin({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
+           *store.session().optimize});
+}
+
+void OptimizeController::begin(Task task) {
     m_move = -1;
     m_firstObjective = m_objective = 0;
-    const About about = present();
-    m_job.start({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
-                 *store.session().optimize, ++m_number},
-                tr("the optimization"));
-    m_run = runOf({.tf = {}, .targets = about.targets, .history = {}},
-                  runStartOf(m_bench.scene(), *store.session().optimize));
+    m_opacity.clear();
+    task.number = ++m_number;
+    m_task = task;
+    m_job.start(std::move(task), tr("the optimization"));
+    m_run = runOf({.tf = {}, .targets = m_task.targets, .history = {}}, m_task.start());
     m_run.started = QDateTime::currentDateTime().toString(Qt::ISODate).toStdString();
     m_since.start();
     Q_EMIT moved();
+}
+
+// What it has found so far is the start of what is looked for now.
+void OptimizeController::restart(const View& view) {
+    Task task = m_task;
+    task.input.view = view;
+    if (!m_opacity.empty()) {
+        std::vector<double> x = m_opacity;
+        const std::vector<double> was = featureOpacities(task.tf);
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (was[i] > 0) x[i] = std::max(x[i], std::min(was[i], kLeastStart));
+        task.tf = withShownOpacities(task.tf, x);
+        task.input.tf = shownTf(task.tf);
+    }
+    ++m_restarts;
+    begin(std::move(task));
 }
 
 void OptimizeController::cancel() { m_job.cancel(); }
@@ -100,6 +168,7 @@ void OptimizeController::cancel() { m_job.cancel(); }
 void OptimizeController::showMove(const Task& task, int move, const OptimizeState& state) {
     if (task.number != m_number || !isRunning()) return;
     m_move = move;
+    m_opacity = state.opacity;
     m_objective = state.objective;
     if (move == 0) m_firstObjective = m_run.before = state.objective;
     m_run.history.push_back(state);
@@ -120,34 +189,31 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     Run run = runOf(result, task.start());
     run.started = m_run.started;
     run.seconds = static_cast<double>(m_since.elapsed()) / 1000;
-    store.preview(tr("Optimize"), [&](Session& session) {
-        session.setTf(tf);
-        session.addRun(run);
-    });
+    // The start, where a run ends before its first move was shown.
+    if (!store.isPreviewing()) store.preview(tr("Optimize"), [](Session&) {});
+    store.record([&](Session& session) { session.addRun(run); }); // undo takes back what came of it
+    store.preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     store.commit();
     MeasureInput input = task.input;
     input.tf = shownTf(tf);
     m_bench.results().addVws(input, best.vws);
-    const QString figures = tr("F = %1, from %2, in %3")
-                                .arg(fixed4(best.objective), fixed4(result.history.front().objective),
-                                     counted(result.iterations(), tr("move"), tr("moves")));
-    // It is true of what it was computed from; where the eye has moved meanwhile, nothing is known of now.
-    if (!(present() == About{input, task.targets})) {
-        say(tr("The view or the targets have changed since it began; where it began: %1.").arg(figures));
-        return;
-    }
-    if (const std::string faint = faintText(result); !faint.empty()) // not without what makes it visible
-        return say(tr("%1: %2 (%3)")
-                       .arg(result.converged() ? tr("On target, but faint") : tr("Faint"),
-                            QString::fromStdString(faint), figures));
-    switch (result.reason) {
-    case StopReason::Converged:
-        return say(tr("On target: %1.").arg(figures));
-    case StopReason::NoProgress:
-        return say(tr("As near as it gets from this camera: %1.").arg(figures));
-    default:
-        return say(tr("Stopped at the most moves allowed: %1.").arg(figures));
-    }
+    // It is true of what it was computed from.
+    if (!(present() == About{input, task.targets}))
+        return say(tr("Something has changed since it began; nothing is known of what is there now."));
+    say(sayOf(result, m_restarts));
+    if (best.objective < task.options.tolerance) return;
+    m_question = Question{task, result};
+    m_question->task.input = input;
+    askWhy();
+}
+
+// The figures of what is shown come first: both need the same engine.
+void OptimizeController::askWhy() {
+    if (!m_question || isRunning() || !m_bench.results().measuresAreCurrent()) return;
+    Question question = std::move(*m_question);
+    m_question.reset();
+    if (!(present() == m_about)) return;
+    m_explaining.start(std::move(question), tr("the reason"));
 }
 
 } // namespace pellucid::gui

@@ -11,8 +11,13 @@ namespace pellucid::gui {
 
 class Workbench;
 
-/// While an optimization runs, its moves are previewed; it ends as one undo step, or without a trace. What it found is
-/// true of the camera and targets that it began with, and is said for as long as they are the present ones.
+/// What came of an optimization, in a sentence or some: nothing but what is true of the view that it was made for.
+/// `restarts`: how often it has begun anew because the view had turned.
+QString sayOf(const OptimizeResult& result, int restarts = 0);
+
+/// While an optimization runs, its moves are previewed; it ends as one undo step, or without a trace. Where the view
+/// turns meanwhile it begins anew, from the opacities that it has come to. What it found is true of the camera and
+/// targets that it ended with, and is said for as long as they are the present ones.
 class OptimizeController : public QObject {
     Q_OBJECT
 public:
@@ -31,6 +36,10 @@ public:
     double firstObjective() const { return m_firstObjective; }
     /// Its record so far; null where none runs.
     const Run* underWay() const { return isRunning() ? &m_run : nullptr; }
+    int restarts() const { return m_restarts; } ///< because the view has turned
+
+    /// Whether the reason is being looked for why the latest run is not on target.
+    bool isExplaining() const { return m_question || m_explaining.isRunning(); }
 
     /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present
     /// state any more.
@@ -60,18 +69,30 @@ private:
     };
 
     About present() const;
+    void begin(Task task);
+    void restart(const View& view);
     void showMove(const Task& task, int move, const OptimizeState& state);
     void finish(const Task& task, const OptimizeResult& result);
+    /// What a run that is not on target is to be explained by.
+    struct Question {
+        Task task; ///< with the input that was found
+        OptimizeResult found;
+    };
+    void askWhy();
 
     Workbench& m_bench;
     QString m_message;
     About m_about;
-    int m_number = 0; ///< of the latest run: answers of others are dropped
-    int m_move = -1;
+    Task m_task;                   ///< the latest
+    std::vector<double> m_opacity; ///< of its latest move; empty before
+    int m_number = 0;              ///< of the latest run: answers of others are dropped
+    int m_move = -1, m_restarts = 0;
     double m_objective = 0, m_firstObjective = 0;
     Run m_run;
     QElapsedTimer m_since; // the run's start
+    std::optional<Question> m_question; // waits for the figures of the answer, which come first
     Job<Task, OptimizeResult> m_job;
+    Job<Question, Verdict> m_explaining;
 };
 
 } // namespace pellucid::gui

@@ -147,6 +147,7 @@ void RefineController::addActions() {
                      [this] {
                          m_bench.store().edit(tr("Live refinement"), {}, [](Session& session) {
                              session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
+                             if (session.refine->live) session.holdTargets = false; // both set opacities
                          });
                      },
                  .enabled = ready,
@@ -414,7 +415,7 @@ void RefineController::setGhostShown(bool shown) {
 // Live: after every edit that refinement may answer differently, as part of it.
 QString RefineController::follow(const Scene& before, const Scene& after, Session& session) {
     const RefineSettings& settings = *after.session.refine;
-    if (m_quiet || !settings.live || !isReady() || !after.histogram || before.data != after.data) return {};
+    if (m_quiet || !settings.live || after.session.holdTargets || !isReady() || !after.histogram || before.data != after.data) return {};
     // An optimization has found what it was asked for.
     if (!(before.session.runs == after.session.runs) || before.session.frame != after.session.frame) return {};
     const TransferFunction *was = before.session.tf(), *is = after.session.tf();

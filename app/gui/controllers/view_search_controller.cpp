@@ -15,20 +15,6 @@ namespace {
 
 constexpr int kWait = 500; ///< milliseconds that everything must rest before a map is made by itself
 
-Run runOf(const OptimizeResult& result, const TransferFunction& tf) {
-    Run run;
-    run.kind = "optimize";
-    run.ended = name(result.reason);
-    for (const Feature& f : tf.features) run.features.push_back(f.name);
-    run.targets = result.targets;
-    run.history = result.history;
-    run.best = result.best;
-    run.before = result.history.front().objective;
-    run.after = result.history[result.best].objective;
-    run.iterations = result.iterations();
-    return run;
-}
-
 } // namespace
 
 bool ViewSearchController::Question::operator==(const Question& other) const {
@@ -253,7 +239,7 @@ void ViewSearchController::optimize() {
     m_progress = 0;
     const Scene& scene = m_bench.scene();
     m_joint.start({*m_jointQuestion, measureInput(scene), scene.tf, limitsOf(scene.tf, *scene.session.goals),
-                   *scene.session.optimize},
+                   *scene.session.optimize, runStartOf(scene, *scene.session.optimize), QDateTime::currentDateTime()},
                   tr("the best view"));
     Q_EMIT changed();
 }
@@ -262,11 +248,16 @@ void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities&
     SessionStore& store = m_bench.store();
     const OptimizeState &start = found.result.history.front(), &best = found.result.history[found.result.best];
     const TransferFunction tf = withShownOpacities(task.tf, best.opacity);
+    RunStart began = task.start;
+    began.camera = found.input.view.camera;
+    Run run = runOf(found.result, std::move(began));
+    run.started = task.started.toString(Qt::ISODate).toStdString();
+    run.seconds = static_cast<double>(task.started.msecsTo(QDateTime::currentDateTime())) / 1000;
     m_jointQuestion.reset();
     setGlimpse({});
     store.edit(tr("Optimize view and opacities"), {}, [&](Session& session) {
         session.setTf(tf);
-        session.addRun(runOf(found.result, tf));
+        session.addRun(run);
     });
     store.setCamera(found.input.view.camera);
     MeasureInput input = found.input;

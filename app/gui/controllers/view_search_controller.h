@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include <QDateTime>
 #include <QObject>
 #include <QTimer>
 
@@ -75,6 +76,8 @@ private:
         TransferFunction tf; ///< with what is hidden of it
         std::vector<OpacityLimits> limits;
         OptimizeOptions options;
+        RunStart start; ///< for the record
+        QDateTime started;
     };
     struct Judgement {
         MeasureInput input;

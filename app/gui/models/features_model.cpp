@@ -48,10 +48,23 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
     const Measures* const measures = m_results.measures();
     const bool measured = measures && f < measures->features.size();
 
+    if (role == LockRole) {
+        const OpacityLimits limits = opacityLimits(m_store, index.row());
+        return static_cast<int>(limits.locked                             ? Lock::Locked
+                                : limits.lowest > 0 || limits.highest < 1 ? Lock::Limited
+                                                                          : Lock::None);
+    }
     if (role == Qt::TextAlignmentRole && index.column() > Range) return QVariant(Qt::AlignRight | Qt::AlignVCenter);
     if (role == Qt::ForegroundRole && !isDrawn(index.row())) return theme::kFaint;
     if (role == Qt::DecorationRole && index.column() == Name) return colorFromRgb(feature.color);
-    if (role == Qt::ToolTipRole) return headerData(index.column(), Qt::Horizontal, Qt::ToolTipRole);
+    if (role == Qt::ToolTipRole) {
+        const QString text = headerData(index.column(), Qt::Horizontal, Qt::ToolTipRole).toString();
+        const OpacityLimits limits = opacityLimits(m_store, index.row());
+        if (limits.locked) return text + tr("\nLocked: Optimize leaves its opacity as it is");
+        if (limits.lowest > 0 || limits.highest < 1)
+            return text + tr("\nOptimize keeps its opacity between %1 and %2").arg(limits.lowest).arg(limits.highest);
+        return text;
+    }
     if (role != Qt::DisplayRole && role != Qt::EditRole) return {};
 
     double number = 0;

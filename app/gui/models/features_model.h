@@ -16,6 +16,8 @@ class FeaturesModel : public QAbstractTableModel {
     Q_OBJECT
 public:
     enum Column { Eye, Name, Range, Opacity, Visibility, Vws, Target, ColumnCount };
+    enum class Lock { None, Limited, Locked };    ///< what an optimization may do to the opacity
+    static constexpr int LockRole = Qt::UserRole; ///< a Lock, of any column
 
     FeaturesModel(SessionStore& store, Results& results, QObject* parent = nullptr);
 

@@ -5,7 +5,7 @@
 
 #include <QColorDialog>
 #include <QComboBox>
-#include <QDoubleSpinBox>
+#include <QDockWidget>
 #include <QGridLayout>
 #include <QHeaderView>
 #include <QItemSelectionModel>
@@ -25,11 +25,11 @@
 
 #include "controllers/feature_actions.h"
 #include "controllers/optimize_controller.h"
+#include "controllers/target_actions.h"
 #include "density_slider.h"
-#include "number_box.h"
+#include "lock_mark.h"
 #include "opacity_editor.h"
 #include "panel.h"
-#include "panels/profile_settings.h"
 #include "theme.h"
 #include "workbench.h"
 
@@ -37,8 +37,9 @@ namespace pellucid::gui {
 namespace {
 
 constexpr int kRowHeight = 26;
-constexpr int kSwatch = 26; // width of the colour in the name's cell
-constexpr int kEye = 30;    // width of the eyes' column
+constexpr int kSwatch = 26;  // width of the colour in the name's cell
+constexpr int kEye = 30;     // width of the eyes' column
+constexpr int kPadlock = 16; // width in the name's cell
 
 constexpr const char* kNoIndicator = "QToolButton::menu-indicator { image: none; }"; // the text has an arrow
 
@@ -78,10 +79,24 @@ private:
     const FeaturesModel& m_model;
 };
 
-/// The swatch of a feature with an outline: white ones are seen on white, too.
+/// The swatch of a feature with an outline: white ones are seen on white, too. A padlock where the opacity is locked,
+/// an open one where it has limits.
 class NameDelegate : public QStyledItemDelegate {
 public:
     using QStyledItemDelegate::QStyledItemDelegate;
+
+    void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override {
+        const auto lock = static_cast<FeaturesModel::Lock>(index.data(FeaturesModel::LockRole).toInt());
+        QStyleOptionViewItem narrower = option;
+        if (lock != FeaturesModel::Lock::None) narrower.rect.adjust(0, 0, -kPadlock, 0);
+        QStyledItemDelegate::paint(painter, narrower, index);
+        if (lock != FeaturesModel::Lock::None && option.state.testFlag(QStyle::State_Selected))
+            painter->fillRect(option.rect.adjusted(option.rect.width() - kPadlock, 0, 0, 0),
+                              option.palette.highlight());
+        if (lock != FeaturesModel::Lock::None)
+            paintLock(*painter, QPointF(option.rect.right() - kPadlock / 2.0, option.rect.center().y()),
+                      lock == FeaturesModel::Lock::Locked, theme::kText);
+    }
 
 protected:
     void initStyleOption(QStyleOptionViewItem* option, const QModelIndex& index) const override {
@@ -140,7 +155,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_model(new FeaturesModel(bench.store(), bench.results(), this)),
       m_table(new QTableView(this)), m_bars(new TargetBars(bench.store(), bench.results())),
       m_density(new DensitySlider(bench, this)), m_add(new QToolButton(this)), m_colors(new QToolButton(this)),
-      m_method(new QComboBox(this)), m_tolerance(new QDoubleSpinBox(this)),
+      m_targets(new QToolButton(this)), m_method(new QComboBox(this)),
       m_refine(button(tr("&Refine"), "refineButton",
                       tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this)),
       m_optimize(button(tr("&Optimize"), "optimizeButton",
@@ -203,16 +218,10 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     m_method->addItem(tr("Parallel line search"), static_cast<int>(SearchMethod::Parallel));
     m_method->addItem(tr("Line search"), static_cast<int>(SearchMethod::Line));
     m_method->addItem(tr("Fixed steps"), static_cast<int>(SearchMethod::Fixed));
-    m_method->setToolTip(tr("How moves are found: by exact derivatives, first on coarser volumes; or along the\n"
-                            "differences to the targets, by the best of eight lengths tried at once, one length\n"
-                            "found by doubling or halving, or always the same"));
-    m_tolerance->setObjectName("toleranceSpin");
-    m_tolerance->setRange(0.0001, 1.0);
-    m_tolerance->setKeyboardTracking(false);
-    m_tolerance->setDecimals(4);
-    m_tolerance->setSingleStep(0.01);
-    m_tolerance->setValue(0.03);
-    m_tolerance->setToolTip(tr("Optimize stops when the distance F of VWS from the targets is below this"));
+    m_method->setToolTip(
+        tr("Newton: exact derivatives, few moves, and starts all over where it is stuck.\n"
+           "The others are the thesis's: how far each move goes is the best of eight lengths tried at\n"
+           "once, one length found by doubling or halving, or always the same"));
     m_progress->setObjectName("optimizeProgress");
     m_progress->setRange(0, 1000);
     m_progress->setTextVisible(true);
@@ -231,12 +240,19 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     choices->setVerticalSpacing(6);
     auto* methodLabel = new QLabel(tr("&Method"), this);
     methodLabel->setBuddy(m_method);
-    auto* toleranceLabel = new QLabel(tr("&Tolerance"), this);
-    toleranceLabel->setBuddy(m_tolerance);
     choices->addWidget(methodLabel, 0, 0);
     choices->addWidget(m_method, 0, 1);
-    choices->addWidget(toleranceLabel, 0, 2);
-    choices->addWidget(m_tolerance, 0, 3);
+    auto* settings = new QToolButton(this);
+    settings->setObjectName("settingsButton");
+    settings->setText(tr("Settings…"));
+    settings->setToolTip(tr("Steps, tolerance and limit of optimizations; how saliency is measured"));
+    connect(settings, &QToolButton::clicked, this, [this] {
+        auto* dock = m_bench.window()->findChild<QDockWidget*>("settingsDock");
+        if (dock == nullptr) return;
+        dock->show();
+        dock->raise();
+    });
+    choices->addWidget(settings, 0, 2);
     choices->setColumnStretch(1, 1);
     auto* buttons = new QGridLayout;
     buttons->setContentsMargins(10, 0, 10, 0);
@@ -259,11 +275,11 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     column->setSpacing(8);
     column->addWidget(m_table);
     column->addWidget(makeShapeRow());
+    column->addWidget(makeTargetRow());
     column->addWidget(scroll, 1);
     column->addWidget(makeColorRow());
     column->addLayout(status);
     column->addLayout(choices);
-    column->addWidget(new ProfileSettings(m_bench, this));
     column->addLayout(buttons);
 
     const auto triggers = [this](QPushButton* b, const char* action) {
@@ -276,7 +292,6 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     OptimizeController& optimizing = m_bench.optimizing();
     connect(m_cancel, &QPushButton::clicked, &optimizing, &OptimizeController::cancel);
     connect(m_method, &QComboBox::activated, this, &FeaturesPanel::editOptions);
-    connect(m_tolerance, &QDoubleSpinBox::valueChanged, this, &FeaturesPanel::editOptions);
     connect(&optimizing, &OptimizeController::runningChanged, this, &FeaturesPanel::followRun);
     connect(&optimizing, &OptimizeController::moved, this, &FeaturesPanel::followRun);
     connect(&optimizing, &OptimizeController::messageChanged, this, &FeaturesPanel::showMessage);
@@ -313,6 +328,30 @@ QWidget* FeaturesPanel::makeShapeRow() {
         b->setObjectName(QString::fromLatin1(id) + "Button");
         row->addWidget(b);
     }
+    row->addStretch(1);
+    return widget;
+}
+
+QWidget* FeaturesPanel::makeTargetRow() {
+    auto* widget = new QWidget(this);
+    auto* row = new QHBoxLayout(widget);
+    row->setContentsMargins(10, 0, 10, 0);
+    row->setSpacing(4);
+    m_targets->setObjectName("targetsButton");
+    m_targets->setText(tr("Targets ▾"));
+    m_targets->setStyleSheet(kNoIndicator);
+    m_targets->setToolTip(tr("All targets at once: equal, by value, as now, for one feature, turned round; and locks"));
+    m_targets->setPopupMode(QToolButton::InstantPopup);
+    auto* menu = new QMenu(m_targets);
+    fillTargetMenu(*menu, m_bench);
+    m_targets->setMenu(menu);
+    row->addWidget(m_targets);
+    QAction* const live = m_bench.actions().find("liveTargetsAction");
+    live->setIconText(tr("Live")); // what buttons say
+    auto* b = new QToolButton(widget);
+    b->setDefaultAction(live);
+    b->setObjectName("liveTargetsButton");
+    row->addWidget(b);
     row->addStretch(1);
     return widget;
 }
@@ -391,12 +430,8 @@ void FeaturesPanel::followSelection() {
 
 void FeaturesPanel::editOptions() {
     const auto method = static_cast<SearchMethod>(m_method->currentData().toInt());
-    const double tolerance = m_tolerance->value();
     m_bench.store().edit(tr("Optimization settings"), "optimize-settings", [&](Session& session) {
-        session.optimize.edit([&](OptimizeOptions& options) {
-            options.method = method;
-            options.tolerance = tolerance;
-        });
+        session.optimize.edit([&](OptimizeOptions& options) { options.method = method; });
     });
 }
 
@@ -433,7 +468,7 @@ void FeaturesPanel::followRun() {
     m_cancel->setVisible(on);
     m_progress->setVisible(on);
     m_distance->setVisible(!on);
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_table, m_density, m_colors, m_add, m_method, m_tolerance})
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_table, m_density, m_colors, m_add, m_targets, m_method})
         widget->setEnabled(!on);
     follow();
 }
@@ -447,9 +482,8 @@ void FeaturesPanel::showMessage() {
 void FeaturesPanel::follow() {
     const SessionStore& store = m_bench.store();
     const OptimizeOptions& options = *store.session().optimize;
-    const QSignalBlocker blockMethod(m_method), blockTolerance(m_tolerance);
+    const QSignalBlocker blockMethod(m_method);
     m_method->setCurrentIndex(m_method->findData(static_cast<int>(options.method)));
-    showNumber(*m_tolerance, options.tolerance);
 
     const bool ready = store.hasVolume() && !m_bench.isReadOnly();
     const bool features = !store.scene().tf.features.empty();
@@ -457,7 +491,8 @@ void FeaturesPanel::follow() {
     m_optimize->setEnabled(ready && features);
     m_undo->setEnabled(ready && store.canUndo());
     m_redo->setEnabled(ready && store.canRedo());
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_density, m_colors, m_add}) widget->setEnabled(ready);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_density, m_colors, m_add, m_targets})
+        widget->setEnabled(ready);
     followSelection();
 
     const Results& results = m_bench.results();
@@ -485,7 +520,10 @@ PanelInfo featuresPanel() {
                     {{place, QObject::tr("Click on an eye"), QObject::tr("show or hide the feature")},
                      {place, QObject::tr("Alt or Ctrl+click on an eye"), QObject::tr("draw only this feature, or all")},
                      {place, QObject::tr("Click on a colour"), QObject::tr("change it")},
-                     {place, QObject::tr("Double-click on a name, F2"), QObject::tr("rename the feature")}});
+                     {place, QObject::tr("Double-click on a name, F2"), QObject::tr("rename the feature")},
+                     {place, QObject::tr("Double-click on a target, Enter, a digit"), QObject::tr("type the target")},
+                     {place, QObject::tr("Click on a target's padlock, L"),
+                      QObject::tr("hold the target where others are set")}});
                 auto* panel = new FeaturesPanel(bench, parent);
                 panel->setMinimumWidth(340);
                 return panel;

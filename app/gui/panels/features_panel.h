@@ -7,7 +7,6 @@
 #include "target_bars.h"
 
 class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QMouseEvent;
 class QProgressBar;
@@ -30,6 +29,7 @@ protected:
 
 private:
     QWidget* makeShapeRow();
+    QWidget* makeTargetRow();
     QWidget* makeColorRow();
     bool pressTable(const QMouseEvent& mouse);
     void select(int row);
@@ -45,9 +45,8 @@ private:
     QTableView* m_table;
     TargetBars* m_bars;
     DensitySlider* m_density;
-    QToolButton *m_add, *m_colors;
+    QToolButton *m_add, *m_colors, *m_targets;
     QComboBox* m_method;
-    QDoubleSpinBox* m_tolerance;
     QPushButton *m_refine, *m_optimize, *m_cancel, *m_undo, *m_redo;
     QProgressBar* m_progress;
     QLabel *m_distance, *m_message;

@@ -20,17 +20,49 @@ inline void editTargets(SessionStore& store, const std::vector<double>& targets,
         session.goals.set(withTargets(*session.goals, tf, targets));
     });
 }
-/// One share; the others divide the rest.
+/// One share; the others divide the rest, but for locked ones.
+inline std::vector<double> targetsWith(const Scene& scene, int feature, double value) {
+    return withTarget(scene.targets(), static_cast<std::size_t>(feature), value,
+                      heldTargets(scene.tf, *scene.session.goals));
+}
 inline void previewTarget(SessionStore& store, int feature, double value, const QString& text) {
     const Scene& from = store.committed();
-    const std::vector<double> targets = withTarget(from.targets(), static_cast<std::size_t>(feature), value);
+    const std::vector<double> targets = targetsWith(from, feature, value);
     store.preview(text,
                   [&, tf = from.tf](Session& session) { session.goals.set(withTargets(*session.goals, tf, targets)); });
 }
 inline void editTarget(SessionStore& store, int feature, double value, const QString& text,
                        const QString& mergeKey = {}) {
     store.commit();
-    editTargets(store, withTarget(store.scene().targets(), static_cast<std::size_t>(feature), value), text, mergeKey);
+    editTargets(store, targetsWith(store.scene(), feature, value), text, mergeKey);
+}
+/// Whether a feature's target stays where others are set.
+inline void setTargetLocked(SessionStore& store, int feature, bool locked) {
+    store.commit();
+    store.edit(locked ? QObject::tr("Lock target") : QObject::tr("Unlock target"), {},
+               [&, tf = store.scene().tf](Session& session) {
+                   session.goals.set(withTargetLocked(*session.goals, tf, static_cast<std::size_t>(feature), locked));
+               });
+}
+/// What an optimization may do to a feature's opacity.
+inline void editOpacityLimits(SessionStore& store, int feature, const OpacityLimits& limits, const QString& text) {
+    store.commit();
+    const FeatureId id = store.scene().tf.features.at(static_cast<std::size_t>(feature)).id;
+    store.edit(text, {}, [&](Session& session) {
+        session.goals.edit([&](FeatureGoals& goals) {
+            FeatureGoal& goal = goals[id];
+            goal.locked = limits.locked;
+            goal.lowest = limits.lowest;
+            goal.highest = limits.highest;
+        });
+    });
+}
+/// The same without what hides it.
+inline OpacityLimits opacityLimits(const SessionStore& store, int feature) {
+    const FeatureGoals& goals = *store.session().goals;
+    const auto goal = goals.find(store.scene().tf.features.at(static_cast<std::size_t>(feature)).id);
+    if (goal == goals.end()) return {};
+    return {goal->second.lowest, goal->second.highest, goal->second.locked};
 }
 
 } // namespace pellucid::gui

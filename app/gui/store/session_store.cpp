@@ -127,9 +127,18 @@ void SessionStore::preview(const QString& text, const Change& change) {
     if (first) m_committed = m_scene;
     m_previewText = text;
     const Scene from = withPresentGaze(*m_committed); // the view may turn meanwhile
-    Scene next = changedBy(change, from, from, m_previewText);
+    if (first) m_amendment = {};
+    const Change both = [&](Session& session) {
+        change(session);
+        if (m_amendment) m_amendment(session);
+    };
+    Scene next = changedBy(both, from, from, m_previewText);
     if (!(next.session == m_scene.session)) show(std::move(next));
     if (first) Q_EMIT historyChanged();
+}
+
+void SessionStore::record(const Change& change) {
+    if (m_committed) change(m_committed->session);
 }
 
 void SessionStore::commit(const QString& mergeKey) {
@@ -146,6 +155,24 @@ void SessionStore::cancel() {
     m_committed.reset();
     show(std::move(before));
     Q_EMIT historyChanged();
+}
+
+void SessionStore::amend(const Change& change) {
+    if (!hasVolume()) return;
+    Session session = m_scene.session;
+    change(session);
+    PELLUCID_CHECK(!needsData(session, m_scene));
+    if (session == m_scene.session) return;
+    if (isPreviewing()) m_amendment = change;
+    const bool clean = isClean();
+    const bool isLatest = !isPreviewing() && m_index > 0 && m_index == m_steps.size();
+    show(resolve(std::move(session), m_scene));
+    if (isPreviewing()) return;
+    if (isLatest) {
+        m_steps.back().after = m_scene;
+        m_steps.back().after.codes.reset();
+    }
+    if (clean) setClean();
 }
 
 QString SessionStore::undoText() const {
@@ -243,7 +270,7 @@ void SessionStore::setTfSaved() {
     for (const auto& [id, goal] : *m_clean->goals) {
         const auto now = other.goals->find(id);
         if (now == other.goals->end() || now->second.target != goal.target || now->second.locked != goal.locked ||
-            now->second.lowest != goal.lowest || now->second.highest != goal.highest)
+            now->second.lowest != goal.lowest || now->second.highest != goal.highest || now->second.targetLocked != goal.targetLocked)
             return;
     }
     other.goals = m_clean->goals; // those of new features came with them

@@ -45,8 +45,16 @@ public:
     bool isPreviewing() const { return m_committed.has_value(); }
     /// The scene without the preview.
     const Scene& committed() const { return m_committed ? *m_committed : m_scene; }
+    /// Changes the state before the preview, and so what every preview of it shows: undo leaves it as it is. For
+    /// records of what was done, of which nothing that is drawn or computed depends.
+    void record(const Change& change);
     void commit(const QString& mergeKey = {});
     void cancel();
+
+    /// What follows of the present state by itself, but later than at once: shown, and part of the preview or else of
+    /// the step that led here; it is no step of its own, and what was clean stays it. A preview that goes on makes it
+    /// again: it keeps no references.
+    void amend(const Change& change);
 
     /// Asked at every edit and preview before anybody hears of it: both are one change and one step, named by both.
     void setConsequence(Consequence consequence) { m_consequence = std::move(consequence); }
@@ -97,6 +105,7 @@ private:
     Scene m_scene;
     std::optional<Scene> m_committed; // while previewing
     QString m_previewText;
+    Change m_amendment; // of the preview; empty: none
     Consequence m_consequence;
     std::vector<Step> m_steps;
     std::size_t m_index = 0;        // steps that are done

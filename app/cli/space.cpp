@@ -1,0 +1,330 @@
+// `space`: VWS and the distance from the targets over the opacities of two or three features, as figures and a picture.
+#include <algorithm>
+
+#include "base/atomic_file.h"
+#include "commands.h"
+#include "image_io/image_file.h"
+#include "optimize/space_picture.h"
+#include "output_files.h"
+#include "parse.h"
+#include "prepare.h"
+#include "render/memory_needs.h"
+#include "resolve.h"
+#include "session/space_inputs.h"
+#include "tf/shown_tf.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    std::optional<std::vector<double>> targets;
+    std::optional<std::vector<std::string>> features;
+    ParameterAxes axes;
+    std::optional<int> reduce; ///< empty: automatic
+    std::string show = "F";
+    std::vector<SearchMethod> methods;
+    bool runs = false; ///< draw those of the session
+    std::optional<std::string> out, save, csv;
+    ImageSize size;
+    ViewAngles view{kSpaceAzimuth, kSpaceElevation, 1};
+    Rgb background{0, 0, 0};
+};
+
+std::vector<std::string> namesOf(const TransferFunction& tf) {
+    std::vector<std::string> names;
+    for (const Feature& f : tf.features) names.push_back(f.name);
+    return names;
+}
+
+std::size_t featureNamed(const TransferFunction& tf, const std::string& wanted, const std::string& option) {
+    std::string known;
+    for (std::size_t f = 0; f < tf.features.size(); ++f) {
+        if (tf.features[f].name == wanted) return f;
+        known += (known.empty() ? "'" : ", '") + tf.features[f].name + "'";
+    }
+    throw UsageError("no feature is named '" + wanted + "'", option, "known: " + known);
+}
+
+ViewAngles parseSpaceView(const std::string& text, const std::string& option) {
+    const auto v = parseReals(text, option);
+    const std::string form = "give AZIMUTH,ELEVATION[,ZOOM]: degrees, elevation from -90 to 90, zoom from 0.1 to 10";
+    if (v.size() < 2 || v.size() > 3 || std::abs(v[1]) > 90 || (v.size() == 3 && !(v[2] >= 0.1 && v[2] <= 10)))
+        throw UsageError("'" + text + "' is not a view", option, form);
+    return {v[0], v[1], v.size() == 3 ? v[2] : 1.0};
+}
+
+/// The methods whose ways are drawn, and "runs".
+void parsePaths(const std::string& text, const std::string& option, Options& o) {
+    o.methods.clear();
+    o.runs = false;
+    for (const std::string& word : split(text, ',')) {
+        if (word == "runs")
+            o.runs = true;
+        else
+            o.methods.push_back(atOption(option, [&] { return searchMethodFromName(word); }));
+    }
+}
+
+/// What can be told before the volume is read.
+void check(const Options& o) {
+    const auto inputs = inputFiles(o.scene);
+    if (o.out) {
+        requireFileName(*o.out, "--out");
+        checkImageSuffix(*o.out);
+        checkOutputFile(*o.out, "--out", inputs);
+    }
+    if (o.save) checkOutputFile(*o.save, "--save", inputs);
+    if (o.csv) checkOutputFile(*o.csv, "--csv", inputs);
+    if (!o.targets && !o.scene.session.file)
+        throw UsageError("--target is required", "pellucid-cli space", "see pellucid-cli space --help");
+    if (o.runs && !o.scene.session.file)
+        throw UsageError("without a session there are no runs", "--paths", "name methods, or give --session FILE");
+}
+
+ParameterAxes axesOf(const Options& o, const TransferFunction& tf, const std::vector<double>& targets) {
+    ParameterAxes axes = o.axes;
+    if (!o.features) {
+        axes.features = atOption("--tf", [&] { return defaultAxes(tf, targets); });
+        return axes;
+    }
+    for (const std::string& one : *o.features) {
+        const std::size_t f = featureNamed(tf, one, "--features");
+        if (tf.features[f].hidden)
+            throw UsageError("the feature '" + one + "' is hidden", "--features", "choose others");
+        axes.features.push_back(f);
+    }
+    atOption("--features", [&] { axes.validate(tf.features.size()); });
+    return axes;
+}
+
+/// All searches begin at the opacities of the transfer function, and see the same volume as the samples.
+std::vector<SpacePath> searchPaths(const Options& o, Workspace& workspace, const MeasureInput& input,
+                                   const Scene& scene, const ParameterSpace& space, Progress& progress, Json& json) {
+    std::vector<SpacePath> paths;
+    if (o.runs) paths = pathsOfRuns(*scene.session.runs, scene.tf, space.axes);
+    json = Json::array();
+    for (const SearchMethod method : o.methods) {
+        OptimizeOptions options = *scene.session.optimize;
+        options.method = method;
+        JobControl job = progress.phase("optimizing");
+        job.progress = nullptr; // how many moves it takes nobody knows
+        const OptimizeResult r =
+            workspace.optimize(input, space.targets, limitsOf(scene.tf, *scene.session.goals), options, job);
+        if (r.reason == StopReason::Cancelled) throw Cancelled{};
+        paths.push_back({name(method), pathColor(paths.size()), r.history, r.best});
+        Json one{{"method", name(method)},
+                 {"converged", r.converged()},
+                 {"iterations", r.iterations()},
+                 {"evaluations", r.evaluations},
+                 {"best", r.best},
+                 {"objective", Json::array()},
+                 {"opacity", Json::array()}};
+        for (const OptimizeState& state : r.history) {
+            one["objective"].push_back(state.objective);
+            one["opacity"].push_back(state.opacity);
+        }
+        json.push_back(std::move(one));
+    }
+    return paths;
+}
+
+std::vector<double> vwsAt(const ParameterSpace& space, std::size_t sample) {
+    std::vector<double> w;
+    for (const auto& one : space.vws) w.push_back(one[sample]);
+    return w;
+}
+
+std::string textOf(const ParameterSpace& space, const std::vector<std::string>& names, int factor,
+                   const std::vector<SpacePath>& paths, const std::vector<std::string>& files, double seconds) {
+    Table table({"feature", "axis", "target", "opacity at least F", "VWS there"});
+    const auto x = space.opacitiesAt(space.positionOfSample(space.best));
+    const auto w = vwsAt(space, space.best);
+    for (std::size_t f = 0; f < names.size(); ++f) {
+        const auto axis = std::find(space.axes.features.begin(), space.axes.features.end(), f);
+        table.add({names[f],
+                   axis == space.axes.features.end()
+                       ? "-"
+                       : std::string(1, "xyz"[static_cast<std::size_t>(axis - space.axes.features.begin())]),
+                   fixedText(space.targets[f], 4), plainText(x[f]), fixedText(w[f], 4)});
+    }
+    const ValueRange range = space.range(kObjective);
+    std::string text = table.text() + "F from " + plainText(range.lo) + " to " + plainText(range.hi) + " over " +
+                       std::to_string(space.evaluations) + " evaluations, " + secondsText(seconds) +
+                       (factor > 1 ? ", of the volume made coarser by " + std::to_string(factor) : "") + "\n";
+    for (const SpacePath& path : paths)
+        text += path.name + ": " + std::to_string(path.states.size() - 1) + " moves, F " +
+                plainText(path.states[path.best].objective) + "\n";
+    for (const std::string& file : files) text += "wrote " + file + "\n";
+    return text;
+}
+
+Json jsonOf(const ParameterSpace& space, const std::vector<std::string>& names) {
+    Json axes = Json::array(), others = Json::object();
+    for (const std::size_t f : space.axes.features) {
+        Json opacities = Json::array();
+        for (int i = 0; i < space.axes.samples; ++i)
+            opacities.push_back(space.axes.opacityAt(space.axes.positionOfSample(i)));
+        axes.push_back({{"feature", names[f]}, {"scale", name(space.axes.scale)}, {"opacity", opacities}});
+    }
+    for (std::size_t f = 0; f < names.size(); ++f)
+        if (std::find(space.axes.features.begin(), space.axes.features.end(), f) == space.axes.features.end())
+            others[names[f]] = space.base[f];
+    return {{"axes", axes},
+            {"others", others},
+            {"target", space.targets},
+            {"minimum",
+             {{"opacity", space.opacitiesAt(space.positionOfSample(space.best))},
+              {"objective", space.objective[space.best]},
+              {"vws", vwsAt(space, space.best)}}},
+            {"objective_range", jsonFromRange(space.range(kObjective))},
+            {"evaluations", space.evaluations}};
+}
+
+Answer run(const Options& o, Progress& progress) {
+    const Stopwatch total;
+    check(o);
+    const Opened opened = resolve(o.scene, progress, {toMeasure("sampling"), true});
+    const Scene& scene = opened.scene;
+    const std::vector<double> named = o.targets.value_or(scene.targets());
+    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
+    const std::vector<double> targets = shownShares(scene.tf, named);
+    const ParameterAxes axes = axesOf(o, scene.tf, targets);
+    const std::vector<std::string> names = namesOf(scene.tf);
+    SpaceView view;
+    view.shown = o.show == "F" ? kObjective : static_cast<int>(featureNamed(scene.tf, o.show, "--show"));
+
+    MeasureInput input = measureInput(scene);
+    const bool published = input.settings.profile == Profile::Published; // knows planes of voxels, and no lengths
+    if (published && o.reduce.value_or(1) > 1)
+        throw UsageError("the published profile has no coarser copies", "--reduce", "leave it out");
+    const int factor = o.reduce.value_or(published ? 1 : reductionFor(input.volume->size(), axes));
+    const Json volume = jsonFromVolume(*input.volume);
+    input = coarserInput(input, factor);
+    Workspace workspace;
+    const std::string engine = prepare(workspace, input, progress).engine;
+    const Stopwatch sampling;
+    const EngineVws function(workspace.engine(input), input.view, input.tf, workspace.weights(input),
+                             input.settings.vws);
+    const ParameterSpace space = sampleParameterSpace(function, targets, axes, progress.phase("sampling"));
+    const double seconds = sampling.seconds();
+    Json pathsJson;
+    view.paths = searchPaths(o, workspace, input, scene, space, progress, pathsJson);
+
+    view.names = names;
+    for (const Feature& f : scene.tf.features) view.colors.push_back(f.color);
+    view.tolerance = scene.session.optimize->tolerance;
+    view.width = o.size.width;
+    view.height = o.size.height;
+    view.background = o.background;
+    view.camera = spaceCamera(space, o.view.azimuth, o.view.elevation, o.view.zoom);
+    std::vector<std::string> files;
+    if (o.out) {
+        writeImage(spaceImage(space, view, progress.phase("rendering")), *o.out);
+        files.push_back(*o.out);
+    }
+    if (o.save) {
+        Grid<float> grid(space.dims());
+        const auto& values = space.values(view.shown);
+        for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = static_cast<float>(values[i]);
+        writeNrrd(space.geometry(), grid, *o.save);
+        files.push_back(*o.save);
+    }
+    if (o.csv) {
+        writeTextAtomically(*o.csv, csvOf(space, names));
+        files.push_back(*o.csv);
+    }
+
+    Json json{{"command", "space"}, {"engine", engine}, {"volume", volume}, {"coarser_by", factor}, {"show", o.show}};
+    json.update(jsonOf(space, names));
+    json["paths"] = std::move(pathsJson);
+    json["files"] = files;
+    json["seconds"] = {{"sampling", seconds}, {"total", total.seconds()}};
+    return {textOf(space, names, factor, view.paths, files, seconds), std::move(json), opened.notices(), {}};
+}
+
+} // namespace
+
+Command addSpace(CLI::App& program) {
+    CLI::App* app = program.add_subcommand(
+        "space", "Shows how VWS and distance from the targets depend on the opacities of two or three features");
+    const auto o = std::make_shared<Options>();
+    o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
+    o->scene.session.add(*app);
+    o->scene.tf.add(*app);
+    o->scene.camera.add(*app);
+    o->scene.clip.add(*app);
+    o->scene.engine.add(*app, "high: half the error, more time");
+    o->scene.saliency.add(*app);
+    o->scene.profile.add(*app);
+    addValue(
+        *app, "--target", "T1,T2,...",
+        [o](const std::string& text, const std::string& option) { o->targets = parseReals(text, option); },
+        "one number for each feature, from 0 on; scaled to sum 1; required unless a session has targets");
+    addValue(
+        *app, "--features", "A,B[,C]",
+        [o](const std::string& text, const std::string& option) {
+            o->features = split(text, ',');
+            if (o->features->size() != 2 && o->features->size() != 3)
+                throw UsageError("a parameter space has two features or three", option, "name so many");
+        },
+        "names of the features that get an axis; the others keep their opacities (default: the three of the largest "
+        "targets)");
+    addValue(
+        *app, "--samples", "N",
+        [o](const std::string& text, const std::string& option) {
+            o->axes.samples = static_cast<int>(parseInteger(text, option, 2, kMostAxisSamples));
+        },
+        "samples along each axis, 2 to 64 (default 11)");
+    addValue(
+        *app, "--scale", "linear|log[:LOWEST]",
+        [o](const std::string& text, const std::string& option) {
+            const auto parts = split(text, ':');
+            o->axes.scale = atOption(option, [&] { return axisScaleFromName(parts.front()); });
+            if (parts.size() > 2 || (parts.size() == 2 && o->axes.scale == AxisScale::Linear))
+                throw UsageError("'" + text + "' is no scale", option, "give linear, log or log:LOWEST");
+            if (parts.size() == 2) o->axes.lowest = parseReal(parts[1], option, 1e-6, 0.5);
+        },
+        "opacities from 0 to 1 in equal steps (default), or from LOWEST (default 0.001) to 1 in equal factors");
+    addValue(
+        *app, "--reduce", "auto|N",
+        [o](const std::string& text, const std::string& option) {
+            o->reduce.reset();
+            if (text != "auto") o->reduce = static_cast<int>(parseInteger(text, option, 1, 64));
+        },
+        "sample a copy of the volume that is coarser by N, of the same lengths; auto (default): 1 unless that takes "
+        "long");
+    addValue(
+        *app, "--show", "F|NAME", [o](const std::string& text, const std::string&) { o->show = text; },
+        "what picture and --save are of: the distance from the targets (default), or the VWS of a feature");
+    addValue(
+        *app, "--paths", "METHOD,...",
+        [o](const std::string& text, const std::string& option) { parsePaths(text, option, *o); },
+        "draw the ways of these methods from the present opacities: newton, parallel, line, fixed; and runs: those of "
+        "the session");
+    addValue(
+        *app, "--out", "FILE", [o](const std::string& text, const std::string&) { o->out = text; },
+        "the picture to write: of three features a volume with its axes, of two a heat map; .png, .tif, .exr or .jpg");
+    addValue(
+        *app, "--size", "WxH",
+        [o](const std::string& text, const std::string& option) { o->size = parseImageSize(text, option); },
+        "pixels (default 512x512)");
+    addValue(
+        *app, "--background", "COLOR",
+        [o](const std::string& text, const std::string& option) { o->background = parseColor(text, option); },
+        "components R,G,B from 0 to 1 or #rrggbb (default 0,0,0)");
+    addValue(
+        *app, "--space-view", "AZIMUTH,ELEVATION[,ZOOM]",
+        [o](const std::string& text, const std::string& option) { o->view = parseSpaceView(text, option); },
+        "from where the volume of three features is seen, degrees (default 35,25); --view is that of the figures");
+    addValue(
+        *app, "--save", "FILE", [o](const std::string& text, const std::string&) { o->save = text; },
+        "write the samples of what is shown (NRRD, float32; positions along the axes from 0 to 1)");
+    addValue(
+        *app, "--csv", "FILE", [o](const std::string& text, const std::string&) { o->csv = text; },
+        "write every sample: opacities, VWS of each feature, F");
+    return {app, [o](Progress& progress) { return run(*o, progress); }};
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,178 @@
+#include "controllers/live_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QScopedValueRollback>
+
+#include "controllers/optimize_controller.h"
+#include "tf/shown_tf.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kRest = 150;             // milliseconds without a change before the last moves are made
+constexpr double kLeastOpacity = 1e-5; // what is scaled to 0 has lost its shape
+
+bool sameFeatures(const TransferFunction& a, const TransferFunction& b) {
+    return std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(),
+                      [](const Feature& f, const Feature& g) { return f.id == g.id; });
+}
+
+} // namespace
+
+LiveController::LiveController(Workbench& bench)
+    : m_bench(bench),
+      m_job(
+          [&workspace = bench.workspace()](const Task& task, const JobControl& job) {
+              const JobControl quiet{job.stop, {}};
+              return task.settles ? settleTargets(workspace, task.held, quiet)
+                                  : followTargets(workspace, task.held, quiet);
+          },
+          [this](const Task& task, LiveUpdate& update) { finish(task, update); }, WhenBusy::StopOld, &bench.compute()) {
+    m_rest.setSingleShot(true);
+    m_rest.setInterval(kRest);
+    connect(&m_rest, &QTimer::timeout, this, [this] {
+        if (m_job.isRunning())
+            m_rest.start();
+        else
+            begin(true);
+    });
+    connect(&bench.store(), &SessionStore::changed, this, &LiveController::follow);
+    connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
+        m_settled = present().held; // not again and again
+        stop();
+        m_bench.optimizing().say(
+            tr("The targets are not held: %1 (%2).")
+                .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.whatToDo())));
+    });
+    connect(&m_job, &JobBase::busyChanged, this, &LiveController::busyChanged);
+}
+
+LiveController::~LiveController() = default;
+
+void LiveController::addActions() {
+    m_bench.actions().add(
+        {.id = "liveTargetsAction",
+         .menu = tr("&Transfer function"),
+         .text = tr("Hold targets &live"),
+         .keys = {QKeySequence("Ctrl+Shift+L")},
+         .tip = tr("Opacities follow while the view turns or a colour changes, so that VWS stays on the targets"),
+         .trigger =
+             [this] {
+                 const bool on = !isOn();
+                 m_bench.store().edit(on ? tr("Live targets") : tr("Live targets off"), {}, [on](Session& session) {
+                     session.holdTargets = on;
+                     if (on) session.refine.edit([](RefineSettings& r) { r.live = false; }); // both set opacities
+                 });
+             },
+         .enabled = [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); },
+         .checked = [this] { return isOn(); }});
+    connect(&m_bench.optimizing(), &OptimizeController::runningChanged, this, [this] {
+        if (m_bench.optimizing().isRunning())
+            stop();
+        else
+            follow(m_bench.scene(), m_bench.scene());
+    });
+}
+
+bool LiveController::isOn() const { return m_bench.store().session().holdTargets; }
+
+LiveController::Task LiveController::present() const {
+    const Scene& scene = m_bench.scene();
+    Task task{{measureInput(scene), scene.targets(), limitsOf(scene.tf, *scene.session.goals), *scene.session.optimize},
+              scene.tf,
+              false};
+    for (std::size_t i = 0; i < task.held.limits.size(); ++i)
+        if (m_pinned.contains(scene.tf.features[i].id)) task.held.limits[i].locked = true;
+    return task;
+}
+
+// The opacity that was set stays, unless all were: then somebody wants another density, and the shares come back.
+void LiveController::pinWhatWasSet(const Scene& before, const Scene& after) {
+    if (before.volume != after.volume || !sameFeatures(before.tf, after.tf)) return m_pinned.clear();
+    const Scene& from = m_bench.store().isPreviewing() ? m_bench.store().committed() : before;
+    if (!sameFeatures(from.tf, after.tf) || from.tf == after.tf) return m_pinned.clear();
+    const std::vector<double> was = featureOpacities(from.tf), is = featureOpacities(after.tf);
+    std::set<FeatureId> set;
+    for (std::size_t i = 0; i < is.size(); ++i) {
+        const FeatureId id = after.tf.features[i].id;
+        const auto wanted = m_wanted.find(id);
+        if (was[i] != is[i] && (wanted == m_wanted.end() || std::abs(wanted->second - is[i]) > 1e-9)) set.insert(id);
+    }
+    if (set.size() == is.size()) set.clear();
+    m_pinned = std::move(set);
+}
+
+void LiveController::follow(const Scene& before, const Scene& after) {
+    if (m_applying) return;
+    if (!isOn() || !m_bench.store().hasVolume() || after.tf.features.empty() || m_bench.optimizing().isRunning()) {
+        m_settled.reset();
+        m_pinned.clear();
+        return stop();
+    }
+    if (before.data != after.data) stop();
+    pinWhatWasSet(before, after);
+    if (m_settled && present().held == *m_settled) return;
+    m_bench.results().setPaused(true); // updates tell VWS, and need the engine
+    m_rest.start();
+    if (m_job.isRunning() && !m_settling)
+        m_dirty = true; // its answer is waited for: a hand that never rests would see none
+    else
+        begin(false);
+}
+
+void LiveController::begin(bool settles) {
+    m_dirty = false;
+    m_settling = settles;
+    Task task = present();
+    task.settles = settles;
+    const bool was = m_job.isRunning();
+    m_job.start(std::move(task), tr("the live targets"));
+    if (!was) Q_EMIT busyChanged();
+}
+
+void LiveController::stop() {
+    const bool was = isBusy();
+    m_dirty = false;
+    m_rest.stop();
+    m_job.cancel();
+    if (!was) return;
+    m_bench.results().setPaused(m_bench.optimizing().isRunning());
+    Q_EMIT busyChanged();
+}
+
+void LiveController::finish(const Task& task, const LiveUpdate& update) {
+    SessionStore& store = m_bench.store();
+    if (!isOn() || !sameFeatures(task.tf, m_bench.scene().tf) || task.held.input.volume != m_bench.scene().volume)
+        return stop();
+    {
+        const QScopedValueRollback applying(m_applying, true);
+        // Of the present state, which may be another one than it was found for; what the hand holds stays as it is.
+        m_wanted.clear();
+        for (std::size_t i = 0; i < update.opacity.size(); ++i) m_wanted[task.tf.features[i].id] = update.opacity[i];
+        store.amend([ids = task.tf.features, pinned = m_pinned, wanted = update.opacity](Session& session) {
+            if (session.tf() == nullptr || session.tf()->features.size() != ids.size()) return;
+            std::vector<double> x = featureOpacities(*session.tf());
+            for (std::size_t i = 0; i < x.size(); ++i)
+                if (!pinned.contains(ids[i].id)) x[i] = std::max(wanted[i], std::min(x[i], kLeastOpacity));
+            const TransferFunction tf = withShownOpacities(*session.tf(), x);
+            if (featureOpacities(tf) != featureOpacities(*session.tf())) session.setTf(tf);
+        });
+    }
+    HeldTargets now = task.held;
+    now.input.tf = shownTf(withShownOpacities(task.tf, update.opacity));
+    m_bench.results().addVws(now.input, update.vws);
+    Q_EMIT updated(update.objective);
+    if (m_dirty) return begin(false);
+    if (!task.settles) return; // the rest does the last moves
+    m_settled = present().held;
+    m_bench.results().setPaused(false);
+    if (update.objective >= task.held.options.tolerance)
+        m_bench.optimizing().say(
+            tr("Live: the targets cannot be held from this view; F = %1.").arg(update.objective, 0, 'f', 4));
+    Q_EMIT busyChanged();
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,62 @@
+// Live targets: opacities follow whatever else changes, so that the targets are held.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+
+#include <QObject>
+#include <QTimer>
+
+#include "jobs/job.h"
+#include "session/live_targets.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// While Session::holdTargets is set and anything changes that VWS or targets depend on, updates follow it, the latest
+/// state first, each a move or two; when all rests, one goes as far as it gets. What they do to the opacities belongs
+/// to the step before (SessionStore::amend()). An opacity that somebody sets stays, and the others follow.
+class LiveController : public QObject {
+    Q_OBJECT
+public:
+    explicit LiveController(Workbench& bench);
+    ~LiveController() override;
+
+    void addActions();
+
+    bool isOn() const;
+    /// The targets are not held yet, or nobody knows.
+    bool isBusy() const { return m_job.isRunning() || m_rest.isActive(); }
+
+Q_SIGNALS:
+    void busyChanged();
+    void updated(double objective); ///< F after an update
+
+private:
+    struct Task {
+        HeldTargets held;
+        TransferFunction tf; ///< with what is hidden of it
+        bool settles = false;
+    };
+
+    Task present() const;
+    void follow(const Scene& before, const Scene& after);
+    void begin(bool settles);
+    void stop();
+    void finish(const Task& task, const LiveUpdate& update);
+    void pinWhatWasSet(const Scene& before, const Scene& after);
+
+    Workbench& m_bench;
+    std::set<FeatureId> m_pinned;         ///< whose opacity was set by hand in the latest change
+    std::map<FeatureId, double> m_wanted; ///< opacities of the latest update
+    bool m_applying = false;              ///< what happens to the scene is an update
+    bool m_settling = false;              ///< the update under way is that at rest
+    bool m_dirty = false;                 ///< something has changed since the update under way began
+    std::optional<HeldTargets> m_settled;
+    QTimer m_rest;
+    Job<Task, LiveUpdate> m_job;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,389 @@
+#include "panels/space_panel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QComboBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QSettings>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "base/atomic_file.h"
+#include "image_io/image_file.h"
+#include "panel.h"
+#include "panels/space_canvas.h"
+#include "session/space_inputs.h"
+#include "store/edits.h"
+#include "tf/shown_tf.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kNone = -1;        ///< in place of a feature: no axis
+constexpr int kSavedSide = 1024; ///< of a saved picture, pixels
+
+/// Shapes and colours alone: all peaks at 1, and nothing has a name.
+TransferFunction shapesOf(const TransferFunction& tf) {
+    TransferFunction shapes = withFullPeaks(tf);
+    for (ControlPoint& p : shapes.points) p.opacity = std::round(p.opacity * 1e9) / 1e9; // scaling has rounded
+    for (Feature& f : shapes.features) {
+        f.name.clear();
+        f.color = {};
+    }
+    return shapes;
+}
+
+} // namespace
+
+PanelInfo spacePanel() {
+    return {.id = "space",
+            .title = QObject::tr("Parameter space"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = false,
+            .size = 0,
+            .keys = QKeySequence("Ctrl+Shift+P"),
+            .tip = QObject::tr("VWS and the distance from the targets over the opacities of two or three features"),
+            .make = [](Workbench& bench, QWidget* parent) {
+                bench.actions().addGestures(
+                    {{QObject::tr("Parameter space"), QObject::tr("drag, wheel"), QObject::tr("turn, zoom")},
+                     {QObject::tr("Parameter space"), QObject::tr("click"),
+                      QObject::tr("set the opacities of this place of a heat map, or of this state of a path")}});
+                return new SpacePanel(bench, parent);
+            }};
+}
+
+SpacePanel::SpacePanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_features{new QComboBox(this), new QComboBox(this), new QComboBox(this)},
+      m_samples(new QSpinBox(this)), m_scale(new QComboBox(this)), m_factor(new QComboBox(this)),
+      m_shown(new QComboBox(this)), m_compute(new QPushButton(tr("&Compute"), this)),
+      m_cancel(new QPushButton(tr("Cancel"), this)), m_least(new QPushButton(tr("&Go to the least F"), this)),
+      m_save(new QToolButton(this)), m_progress(new QProgressBar(this)), m_words(new QLabel(this)),
+      m_reading(new QLabel(this)), m_canvas(new SpaceCanvas(this)),
+      m_job(
+          [](const Task& task, const JobControl& job) {
+              Workspace workspace; // one of its own: figures and bars do not wait for it
+              const MeasureInput input = coarserInput(task.measured, task.factor);
+              const WeightFields& weights = workspace.weights(input, {job.stop, {}});
+              const EngineVws function(workspace.engine(input), input.view, input.tf, weights, input.settings.vws);
+              return sampleParameterSpace(function, task.targets, task.axes, job);
+          },
+          [this](const Task& task, ParameterSpace& space) {
+              m_space = std::make_shared<const ParameterSpace>(std::move(space));
+              m_targets = task.targets;
+              m_inputs = task.inputs;
+              m_computedFeatures = task.features;
+              m_usedFactor = task.factor;
+              refresh();
+          }),
+      m_saving(
+          [](const Saving& task, const JobControl& job) {
+              if (task.path.ends_with(".csv"))
+                  writeTextAtomically(task.path, csvOf(*task.space, task.view.names));
+              else
+                  writeImage(spaceImage(*task.space, task.view, job), task.path);
+              return true;
+          },
+          [this](const Saving& task, bool&) {
+              Q_EMIT m_bench.message(tr("Saved %1.").arg(QString::fromStdString(task.path)));
+          }) {
+    setObjectName("spacePanel");
+    const char* const axisNames[] = {"X", "Y", "Z"};
+    for (std::size_t a = 0; a < 3; ++a) {
+        m_features[a]->setObjectName(QStringLiteral("spaceAxis%1").arg(axisNames[a]));
+        m_features[a]->setToolTip(tr("The feature whose opacity, 0 to 1, is the %1 axis; the features without an axis "
+                                     "keep their opacities.\nWithout a third one: a heat map")
+                                      .arg(QString(axisNames[a]).toLower()));
+        connect(m_features[a], &QComboBox::activated, this, [this, a] { chooseAxes(a); });
+    }
+    m_samples->setObjectName("spaceSamples");
+    m_samples->setRange(2, kMostAxisSamples);
+    m_samples->setValue(ParameterAxes{}.samples);
+    m_samples->setToolTip(tr("Samples along each axis, its ends too; 11 are steps of 0.1"));
+    m_scale->setObjectName("spaceScale");
+    m_scale->addItems({tr("linear"), tr("logarithmic")});
+    m_scale->setToolTip(tr("Opacities along an axis: from 0 to 1 in equal steps, or from 0.001 to 1 in equal factors"));
+    m_factor->setObjectName("spaceFactor");
+    m_factor->addItem(tr("automatic"), 0);
+    m_factor->addItem(tr("full volume"), 1);
+    m_factor->addItem(tr("halved"), 2);
+    m_factor->addItem(tr("a quarter"), 4);
+    m_factor->setToolTip(tr("What is sampled: the volume, or a copy that is coarser along each axis.\n"
+                            "Automatic: coarser where the whole would take long"));
+    m_shown->setObjectName("spaceShown");
+    m_shown->setToolTip(tr("F: distance from the targets, 0 is on target; W: the share of saliency (VWS) of a feature, "
+                           "0 to 1"));
+    m_compute->setObjectName("spaceCompute");
+    m_compute->setToolTip(tr("Samples VWS and F, from this camera"));
+    m_cancel->setObjectName("spaceCancel");
+    m_least->setObjectName("spaceLeast");
+    m_least->setToolTip(tr("Sets the opacities of the sample with the least F"));
+    m_save->setObjectName("spaceSave");
+    m_save->setText(tr("Save…"));
+    m_save->setToolTip(tr("Saves the picture, or all samples as a table (.csv)"));
+    m_progress->setObjectName("spaceProgress");
+    m_progress->setRange(0, 1000);
+    m_progress->setTextVisible(false);
+    m_words->setObjectName("spaceWords");
+    m_words->setWordWrap(true);
+    m_reading->setObjectName("spaceReading");
+    m_reading->setWordWrap(true);
+    m_reading->setMinimumHeight(2 * fontMetrics().lineSpacing()); // so that nothing moves below the mouse
+    m_reading->setAlignment(Qt::AlignLeft | Qt::AlignTop);
+
+    auto* axes = new QHBoxLayout;
+    for (QComboBox* box : m_features) axes->addWidget(box, 1);
+    auto* settings = new QHBoxLayout;
+    settings->addWidget(m_samples);
+    settings->addWidget(m_scale, 1);
+    settings->addWidget(m_factor, 1);
+    auto* form = new QFormLayout;
+    form->addRow(tr("Axes"), axes);
+    form->addRow(tr("Samples"), settings);
+    form->addRow(tr("Show"), m_shown);
+    auto* buttons = new QHBoxLayout;
+    buttons->addWidget(m_compute);
+    buttons->addWidget(m_cancel);
+    buttons->addWidget(m_progress, 1);
+    buttons->addWidget(m_least);
+    buttons->addWidget(m_save);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(8, 8, 8, 8);
+    column->addLayout(form);
+    column->addLayout(buttons);
+    column->addWidget(m_words);
+    column->addWidget(m_canvas, 1);
+    column->addWidget(m_reading);
+
+    connect(m_compute, &QPushButton::clicked, this, &SpacePanel::compute);
+    connect(m_cancel, &QPushButton::clicked, this, &SpacePanel::cancel);
+    connect(m_least, &QPushButton::clicked, this, [this] {
+        if (isCurrent())
+            apply(m_space->opacitiesAt(m_space->positionOfSample(m_space->best)), tr("Least F of the grid"));
+    });
+    connect(m_save, &QToolButton::clicked, this, &SpacePanel::save);
+    connect(m_samples, &QSpinBox::valueChanged, this, &SpacePanel::refresh);
+    for (QComboBox* box : {m_scale, m_factor, m_shown})
+        connect(box, &QComboBox::currentIndexChanged, this, &SpacePanel::refresh);
+    connect(m_canvas, &SpaceCanvas::read, m_reading, &QLabel::setText);
+    connect(m_canvas, &SpaceCanvas::picked, this,
+            [this](const std::vector<double>& x) { apply(x, tr("Opacities from the parameter space")); });
+    connect(&m_job, &JobBase::progress, this,
+            [this](double fraction) { m_progress->setValue(static_cast<int>(1000 * fraction)); });
+    connect(&m_job, &JobBase::busyChanged, this, &SpacePanel::refresh);
+    connect(&m_job, &JobBase::failed, this,
+            [this](const Error& error) { m_bench.showError(tr("The parameter space cannot be computed"), error); });
+    connect(&m_saving, &JobBase::busyChanged, this, &SpacePanel::refresh);
+    connect(&m_saving, &JobBase::failed, this,
+            [this](const Error& error) { m_bench.showError(tr("The parameter space cannot be saved"), error); });
+    connect(&bench.store(), &SessionStore::changed, this, &SpacePanel::follow);
+    connect(&bench, &Workbench::readOnlyChanged, this, &SpacePanel::refresh);
+    fillFeatures();
+}
+
+void SpacePanel::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    refresh(); // while hidden it has followed nothing
+}
+
+ParameterAxes SpacePanel::axes() const {
+    ParameterAxes axes;
+    for (const QComboBox* box : m_features)
+        if (box->currentIndex() >= 0 && box->currentData().toInt() != kNone)
+            axes.features.push_back(static_cast<std::size_t>(box->currentData().toInt()));
+    axes.samples = m_samples->value();
+    axes.scale = m_scale->currentIndex() == 0 ? AxisScale::Linear : AxisScale::Logarithmic;
+    return axes;
+}
+
+SpacePanel::Inputs SpacePanel::inputs() const {
+    Inputs inputs{measureInput(m_bench.scene()), {}, axes(), m_factor->currentData().toInt()};
+    inputs.others = featureOpacities(inputs.measured.tf);
+    for (const std::size_t f : inputs.axes.features) inputs.others[f] = 0;
+    inputs.measured.tf = shapesOf(inputs.measured.tf);
+    return inputs;
+}
+
+std::vector<double> SpacePanel::targets() const { return shownShares(m_bench.scene().tf, m_bench.scene().targets()); }
+
+bool SpacePanel::isCurrent() const {
+    return m_space != nullptr && m_bench.store().hasVolume() && axes().features.size() >= 2 && inputs() == m_inputs;
+}
+
+bool SpacePanel::isPictureComplete() const { return m_canvas->isComplete(); }
+
+void SpacePanel::follow(const Scene& before, const Scene& after) {
+    if (before.volume != after.volume) {
+        m_job.cancel();
+        m_space.reset();
+    }
+    if (before.tf.features != after.tf.features || before.volume != after.volume) fillFeatures();
+    if (isVisible()) refresh();
+}
+
+void SpacePanel::fillFeatures() {
+    const Scene& scene = m_bench.scene();
+    std::vector<int> shown;
+    for (std::size_t f = 0; f < scene.tf.features.size(); ++f)
+        if (!scene.tf.features[f].hidden) shown.push_back(static_cast<int>(f));
+    // As they were chosen, where those are still there; else those of the largest targets.
+    std::vector<int> chosen;
+    for (const std::size_t f : axes().features) chosen.push_back(static_cast<int>(f));
+    const bool kept = chosen.size() >= 2 && std::all_of(chosen.begin(), chosen.end(), [&](int f) {
+                          return std::find(shown.begin(), shown.end(), f) != shown.end();
+                      });
+    if (!kept) {
+        chosen.clear();
+        if (m_bench.store().hasVolume() && shown.size() >= 2)
+            for (const std::size_t f : defaultAxes(scene.tf, targets())) chosen.push_back(static_cast<int>(f));
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+        const QSignalBlocker quiet(m_features[a]);
+        m_features[a]->clear();
+        if (a == 2) m_features[a]->addItem(tr("none"), kNone);
+        for (const int f : shown)
+            m_features[a]->addItem(QString::fromStdString(scene.tf.features[static_cast<std::size_t>(f)].name), f);
+        m_features[a]->setCurrentIndex(m_features[a]->findData(a < chosen.size() ? chosen[a] : kNone));
+    }
+    keepChosen();
+    const QSignalBlocker quiet(m_shown);
+    const int before = m_shown->count() > 0 ? m_shown->currentData().toInt() : kObjective;
+    m_shown->clear();
+    m_shown->addItem(tr("F: distance from the targets"), kObjective);
+    for (const int f : shown)
+        m_shown->addItem(tr("W of %1").arg(QString::fromStdString(scene.tf.features[static_cast<std::size_t>(f)].name)),
+                         f);
+    m_shown->setCurrentIndex(std::max(0, m_shown->findData(before)));
+}
+
+/// The axis that had a feature which another one was given takes the feature of that one.
+void SpacePanel::chooseAxes(std::size_t changed) {
+    const int feature = m_features[changed]->currentData().toInt();
+    const auto isFree = [this](int f) {
+        return f != kNone && std::none_of(m_features.begin(), m_features.end(),
+                                          [f](const QComboBox* box) { return box->currentData().toInt() == f; });
+    };
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (a == changed || feature == kNone || m_chosen[a] != feature) continue;
+        int other = m_chosen[changed];
+        for (int i = 0; other == kNone && i < m_features[a]->count(); ++i) // x and y always have one
+            if (isFree(m_features[a]->itemData(i).toInt())) other = m_features[a]->itemData(i).toInt();
+        QComboBox* const box = other == kNone ? m_features[changed] : m_features[a];
+        box->setCurrentIndex(box->findData(other));
+    }
+    keepChosen();
+    refresh();
+}
+
+void SpacePanel::keepChosen() {
+    for (std::size_t a = 0; a < 3; ++a)
+        m_chosen[a] = m_features[a]->currentIndex() < 0 ? kNone : m_features[a]->currentData().toInt();
+}
+
+void SpacePanel::compute() {
+    if (!m_bench.store().hasVolume() || m_job.isRunning() || axes().features.size() < 2) return;
+    const Inputs now = inputs();
+    Task task{measureInput(m_bench.scene()), targets(), now.axes, now.factor, now, m_bench.scene().tf.features};
+    if (task.measured.settings.profile == Profile::Published)
+        task.factor = 1; // it knows planes of voxels, and no lengths
+    else if (task.factor == 0)
+        task.factor = reductionFor(task.measured.volume->size(), task.axes);
+    m_progress->setValue(0);
+    m_job.start(std::move(task), tr("the parameter space"));
+}
+
+SpaceView SpacePanel::view() const {
+    SpaceView view;
+    const bool current = isCurrent();
+    for (const Feature& f : current ? m_bench.scene().tf.features : m_computedFeatures) {
+        view.names.push_back(f.name);
+        view.colors.push_back(f.color);
+    }
+    view.shown = m_shown->currentData().toInt();
+    if (view.shown >= static_cast<int>(view.names.size())) view.shown = kObjective;
+    view.tolerance = m_bench.scene().session.optimize->tolerance;
+    if (!current) return view;
+    view.paths = pathsOfRuns(*m_bench.scene().session.runs, m_bench.scene().tf, m_space->axes);
+    view.present = featureOpacities(shownTf(m_bench.scene().tf));
+    return view;
+}
+
+void SpacePanel::refresh() {
+    const bool hasTwo = m_bench.store().hasVolume() && axes().features.size() >= 2;
+    const bool current = isCurrent(), running = m_job.isRunning(), mayEdit = current && !m_bench.isReadOnly();
+    if (current) // F follows from W
+        if (std::vector<double> wanted = targets(); wanted != m_targets) {
+            m_space = std::make_shared<const ParameterSpace>(withTargets(*m_space, wanted));
+            m_targets = std::move(wanted);
+        }
+    m_compute->setEnabled(hasTwo && !running && !current);
+    m_cancel->setVisible(running);
+    m_progress->setVisible(running);
+    m_least->setVisible(!running);
+    m_least->setEnabled(mayEdit);
+    m_save->setVisible(!running);
+    m_save->setEnabled(current && !m_saving.isRunning());
+    m_canvas->setPickable(mayEdit);
+    m_words->setText(words(hasTwo, running, current));
+    m_canvas->setOutdated(m_space != nullptr && !current ? tr("Of an older state or other settings.\nCompute it again.")
+                                                         : QString());
+    m_canvas->setSpace(m_space, m_space == nullptr ? SpaceView{} : view());
+}
+
+QString SpacePanel::words(bool hasTwo, bool running, bool current) const {
+    const ParameterAxes chosen = axes();
+    if (running) return tr("Sampling %L1 combinations of opacities…").arg(chosen.sampleCount());
+    if (!hasTwo)
+        return m_bench.store().hasVolume() ? tr("A parameter space needs two features that are shown.") : QString();
+    if (!current)
+        return tr("%L1 combinations of opacities, in %L2 sweeps over the volume.")
+            .arg(chosen.sampleCount())
+            .arg(chosen.sweepCount());
+    const auto x = m_space->opacitiesAt(m_space->positionOfSample(m_space->best));
+    QStringList places;
+    for (const std::size_t f : m_space->axes.features)
+        places << QStringLiteral("%1 %2").arg(QString::fromStdString(m_bench.scene().tf.features[f].name),
+                                              QString::number(x[f], 'g', 3));
+    QString text = tr("Least F of %L1 samples: %2, at %3.")
+                       .arg(m_space->evaluations)
+                       .arg(QString::number(m_space->objective[m_space->best], 'f', 4), places.join(", "));
+    if (m_usedFactor > 1) text += tr(" Of a copy of the volume that is coarser by %1.").arg(m_usedFactor);
+    return text;
+}
+
+void SpacePanel::apply(const std::vector<double>& opacities, const QString& text) {
+    if (!isCurrent() || m_bench.isReadOnly()) return;
+    SessionStore& store = m_bench.store();
+    store.commit();
+    editTf(store, withShownOpacities(m_bench.scene().tf, opacities), text);
+    Q_EMIT m_bench.message(text + ".");
+}
+
+void SpacePanel::save() {
+    const QString folder = QSettings().value("imageFolder", QDir::homePath()).toString();
+    const QString path =
+        QFileDialog::getSaveFileName(this, tr("Save parameter space"), QDir(folder).filePath("parameter-space.png"),
+                                     tr("Pictures (*.png *.tif *.exr *.jpg);;Tables (*.csv)"));
+    if (path.isEmpty()) return;
+    QSettings().setValue("imageFolder", QFileInfo(path).absolutePath());
+    saveTo(path);
+}
+
+void SpacePanel::saveTo(const QString& path) {
+    if (!isCurrent()) return;
+    SpaceView as = view();
+    as.width = as.height = kSavedSide;
+    as.camera = m_canvas->shownView().camera;
+    m_saving.start({m_space, std::move(as), path.toStdString()}, path);
+}
+
+} // namespace pellucid::gui

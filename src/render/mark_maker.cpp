@@ -1,0 +1,61 @@
+#include "render/mark_maker.h"
+
+#include <algorithm>
+
+namespace pellucid {
+
+namespace {
+
+constexpr double kSmallestText = 7;       // pixels of the screen, height of a capital
+constexpr double kTextOfPicture = 0.0115; // the same, of the picture's shorter side
+
+double shareOf(Align align) { return align == Align::Start ? 0.0 : align == Align::Middle ? 0.5 : 1.0; }
+
+} // namespace
+
+Rgb mixed(const Rgb& a, const Rgb& b, double share) {
+    return {a.r + (b.r - a.r) * share, a.g + (b.g - a.g) * share, a.b + (b.b - a.b) * share};
+}
+
+MarkMaker::MarkMaker(double width, double height, double density, const Rgb& background)
+    : capHeight(std::max(kSmallestText * density, kTextOfPicture * std::min(width, height))), margin(1.3 * capHeight),
+      onDark(0.3 * background.r + 0.59 * background.g + 0.11 * background.b < 0.5), ink(onDark ? kLightInk : kDarkInk),
+      haloInk(onDark ? kDarkInk : kLightInk) {}
+
+Mark MarkMaker::lineMark(FramePart part, std::vector<Vec2> points, double width) const {
+    Mark mark;
+    mark.part = part;
+    mark.points = std::move(points);
+    mark.color = ink;
+    mark.width = width;
+    mark.halo = 0.14 * capHeight;
+    mark.haloColor = haloInk;
+    return mark;
+}
+
+Mark MarkMaker::areaMark(FramePart part, std::vector<Vec2> corners, const Rgb& color, double alpha) const {
+    Mark mark;
+    mark.part = part;
+    mark.kind = Mark::Kind::Area;
+    mark.points = std::move(corners);
+    mark.color = color;
+    mark.alpha = alpha;
+    return mark;
+}
+
+Mark MarkMaker::boxMark(FramePart part, const PixelBox& b, const Rgb& color, double alpha) const {
+    return areaMark(part, {{b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}}, color, alpha);
+}
+
+Mark MarkMaker::textMark(FramePart part, const std::string& words, const Vec2& at, Align horizontal, Align vertical,
+                         double capital) const {
+    Mark mark = lineMark(part, {}, 0.14 * capital);
+    mark.kind = Mark::Kind::Text;
+    mark.points = {{at.x - shareOf(horizontal) * capital * textWidth(words), at.y + (1 - shareOf(vertical)) * capital}};
+    mark.text = words;
+    mark.across = {capital, 0};
+    mark.up = {0, -capital};
+    return mark;
+}
+
+} // namespace pellucid

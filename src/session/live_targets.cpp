@@ -1,0 +1,36 @@
+#include "session/live_targets.h"
+
+#include <algorithm>
+
+namespace pellucid {
+
+namespace {
+
+constexpr int kMovesAtOnce = 1;  ///< of an update while things move
+constexpr int kMovesAtRest = 12; ///< enough from nearby
+
+LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, bool coarse, const JobControl& job) {
+    OptimizeOptions options = held.options;
+    options.method = SearchMethod::Newton; // from nearby it arrives in a move or two
+    options.coverage.reset();
+    options.coarse = false;
+    options.restarts = false;
+    options.tolerance = std::min(options.tolerance, kLiveGoal);
+    options.maxIterations = moves;
+    const OptimizeResult result = workspace.approach(held.input, held.targets, held.limits, options, coarse, job);
+    if (result.reason == StopReason::Cancelled) throw Cancelled{};
+    const OptimizeState& best = result.history[result.best];
+    return {best.opacity, best.vws, best.objective};
+}
+
+} // namespace
+
+LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job) {
+    return update(workspace, held, kMovesAtOnce, true, job);
+}
+
+LiveUpdate settleTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job) {
+    return update(workspace, held, kMovesAtRest, false, job);
+}
+
+} // namespace pellucid

@@ -1,0 +1,34 @@
+// Targets that are held while something else changes: the view, a colour, how figures are computed.
+#pragma once
+
+#include <vector>
+
+#include "session/workspace.h"
+
+namespace pellucid {
+
+/// What is to be held, and from where: the opacities of `input.tf` are those of the state before.
+struct HeldTargets {
+    MeasureInput input;
+    std::vector<double> targets;       ///< shares, as Scene::targets()
+    std::vector<OpacityLimits> limits; ///< see limitsOf()
+    OptimizeOptions options;           ///< the session's; coverage is of no concern here
+    bool operator==(const HeldTargets&) const = default;
+};
+
+struct LiveUpdate {
+    std::vector<double> opacity; ///< per feature
+    std::vector<double> vws;     ///< W there
+    double objective = 0;        ///< F there
+};
+
+/// F below which an update leaves opacities alone while things move: what is not seen is not worth a move.
+inline constexpr double kLiveGoal = 0.005;
+
+/// One move toward the targets: what keeps up with the hand. Never farther from them than it began. Throws as
+/// Workspace::optimize() does, Cancelled too.
+LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});
+/// The same until F < min(tolerance, kLiveGoal) on the volume itself, or nothing helps: what is done when all rests.
+LiveUpdate settleTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});
+
+} // namespace pellucid
