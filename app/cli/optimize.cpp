@@ -135,7 +135,7 @@ Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
     if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputFiles(o.scene));
-    if (o.report.any()) o.report.check(inputFiles(o.scene));
+    o.report.check(o.scene);
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});

@@ -79,7 +79,7 @@ PanelInfo convergencePanel() {
             .title = QObject::tr("Convergence"),
             .area = Qt::BottomDockWidgetArea,
             .visible = false,
-            .tabOf = "transferFunction",
+            .tabOf = "tf",
             .keys = QKeySequence("Ctrl+Shift+C"),
             .tip = QObject::tr("How optimizations go: distance, VWS and opacities over the moves; runs compared"),
             .make = [](Workbench& bench, QWidget* parent) {
@@ -148,6 +148,8 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     m_list->setContextMenuPolicy(Qt::CustomContextMenu);
     m_list->setMinimumWidth(200);
     m_list->installEventFilter(this);
+    m_list->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    connect(m_list, &QTreeWidget::itemDoubleClicked, this, &ConvergencePanel::rename);
     connect(m_list, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) { itemChanged(item); });
     connect(m_list, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
         if (m_filling || item == nullptr) return;
@@ -358,11 +360,23 @@ void ConvergencePanel::clear() {
 }
 
 bool ConvergencePanel::eventFilter(QObject* watched, QEvent* event) {
-    if (watched != m_list || event->type() != QEvent::KeyPress ||
-        static_cast<QKeyEvent*>(event)->key() != Qt::Key_Delete)
+    if (watched != m_list || event->type() != QEvent::KeyPress) return QWidget::eventFilter(watched, event);
+    switch (static_cast<QKeyEvent*>(event)->key()) {
+    case Qt::Key_F2:
+        rename();
+        return true;
+    case Qt::Key_Delete:
+        remove();
+        return true;
+    default:
         return QWidget::eventFilter(watched, event);
-    remove();
-    return true;
+    }
+}
+
+void ConvergencePanel::rename() {
+    QTreeWidgetItem* const item = m_list->currentItem();
+    if (item != nullptr && item->flags().testFlag(Qt::ItemIsEditable) && !m_bench.isReadOnly())
+        m_list->editItem(item, kTitle); // whatever column the mouse was on
 }
 
 void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
@@ -372,8 +386,7 @@ void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
     const Run* const run = shownRun();
     if (ofList && item != nullptr) {
         const bool ended = item->flags().testFlag(Qt::ItemIsEditable) && !m_bench.isReadOnly();
-        menu.addAction(tr("Rename"), this, [this] { m_list->editItem(m_list->currentItem(), kTitle); })
-            ->setEnabled(ended);
+        menu.addAction(tr("Rename"), this, &ConvergencePanel::rename)->setEnabled(ended);
         menu.addAction(tr("Delete"), this, &ConvergencePanel::remove)->setEnabled(ended);
         menu.addAction(tr("Delete all"), this, &ConvergencePanel::clear)->setEnabled(ended);
         menu.addSeparator();

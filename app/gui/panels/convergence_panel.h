@@ -35,7 +35,7 @@ public:
 protected:
     void showEvent(QShowEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
-    bool eventFilter(QObject* watched, QEvent* event) override; ///< Del in the list
+    bool eventFilter(QObject* watched, QEvent* event) override; ///< F2 and Del in the list
 
 private:
     static constexpr int kUnderWay = 0; ///< in place of the number of a run that has not ended
@@ -51,6 +51,7 @@ private:
     void itemChanged(QTreeWidgetItem* item);
     void chooseFile(const QString& suffix);
     void showMenu(const QPoint& global, bool ofList);
+    void rename();
     void remove();
     void clear();
 
