@@ -62,7 +62,7 @@ _pellucid_cli() {
             choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv)
+        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv | --report | --curves)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return
@@ -71,7 +71,7 @@ _pellucid_cli() {
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
-            --image-size | --fix | --tolerance | --window | --tf-strength | \
+            --image-size | --report-size | --fix | --tolerance | --coverage | --window | --tf-strength | \
             --features | --samples | --space-view)
             return
             ;;

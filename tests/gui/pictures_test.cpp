@@ -6,6 +6,7 @@
 #include <QCheckBox>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
+#include <QToolButton>
 
 #include "panels/space_panel.h"
 #include "render/camera_motion.h"
@@ -117,6 +118,29 @@ TEST_CASE("the globe for the guide", "[.pictures][.globepicture]") {
     w.child<QAction>("viewsAction").trigger();
     QTest::qWait(1000); // it begins when everything rests
     grab(w, "best_view.png");
+}
+
+TEST_CASE("curves for the guide", "[.pictures][.convergencepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    w.settle();
+    w.document().setTargets({0.1, 0.3, 0.6});
+    const auto run = [&](SearchMethod method) {
+        w.bench().store().edit("Method", {}, [&](Session& session) {
+            session.optimize.edit([&](OptimizeOptions& options) {
+                options.method = method;
+                options.maxIterations = 20;
+            });
+        });
+        w.optimizing().start();
+        REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    };
+    run(SearchMethod::Fixed);
+    w.child<QAction>("showConvergence").trigger();
+    w.child<QToolButton>("showStart").click();
+    run(SearchMethod::Parallel);
+    grab(w, "convergence.png");
 }
 
 TEST_CASE("the refiner for the guide", "[.pictures]") {

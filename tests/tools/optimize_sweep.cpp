@@ -43,8 +43,11 @@ struct Tally {
 } // namespace
 
 int main(int argc, char** argv) {
-    int starts = 24;
+    int starts = 200;
     bool delta = false, others = true;
+    double onlyAzimuth = -1000;
+    int onlyTarget = -1;
+    std::string onlyTf;
     std::vector<std::string> volumes;
     for (int i = 1; i < argc; ++i) {
         if (!std::strcmp(argv[i], "--starts"))
@@ -53,12 +56,19 @@ int main(int argc, char** argv) {
             delta = true;
         else if (!std::strcmp(argv[i], "--newton-only"))
             others = false;
+        else if (!std::strcmp(argv[i], "--azimuth"))
+            onlyAzimuth = std::atof(argv[++i]);
+        else if (!std::strcmp(argv[i], "--which"))
+            onlyTarget = std::atoi(argv[++i]);
+        else if (!std::strcmp(argv[i], "--tf"))
+            onlyTf = argv[++i];
         else
             volumes.push_back(argv[i]);
     }
     Tally tally;
     for (const std::string& path : volumes)
         for (const std::string tfName : {"tents:3", "auto"}) {
+            if (!onlyTf.empty() && tfName != onlyTf) continue;
             Scene scene;
             try {
                 SceneInputs inputs;
@@ -81,6 +91,7 @@ int main(int argc, char** argv) {
             const auto tinyEngine = make(tiny);
             const WeightFields tinyWeights = saliencyFields(*tiny, scene.tf);
             for (const auto& [azimuth, elevation] : {std::pair{30.0, 20.0}, {0.0, 0.0}, {-115.0, -40.0}}) {
+                if (onlyAzimuth != -1000 && onlyAzimuth != azimuth) continue;
                 const View view{cameraFromView(scene.volume->geometry(), azimuth, elevation, 1, Projection::Perspective), {}};
                 const EngineVws f(*engine, view, scene.tf, weights), ft(*tinyEngine, view, scene.tf, tinyWeights);
                 const auto coarse = coarser.functions(view, scene.tf, {});
@@ -100,6 +111,7 @@ int main(int argc, char** argv) {
                 }
                 int which = 0;
                 for (const std::vector<double>& targets : targetsFor(scene.tf.features.size())) {
+                    if (onlyTarget >= 0 && which != onlyTarget && which++ >= 0) continue;
                     const Stopwatch watch;
                     const OptimizeResult r = optimize({f, targets, {}, levels});
                     const double seconds = watch.seconds();
@@ -115,7 +127,7 @@ int main(int argc, char** argv) {
                         const OptimizeResult rt = optimize({ft, targets});
                         const double tinyFound = rt.history[rt.best].objective;
                         Random random(7);
-                        for (int s = 0; s < starts; ++s) {
+                        for (int s = 0; s < starts && tinyFound >= 1e-3; ++s) { // else nobody is better by much
                             std::vector<double> x;
                             for (std::size_t i = 0; i < scene.tf.features.size(); ++i) x.push_back(std::pow(10, random.between(-3.5, 0)));
                             if (s == 0) x = featureOpacities(scene.tf);
@@ -140,6 +152,14 @@ int main(int argc, char** argv) {
                         tally.worst = std::max(tally.worst, tinyFound - best);
                     }
                     std::printf("\n");
+                    if (found >= 1e-3 || std::getenv("VERBOSE"))
+                        for (const OptimizeState& state : r.history) {
+                            std::printf("    level %d F %.5f x", state.level, state.objective);
+                            for (const double x : state.opacity) std::printf(" %.6f", x);
+                            std::printf("  W");
+                            for (const double w : state.vws) std::printf(" %.5f", w);
+                            std::printf("\n");
+                        }
                     std::fflush(stdout);
                     ++tally.problems;
                     tally.below001 += found < 1e-3;

@@ -33,7 +33,7 @@ QString anglesText(const Vec3& towardEye) {
 
 QString figureText(const ViewMetric& metric, double value, bool about) {
     const QString name = metric.figure == ViewMetric::Figure::Objective ? QObject::tr("F") : QObject::tr("VWS");
-    return QStringLiteral("%1 %2 %3").arg(name, about ? "≈" : "=", QString::number(value, 'f', about ? 3 : 4));
+    return QStringLiteral("%1 %2 %3").arg(name, about ? "≈" : "=", QString::number(value, 'f', about ? 2 : 4));
 }
 
 } // namespace
