@@ -63,6 +63,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
         Q_EMIT readOnlyChanged();
         Q_EMIT idleChanged();
     });
+    connect(m_optimizing.get(), &OptimizeController::messageChanged, this, &Workbench::idleChanged);
     connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
     connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
     connect(m_live.get(), &LiveController::busyChanged, this, &Workbench::idleChanged);
@@ -108,7 +109,7 @@ bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
-           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_live->isBusy() && !m_results.isBusy() &&
+           !m_optimizing->isRunning() && !m_optimizing->isExplaining() && !m_refining->isBusy() && !m_live->isBusy() && !m_results.isBusy() &&
            !m_fields->isBusy();
 }
 

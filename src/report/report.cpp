@@ -72,17 +72,20 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const ReportRequest&
         {"View", shortText(view.azimuth) + "°, " + shortText(view.elevation) + "°, zoom " + shortText(view.zoom) +
                      (scene.camera.projection == Projection::Orthographic ? ", orthographic" : ", perspective")}};
     if (!(*scene.session.clipping == Clipping{})) rows.emplace_back("Clipped", "yes");
-    rows.insert(
-        rows.end(),
-        {{"Engine", engine + ", quality " + name(m.quality)},
-         {"Saliency", "σ = " + shortText(m.saliency.sigma) + " d0, kernel " +
-                          (m.saliency.kernel == SaliencyKernel::Narrow ? "narrow" : "thesis") +
-                          ", w1 = " + shortText(m.saliency.w1) + ", w2 = " + shortText(m.saliency.w2)},
-         {"Shares of brightness and saturation", "u1 = " + shortText(m.vws.u1) + ", u2 = " + shortText(m.vws.u2)},
-         {"Method", name(o.method)},
-         {"Tolerance", "F < " + shortText(o.tolerance)},
-         {"Most moves", std::to_string(o.maxIterations)}});
-    if (m.profile == Profile::Published) rows.emplace_back("Profile", std::string("published, along ") + name(m.along));
+    if (m.profile == Profile::Published)
+        rows.emplace_back("Definitions", std::string("published profile, along ") + name(m.along) +
+                                             "; the view is that of the pictures alone");
+    else
+        rows.insert(
+            rows.end(),
+            {{"Engine", engine + ", quality " + name(m.quality)},
+             {"Saliency", "σ = " + shortText(m.saliency.sigma) + " d0, kernel " +
+                              (m.saliency.kernel == SaliencyKernel::Narrow ? "narrow" : "thesis") +
+                              ", w1 = " + shortText(m.saliency.w1) + ", w2 = " + shortText(m.saliency.w2)},
+             {"Shares of brightness and saturation", "u1 = " + shortText(m.vws.u1) + ", u2 = " + shortText(m.vws.u2)}});
+    rows.insert(rows.end(), {{"Method", name(o.method)},
+                             {"Tolerance", "F < " + shortText(o.tolerance)},
+                             {"Most moves", std::to_string(o.maxIterations)}});
     if (o.method == SearchMethod::Newton) {
         rows.emplace_back("Coarse to fine", yesNo(o.coarse));
         rows.emplace_back("Restarts where it is stuck", yesNo(o.restarts));
