@@ -379,8 +379,7 @@ TEST_CASE("a view that turns during an optimization restarts it from there", "[t
     OpenWindow w;
     w.document().setTargets({0.2, 0.2, 0.6});
     bool turned = false;
-    const Camera other =
-        cameraFromView(w.document().volume()->geometry(), -70, 30, 1, Projection::Perspective);
+    const Camera other = cameraFromView(w.document().volume()->geometry(), -70, 30, 1, Projection::Perspective);
     QObject::connect(&w.optimizing(), &OptimizeController::moved, &w.window, [&] {
         if (w.optimizing().move() < 0 || turned) return;
         turned = true;
