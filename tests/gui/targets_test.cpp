@@ -22,6 +22,7 @@
 #include "render/camera_motion.h"
 #include "selection.h"
 #include "session/target_presets.h"
+#include "tf/edit.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
