@@ -1,9 +1,12 @@
 // `fields`: what every voxel contributes, as volumes to look at.
+#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <functional>
+#include <set>
 
 #include "commands.h"
+#include "optimize/fields.h"
+#include "options/field_options.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -19,11 +22,12 @@ namespace fs = std::filesystem;
 struct Options {
     SceneOptions scene;
     std::string out;
+    std::vector<std::string> features; ///< names, or "all"
+    std::vector<FieldKind> kinds;      ///< empty: kUsual
 };
 
-/// In the order in which they are written.
-const std::array<std::string, 4> kFiles{"visibility.nrrd", "saliency_brightness.nrrd", "saliency_saturation.nrrd",
-                                        "vws.nrrd"};
+constexpr std::array kUsual{FieldKind::Visibility, FieldKind::SaliencyBrightness, FieldKind::SaliencySaturation,
+                            FieldKind::Vws};
 
 /// A folder that goes again where nothing could be written into it.
 class OutputFolder {
@@ -46,57 +50,107 @@ private:
     bool m_isNew = false;
 };
 
-double sumOfProducts(const Grid<float>& visibility, const WeightFields& weights, int attribute) {
-    double sum = 0;
-    for (std::size_t i = 0; i < visibility.size(); ++i)
-        sum += static_cast<double>(visibility[i]) * weights.at(attribute, i);
-    return sum;
+/// One file: all of a field, or what it is in one feature.
+struct Output {
+    FieldKind kind;
+    int feature = -1; ///< −1: all
+    std::string file;
+};
+
+/// A feature's name as part of a file name, on any system.
+std::string safeName(const std::string& name) {
+    constexpr std::size_t kMost = 80;
+    std::string safe;
+    for (const char c : name) {
+        const bool harmful =
+            static_cast<unsigned char>(c) <= ' ' || std::string(R"(/\:*?"<>|)").find(c) != std::string::npos;
+        safe += harmful ? '_' : c;
+    }
+    if (safe.size() > kMost) {
+        safe.resize(kMost);
+        while (!safe.empty() && (static_cast<unsigned char>(safe.back()) & 0xc0) == 0x80)
+            safe.pop_back(); // whole letters
+    }
+    return safe.empty() ? "_" : safe;
 }
 
-/// Each voxel's share of the visibility-weighted saliency: u1·v·L_b / Σ v·L_b + u2·v·L_s / Σ v·L_s, so that the sum
-/// over the voxels of a feature is its W_F (docs/method.md, "Visibility-weighted saliency", with its rule for an
-/// attribute whose sum is 0).
-Grid<float> vwsField(const Grid<float>& visibility, const WeightFields& weights, const VwsOptions& options) {
-    const double brightness = sumOfProducts(visibility, weights, 0);
-    const double saturation = sumOfProducts(visibility, weights, 1);
-    const auto [u1, u2] = attributeWeights({brightness, saturation}, options);
-    const double b = brightness > 0 ? u1 / brightness : 0.0;
-    const double s = saturation > 0 ? u2 / saturation : 0.0;
-    Grid<float> field(visibility.dims());
-    for (std::size_t i = 0; i < field.size(); ++i)
-        field[i] = static_cast<float>(visibility[i] * (b * weights.brightness(i) + s * weights.saturation(i)));
-    return field;
+std::vector<int> featuresOf(const Options& o, const TransferFunction& tf) {
+    std::vector<int> chosen;
+    const auto add = [&](int f) {
+        if (std::find(chosen.begin(), chosen.end(), f) == chosen.end()) chosen.push_back(f);
+    };
+    for (const std::string& name : o.features) {
+        if (name != "all") {
+            add(static_cast<int>(parseFeature(name, "--feature", tf)));
+            continue;
+        }
+        for (std::size_t f = 0; f < tf.features.size(); ++f) add(static_cast<int>(f));
+    }
+    return chosen;
+}
+
+/// All of each field, in the order of the kinds, then the features. No two files have the same name.
+std::vector<Output> outputsOf(const std::vector<FieldKind>& kinds, const std::vector<int>& features,
+                              const TransferFunction& tf) {
+    std::vector<Output> outputs;
+    std::set<std::string> taken;
+    const auto add = [&](FieldKind kind, int feature, const std::string& stem) {
+        std::string file = stem + ".nrrd";
+        for (int n = 2; !taken.insert(file).second; ++n) file = stem + "_" + std::to_string(n) + ".nrrd";
+        outputs.push_back({kind, feature, file});
+    };
+    for (const FieldKind kind : kinds) add(kind, -1, infoOf(kind).fileStem);
+    for (const FieldKind kind : kinds)
+        for (const int f : features)
+            add(kind, f,
+                std::string(infoOf(kind).fileStem) + "_" + safeName(tf.features[static_cast<std::size_t>(f)].name));
+    return outputs;
+}
+
+std::vector<std::string> filesOf(const std::vector<Output>& outputs) {
+    std::vector<std::string> files;
+    for (const Output& output : outputs) files.push_back(output.file);
+    return files;
 }
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    checkOutputFolder(o.out, "--out", kFiles, inputFiles(o.scene));
+    const std::vector<FieldKind> kinds =
+        o.kinds.empty() ? std::vector<FieldKind>(kUsual.begin(), kUsual.end()) : o.kinds;
+    checkOutputFolder(o.out, "--out", filesOf(outputsOf(kinds, {}, {})), inputFiles(o.scene));
     const Opened opened = resolve(o.scene, progress, {toWriteFields(), true});
     const MeasureInput input = measureInput(opened.scene);
+    const std::vector<Output> outputs = outputsOf(kinds, featuresOf(o, input.tf), input.tf);
+    if (!o.features.empty()) checkOutputFolder(o.out, "--out", filesOf(outputs), inputFiles(o.scene));
     Workspace workspace;
     const std::string engineName = prepare(workspace, input, progress).engine;
     const WeightFields& weights = workspace.weights(input);
-    const VisibilityField visibility =
-        workspace.engine(input).field(input.view, input.tf, progress.phase("visibility"));
+    Grid<float> visibility;
+    if (std::any_of(kinds.begin(), kinds.end(), dependsOnView))
+        visibility = workspace.engine(input).field(input.view, input.tf, progress.phase("visibility")).values;
     workspace.releaseEngine(); // and one file after the other: the program keeps no more fields than it needs
 
     const OutputFolder folder(o.out);
-    const std::array<std::function<Grid<float>()>, 3> makeOthers{
-        [&] { return gridOf(weights, 0); }, [&] { return gridOf(weights, 1); },
-        [&] { return vwsField(visibility.values, weights, input.settings.vws); }};
     const JobControl writing = progress.phase("writing");
     std::string text;
     Json names = Json::array();
-    const auto write = [&](const Grid<float>& values) {
+    for (const Output& output : outputs) {
         writing.throwIfStopped();
-        writing.report(static_cast<double>(names.size()) / static_cast<double>(kFiles.size()));
-        const std::string path = (fs::path(o.out) / kFiles[names.size()]).string();
-        writeNrrd(input.volume->geometry(), values, path);
+        writing.report(static_cast<double>(names.size()) / static_cast<double>(outputs.size()));
+        const std::string path = (fs::path(o.out) / output.file).string();
+        const JobControl stop{writing.stop, {}};
+        if (output.kind == FieldKind::Visibility && output.feature < 0) {
+            writeNrrd(input.volume->geometry(), visibility, path);
+        } else {
+            Grid<float> values =
+                dependsOnView(output.kind) ? visibility : saliencyGrid(weights, output.kind, input.settings.vws, stop);
+            if (output.kind == FieldKind::Vws) visibilityToVws(values, weights, input.settings.vws, stop);
+            keepFeature(values, *input.volume, input.tf, output.feature, stop);
+            writeNrrd(input.volume->geometry(), values, path);
+        }
         text += "wrote " + path + "\n";
         names.push_back(path);
-    };
-    write(visibility.values);
-    for (const auto& make : makeOthers) write(make());
+    }
     Json json{{"command", "fields"},
               {"engine", engineName},
               {"volume", jsonFromVolume(*input.volume)},
@@ -118,6 +172,17 @@ Command addFields(CLI::App& program) {
         *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },
         "folder for visibility.nrrd, saliency_brightness.nrrd, saliency_saturation.nrrd, vws.nrrd; made where missing")
         ->required();
+    addRepeated(
+        *app, "--feature", "NAME", [o](const std::string& text, const std::string&) { o->features.push_back(text); },
+        "also the voxels of this feature alone, 0 elsewhere: visibility_NAME.nrrd and so on; repeatable; all: of each "
+        "feature");
+    addRepeated(
+        *app, "--field", kFieldNames,
+        [o](const std::string& text, const std::string& option) {
+            const FieldKind kind = parseField(text, option);
+            if (std::find(o->kinds.begin(), o->kinds.end(), kind) == o->kinds.end()) o->kinds.push_back(kind);
+        },
+        "this field alone; repeatable (default: all but saliency, the sum of both with the weights u1 and u2)");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -41,14 +41,16 @@ std::string textOf(const TransferFunction& tf, const std::optional<Matrix>& matr
 
 std::string textOf(const TransferFunction& tf, const Measures& m, const Matrices& matrices, const std::string& engine,
                    const Seconds& seconds) {
-    Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation"});
+    Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation", "cover"});
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];
         table.add({tf.features[i].name, fixedText(tf.features[i].a, 3) + " .. " + fixedText(tf.features[i].b, 3),
                    fixedText(m.opacities[i], 4), fixedText(f.visibility, 4), fixedText(f.vws, 4),
-                   fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4)});
+                   fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4), fixedText(m.coverage->covers[i], 4)});
     }
-    const std::string features = tf.features.empty() ? "the transfer function has no features\n" : table.text();
+    const std::string features = tf.features.empty()
+                                     ? "the transfer function has no features\n"
+                                     : table.text() + "coverage " + fixedText(m.coverage->coverage, 4) + "\n";
     return features + textOf(tf, matrices.jacobian, "dVWS / dopacity of") +
            textOf(tf, matrices.occlusion, "part hidden by") + "engine " + engine + ": visibility " +
            secondsText(seconds.visibility) + ", saliency " + secondsText(seconds.saliency) +
@@ -67,12 +69,14 @@ Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m,
                             {"visibility", f.visibility},
                             {"vws", f.vws},
                             {"vws_brightness", f.vwsBrightness},
-                            {"vws_saturation", f.vwsSaturation}});
+                            {"vws_saturation", f.vwsSaturation},
+                            {"cover", m.coverage->covers[i]}});
     }
     Json json{{"command", "measure"},
               {"engine", engine},
               {"volume", jsonFromVolume(volume)},
               {"features", features},
+              {"coverage", m.coverage->coverage},
               {"visibility_histogram", m.visibilityHistogram}};
     if (matrices.jacobian) json["jacobian"] = *matrices.jacobian;
     if (matrices.occlusion) json["occlusion"] = *matrices.occlusion;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "commands.h"
+#include "optimize/visibility_words.h"
 #include "optimize_report.h"
 #include "options/target_input.h"
 #include "output_files.h"
@@ -24,7 +25,7 @@ struct SearchOptions {
     std::optional<SearchMethod> method;
     std::optional<Direction> direction;
     bool normalize = false, noCoarse = false, noRestarts = false;
-    std::optional<double> b, step, tolerance;
+    std::optional<double> b, step, tolerance, coverage;
     std::optional<int> maxIterations;
 
     void add(CLI::App& app);
@@ -38,6 +39,7 @@ struct SearchOptions {
         options.step = step.value_or(options.step);
         options.tolerance = tolerance.value_or(options.tolerance);
         options.maxIterations = maxIterations.value_or(options.maxIterations);
+        if (coverage) options.coverage = coverage;
         return options;
     }
 };
@@ -75,6 +77,12 @@ struct Seconds {
     double saliency = 0, search = 0, total = 0;
 };
 
+/// "on target" and invisible do not stand together without this.
+std::string faintLine(const OptimizeResult& r) {
+    if (!r.seen->faint) return {};
+    return (r.converged() ? "on target, but faint: " : "faint: ") + faintText(r) + "\n";
+}
+
 /// Those of the session, and over them what is given.
 std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
     std::vector<OpacityLimits> limits = pellucid::limitsOf(scene.tf, *scene.session.goals);
@@ -88,14 +96,17 @@ std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
 }
 
 std::string textOf(const OptimizeResult& r, const std::string& engine, const Seconds& seconds) {
-    Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after"});
+    Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after", "cover"});
     const OptimizeState& start = r.history.front();
     const OptimizeState& best = r.history[r.best];
     for (std::size_t i = 0; i < r.targets.size(); ++i)
         table.add({r.tf.features[i].name, fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
-                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4)});
-    return table.text() + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
-           name(r.reason) + " after " + std::to_string(r.iterations()) + " iterations, " +
+                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
+                   fixedText(r.seen->coverage.covers[i], 4)});
+    return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + ", at most " +
+           fixedText(r.seen->strongest, 4) + " with these shares\n" + faintLine(r) + "objective " +
+           plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
+           std::to_string(r.iterations()) + " iterations, " +
            (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " on coarser volumes, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
            secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) + ", total " +
@@ -105,6 +116,7 @@ std::string textOf(const OptimizeResult& r, const std::string& engine, const Sec
 Json jsonOf(const OptimizeResult& r, const OptimizeOptions& options, const Volume& volume, const std::string& engine,
             const Seconds& seconds) {
     Json json = jsonFromOptimization(r, options);
+    addSeen(json, r);
     json["engine"] = engine;
     json["volume"] = jsonFromVolume(volume);
     json["seconds"] = {{"saliency", seconds.saliency}, {"search", seconds.search}, {"total", seconds.total}};
@@ -123,7 +135,7 @@ Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
     if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputFiles(o.scene));
-    if (o.report.any()) o.report.check(inputFiles(o.scene));
+    o.report.check(o.scene);
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
@@ -164,6 +176,12 @@ Answer run(const Options& o, Progress& progress) {
     std::string text = textOf(result, engine + profileText(input.settings), seconds);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
     addProfile(json, input.settings);
+    if (result.history[result.best].objective >= options.tolerance) {
+        const Verdict verdict =
+            workspace.explain(input, targets, limits, options, result, progress.phase("explaining"));
+        for (const std::string& sentence : verdict.sentences) text += sentence + "\n";
+        json["verdict"] = jsonFromVerdict(verdict, scene.tf);
+    }
     if (o.scene.camera.best) {
         const ViewAngles angles = viewAngles(input.view.camera, input.volume->geometry());
         text += "view " + fixedText(angles.azimuth, 1) + "," + fixedText(angles.elevation, 1) + " degrees\n";
@@ -202,6 +220,10 @@ void SearchOptions::add(CLI::App& app) {
         app, "--tolerance", "F",
         [this](const std::string& text, const std::string& option) { tolerance = parseRealAbove(text, option, 0, 1); },
         "converged below this distance from the targets (default 0.03)");
+    addValue(
+        app, "--coverage", "C",
+        [this](const std::string& text, const std::string& option) { coverage = parseRealAbove(text, option, 0, 1); },
+        "mean alpha of the picture, moved to at equal shares (default with newton: as strong as they allow)");
     addValue(
         app, "--max-iterations", "N",
         [this](const std::string& text, const std::string& option) {

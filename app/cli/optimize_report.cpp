@@ -41,25 +41,25 @@ void ReportOptions::add(CLI::App& app) {
         "write distance, VWS and opacities over the moves: .csv or .svg");
 }
 
-void ReportOptions::check(std::span<const std::string> inputs) const {
+void ReportOptions::check(const SceneOptions& scene) const {
+    if (size && !folder)
+        throw UsageError("--report-size is the size of a report's pictures", "--report-size", "give --report DIR too");
     if (curves) {
         requireFileName(*curves, "--curves");
         const std::string suffix = fs::path(*curves).extension().string();
         if (suffix != ".csv" && suffix != ".svg")
             throw UsageError("curves are written as .csv or .svg", *curves, "give one of these suffixes");
-        checkOutputFile(*curves, "--curves", inputs);
+        checkOutputFile(*curves, "--curves", inputFiles(scene));
     }
     if (folder) {
         const std::array<std::string, 2> names{kReportFile, kCurvesFile};
-        checkOutputFolder(*folder, "--report", names, inputs);
-    } else if (size) {
-        throw UsageError("--report-size is the size of a report's pictures", "--report-size", "give --report DIR too");
+        checkOutputFolder(*folder, "--report", names, inputFiles(scene));
     }
 }
 
 void ReportOptions::write(const Scene& scene, const OptimizeOptions& options, const OptimizeResult& result,
                           double seconds, Workspace& workspace, Progress& progress, Answer& answer) const {
-    if (!any()) return;
+    if (!folder && !curves) return;
     Run run = runOf(result, runStartOf(scene, options));
     run.seconds = seconds;
     if (curves) {
@@ -68,7 +68,7 @@ void ReportOptions::write(const Scene& scene, const OptimizeOptions& options, co
         answer.json["curves"] = *curves;
     }
     if (!folder) return;
-    ReportRequest request{.run = run, .scene = scene, .remarks = {}, .command = commandLine(), .program = {}};
+    ReportRequest request{.run = run, .scene = scene, .command = commandLine()};
     request.width = size.value_or(ImageSize{}).width;
     request.height = size.value_or(ImageSize{}).height;
     request.program = std::string("Pellucid ") + PELLUCID_VERSION;

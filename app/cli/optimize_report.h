@@ -2,12 +2,11 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "commands.h"
 #include "parse.h"
+#include "resolve.h"
 #include "session/workspace.h"
 
 namespace pellucid::cli {
@@ -18,8 +17,7 @@ struct ReportOptions {
 
     void add(CLI::App& app);
     /// What can be told before the work: throws UsageError and FileError.
-    void check(std::span<const std::string> inputs) const;
-    bool any() const { return folder || curves; }
+    void check(const SceneOptions& scene) const;
     /// Draws, measures and writes what was asked for, and tells of it in `answer`. `scene` is that of the start,
     /// `seconds` those of the search.
     void write(const Scene& scene, const OptimizeOptions& options, const OptimizeResult& result, double seconds,

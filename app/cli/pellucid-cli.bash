@@ -27,10 +27,15 @@ _pellucid_cli() {
         --along) choices="top bottom front back left right" ;;
         --kernel) choices="thesis narrow" ;;
         --method)
-            choices="fixed line parallel"
+            choices="newton parallel line fixed"
             [[ $command == refine ]] && choices="greedy exact"
             ;;
-        --direction) choices="gradient" ;;
+        --direction) choices="gradient backward second exact" ;;
+        --field)
+            choices="visibility saliency saliency-brightness saliency-saturation vws"
+            [[ $command == render ]] && choices+=" none"
+            ;;
+        --field-colormap) choices="feature hue spiral ember sand grey blue-orange blue-red" ;;
         --step-up | --reduce) choices="auto" ;;
         --scale) choices="linear log log:" ;;
         --paths) choices="newton parallel line fixed runs" ;;
@@ -38,7 +43,7 @@ _pellucid_cli() {
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
-            choices="setup saliency saliency-direct sweep slices jacobian optimize refine refine-500 refine-direct render"
+            choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton refine refine-500 refine-direct render"
             ;;
         --mode) choices="composite mip minip average surface" ;;
         --slice) choices="x: y: z:" ;;
@@ -57,16 +62,16 @@ _pellucid_cli() {
             choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv)
+        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv | --report | --curves)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return
             ;;
         --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
-            --silhouettes | --feature | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
+            --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
-            --image-size | --fix | --tolerance | --window | --tf-strength | \
+            --image-size | --report-size | --fix | --tolerance | --coverage | --window | --tf-strength | \
             --features | --samples | --space-view)
             return
             ;;

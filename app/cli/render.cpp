@@ -10,6 +10,7 @@
 #include "options/slice_options.h"
 #include "output_files.h"
 #include "parse.h"
+#include "prepare.h"
 #include "render/annotation_raster.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
@@ -59,8 +60,14 @@ void check(const Options& o) {
     o.slice.check();
     if (o.slice.at && o.annotate.any())
         throw UsageError("a slice has no frame of reference", "--annotate", "leave it out");
-    if (o.slice.at && o.scene.picture.feature)
+    const bool field = o.scene.field.isGiven();
+    if (o.slice.at && o.scene.picture.feature && !field)
         throw UsageError("a slice shows all features", "--feature", "leave it out");
+    const char* const ofData = o.slice.window ? "--window" : o.slice.tfStrength ? "--tf-strength" : nullptr;
+    if (field && ofData != nullptr)
+        throw UsageError("a field has colours of its own", ofData, "use --field-top or --field-colormap");
+    if (field && o.scene.picture.mode)
+        throw UsageError("a field is drawn by emission and absorption", "--mode", "leave it out");
     if (o.slice.at && o.scene.picture.mode) throw UsageError("a slice has no rays", "--mode", "leave it out");
 }
 
@@ -82,12 +89,38 @@ void paintBackground(Image& image, const RenderSettings& settings) {
     }
 }
 
+/// The field that the session and the options want drawn; empty: the data. A session's is of views, not of slices.
+std::optional<Field> fieldOf(const Options& o, const Scene& scene, Progress& progress) {
+    const FieldView& view = *scene.session.field;
+    if (!view.kind || (o.slice.at && !o.scene.field.isGiven())) return {};
+    Workspace workspace;
+    const MeasureInput input = measureInput(scene);
+    if (dependsOnView(*view.kind)) {
+        prepare(workspace, input, progress);
+        return workspace.field(input, *view.kind, scene.fieldFeature(), progress.phase("field"));
+    }
+    return workspace.field(input, *view.kind, scene.fieldFeature(), progress.phase("saliency"));
+}
+
+Json jsonFromField(const Scene& scene, const Field& field) {
+    const FieldView& view = *scene.session.field;
+    Json json{{"kind", name(*view.kind)},    {"color_map", view.colorMap}, {"strength", view.strength},
+              {"threshold", view.threshold}, {"top", topOf(view, field)},  {"largest", field.volume->dataRange().hi}};
+    if (const int f = scene.fieldFeature(); f >= 0)
+        json["feature"] = scene.tf.features[static_cast<std::size_t>(f)].name;
+    return json;
+}
+
 Answer drawSlice(const Options& o, const Opened& opened, const PictureInput& picture, const Stopwatch& total,
                  Progress& progress) {
     const Geometry& g = picture.volume->geometry();
     const SlicePlane plane = o.slice.planeOf(g, picture.settings.width, picture.settings.height);
     SliceSettings settings = o.slice.settingsOf(opened.scene);
     settings.clipping = picture.settings.clipping;
+    if (o.scene.field.isGiven()) {
+        settings.tfStrength = 1;
+        settings.window = picture.volume->range();
+    }
     const Stopwatch drawing;
     Image image = renderSlice(*picture.volume, picture.tf, plane, settings);
     paintBackground(image, picture.settings);
@@ -95,7 +128,7 @@ Answer drawSlice(const Options& o, const Opened& opened, const PictureInput& pic
     progress.phase("writing");
     writeImage(image, o.out);
     Json json{{"command", "render"},
-              {"volume", jsonFromVolume(*picture.volume)},
+              {"volume", jsonFromVolume(*opened.scene.volume)},
               {"file", o.out},
               {"size", {image.width, image.height}},
               {"slice",
@@ -113,23 +146,21 @@ Answer drawSlice(const Options& o, const Opened& opened, const PictureInput& pic
             {}};
 }
 
-Answer run(const Options& o, Progress& progress) {
-    const Stopwatch total;
-    check(o);
-    const Opened opened = resolve(o.scene, progress, {toView("drawing")});
-    const PictureInput picture = o.scene.picture.pictureOf(opened.scene);
-    if (o.slice.at) return drawSlice(o, opened, picture, total, progress);
+Answer drawView(const Options& o, const Opened& opened, const PictureInput& picture, const std::optional<Field>& field,
+                const Stopwatch& total, Progress& progress) {
     const auto renderer = makeRenderer(opened.scene.session.measure->engine, picture.volume);
     const Stopwatch drawing;
     Image image = renderer->render(picture.camera, picture.tf, picture.settings, progress.phase("rendering"));
     const double renderSeconds = drawing.seconds();
-    if (o.annotate.any()) drawMarks(image, annotationMarks(annotationInput(picture, o.annotate)));
+    if (o.annotate.any())
+        drawMarks(image, annotationMarks(field ? fieldAnnotationInput(picture, opened.scene, *field, o.annotate)
+                                               : annotationInput(picture, o.annotate)));
     progress.phase("writing");
     writeImage(image, o.out);
 
     Json json{{"command", "render"},
               {"engine", renderer->name()},
-              {"volume", jsonFromVolume(*picture.volume)},
+              {"volume", jsonFromVolume(*opened.scene.volume)},
               {"file", o.out},
               {"size", {image.width, image.height}},
               {"seconds", {{"render", renderSeconds}, {"total", total.seconds()}}}};
@@ -138,6 +169,26 @@ Answer run(const Options& o, Progress& progress) {
             std::move(json),
             opened.notices(),
             {}};
+}
+
+Answer run(const Options& o, Progress& progress) {
+    const Stopwatch total;
+    check(o);
+    const bool field = o.scene.field.isGiven();
+    const Opened opened = resolve(o.scene, progress, {field ? toMeasureAndDrawField() : toView("drawing"), field});
+    const Scene& scene = opened.scene;
+    PictureInput picture = o.scene.picture.pictureOf(scene);
+    const std::optional<Field> shown = fieldOf(o, scene, progress);
+    if (shown) {
+        const RenderSettings& s = picture.settings;
+        picture = fieldPictureInput(scene, *shown, s.width, s.height, o.scene.picture.transparent);
+        o.scene.picture.applyTo(picture);
+        if (o.slice.at) picture.tf = fieldSliceTf(picture.tf);
+    }
+    Answer answer = o.slice.at ? drawSlice(o, opened, picture, total, progress)
+                               : drawView(o, opened, picture, shown, total, progress);
+    if (shown) answer.json["field"] = jsonFromField(scene, *shown);
+    return answer;
 }
 
 } // namespace
@@ -157,6 +208,8 @@ Command addRender(CLI::App& program) {
         ->required();
     o->scene.picture.add(*app);
     o->slice.add(*app);
+    o->scene.field.add(*app);
+    o->scene.saliency.add(*app);
     addValue(
         *app, "--annotate", "PARTS",
         [o](const std::string& text, const std::string& option) { o->annotate = parseParts(text, option); },

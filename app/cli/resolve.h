@@ -7,6 +7,7 @@
 #include "options/camera_options.h"
 #include "options/clip_options.h"
 #include "options/engine_options.h"
+#include "options/field_options.h"
 #include "options/picture_options.h"
 #include "options/profile_options.h"
 #include "options/saliency_options.h"
@@ -28,6 +29,7 @@ struct SceneOptions {
     SaliencyInput saliency;
     ProfileOptions profile;
     PictureOptions picture;
+    FieldOptions field;
 
     /// All that figures of a view depend on: the groups of `measure`, `fields` and `optimize`.
     void addForFigures(CLI::App& app);

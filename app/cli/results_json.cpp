@@ -1,6 +1,7 @@
 #include "results_json.h"
 
 #include "optimize/refine_words.h"
+#include "optimize/visibility_words.h"
 #include "render/camera_motion.h"
 #include "tf/formats/tf_json.h"
 
@@ -33,6 +34,24 @@ Json jsonFromRefinement(const TransferFunction& before, const RefineResult& r, R
         {"tf", Json(jsonFromTf(r.tf))}};
 }
 
+Json jsonFromVerdict(const Verdict& verdict, const TransferFunction& tf) {
+    Json limits = Json::array(), helps = Json::array();
+    for (const ReachLimit& l : verdict.limits)
+        limits.push_back(
+            {{"feature", tf.features[l.feature].name}, {"reason", name(l.reason)}, {"objective", l.objective}});
+    for (const ReachHelp& h : verdict.helps) {
+        Json help{{"kind", name(h.kind)}, {"objective", h.objective}};
+        if (h.kind == ReachHelp::Kind::Release || h.kind == ReachHelp::Kind::Color)
+            help["feature"] = tf.features[h.feature].name;
+        if (h.view) help["view"] = {{"azimuth", h.view->azimuth}, {"elevation", h.view->elevation}};
+        if (h.color) help["color"] = hexFromRgb(*h.color);
+        helps.push_back(std::move(help));
+    }
+    return {{"objective", verdict.objective}, {"vws", verdict.vws},        {"opacity", verdict.opacity},
+            {"limits", std::move(limits)},    {"helps", std::move(helps)}, {"occlusion", verdict.occlusion},
+            {"sentences", verdict.sentences}};
+}
+
 Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& options) {
     Json j{{"command", "optimize"},
            {"method", name(options.method)},
@@ -57,6 +76,22 @@ Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& option
         j["opacity"].push_back(state.opacity);
     }
     return j;
+}
+
+void addSeen(Json& json, const OptimizeResult& r) {
+    json["coverage"] = r.seen->coverage.coverage;
+    json["covers"] = r.seen->coverage.covers;
+    json["strongest_coverage"] = r.seen->strongest;
+    if (!r.seen->faint) return;
+    const Faintness& f = *r.seen->faint;
+    Json& faint = json["faint"] = {
+        {"picture", f.picture}, {"features", f.features}, {"limiting", f.limiting}, {"text", faintText(r)}};
+    if (f.remedy)
+        faint["visible"] = {{"target", f.remedy->shares},
+                            {"vws", f.remedy->vws},
+                            {"opacity", f.remedy->opacity},
+                            {"coverage", f.remedy->coverage.coverage},
+                            {"covers", f.remedy->coverage.covers}};
 }
 
 Json jsonFromView(const Camera& camera, const Geometry& geometry) {

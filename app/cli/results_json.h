@@ -3,8 +3,8 @@
 
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
+#include "optimize/verdict.h"
 #include "output.h"
-#include "render/camera.h"
 #include "render/camera.h"
 
 namespace pellucid::cli {
@@ -13,7 +13,11 @@ namespace pellucid::cli {
 /// `before`: the transfer function that was refined. `priority`: an object that says what was asked for.
 Json jsonFromRefinement(const TransferFunction& before, const RefineResult& result, RefineMethod method,
                         const RefineComparison& comparison, Json priority);
+/// What limits, what would help, who hides whom; features by their names in `tf`.
+Json jsonFromVerdict(const Verdict& verdict, const TransferFunction& tf);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
+/// How strong the picture is: "coverage", "covers", "strongest_coverage", and "faint" where its shares cannot be seen.
+void addSeen(Json& json, const OptimizeResult& result);
 
 /// {"view":{"azimuth","elevation"},"camera":{…}}: where an eye is, in degrees, and all of the camera.
 Json jsonFromView(const Camera& camera, const Geometry& geometry);

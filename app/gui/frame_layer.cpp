@@ -1,5 +1,8 @@
 #include "frame_layer.h"
 
+#include <QPainter>
+
+#include "controllers/field_controller.h"
 #include "mark_painter.h"
 #include "render/annotation.h"
 
@@ -8,9 +11,17 @@ namespace pellucid::gui {
 void FrameLayer::paint(QPainter& painter, const OverlayView& view) {
     const FrameOfReference& show = *view.scene.session.reference;
     const QSize size = view.size.toSize();
-    if (!show.any() || size.isEmpty()) return;
-    const PictureInput picture = pictureInput(view.scene, size.width(), size.height());
-    for (const Mark& mark : annotationMarks(annotationInput(picture, show))) drawMark(painter, mark);
+    if (size.isEmpty()) return;
+    AnnotationInput input;
+    if (m_fields) {
+        PictureInput picture = m_fields->picture(size.width(), size.height());
+        picture.camera = view.scene.camera; // a glimpse from elsewhere
+        input = m_fields->annotation(picture, show);
+    } else {
+        input = annotationInput(pictureInput(view.scene, size.width(), size.height()), show);
+    }
+    if (!input.show.any()) return;
+    for (const Mark& mark : annotationMarks(input)) drawMark(painter, mark);
 }
 
 } // namespace pellucid::gui

@@ -5,10 +5,17 @@
 
 namespace pellucid::gui {
 
-/// Draws what the session's FrameOfReference switches on; takes no clicks.
+class FieldController;
+
+/// Draws what the session's FrameOfReference switches on, and title and legend of a field; takes no clicks.
 class FrameLayer : public OverlayLayer {
 public:
+    /// `fields` outlives this; null: the view shows the data.
+    explicit FrameLayer(const FieldController* fields = nullptr) : m_fields(fields) {}
     void paint(QPainter& painter, const OverlayView& view) override;
+
+private:
+    const FieldController* m_fields;
 };
 
 } // namespace pellucid::gui

@@ -31,7 +31,8 @@ namespace pellucid::gui {
 
 MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_bench(std::make_unique<Workbench>(this)),
-      m_view(new VolumeView(m_bench->store(), renderer, this)), m_views(new ViewGrid(*m_bench, *m_view, this)) {
+      m_view(new VolumeView(m_bench->store(), renderer, this, &m_bench->fields())),
+      m_views(new ViewGrid(*m_bench, *m_view, this)) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setDockNestingEnabled(true);

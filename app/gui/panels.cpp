@@ -11,6 +11,7 @@
     PANEL(displayPanel) \
     PANEL(lightPanel) \
     PANEL(clipPanel) \
+    PANEL(fieldsPanel) \
     PANEL(galleryPanel) \
     PANEL(viewsPanel) \
     PANEL(settingsPanel) \

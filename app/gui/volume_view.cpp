@@ -12,6 +12,7 @@
 #include <QWheelEvent>
 
 #include "base/parallel.h"
+#include "controllers/field_controller.h"
 #include "controllers/view_actions.h"
 #include "cpu_surface.h"
 #include "frame_layer.h"
@@ -61,8 +62,8 @@ QString reasonOf(const RendererTimes& times, bool gl) {
 
 } // namespace
 
-VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent)
-    : QWidget(parent), m_store(store), m_overlay(new ViewOverlay(store, this)),
+VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent, FieldController* fields)
+    : QWidget(parent), m_store(store), m_fields(fields), m_overlay(new ViewOverlay(store, this)),
       m_probe([](const int&, const JobControl& job) { return timeRenderers(job); },
               [this](const int&, RendererTimes& times) {
                   keepTimes(m_machine, times);
@@ -74,12 +75,17 @@ VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* pare
     setMouseTracking(true);
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
-    m_overlay->add(std::make_unique<FrameLayer>());
+    m_overlay->add(std::make_unique<FrameLayer>(fields));
     chooseRenderer(renderer);
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume) lookFrom({});
         updateScene();
     });
+    if (fields != nullptr)
+        connect(fields, &FieldController::changed, this, [this] {
+            updateScene();
+            m_overlay->update();
+        });
 }
 
 void VolumeView::chooseRenderer(ViewRenderer wanted) {
@@ -167,7 +173,7 @@ void VolumeView::surfaceFailed(const Error& error) {
 
 void VolumeView::updateScene() {
     if (!m_store.hasVolume()) return;
-    PictureInput picture = pictureInput(m_store.scene(), 1, 1);
+    PictureInput picture = m_fields ? m_fields->picture(1, 1) : pictureInput(m_store.scene(), 1, 1);
     if (m_glimpse) picture.camera = *m_glimpse;
     m_surface->setScene(picture);
 }

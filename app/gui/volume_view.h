@@ -16,6 +16,8 @@
 
 namespace pellucid::gui {
 
+class FieldController;
+
 enum class ViewRenderer { Auto, Gl, Cpu };
 
 /// Shows the store's scene, moves its camera: left-drag rotates, middle or Shift+left pans, wheel and right-drag
@@ -25,7 +27,9 @@ class VolumeView : public QWidget {
 public:
     /// Auto draws with whichever is faster here. As long as that has not been measured, which happens beside the first
     /// pictures, it is OpenGL on a GPU and the CPU else. Gl throws Error where there is none.
-    explicit VolumeView(SessionStore& store, ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr);
+    /// `fields`, which outlives this, says what is drawn in the place of the data; null: never anything.
+    explicit VolumeView(SessionStore& store, ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr,
+                        FieldController* fields = nullptr);
     ~VolumeView() override;
 
     const FrameInfo& frame() const { return m_surface->frame(); }
@@ -65,6 +69,7 @@ private:
     void updateScene();
 
     SessionStore& m_store;
+    FieldController* const m_fields;
     std::optional<Camera> m_glimpse;
     std::unique_ptr<ViewSurface> m_surface;
     ViewOverlay* m_overlay; // a child

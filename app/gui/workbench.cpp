@@ -1,6 +1,7 @@
 #include "workbench.h"
 
 #include "controllers/feature_actions.h"
+#include "controllers/field_controller.h"
 #include "controllers/frame_actions.h"
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
@@ -21,6 +22,7 @@ namespace pellucid::gui {
 Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
     m_optimizing = std::make_unique<OptimizeController>(*this);
     m_refining = std::make_unique<RefineController>(*this);
+    m_fields = std::make_unique<FieldController>(*this);
     m_live = std::make_unique<LiveController>(*this);
     m_saving = std::make_unique<SaveController>(*this);
     m_opening = std::make_unique<OpenController>(*this);
@@ -40,6 +42,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     m_live->addActions();
     addViewActions(*this);
     addFrameActions(*this);
+    m_fields->addActions();
     addSliceActions(*this);
     addThemeActions(*this);
 
@@ -47,7 +50,8 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     connect(&m_store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features.empty() != after.tf.features.empty() ||
             before.camera.projection != after.camera.projection ||
-            before.session.reference != after.session.reference || !before.session.slices.isSame(after.session.slices))
+            before.session.reference != after.session.reference ||
+            !before.session.slices.isSame(after.session.slices) || !before.session.field.isSame(after.session.field))
             m_actions.refresh();
     });
     connect(&m_results, &Results::changed, this, &Workbench::idleChanged);
@@ -59,11 +63,13 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
         Q_EMIT readOnlyChanged();
         Q_EMIT idleChanged();
     });
+    connect(m_optimizing.get(), &OptimizeController::messageChanged, this, &Workbench::idleChanged);
     connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
     connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
     connect(m_live.get(), &LiveController::busyChanged, this, &Workbench::idleChanged);
     connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_fields.get(), &FieldController::busyChanged, this, &Workbench::idleChanged);
 }
 
 Workbench::~Workbench() {
@@ -73,6 +79,7 @@ Workbench::~Workbench() {
     m_start.reset();
     m_opening.reset();
     m_saving.reset();
+    m_fields.reset();
     m_live.reset();
     m_refining.reset();
     m_optimizing.reset();
@@ -102,7 +109,8 @@ bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
-           !m_optimizing->isRunning() && !m_refining->isBusy() && !m_live->isBusy() && !m_results.isBusy();
+           !m_optimizing->isRunning() && !m_optimizing->isExplaining() && !m_refining->isBusy() && !m_live->isBusy() && !m_results.isBusy() &&
+           !m_fields->isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

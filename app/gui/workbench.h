@@ -15,6 +15,7 @@ class QWidget;
 
 namespace pellucid::gui {
 
+class FieldController;
 class LiveController;
 class OpenController;
 class OptimizeController;
@@ -55,6 +56,7 @@ public:
     StartController& start() { return *m_start; }
     RecoveryController& recovery() { return *m_recovery; }
     RefineController& refining() { return *m_refining; }
+    FieldController& fields() { return *m_fields; } ///< what is drawn in the place of the data
     LiveController& live() { return *m_live; }
 
     /// Nothing may be edited: an optimization shows its moves.
@@ -76,6 +78,7 @@ private:
     QWidget* m_window;
     std::unique_ptr<OptimizeController> m_optimizing;
     std::unique_ptr<RefineController> m_refining;
+    std::unique_ptr<FieldController> m_fields;
     std::unique_ptr<LiveController> m_live;
     std::unique_ptr<SaveController> m_saving;
     std::unique_ptr<OpenController> m_opening;

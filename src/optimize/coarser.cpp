@@ -30,8 +30,8 @@ ExcerptPlan planOf(const Volume& volume) {
 
 } // namespace
 
-std::shared_ptr<const Volume> halved(const Volume& volume) {
-    const Volume coarse = excerptOf(volume, planOf(volume));
+std::shared_ptr<const Volume> halved(const Volume& volume, const JobControl& job) {
+    const Volume coarse = excerptOf(volume, planOf(volume), job);
     Geometry geometry = coarse.geometry();
     geometry.referenceLength = volume.geometry().d0();
     Volume result(geometry, coarse.samples(), volume.missing());
@@ -40,7 +40,7 @@ std::shared_ptr<const Volume> halved(const Volume& volume) {
     return std::make_shared<const Volume>(throughWindowOf(std::move(result), volume.range()));
 }
 
-WeightFields halvedWeights(const WeightFields& weights, const Volume& volume) {
+WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, const JobControl& job) {
     const ExcerptPlan plan = planOf(volume);
     const Int3 full = weights.dims(), dims = plan.dims;
     const float brightest = weights.scale(0) * 65535.0f, most = weights.scale(1) * 65535.0f;
@@ -51,6 +51,7 @@ WeightFields halvedWeights(const WeightFields& weights, const Volume& volume) {
                    (static_cast<std::size_t>(j) + static_cast<std::size_t>(size.y) * static_cast<std::size_t>(k));
     };
     parallelFor(static_cast<std::size_t>(dims.z), [&](std::size_t layer) {
+        job.throwIfStopped();
         const int k = static_cast<int>(layer);
         std::vector<std::uint32_t> row(static_cast<std::size_t>(dims.x));
         for (int j = 0; j < dims.y; ++j) {
@@ -65,8 +66,8 @@ WeightFields halvedWeights(const WeightFields& weights, const Volume& volume) {
                             saturation += units >> 16;
                             ++count;
                         }
-                row[static_cast<std::size_t>(i)] =
-                    (brightness + count / 2) / count | (saturation + count / 2) / count << 16;
+                row[static_cast<std::size_t>(i)] = (brightness + count / 2) / count | (saturation + count / 2) / count
+                                                                                          << 16;
             }
             coarse.store(at(dims, 0, j, k), row.data(), row.size());
         }
@@ -78,9 +79,8 @@ CoarserVolumes::CoarserVolumes(std::shared_ptr<const Volume> volume, const MakeE
     : m_full(std::move(volume)) {
     const Volume* finer = m_full.get();
     while (finer->size() > kSmallest && m_levels.size() < kMost) {
-        job.throwIfStopped();
         Level level;
-        level.volume = halved(*finer);
+        level.volume = halved(*finer, job);
         job.throwIfStopped();
         level.engine = make(level.volume);
         m_levels.push_back(std::move(level));
@@ -92,8 +92,7 @@ void CoarserVolumes::setWeights(const WeightFields& weights, const JobControl& j
     const WeightFields* finer = &weights;
     const Volume* volume = m_full.get();
     for (Level& level : m_levels) {
-        job.throwIfStopped();
-        level.weights = halvedWeights(*finer, *volume);
+        level.weights = halvedWeights(*finer, *volume, job);
         finer = &level.weights;
         volume = level.volume.get();
     }

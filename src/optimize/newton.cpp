@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "optimize/boxed_step.h"
 
@@ -10,13 +10,23 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kLeastOpacity = 1e-7; ///< of a peak that is wanted: ln x has no place for 0
-constexpr double kCoarseGoal = 2e-4;   ///< F on coarser volumes, which differ from the full one by more
-constexpr double kTinyShare = 1e-3;    ///< added to shares before their logarithm is taken
-constexpr int kCoarseMoves = 40;       ///< at most, per descent
-constexpr int kSpread = 64, kBatch = 8, kRefined = 3;
+constexpr double kLeastOpacity = 1e-7;                 ///< of a peak that is wanted: a logarithm has no place for 0
+constexpr double kMostOpacity = 1 - 2e-7;              ///< beyond, extinction is capped (docs/method.md, "Visibility")
+constexpr double kCoarseGoal = 2e-4;                   ///< F on coarser volumes
+constexpr double kTinyShare = 1e-3;                    ///< added to shares before their logarithm is taken
+constexpr int kMostCoarseMoves = 40;                   ///< of one descent
+constexpr std::size_t kBatch = 8;                      ///< candidates in one call of the engine
+constexpr int kSpread = 64;                            ///< starts, where it is stuck
+constexpr std::size_t kRefined = 3;                    ///< of them, that are followed
+constexpr double kLeastSpread = 1e-4, kMostSpread = 3; ///< their optical depths
 
-double logOf(double x) { return std::log(std::max(x, kLeastOpacity)); }
+double depthOf(double x) { return -std::log1p(-std::clamp(x, kLeastOpacity, kMostOpacity)); }
+double logDepth(double x) { return std::log(depthOf(x)); }
+double logOpacity(double x) { return std::log(std::max(x, kLeastOpacity)); }
+
+bool lower(const OptimizeState& a, const OptimizeState& b) {
+    return a.objective < b.objective || (std::isnan(b.objective) && !std::isnan(a.objective));
+}
 
 /// The n-th number of the van der Corput sequence to a prime base: dimensions of Halton's lattice.
 double halton(int n, int base) {
@@ -34,7 +44,7 @@ NewtonSearch::NewtonSearch(const std::vector<const VwsFunction*>& levels, const 
                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                            const JobControl& job, Arrive arrive)
     : m_levels(levels), m_targets(targets), m_limits(limits), m_options(options), m_job(job),
-      m_arrive(std::move(arrive)) {
+      m_arrive(std::move(arrive)), m_goal(std::min(kNewtonGoal, options.tolerance)) {
     // A target of 0 is met by the lowest opacity, and x is not moved any more.
     for (std::size_t f = 0; f < targets.size(); ++f)
         m_held.push_back(limits[f].locked || targets[f] == 0 || limits[f].lowest == limits[f].highest);
@@ -53,11 +63,21 @@ std::vector<OptimizeState> NewtonSearch::evaluate(std::size_t level, const std::
 }
 
 NewtonSearch::Linear NewtonSearch::linearize(std::size_t level, const Point& x) {
-    VwsFunction::Linear linear = m_levels[level]->jacobian(x, m_job);
+    Point capped = x;
+    for (std::size_t f = 0; f < x.size(); ++f)
+        if (!m_held[f]) capped[f] = std::min(x[f], kMostOpacity);
     ++m_evaluations;
-    for (auto& row : linear.derivative)
-        for (std::size_t j = 0; j < x.size(); ++j) row[j] *= m_held[j] ? 0.0 : x[j];
+    VwsFunction::Linear linear = m_levels[level]->jacobian(capped, m_job);
     return {stateOf(linear.vws, x, level), std::move(linear.derivative)};
+}
+
+void NewtonSearch::arrive(const OptimizeState& state) {
+    ++(state.level == 0 ? m_moves : m_coarseMoves);
+    m_arrive(state);
+}
+
+bool NewtonSearch::mayMove(std::size_t level) const {
+    return level == 0 ? m_moves < m_options.maxIterations : m_coarseMoves < kMostCoarseMoves;
 }
 
 /// Where the search begins: targets of 0 at the lowest opacity, wanted features above 0.
@@ -81,172 +101,193 @@ NewtonSearch::Point NewtonSearch::inside(Point x) const {
     return x;
 }
 
-NewtonSearch::Point NewtonSearch::steppedBy(const Linear& at, bool logarithmic, double damping, double reach) const {
+NewtonSearch::Point NewtonSearch::stepped(const Linear& at, const Step& step) const {
     const std::size_t n = m_targets.size();
+    const auto logOf = step.variable == Variable::Depth ? logDepth : logOpacity;
+    std::vector<double> byLog(n, 0.0); // dx/dy
+    for (std::size_t j = 0; j < n; ++j) {
+        const double x = std::clamp(at.state.opacity[j], kLeastOpacity, kMostOpacity);
+        if (!m_held[j]) byLog[j] = step.variable == Variable::Depth ? (1 - x) * depthOf(x) : x;
+    }
     Matrix a(n, std::vector<double>(n, 0.0));
     std::vector<double> g(n, 0.0), lowest(n, 0.0), highest(n, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
         const double w = at.state.vws[i], t = m_targets[i];
-        // ln((W + ε)/(t + ε)), weighted by t: linear in ln x where features do not hide each other.
-        const double scale = logarithmic ? 1 / (w + kTinyShare) : 1;
-        const double residual = logarithmic ? std::log((w + kTinyShare) / (t + kTinyShare)) : w - t;
-        const double weight = logarithmic ? t + kTinyShare : 1;
+        // ln((W + ε)/(t + ε)), weighted by t: linear in y where features do not hide each other.
+        const bool ratio = step.residual == Residual::Ratio;
+        const double scale = ratio ? 1 / (w + kTinyShare) : 1, weight = ratio ? t + kTinyShare : 1;
+        const double residual = ratio ? std::log((w + kTinyShare) / (t + kTinyShare)) : w - t;
         for (std::size_t j = 0; j < n; ++j) {
-            const double dj = at.derivative[i][j] * scale * weight;
-            if (dj == 0) continue;
-            g[j] += dj * residual;
-            for (std::size_t k = 0; k < n; ++k) a[j][k] += dj * at.derivative[i][k] * scale;
+            const double d = at.derivative[i][j] * byLog[j] * scale * weight;
+            if (d == 0) continue;
+            g[j] += d * residual;
+            for (std::size_t k = 0; k < n; ++k) a[j][k] += d * at.derivative[i][k] * byLog[k] * scale;
         }
     }
     double most = 0;
     for (std::size_t j = 0; j < n; ++j) most = std::max(most, a[j][j]);
     for (std::size_t j = 0; j < n; ++j) {
-        a[j][j] += std::max(damping * most, 1e-200);
+        a[j][j] += std::max(step.damping * most, 1e-200);
         if (m_held[j]) continue;
         const double y = logOf(at.state.opacity[j]);
-        lowest[j] = std::clamp(logOf(m_limits[j].lowest) - y, -reach, 0.0);
-        highest[j] = std::clamp(logOf(m_limits[j].highest) - y, 0.0, reach);
+        lowest[j] = std::clamp(logOf(m_limits[j].lowest) - y, -step.reach, 0.0);
+        highest[j] = std::clamp(logOf(m_limits[j].highest) - y, 0.0, step.reach);
     }
     const std::vector<double> p = boxedStep(a, g, lowest, highest);
     Point x = at.state.opacity;
-    for (std::size_t j = 0; j < n; ++j)
-        if (p[j] != 0) x[j] = std::clamp(x[j] * std::exp(p[j]), m_limits[j].lowest, m_limits[j].highest);
+    for (std::size_t j = 0; j < n; ++j) {
+        if (p[j] == 0) continue;
+        const double y = std::exp(logOf(x[j]) + p[j]);
+        x[j] =
+            std::clamp(step.variable == Variable::Depth ? -std::expm1(-y) : y, m_limits[j].lowest, m_limits[j].highest);
+    }
     return x;
 }
 
-/// Steps of one batch; those that would differ by less than F/20 in the shares that the derivatives foretell are one.
+/// Steps of one batch, the boldest first; those whose shares, as the derivatives foretell them, differ by less than
+/// F/20 are one.
 std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, double caution) const {
-    std::vector<Point> points;
-    for (const bool logarithmic : {true, false})
-        for (const auto& [damping, reach] : {std::pair{1e-7, 4.0}, {1e-3, 2.0}, {3e-2, 1.0}, {0.3, 0.4}}) {
-            const Point x = steppedBy(at, logarithmic, damping / caution, reach * caution);
-            const auto same = [&](const Point& other) {
-                double square = 0;
-                for (std::size_t i = 0; i < x.size(); ++i) {
-                    double w = 0;
-                    for (std::size_t j = 0; j < x.size(); ++j)
-                        if (x[j] != other[j]) w += at.derivative[i][j] * std::log(x[j] / other[j]);
-                    square += w * w;
+    const auto same = [&](const Point& a, const Point& b) {
+        for (const Variable variable : {Variable::Depth, Variable::Opacity}) {
+            double square = 0;
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                double w = 0;
+                for (std::size_t j = 0; j < a.size(); ++j) {
+                    if (a[j] == b[j]) continue;
+                    const double x = std::clamp(at.state.opacity[j], kLeastOpacity, kMostOpacity);
+                    w += at.derivative[i][j] * (variable == Variable::Depth
+                                                    ? (1 - x) * depthOf(x) * (logDepth(a[j]) - logDepth(b[j]))
+                                                    : x * (logOpacity(a[j]) - logOpacity(b[j])));
                 }
-                return std::sqrt(square / static_cast<double>(x.size())) < 0.05 * at.state.objective;
-            };
-            if (x != at.state.opacity && std::none_of(points.begin(), points.end(), same)) points.push_back(x);
+                square += w * w;
+            }
+            if (std::sqrt(square / static_cast<double>(a.size())) > 0.05 * at.state.objective) return false;
         }
+        return true;
+    };
+    std::vector<Point> points;
+    for (const auto& [damping, reach] : {std::pair{1e-7, 4.0}, {1e-3, 2.0}, {3e-2, 1.0}, {0.3, 0.4}})
+        for (const Variable variable : {Variable::Depth, Variable::Opacity})
+            for (const Residual residual : {Residual::Ratio, Residual::Difference}) {
+                const Point x = stepped(at, {variable, residual, damping / caution, reach * caution});
+                if (points.size() < kBatch && x != at.state.opacity &&
+                    std::none_of(points.begin(), points.end(), [&](const Point& p) { return same(p, x); }))
+                    points.push_back(x);
+            }
     return points;
 }
 
-OptimizeState NewtonSearch::descend(std::size_t level, OptimizeState from, double goal, int moves, bool tell) {
+/// Downhill on the level of `at`, to below `goal` if that goes.
+OptimizeState NewtonSearch::descend(Linear at, double goal) {
     constexpr int kFailures = 3, kSlowMoves = 4;
-    constexpr double kSlow = 0.98; ///< of F that a move leaves
+    constexpr double kSlow = 0.98; // of F that a move leaves
+    const auto level = static_cast<std::size_t>(at.state.level);
     double caution = 1;
     int failures = 0, slow = 0;
-    std::optional<Linear> at;
-    while (from.objective >= goal && moves > 0 && failures < kFailures && slow < kSlowMoves) {
+    bool known = true; // the derivatives at at.state
+    while (at.state.objective >= goal && mayMove(level) && failures < kFailures && slow < kSlowMoves) {
         m_job.throwIfStopped();
-        if (!at) at = linearize(level, from.opacity);
-        const std::vector<Point> points = candidates(*at, caution);
+        if (!known) at = linearize(level, at.state.opacity);
+        known = true;
+        const std::vector<Point> points = candidates(at, caution);
         if (points.empty()) break;
         std::vector<OptimizeState> states = evaluate(level, points);
-        auto best = std::min_element(states.begin(), states.end(),
-                                     [](const auto& a, const auto& b) { return a.objective < b.objective; });
-        if (!(best->objective < from.objective)) {
+        const auto best = std::min_element(states.begin(), states.end(), lower);
+        if (!lower(*best, at.state)) {
             caution /= 10;
             ++failures;
             continue;
         }
-        slow = best->objective > kSlow * from.objective ? slow + 1 : 0;
+        slow = best->objective > kSlow * at.state.objective ? slow + 1 : 0;
         failures = 0;
         caution = std::min(1.0, caution * 3);
-        from = std::move(*best);
-        at.reset();
-        --moves;
-        if (level == 0) ++m_moves;
-        if (tell) m_arrive(from);
+        at.state = std::move(*best);
+        known = false;
+        arrive(at.state);
+    }
+    return at.state;
+}
+
+/// From the end of a descent on a coarse level through finer ones, up to that on the volume.
+OptimizeState NewtonSearch::refined(OptimizeState from) {
+    for (int level = from.level - 1; level >= 0; --level) {
+        Linear at = linearize(static_cast<std::size_t>(level), from.opacity);
+        m_coarseMoves = 0;
+        arrive(at.state);
+        from = descend(std::move(at), level == 0 ? m_goal : kCoarseGoal);
     }
     return from;
 }
 
-std::vector<NewtonSearch::Point> NewtonSearch::spreadPoints(int count) const {
-    std::vector<Point> points;
-    for (int p = 0; p < count; ++p) {
-        Point x(m_targets.size(), 0.0);
-        for (std::size_t f = 0; f < x.size(); ++f) {
-            // ln x between those of 1e-3 and 1, and of the limits.
-            const double lo = std::max(logOf(m_limits[f].lowest), std::min(std::log(1e-3), logOf(m_limits[f].highest)));
-            const double hi = logOf(m_limits[f].highest);
-            x[f] = std::exp(lo + (hi - lo) * halton(p + 1, kPrimes[f % std::size(kPrimes)]));
-        }
-        points.push_back(std::move(x));
-    }
-    return points;
-}
-
-/// On the coarsest volume.
-OptimizeState NewtonSearch::spread(const OptimizeState& best) {
+/// The best of starts spread over all opacities, followed downhill; on the coarsest volume.
+std::vector<OptimizeState> NewtonSearch::spread(const OptimizeState& best) {
     const std::size_t level = m_levels.size() - 1;
+    const double least = -std::expm1(-kLeastSpread), most = -std::expm1(-kMostSpread);
     std::vector<OptimizeState> states;
-    std::vector<Point> points = spreadPoints(kSpread);
-    for (Point& x : points)
-        for (std::size_t f = 0; f < x.size(); ++f)
-            if (m_held[f]) x[f] = best.opacity[f];
-    for (std::size_t first = 0; first < points.size(); first += kBatch) {
-        const auto begin = points.begin() + static_cast<std::ptrdiff_t>(first);
-        for (OptimizeState& s : evaluate(level, {begin, begin + kBatch})) states.push_back(std::move(s));
+    for (int first = 0; first < kSpread; first += static_cast<int>(kBatch)) {
+        std::vector<Point> points;
+        for (int p = first; p < first + static_cast<int>(kBatch); ++p) {
+            Point x = best.opacity;
+            for (std::size_t f = 0; f < x.size(); ++f) {
+                if (m_held[f]) continue;
+                const double lo = logDepth(std::max(m_limits[f].lowest, std::min(least, m_limits[f].highest)));
+                const double hi = std::max(lo, logDepth(std::min(m_limits[f].highest, most)));
+                x[f] = -std::expm1(-std::exp(lo + (hi - lo) * halton(p + 1, kPrimes[f % std::size(kPrimes)])));
+                x[f] = std::clamp(x[f], m_limits[f].lowest, m_limits[f].highest);
+            }
+            points.push_back(std::move(x));
+        }
+        for (OptimizeState& s : evaluate(level, points)) states.push_back(std::move(s));
     }
     m_spreadStarts += kSpread;
-    std::stable_sort(states.begin(), states.end(),
-                     [](const auto& a, const auto& b) { return a.objective < b.objective; });
-    OptimizeState found = best;
-    for (std::size_t i = 0; i < kRefined; ++i) {
-        OptimizeState end = descend(level, states[i], kCoarseGoal, kCoarseMoves, false);
-        if (end.objective < found.objective) found = std::move(end);
-        if (found.objective < kCoarseGoal) break;
+    std::stable_sort(states.begin(), states.end(), lower);
+    std::vector<OptimizeState> ends;
+    for (std::size_t i = 0; i < kRefined && mayMove(level); ++i) {
+        m_coarseMoves = 0;
+        ends.push_back(descend(linearize(level, states[i].opacity), level == 0 ? m_goal : kCoarseGoal));
+        if (ends.back().objective < kCoarseGoal) break;
     }
-    return found;
+    std::stable_sort(ends.begin(), ends.end(), lower);
+    return ends;
 }
 
-StopReason NewtonSearch::run(const OptimizeState& start) {
-    const double goal = std::min(kNewtonGoal, m_options.tolerance);
-    const auto reasonOf = [&](double f) { return f < m_options.tolerance ? StopReason::Converged : StopReason::NoProgress; };
-    if (start.objective < goal) return StopReason::Converged;
-    if (m_options.maxIterations == 0) return reasonOf(start.objective) == StopReason::Converged ? StopReason::Converged : StopReason::MaxIterations;
-    const bool coarse = m_levels.size() > 1;
+StopReason NewtonSearch::run(const std::vector<double>& start) {
+    const std::size_t coarsest = m_levels.size() - 1;
+    const Point x = inside(start);
+    // Where the first move is one on the volume, it needs the derivatives there.
+    std::optional<Linear> first;
+    if (coarsest == 0 && x == start) first = linearize(0, x);
+    OptimizeState best = first ? first->state : evaluate(0, {start})[0]; // on the volume
+    m_arrive(best);
 
-    OptimizeState best = start; // on the volume
-    const auto fullMoves = [&] { return m_options.maxIterations - m_moves; };
-    const auto arriveAt = [&](const Point& x) {
-        OptimizeState state = evaluate(0, {x})[0];
-        ++m_moves;
-        m_arrive(state);
-        return state;
+    const auto done = [&] { return best.objective < m_goal || !mayMove(0); };
+    const auto consider = [&](OptimizeState state) {
+        if (lower(state, best)) best = std::move(state);
     };
-
-    Point x = inside(start.opacity);
-    if (coarse) {
-        for (std::size_t level = m_levels.size() - 1; level > 0; --level) {
-            OptimizeState state = evaluate(level, {x})[0];
-            state = descend(level, std::move(state), kCoarseGoal, kCoarseMoves, true);
-            if (level + 1 == m_levels.size() && state.objective >= kCoarseGoal) {
-                const OptimizeState found = spread(state);
-                if (found.objective < state.objective) m_arrive(found);
-                if (found.objective < state.objective) state = found;
-            }
-            x = state.opacity;
+    bool spreadOut = !m_options.restarts;
+    const auto spreadFrom = [&](const OptimizeState& from) {
+        spreadOut = true;
+        return spread(from);
+    };
+    if (!done() && coarsest > 0) {
+        OptimizeState state = descend(linearize(coarsest, x), kCoarseGoal);
+        if (state.objective >= kCoarseGoal && !spreadOut) {
+            auto ends = spreadFrom(state);
+            if (!ends.empty() && lower(ends[0], state)) state = std::move(ends[0]);
         }
-    }
-    OptimizeState at = x == start.opacity ? start : arriveAt(x);
-    at = descend(0, std::move(at), goal, fullMoves(), true);
-    if (at.objective < best.objective) best = at;
-    if (best.objective >= goal && !coarse && fullMoves() > 0) {
-        const OptimizeState found = spread(best);
-        if (found.objective < best.objective) {
-            m_arrive(found);
-            ++m_moves;
-            best = found;
+        consider(refined(std::move(state)));
+    } else if (!done()) {
+        if (!first) {
+            first = linearize(0, x);
+            arrive(first->state);
         }
+        consider(descend(std::move(*first), m_goal));
     }
-    if (best.objective >= m_options.tolerance && fullMoves() <= 0) return StopReason::MaxIterations;
-    return reasonOf(best.objective);
+    if (!done() && !spreadOut)
+        for (OptimizeState& end : spreadFrom(best))
+            if (!done()) consider(refined(std::move(end)));
+    if (best.objective < m_options.tolerance) return StopReason::Converged;
+    return mayMove(0) ? StopReason::NoProgress : StopReason::MaxIterations;
 }
 
 } // namespace pellucid

@@ -316,10 +316,13 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     if (options.coarse) levels.insert(levels.end(), problem.coarser.begin(), problem.coarser.end());
     NewtonSearch newton(levels, result.targets, limits, options, job, arrive);
     try {
-        arrive(search.evaluate({within(limits, featureOpacities(function.base()))})[0]);
-        result.reason = options.method == SearchMethod::Newton
-                            ? newton.run(OptimizeState(result.history.front()))
-                            : descend(search, result.history, result.best, options, job, arrive);
+        const std::vector<double> start = within(limits, featureOpacities(function.base()));
+        if (options.method == SearchMethod::Newton) {
+            result.reason = newton.run(start);
+        } else {
+            arrive(search.evaluate({start})[0]);
+            result.reason = descend(search, result.history, result.best, options, job, arrive);
+        }
     } catch (const Cancelled&) {
         result.reason = StopReason::Cancelled;
     }

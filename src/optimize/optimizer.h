@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "optimize/coverage.h"
 #include "optimize/objective.h"
 
 namespace pellucid {
@@ -80,6 +81,7 @@ struct OptimizeResult {
     int evaluations = 0;                ///< of W, on any level
     int spreadStarts = 0;               ///< Newton: starts tried all over the opacities, because it was stuck
     StopReason reason = StopReason::MaxIterations;
+    std::optional<Seen> seen = {}; ///< of `tf`: of those who ask for it (visible_answer.h)
 
     int iterations() const;       ///< moves on the volume
     int coarseIterations() const; ///< states on coarser ones

@@ -260,7 +260,7 @@ MapLayout layoutOf(const ParameterSpace& space, const SpaceView& view) {
     const double left = make.margin + cap * (1 + 0.7 + widestTick(space.axes.ticks(5)) + 1.0);
     const double right = view.width - make.margin - cap * (labels + 0.9 + 1.3 + 1.5);
     const double bottom = view.height - make.margin - cap * (1 + 0.8 + 1 + 1.0);
-    const double top = make.margin + rowHeight(make) * static_cast<double>(rowsOf(space, view).size());
+    const double top = make.margin + rowHeight(make) * (0.5 + static_cast<double>(rowsOf(space, view).size()));
     const double side = std::max(8.0, std::floor(std::min(right - left, bottom - top)));
     const double x = std::floor(left + std::max(0.0, right - left - side) / 2);
     const double y = std::floor(top + std::max(0.0, bottom - top - side) / 2);

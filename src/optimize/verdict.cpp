@@ -11,10 +11,11 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kHelps = 0.005;      ///< of F: less is not worth a word
-constexpr double kAtBound = 1e-3;     ///< of opacity, relative
-constexpr double kNothing = 1e-9;     ///< part of all visibility, or of all saliency
-constexpr std::size_t kMostHelps = 3; ///< of one kind, in words
+constexpr double kHelps = 0.005;          ///< of F: less is not worth a word
+constexpr double kAtBound = 1e-3;         ///< of opacity, relative
+constexpr double kNothing = 1e-9;         ///< part of all visibility, or of all saliency
+constexpr std::size_t kMostHelps = 3;     ///< of one kind, in words
+constexpr std::size_t kViewsVerified = 3; ///< on the whole volume, until one helps
 
 /// Around the volume: six sides and eight corners, degrees.
 std::vector<ViewAngles> viewsAround(double zoom) {
@@ -173,6 +174,16 @@ std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& probl
 
 } // namespace
 
+const char* name(LimitReason reason) {
+    constexpr std::array kNames{"locked", "lowest", "highest", "out-of-sight", "no-contrast"};
+    return kNames[static_cast<std::size_t>(reason)];
+}
+
+const char* name(ReachHelp::Kind kind) {
+    constexpr std::array kNames{"release", "view", "color", "clipping"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
 Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vector<double>& targets,
                 const OptimizeResult& found, const VerdictOptions& options, const JobControl& job) {
     const std::size_t n = problem.tf.features.size();
@@ -186,7 +197,7 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
         if (!reason || problem.tf.features[j].hidden) continue;
         ReachProblem released = problem;
         released.limits[j] = {};
-        const double objective = objectiveAt(tools.solve(released, job));
+        const double objective = objectiveAt(tools.solve(released, false, job));
         if (!helps(objective)) continue;
         verdict.limits.push_back({j, *reason, objective});
         verdict.helps.push_back({ReachHelp::Kind::Release, j, {}, {}, objective});
@@ -206,7 +217,7 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
         ReachProblem recolored = problem;
         const Rgb color = contrasting(problem.tf.features[i].color);
         recolored.tf = withColor(problem.tf, i, color);
-        if (const double objective = objectiveAt(tools.solve(recolored, job)); helps(objective))
+        if (const double objective = objectiveAt(tools.solve(recolored, false, job)); helps(objective))
             verdict.helps.push_back({ReachHelp::Kind::Color, i, {}, color, objective});
     }
     // What is not there limits more than what is held.
@@ -217,25 +228,36 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
     if (!problem.view.clipping.isNone()) {
         ReachProblem whole = problem;
         whole.view.clipping = {};
-        if (const double objective = objectiveAt(tools.solve(whole, job)); helps(objective))
+        if (const double objective = objectiveAt(tools.solve(whole, false, job)); helps(objective))
             verdict.helps.push_back({ReachHelp::Kind::Clipping, 0, {}, {}, objective});
     }
     // Where every limit could be lifted by a word, no other view is needed; elsewhere the best of those around.
     const bool held = !verdict.limits.empty() || outOfSight;
     if (options.otherViews && held) {
         const Camera& camera = problem.view.camera;
-        std::optional<ReachHelp> best;
-        const std::vector<ViewAngles> around = viewsAround(viewAngles(camera, tools.geometry()).zoom);
+        const double zoom = std::min(viewAngles(camera, tools.geometry()).zoom, 1.0);
+        const auto seenFrom = [&](const ViewAngles& angles) {
+            ReachProblem other = problem;
+            other.view.camera =
+                cameraFromView(tools.geometry(), angles.azimuth, angles.elevation, angles.zoom, camera.projection);
+            return other;
+        };
+        std::vector<ReachHelp> promising;
+        const std::vector<ViewAngles> around = viewsAround(zoom);
         for (std::size_t k = 0; k < around.size(); ++k) {
             job.report(static_cast<double>(k) / static_cast<double>(around.size()));
-            ReachProblem other = problem;
-            other.view.camera = cameraFromView(tools.geometry(), around[k].azimuth, around[k].elevation,
-                                               std::min(around[k].zoom, 1.0), camera.projection);
-            const double objective = objectiveAt(tools.solve(other, job));
-            if (helps(objective) && (!best || objective < best->objective - kHelps))
-                best = ReachHelp{ReachHelp::Kind::View, 0, around[k], {}, objective};
+            const double objective = objectiveAt(tools.solve(seenFrom(around[k]), true, job));
+            promising.push_back({ReachHelp::Kind::View, 0, around[k], {}, objective});
         }
-        if (best) verdict.helps.push_back(*best);
+        std::stable_sort(promising.begin(), promising.end(), nearer);
+        for (std::size_t k = 0; k < kViewsVerified; ++k) {
+            ReachHelp& help = promising[k];
+            if (!helps(help.objective)) break;
+            help.objective = objectiveAt(tools.solve(seenFrom(*help.view), false, job));
+            if (!helps(help.objective)) continue;
+            verdict.helps.push_back(help);
+            break;
+        }
     }
     std::stable_sort(verdict.helps.begin(), verdict.helps.end(), nearer);
     verdict.sentences = sentencesOf(verdict, problem, targets, options.tolerance);

@@ -27,6 +27,8 @@ enum class LimitReason {
     NoContrast  ///< it is in sight, but its colour is that of its surroundings: no saliency
 };
 
+const char* name(LimitReason reason); ///< "locked", "lowest", "highest", "out-of-sight", "no-contrast"
+
 struct ReachLimit {
     std::size_t feature = 0;
     LimitReason reason = LimitReason::Locked;
@@ -44,6 +46,8 @@ struct ReachHelp {
     double objective = 0;                ///< F that is reached with it
 };
 
+const char* name(ReachHelp::Kind kind); ///< "release", "view", "color", "clipping"
+
 struct Verdict {
     double objective = 0;               ///< F of the nearest shares that can be reached
     std::vector<double> vws;            ///< these shares
@@ -59,8 +63,8 @@ class VerdictTools {
 public:
     virtual ~VerdictTools() = default;
     virtual const Geometry& geometry() const = 0;
-    /// The global search to the targets that the verdict is about.
-    virtual OptimizeResult solve(const ReachProblem& problem, const JobControl& job) = 0;
+    /// The search to the targets that the verdict is about; `rough`: on a coarser copy of the volume will do.
+    virtual OptimizeResult solve(const ReachProblem& problem, bool rough, const JobControl& job) = 0;
     /// Sums, weighted by saliency, of candidates: opacities of the features.
     virtual std::vector<FeatureSums>
     sums(const ReachProblem& problem, const std::vector<std::vector<double>>& candidates, const JobControl& job) = 0;
@@ -72,7 +76,7 @@ struct VerdictOptions {
 };
 
 /// Of a search that has ended above the tolerance: `found` is the answer of a global search of `problem`. Nothing is
-/// said that was not tried: every F is one that a search has reached. Throws Cancelled.
+/// said that was not tried: every F is one that a search of the whole volume has reached. Throws Cancelled.
 Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vector<double>& targets,
                 const OptimizeResult& found, const VerdictOptions& options = {}, const JobControl& job = {});
 

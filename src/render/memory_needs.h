@@ -12,6 +12,8 @@ namespace pellucid {
 inline constexpr double kMeasureBytesPerVoxel = 8, kLeanMeasureBytesPerVoxel = 2;
 /// 4 more for the visibility that is written. Lean: likewise, and for each weight in its turn.
 inline constexpr double kFieldsBytesPerVoxel = 12, kLeanFieldsBytesPerVoxel = 10;
+/// A field that is drawn: its values as floats while they become a volume of floats, later that and its codes.
+inline constexpr double kFieldBytesPerVoxel = 8;
 /// The reference engine keeps intensities as doubles, and which are valid, in the place of codes: so much more.
 inline constexpr double kMoreByReferenceBytesPerVoxel = 5, kLeanMoreByReferenceBytesPerVoxel = 8;
 /// The published profile's weights are never compact.
@@ -23,6 +25,13 @@ inline MemoryUse toMeasure(std::string doing) {
     return {std::move(doing), kMeasureBytesPerVoxel, kLeanMeasureBytesPerVoxel};
 }
 inline MemoryUse toWriteFields() { return {"measuring", kFieldsBytesPerVoxel, kLeanFieldsBytesPerVoxel}; }
+/// Beside what measuring takes, `weightsToo` where that has not been taken yet.
+inline MemoryUse toDrawField(bool weightsToo) {
+    return {"a field of", kFieldBytesPerVoxel + (weightsToo ? 4 : 0), kFieldBytesPerVoxel + (weightsToo ? 1 : 0)};
+}
+inline MemoryUse toMeasureAndDrawField() {
+    return {"a field of", kMeasureBytesPerVoxel + kFieldBytesPerVoxel, kLeanMeasureBytesPerVoxel + kFieldBytesPerVoxel};
+}
 inline MemoryUse toView(std::string doing) { return {std::move(doing), kViewBytesPerVoxel, kLeanViewBytesPerVoxel}; }
 /// The same by the reference engine.
 inline MemoryUse byReference(MemoryUse use) {

@@ -72,13 +72,4 @@ std::string csvOf(std::span<const Run* const> runs) {
     return csv;
 }
 
-std::string csvOf(const Plot& plot) {
-    std::string csv = "series," + csvField(plot.x.label) + "," + csvField(plot.y.label) + "\n";
-    for (const PlotSeries& s : plot.series) {
-        if (s.name.empty()) continue;
-        for (const PlotPoint& p : s.points) csv += csvField(s.name) + "," + number(p.x) + "," + number(p.y) + "\n";
-    }
-    return csv;
-}
-
 } // namespace pellucid

@@ -4,7 +4,6 @@
 #include <span>
 #include <string>
 
-#include "report/plot.h"
 #include "session/session.h"
 
 namespace pellucid {
@@ -16,8 +15,5 @@ std::string csvField(const std::string& text);
 /// feature its VWS, its target and its opacity. Features of several runs are found by their names; where a run has no
 /// such feature the fields are empty. Numbers with all their digits.
 std::string csvOf(std::span<const Run* const> runs);
-
-/// A line per point of each named series of a plot: series, x, y.
-std::string csvOf(const Plot& plot);
 
 } // namespace pellucid

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "report/convergence.h"
 #include "report/csv.h"
@@ -77,6 +78,9 @@ Plot tfPlot(const Report& report, const TransferFunction& tf, double most) {
         PlotSeries series{.name = f.name, .color = f.color, .points = {{value(f.a), tf.opacity(f.a)}}};
         for (const ControlPoint& p : tf.points)
             if (f.contains(p.x)) series.points.push_back({value(p.x), p.opacity});
+        // Its end belongs to what follows.
+        const double end = f.b < 1 ? std::nextafter(f.b, 0.0) : 1;
+        series.points.push_back({value(end), tf.opacity(end)});
         plot.series.push_back(series);
     }
     return plot;

@@ -16,7 +16,7 @@ struct PlotPoint {
 };
 
 struct PlotSeries {
-    std::string name;              ///< in the legend and in exported tables; empty: in neither
+    std::string name;              ///< in the legend; empty: not in it
     std::optional<Rgb> color = {}; ///< empty: that of texts
     bool dashed = false;
     bool dotted = false;           ///< a dot at each point

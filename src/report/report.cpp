@@ -72,19 +72,23 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const ReportRequest&
         {"View", shortText(view.azimuth) + "°, " + shortText(view.elevation) + "°, zoom " + shortText(view.zoom) +
                      (scene.camera.projection == Projection::Orthographic ? ", orthographic" : ", perspective")}};
     if (!(*scene.session.clipping == Clipping{})) rows.emplace_back("Clipped", "yes");
-    rows.insert(
-        rows.end(),
-        {{"Engine", engine + ", quality " + name(m.quality)},
-         {"Saliency", "σ = " + shortText(m.saliency.sigma) + " d0, kernel " +
-                          (m.saliency.kernel == SaliencyKernel::Narrow ? "narrow" : "thesis") +
-                          ", w1 = " + shortText(m.saliency.w1) + ", w2 = " + shortText(m.saliency.w2)},
-         {"Shares of brightness and saturation", "u1 = " + shortText(m.vws.u1) + ", u2 = " + shortText(m.vws.u2)},
-         {"Method", name(o.method)},
-         {"Direction", name(o.direction) + std::string(", normalized: ") + yesNo(o.normalize)},
-         {"Step", shortText(o.step)},
-         {"Tolerance", "F < " + shortText(o.tolerance)},
-         {"Most moves", std::to_string(o.maxIterations)},
-         {"Coarse to fine", yesNo(o.coarse)}});
+    if (m.profile == Profile::Published)
+        rows.emplace_back("Definitions", std::string("published profile, along ") + name(m.along) +
+                                             "; the view is that of the pictures alone");
+    else
+        rows.insert(
+            rows.end(),
+            {{"Engine", engine + ", quality " + name(m.quality)},
+             {"Saliency", "σ = " + shortText(m.saliency.sigma) + " d0, kernel " +
+                              (m.saliency.kernel == SaliencyKernel::Narrow ? "narrow" : "thesis") +
+                              ", w1 = " + shortText(m.saliency.w1) + ", w2 = " + shortText(m.saliency.w2)},
+             {"Shares of brightness and saturation", "u1 = " + shortText(m.vws.u1) + ", u2 = " + shortText(m.vws.u2)}});
+    rows.insert(rows.end(), {{"Method", name(o.method)},
+                             {"Direction", name(o.direction) + std::string(", normalized: ") + yesNo(o.normalize)},
+                             {"Step", shortText(o.step)},
+                             {"Tolerance", "F < " + shortText(o.tolerance)},
+                             {"Most moves", std::to_string(o.maxIterations)},
+                             {"Coarse to fine", yesNo(o.coarse)}});
     if (o.coverage) rows.emplace_back("Wanted coverage", shortText(*o.coverage));
     if (request.run.evaluations > 0) rows.emplace_back("Evaluations of W", std::to_string(request.run.evaluations));
     if (request.run.seconds > 0) rows.emplace_back("Time", shortText(request.run.seconds) + " s");

@@ -60,9 +60,9 @@ struct ReportRequest {
     Scene scene;                   ///< as it was at the start: see sceneAtStart()
     int width = 512, height = 512; ///< of the two large pictures, pixels
     std::size_t mostStates = 40;   ///< pictures of states; of a longer run evenly chosen ones
-    std::vector<std::string> remarks;
-    std::string command, program;
-    std::optional<Session> session; ///< see Report
+    std::vector<std::string> remarks = {};
+    std::string command = {}, program = {};
+    std::optional<Session> session = {}; ///< see Report
 };
 
 /// The session that `run` began in, with the data and looks of `now`; `run` has a start.

@@ -9,7 +9,7 @@ namespace {
 constexpr int kMovesAtOnce = 1;  ///< of an update while things move
 constexpr int kMovesAtRest = 12; ///< enough from nearby
 
-LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, const JobControl& job) {
+LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, bool coarse, const JobControl& job) {
     OptimizeOptions options = held.options;
     options.method = SearchMethod::Newton; // from nearby it arrives in a move or two
     options.coverage.reset();
@@ -17,7 +17,7 @@ LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, cons
     options.restarts = false;
     options.tolerance = std::min(options.tolerance, kLiveGoal);
     options.maxIterations = moves;
-    const OptimizeResult result = workspace.optimize(held.input, held.targets, held.limits, options, job);
+    const OptimizeResult result = workspace.approach(held.input, held.targets, held.limits, options, coarse, job);
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     const OptimizeState& best = result.history[result.best];
     return {best.opacity, best.vws, best.objective};
@@ -26,11 +26,11 @@ LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, cons
 } // namespace
 
 LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job) {
-    return update(workspace, held, kMovesAtOnce, job);
+    return update(workspace, held, kMovesAtOnce, true, job);
 }
 
 LiveUpdate settleTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job) {
-    return update(workspace, held, kMovesAtRest, job);
+    return update(workspace, held, kMovesAtRest, false, job);
 }
 
 } // namespace pellucid

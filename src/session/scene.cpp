@@ -1,9 +1,11 @@
 #include "session/scene.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "optimize/first_sight.h"
 #include "render/published_engine.h"
+#include "tf/color_maps.h"
 #include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
@@ -80,13 +82,19 @@ void forgetStart(Session& session) {
 
 } // namespace
 
-int Scene::onlyFeature() const {
-    const FeatureId id = session.display->onlyFeature;
+namespace {
+
+int indexOf(const std::vector<Feature>& features, FeatureId id) {
     if (id == 0) return -1;
-    for (std::size_t i = 0; i < tf.features.size(); ++i)
-        if (tf.features[i].id == id) return static_cast<int>(i);
+    for (std::size_t i = 0; i < features.size(); ++i)
+        if (features[i].id == id) return static_cast<int>(i);
     return -1;
 }
+
+} // namespace
+
+int Scene::onlyFeature() const { return indexOf(tf.features, session.display->onlyFeature); }
+int Scene::fieldFeature() const { return indexOf(tf.features, session.field->feature); }
 
 Session sessionOf(const VolumeSource& source) {
     Session session;
@@ -257,6 +265,99 @@ PictureInput pictureInput(const Scene& scene, int width, int height, bool transp
     s.light = display.light;
     s.clipping = *scene.session.clipping;
     s.onlyFeature = scene.onlyFeature();
+    return input;
+}
+
+double topOf(const FieldView& view, const Field& field) { return view.top.value_or(field.top); }
+
+TransferFunction fieldTf(const FieldView& view, std::span<const Feature> features) {
+    TransferFunction tf;
+    const auto add = [&](double x, double opacity, const Rgb& color) {
+        tf.points.push_back({x, opacity, color, false, {}});
+    };
+    const auto feature = std::find_if(features.begin(), features.end(),
+                                      [&](const Feature& f) { return f.id != 0 && f.id == view.feature; });
+    const bool ownColor = view.colorMap == kFeatureColorMap && feature != features.end();
+    const auto colorAt = [&](double t) -> Rgb {
+        if (!ownColor) return {};
+        const Rgb& c = feature->color;
+        const double w = std::max(0.0, 2 * t - 1), dark = std::min(1.0, 2 * t);
+        return {c.r * dark + (1 - c.r) * w, c.g * dark + (1 - c.g) * w, c.b * dark + (1 - c.b) * w};
+    };
+    const double t = view.threshold;
+    add(0, 0, colorAt(0));
+    if (t > 0) add(t, 0, colorAt(t));
+    if (ownColor && t < 0.5) add(0.5, view.strength * (0.5 - t) / (1 - t), colorAt(0.5));
+    add(1, view.strength, colorAt(1));
+    if (!ownColor)
+        tf = withColorMap(tf, colorMapNamed(view.colorMap == kFeatureColorMap ? FieldView{}.colorMap : view.colorMap));
+    return tf;
+}
+
+namespace {
+
+/// `tf` over values 0 … top, written for the window 0 … `largest`.
+TransferFunction stretched(TransferFunction tf, double top, double largest) {
+    const double scale = top / largest;
+    std::vector<ControlPoint> points;
+    for (ControlPoint& p : tf.points) {
+        if (p.x * scale > 1) { // the colours reach beyond all values: cut off where those end
+            const ControlPoint& before = points.back();
+            const double t = (1 - before.x) / (p.x * scale - before.x);
+            points.push_back(
+                {1,
+                 before.opacity + t * (p.opacity - before.opacity),
+                 {before.color.r + t * (p.color.r - before.color.r), before.color.g + t * (p.color.g - before.color.g),
+                  before.color.b + t * (p.color.b - before.color.b)},
+                 false,
+                 {}});
+            break;
+        }
+        p.x *= scale;
+        points.push_back(p);
+    }
+    if (points.back().x < 1) {
+        points.push_back(points.back());
+        points.back().x = 1;
+    }
+    tf.points = std::move(points);
+    return tf;
+}
+
+} // namespace
+
+TransferFunction fieldSliceTf(TransferFunction tf) {
+    // Up to the last transparent point nothing is; from there on, all of it.
+    std::size_t first = 0;
+    while (first + 1 < tf.points.size() && tf.points[first + 1].opacity == 0) ++first;
+    for (std::size_t i = first; i < tf.points.size(); ++i) tf.points[i].opacity = 1;
+    if (first > 0) {
+        ControlPoint end = tf.points[first];
+        end.opacity = 0;
+        tf.points.insert(tf.points.begin() + static_cast<std::ptrdiff_t>(first), end);
+    }
+    return tf;
+}
+
+PictureInput fieldPictureInput(const Scene& scene, const Field& field, int width, int height, bool transparent) {
+    PictureInput input = plainPictureInput(scene, width, height);
+    const FieldView& view = *scene.session.field;
+    input.volume = field.volume;
+    input.tf = stretched(fieldTf(view, scene.tf.features), topOf(view, field), field.volume->range().hi);
+    if (!transparent) {
+        input.settings.background = scene.session.display->background;
+        input.settings.backgroundTop = scene.session.display->backgroundTop;
+    }
+    return input;
+}
+
+AnnotationInput fieldAnnotationInput(const PictureInput& picture, const Scene& scene, const Field& field,
+                                     FrameOfReference show, double density) {
+    show.legend = show.title = true;
+    AnnotationInput input = annotationInput(picture, show, density);
+    const FieldView& view = *scene.session.field;
+    input.window = {0, topOf(view, field)};
+    input.tf = fieldTf(view, scene.tf.features);
     return input;
 }
 

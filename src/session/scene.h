@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "render/annotation.h"
@@ -31,6 +32,8 @@ struct Scene {
     std::vector<double> targets() const { return targetsOf(tf, *session.goals); }
     /// Index in tf.features of the feature that is drawn alone; −1: all are.
     int onlyFeature() const;
+    /// Index of the feature whose field is drawn, −1: of all.
+    int fieldFeature() const;
 };
 
 /// In place of a transfer function: what the data themselves propose (docs/method.md, "The automatic start").
@@ -117,6 +120,17 @@ struct PictureInput {
 /// Samples at half of d0 (quality high: a quarter). `transparent`: without the background.
 PictureInput pictureInput(const Scene& scene, int width, int height, bool transparent = false);
 
+/// A field in the place of the data: its values under the colours of the session's FieldView, in the same view, by
+/// emission and absorption and without light.
+PictureInput fieldPictureInput(const Scene& scene, const Field& field, int width, int height, bool transparent = false);
+/// What a field is drawn as over intensities 0 … 1, which are the values 0 … topOf(): colours of the map, opacity 0 up
+/// to the threshold and rising evenly to the strength. `features`: those that FieldView::feature is one of.
+TransferFunction fieldTf(const FieldView& view, std::span<const Feature> features);
+/// The same for a slice, where colours alone tell: opaque wherever something is drawn.
+TransferFunction fieldSliceTf(TransferFunction tf);
+/// The value that the colours reach to.
+double topOf(const FieldView& view, const Field& field);
+
 /// The same with the colours of the transfer function alone: no light, no background, no single feature. What a region
 /// is made of that someone draws in the picture (regionColors()).
 PictureInput plainPictureInput(const Scene& scene, int width, int height);
@@ -124,5 +138,8 @@ PictureInput plainPictureInput(const Scene& scene, int width, int height);
 /// Everything that what stands around a picture depends on; the picture has a volume. `density`: pixels of the picture
 /// in which lengths of the screen are one.
 AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density = 1);
+/// Of a picture of a field: its name and a legend of its colours too, unless `show` switches everything off.
+AnnotationInput fieldAnnotationInput(const PictureInput& picture, const Scene& scene, const Field& field,
+                                     FrameOfReference show, double density = 1);
 
 } // namespace pellucid

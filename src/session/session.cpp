@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "tf/color_maps.h"
 #include "tf/shown_tf.h"
 
 namespace pellucid {
@@ -24,6 +25,15 @@ RefineOptions RefineSettings::options() const {
     options.maxIterations = maxIterations;
     options.method = method;
     return options;
+}
+
+void checkFieldColorMap(const std::string& name) {
+    if (name == kFeatureColorMap) return;
+    try {
+        colorMapNamed(name);
+    } catch (const UsageError& e) {
+        throw UsageError(e.problem(), e.where(), e.whatToDo() + "; or " + kFeatureColorMap);
+    }
 }
 
 const TransferFunction* Session::tf() const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "optimize/fields.h"
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
 #include "render/annotation.h"
@@ -109,6 +110,20 @@ struct SliceViews {
     bool operator==(const SliceViews&) const = default;
 };
 
+/// A field in the place of the data in the picture, under colours of its own. No figure depends on it.
+struct FieldView {
+    std::optional<FieldKind> kind;  ///< empty: the data
+    FeatureId feature = 0;          ///< of its voxels alone; 0: of all
+    std::string colorMap = "ember"; ///< one of colorMaps(), or kFeatureColorMap
+    double strength = 0.3;          ///< opacity of a path of d0 at `top`, (0,1]
+    double threshold = 0;           ///< of `top`, [0,1): up to there nothing is drawn
+    std::optional<double> top;      ///< value that the colours reach to, > 0, in the field's unit; empty: Field::top
+    bool operator==(const FieldView&) const = default;
+};
+/// In place of a colour map: from black over the feature's colour to white; of all features, the default map.
+inline constexpr const char* kFeatureColorMap = "feature";
+/// Throws UsageError where `name` is no colour map and not kFeatureColorMap.
+void checkFieldColorMap(const std::string& name);
 /// What an optimization began with: enough to do it again with the same data.
 struct RunStart {
     TransferFunction tf; ///< as people edit it, in its own range; without points: not known
@@ -156,6 +171,7 @@ struct Session {
     Part<OptimizeOptions> optimize;
     Part<RefineSettings> refine;
     Part<SliceViews> slices;
+    Part<FieldView> field;       ///< what is drawn in the place of the data
     Part<std::vector<Run>> runs; ///< the latest last, at most kMostRuns
     std::string extraJson;       ///< unknown keys of the file it came from, as one JSON object; written back
 

@@ -430,6 +430,38 @@ SliceViews toSlices(const JsonValue& j) {
     return s;
 }
 
+json fromField(const FieldView& f) {
+    json j{{"feature", f.feature}, {"color_map", f.colorMap}, {"strength", f.strength}, {"threshold", f.threshold}};
+    if (f.kind) j["kind"] = name(*f.kind);
+    if (f.top) j["top"] = *f.top;
+    return j;
+}
+
+FieldView toField(const JsonValue& j) {
+    j.requireObject();
+    FieldView f;
+    if (j.has("kind")) f.kind = named(j["kind"], fieldKindFromName);
+    if (j.has("feature")) f.feature = static_cast<FeatureId>(j["feature"].integer(0, INT64_MAX / 2));
+    if (j.has("color_map"))
+        f.colorMap = named(j["color_map"], [](const std::string& text) {
+            checkFieldColorMap(text);
+            return text;
+        });
+    if (j.has("strength")) {
+        f.strength = j["strength"].number(0, 1);
+        if (f.strength == 0) j["strength"].fail("a strength is above 0");
+    }
+    if (j.has("threshold")) {
+        f.threshold = j["threshold"].number(0, 1);
+        if (f.threshold == 1) j["threshold"].fail("a threshold is below 1");
+    }
+    if (j.has("top")) {
+        f.top = j["top"].number(0, kHuge);
+        if (*f.top == 0) j["top"].fail("the top is above 0");
+    }
+    return f;
+}
+
 /// A vector of the world.
 Vec3 toWorld(const JsonValue& j) { return toVec(j, -1e30, 1e30); }
 
@@ -629,6 +661,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"optimize", fromOptimize(*s.optimize)},
            {"refine", fromRefine(*s.refine)},
            {"slices", fromSlices(*s.slices)},
+           {"field", fromField(*s.field)},
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
@@ -657,6 +690,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("optimize")) s.optimize = toOptimize(j["optimize"]);
     if (j.has("refine")) s.refine = toRefine(j["refine"]);
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
+    if (j.has("field")) s.field = toField(j["field"]);
     if (j.has("runs")) {
         std::vector<Run> runs;
         int highest = 0;
@@ -669,8 +703,9 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         }
         s.runs = std::move(runs);
     }
-    s.extraJson = j.unknownKeys({"format", "version", "variables", "frame", "features", "hold_targets", "camera", "clip",
-                                 "display", "reference", "measure", "optimize", "refine", "slices", "runs", "title"});
+    s.extraJson =
+        j.unknownKeys({"format", "version", "variables", "frame", "features", "hold_targets", "camera", "clip",
+                       "display", "reference", "measure", "optimize", "refine", "slices", "field", "runs", "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -2,31 +2,27 @@
 
 #include <algorithm>
 
-#include <glm/common.hpp>
-
 #include "base/check.h"
 #include "volume/excerpt.h"
 
 namespace pellucid {
 
+namespace {
+
+/// `number`: of a run that has none.
+std::string nameOf(const Run& run, int number) {
+    if (!run.name.empty()) return run.name;
+    return "run " + std::to_string(run.number > 0 ? run.number : number) +
+           (run.hasStart() ? std::string(", ") + name(run.start->options.method) : std::string());
+}
+
+} // namespace
+
 MeasureInput coarserInput(const MeasureInput& input, int factor) {
     PELLUCID_CHECK(factor >= 1);
     if (factor == 1) return input;
-    const Volume& whole = *input.volume;
-    ExcerptPlan plan;
-    plan.region = {Int3(0), whole.dims()};
-    plan.factors = glm::min(Int3(factor), whole.dims());
-    plan.dims = (whole.dims() + plan.factors - 1) / plan.factors;
-    plan.excerpt = {whole.dims(), plan.region, factor, false};
-    const Volume coarse = excerptOf(whole, plan);
-    Geometry geometry = coarse.geometry();
-    geometry.referenceLength = whole.geometry().d0();
-    Volume volume(geometry, coarse.samples(), coarse.missing());
-    volume.title = whole.title;
-    volume.format = whole.format;
-    volume.excerpt = plan.excerpt;
     MeasureInput coarser = input;
-    coarser.volume = std::make_shared<const Volume>(throughWindowOf(std::move(volume), whole.range()));
+    coarser.volume = std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
     return coarser;
 }
 
@@ -44,7 +40,7 @@ std::vector<SpacePath> pathsOfRuns(const std::vector<Run>& runs, const TransferF
         if (std::any_of(axes.features.begin(), axes.features.end(),
                         [&](std::size_t f) { return placeOf(f) == run.features.size(); }))
             continue;
-        SpacePath path{"run " + std::to_string(number), pathColor(paths.size()), {}, run.best};
+        SpacePath path{nameOf(run, number), pathColor(paths.size()), {}, run.best};
         for (const OptimizeState& state : run.history) {
             OptimizeState one = state;
             one.opacity.assign(tf.features.size(), 0.0);

@@ -1,8 +1,10 @@
 #include "session/workspace.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "engines/engines.h"
+#include "optimize/visible_answer.h"
 #include "render/memory_needs.h"
 #include "render/published_engine.h"
 #include "saliency/published_saliency.h"
@@ -76,6 +78,18 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
     return m_weights;
 }
 
+const RayBundle& Workspace::rays(const MeasureInput& input, const JobControl& job) {
+    TransferFunction shapes = withFullPeaks(input.tf);
+    if (!m_rays || m_raysVolume != input.volume || !(m_raysView == input.view) || !(m_raysTf == shapes)) {
+        m_rays.reset();
+        m_rays.emplace(*input.volume, input.tf, input.view, kCoverageRays, job);
+        m_raysVolume = input.volume;
+        m_raysView = input.view;
+        m_raysTf = std::move(shapes);
+    }
+    return *m_rays;
+}
+
 const CoarserVolumes& Workspace::coarser(const MeasureInput& input, const JobControl& job) {
     if (!m_coarser) {
         const MeasureSettings& settings = input.settings;
@@ -107,6 +121,13 @@ auto guarded(const Work& work, const Release& release) {
     }
 }
 
+/// The curve is followed on the second copy, where there is one: each has an eighth of the voxels of the one before.
+DensityProblem densityProblem(const VwsFunction& full, const std::vector<std::unique_ptr<VwsFunction>>& coarser,
+                              const RayBundle& rays, const std::vector<OpacityLimits>& limits) {
+    const std::size_t level = std::min<std::size_t>(coarser.size(), 2);
+    return {full, level == 0 ? nullptr : coarser[level - 1].get(), rays, limits, static_cast<int>(level)};
+}
+
 } // namespace
 
 Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
@@ -117,6 +138,7 @@ Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
             const WeightFields& w = weights(input, all ? job.part(0, 2) : job);
             Measures measures =
                 pellucid::measure(e, input.view, input.tf, w, input.settings.vws, all ? job.part(1, 2) : job);
+            measures.coverage = coverageOf(rays(input, {job.stop, {}}), input.tf);
             if (input.settings.profile == Profile::Published) // closed intervals, where bins of a histogram are not
                 measures.features = featureMeasures(e.sums(input.view, {&input.tf, 1}, &w)[0], input.settings.vws);
             m_seconds.visibility = measures.visibilitySeconds;
@@ -145,6 +167,52 @@ OcclusionMatrix Workspace::occlusion(const MeasureInput& input, const JobControl
                    [this] { releaseEngine(); });
 }
 
+std::vector<std::unique_ptr<VwsFunction>>
+Workspace::coarserFunctions(const MeasureInput& input, const OptimizeOptions& options, const JobControl& job) {
+    // The published profile has one slice per voxel plane: a coarser volume is another problem.
+    if ((options.method != SearchMethod::Newton && !options.coverage) || !options.coarse ||
+        input.settings.profile != Profile::Default)
+        return {};
+    return coarser(input, job).functions(input.view, input.tf, input.settings.vws);
+}
+
+Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, const JobControl& job) {
+    return guarded(
+        [&] {
+            const Volume& volume = *input.volume;
+            const bool swept = dependsOnView(kind), weighted = kind != FieldKind::Visibility;
+            VisibilityEngine* const e = swept ? &engine(input) : nullptr;
+            const bool all = weighted && !haveWeights(input);
+            requireMemory(toDrawField(all), volume.title, volume.dims(), volume.sampleType());
+            // Saliency, sweep and what is made of them are about as long.
+            std::size_t done = 0;
+            const std::size_t parts = (all ? 1u : 0u) + (swept ? 1u : 0u) + 1u;
+            const WeightFields* w = nullptr;
+            if (weighted) {
+                w = &weights(input, job.part(done, parts));
+                done += all ? 1 : 0;
+            }
+            Grid<float> values;
+            const auto start = Clock::now();
+            if (swept) {
+                values = e->field(input.view, input.tf, job.part(done++, parts)).values;
+                m_seconds.visibility = secondsSince(start);
+            }
+            const JobControl rest = job.part(done, parts);
+            if (kind == FieldKind::Vws)
+                visibilityToVws(values, *w, input.settings.vws, rest);
+            else if (!swept)
+                values = saliencyGrid(*w, kind, input.settings.vws, rest);
+            const double top = usualTop(values);
+            keepFeature(values, volume, input.tf, feature, rest);
+            rest.throwIfStopped();
+            std::string title = infoOf(kind).title;
+            if (feature >= 0) title += ", " + input.tf.features[static_cast<std::size_t>(feature)].name;
+            return fieldVolume(volume.geometry(), values, top, std::move(title));
+        },
+        [this] { releaseEngine(); });
+}
+
 OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
                                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                                    const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
@@ -156,16 +224,52 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
-            std::vector<std::unique_ptr<VwsFunction>> held;
+            const auto held = coarserFunctions(input, options, job);
             OptimizeProblem problem{function, targets, limits};
-            // The published profile has one slice per voxel plane: a coarser volume is another problem.
-            if (options.method == SearchMethod::Newton && options.coarse &&
-                input.settings.profile == Profile::Default)
-                held = coarser(input, job).functions(input.view, input.tf, input.settings.vws);
             for (const auto& level : held) problem.coarser.push_back(level.get());
             OptimizeResult result = pellucid::optimize(problem, steps, job, watch);
+            // That profile looks along the grid and counts moves; its answer stays as it is.
+            if (steps.publishedSteps) steps.maxIterations = 0;
+            makeVisible(result, densityProblem(function, held, rays(input, {job.stop, {}}), limits), steps,
+                        {job.stop, {}}, watch);
             m_seconds.visibility = secondsSince(start);
             return result;
+        },
+        [this] { releaseEngine(); });
+}
+
+OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<double>& targets,
+                                   const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                   bool coarse, const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, job);
+            const auto start = Clock::now();
+            const EngineVws full(e, input.view, input.tf, w, input.settings.vws);
+            const VwsFunction& base = full;
+            std::vector<std::unique_ptr<VwsFunction>> held;
+            if (coarse) held = coarserFunctions(input, OptimizeOptions{}, job);
+            OptimizeOptions steps = options;
+            steps.publishedSteps = input.settings.profile == Profile::Published;
+            OptimizeResult result =
+                pellucid::optimize({held.empty() ? base : *held.front(), targets, limits}, steps, job);
+            m_seconds.visibility = secondsSince(start);
+            return result;
+        },
+        [this] { releaseEngine(); });
+}
+
+DensityCurve Workspace::densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
+                                     const JobControl& job) {
+    return guarded(
+        [&] {
+            VisibilityEngine& e = engine(input);
+            const WeightFields& w = weights(input, {job.stop, {}});
+            const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
+            const auto held = coarserFunctions(input, OptimizeOptions{}, {job.stop, {}});
+            return pellucid::densityCurve(densityProblem(function, held, rays(input, {job.stop, {}}), limits),
+                                          featureOpacities(input.tf), {}, job);
         },
         [this] { releaseEngine(); });
 }

@@ -3,11 +3,15 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "optimize/coarser.h"
+#include "optimize/density_curve.h"
+#include "optimize/fields.h"
 #include "optimize/measure.h"
 #include "optimize/occlusion.h"
+#include "optimize/verdict.h"
 #include "session/scene.h"
 
 namespace pellucid {
@@ -25,25 +29,49 @@ public:
     Measures measure(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
+    /// What every voxel contributes, of one kind; where `feature` of the input's transfer function is not −1, of its
+    /// voxels alone, 0 elsewhere. Saliency needs no engine. Throws as measure() does.
+    Field field(const MeasureInput& input, FieldKind kind, int feature = -1, const JobControl& job = {});
     /// Who hides whom.
     OcclusionMatrix occlusion(const MeasureInput& input, const JobControl& job = {});
-    /// `limits`: one per feature, or empty.
+    /// `limits`: one per feature, or empty. The answer is made visible, see makeVisible().
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                             const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
 
+    /// Why the answer of optimize() of this input is not on target, and what would help. Throws as measure() does.
+    Verdict explain(const MeasureInput& input, const std::vector<double>& targets,
+                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                    const OptimizeResult& found, const JobControl& job = {});
+
+    /// The same from nearby, as shares alone want it: no other picture's strength is looked for. `coarse`: on the copy of
+    /// half the resolution and nothing else, where there is one.
+    OptimizeResult approach(const MeasureInput& input, const std::vector<double>& targets,
+                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool coarse,
+                            const JobControl& job = {});
+
+    /// Through the opacities of the input's transfer function, with the shares that it has.
+    DensityCurve densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
+                              const JobControl& job = {});
+
     VisibilityEngine& engine(const MeasureInput& input);
     /// The fields depend on colours and features alone, so that they outlive changes of opacity.
     const WeightFields& weights(const MeasureInput& input, const JobControl& job = {});
+    /// What coverage is computed from. Kept until volume, view or features are others.
+    const RayBundle& rays(const MeasureInput& input, const JobControl& job = {});
     /// Its memory, and that of the volume it was made for, is wanted for something else.
     void releaseEngine();
 
     const Seconds& seconds() const { return m_seconds; } ///< of the latest computation
 
 private:
+    friend class WorkspaceTools;
     bool haveWeights(const MeasureInput& input) const;
     /// Of the volume that engine() and weights() are of now.
     const CoarserVolumes& coarser(const MeasureInput& input, const JobControl& job);
+    /// None where the options want none; they refer to coarser().
+    std::vector<std::unique_ptr<VwsFunction>> coarserFunctions(const MeasureInput& input,
+                                                               const OptimizeOptions& options, const JobControl& job);
 
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
@@ -53,6 +81,10 @@ private:
     TransferFunction m_weightsTf; // its colorsOf()
     SaliencyOptions m_weightsOptions;
     WeightFields m_weights;
+    std::shared_ptr<const Volume> m_raysVolume;
+    View m_raysView;
+    TransferFunction m_raysTf; // with peaks at 1
+    std::optional<RayBundle> m_rays;
     std::unique_ptr<CoarserVolumes> m_coarser; // of m_engineVolume, by its engine's kind
     bool m_coarserWeighted = false;            // by m_weights
     Seconds m_seconds;

@@ -167,7 +167,7 @@ template class LayerMeans<std::int32_t>;
 template class LayerMeans<float>;
 template class LayerMeans<double>;
 
-Volume excerptOf(const Volume& whole, const ExcerptPlan& plan) {
+Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job) {
     const Int3 full = whole.dims(), first = plan.region.lo, size = plan.region.hi - first;
     Samples samples = std::visit(
         [&](const auto& values) -> Samples {
@@ -175,6 +175,7 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan) {
             std::vector<T> kept(voxelCount(plan.dims));
             const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
             parallelFor(static_cast<std::size_t>(plan.dims.z), [&](std::size_t k) {
+                job.throwIfStopped();
                 LayerMeans<T> means({size.x, size.y}, plan.factors, whole.missing());
                 const int z0 = static_cast<int>(k) * plan.factors.z, z1 = std::min(z0 + plan.factors.z, size.z);
                 for (int z = z0; z < z1; ++z)

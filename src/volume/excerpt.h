@@ -9,6 +9,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "base/job.h"
 #include "volume/memory_use.h"
 #include "volume/volume.h"
 
@@ -62,7 +63,8 @@ private:
 };
 
 /// The same part of a volume in memory, with its missing value, title and format; the window stays that of `whole`.
-Volume excerptOf(const Volume& whole, const ExcerptPlan& plan);
+/// Throws Cancelled.
+Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job = {});
 
 /// Means over blocks of `factor`³ voxels (≥ 1) of all of it, which keeps the reference length: opacities, saliency and
 /// figures mean what they do in `whole`, and differ by what the finer voxels say.

@@ -105,6 +105,8 @@ TEST_CASE("bash completes commands, options, values and samples", "[cli][documen
     CHECK(completions("pellucid-cli optimize sample:shells --req") == std::set<std::string>{"--require-converged"});
     CHECK(completions("pellucid-cli measure x.nrrd --engine ") ==
           std::set<std::string>{"auto", "cpu", "gl", "reference", "slices"});
+    CHECK(completions("pellucid-cli render x.nrrd --field sal") ==
+          std::set<std::string>{"saliency", "saliency-brightness", "saliency-saturation"});
     CHECK(completions("pellucid-cli render x.nrrd --mode mi") == std::set<std::string>{"minip", "mip"});
     CHECK(completions("pellucid-cli render x.nrrd --light-preset m") == std::set<std::string>{"matte", "metal"});
     CHECK(completions("pellucid-cli generate sh") == std::set<std::string>{"shells"});

@@ -87,7 +87,7 @@ TEST_CASE("space samples three features and finds the least F", "[cli][space]") 
     const auto middle = numbersOf(lines[63]);
     CHECK(middle[0] == 0.5);
     for (std::size_t f = 0; f < 3; ++f)
-        CHECK(middle[3 + f] == Approx(measured["features"][f]["vws"].get<double>()).margin(1e-6));
+        CHECK(middle[3 + f] == Approx(measured["features"][f]["vws"].get<double>()).margin(1e-4));
 
     const Volume saved = nrrd(w, "F.nrrd");
     CHECK(saved.dims() == pellucid::Int3(5, 5, 5));

@@ -6,6 +6,7 @@
 #include <QCheckBox>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
+#include <QToolButton>
 
 #include "panels/space_panel.h"
 #include "render/camera_motion.h"
@@ -119,6 +120,29 @@ TEST_CASE("the globe for the guide", "[.pictures][.globepicture]") {
     grab(w, "best_view.png");
 }
 
+TEST_CASE("curves for the guide", "[.pictures][.convergencepicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    w.settle();
+    w.document().setTargets({0.1, 0.3, 0.6});
+    const auto run = [&](SearchMethod method) {
+        w.bench().store().edit("Method", {}, [&](Session& session) {
+            session.optimize.edit([&](OptimizeOptions& options) {
+                options.method = method;
+                options.maxIterations = 20;
+            });
+        });
+        w.optimizing().start();
+        REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    };
+    run(SearchMethod::Fixed);
+    w.child<QAction>("showConvergence").trigger();
+    w.child<QToolButton>("showStart").click();
+    run(SearchMethod::Parallel);
+    grab(w, "convergence.png");
+}
+
 TEST_CASE("the refiner for the guide", "[.pictures]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     OpenWindow w;
@@ -143,6 +167,21 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
     REQUIRE(waitFor([&] { return !w.refining().isBusy(); }));
     QTest::qWait(1500); // the methods are compared
     grab(w, "refiner.png");
+}
+
+TEST_CASE("a field for the guide", "[.pictures][.fieldpicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 800);
+    VolumeSource source;
+    source.path = "sample:shells";
+    w.open(source);
+    w.child<QAction>("fieldsAction").trigger();
+    w.bench().store().edit("Field", {}, [](Session& session) {
+        session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
+        session.field.edit([](FieldView& f) { f.kind = FieldKind::Vws; });
+    });
+    grab(w, "fields.png");
 }
 
 TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {

@@ -1,5 +1,6 @@
 // The published definitions in the window: figures of the grid's face, whatever the picture shows.
 #include <QComboBox>
+#include <QDockWidget>
 #include <QLabel>
 #include <QPushButton>
 
@@ -41,6 +42,8 @@ const char* const kTent = R"(<VoreenData><TransFuncIntensity><Keys>
 TEST_CASE("the window measures by the published definitions", "[window][published]") {
     OpenWindow w;
     Document document = w.document();
+    w.child<QWidget>("settingsDock").raise();
+    w.settle();
     auto& profile = w.child<QComboBox>("profileCombo");
     auto& along = w.child<QComboBox>("alongCombo");
     auto& look = w.child<QPushButton>("lookAlongButton");

@@ -15,6 +15,7 @@
 #include <QToolButton>
 
 #include "density_slider.h"
+#include "optimize/visibility_words.h"
 #include "tf/color_maps.h"
 #include "tf/shapes.h"
 
@@ -244,14 +245,75 @@ TEST_CASE("a colour map changes the colours and no opacity", "[shapes]") {
     CHECK(w.picture() == picture);
 }
 
-TEST_CASE("the density slider shows what it does, is one step, and springs back", "[shapes]") {
+TEST_CASE("the density slider moves along equal shares, live, and is one step", "[shapes]") {
     OpenWindow w;
+    w.document().setTf(tents(3, 0.3), "some");
+    const QImage picture = w.picture();
+    const TransferFunction before = w.document().tf();
+    const Measures measured = *w.document().measures();
+    const int steps = w.document().stepCount();
+    auto& row = w.child<DensitySlider>("densityRow");
+    auto& slider = w.child<QSlider>("densitySlider");
+    auto& value = w.child<QLabel>("densityValue");
+    REQUIRE(measured.coverage);
+    CHECK(value.text() == QString::fromStdString(percentText(measured.coverage->coverage)));
+    const auto send = [&](QEvent::Type type, const QPointF& at, Qt::MouseButton button, Qt::MouseButtons held) {
+        QMouseEvent event(type, at, slider.mapToGlobal(at), button, held, {});
+        QCoreApplication::sendEvent(&slider, &event);
+    };
+    // The first touch has the curve computed, then the slider is where the picture is, wherever it was taken.
+    const QPointF middle = QRectF(slider.rect()).center(), left = middle - QPointF(slider.width() / 4.0, 0);
+    send(QEvent::MouseButtonPress, middle, Qt::LeftButton, Qt::LeftButton);
+    REQUIRE(waitFor([&] { return row.curve() != nullptr; }));
+    CHECK_FALSE(w.document().isPreviewing());
+    send(QEvent::MouseMove, left, Qt::NoButton, Qt::LeftButton);
+    CHECK(w.document().isPreviewing());
+    CHECK(w.picture() != picture);
+    const std::vector<double> held = opacities(w.document().tf());
+    for (std::size_t f = 0; f < 3; ++f) CHECK(held[f] < 0.3);
+    send(QEvent::MouseButtonRelease, left, Qt::LeftButton, Qt::NoButton);
+    CHECK_FALSE(w.document().isPreviewing());
+    CHECK(w.document().stepCount() == steps + 1);
+    CHECK(opacities(w.document().tf()) == held);
+    w.settle();
+    const Measures fainter = *w.document().measures();
+    CHECK(fainter.coverage->coverage < 0.8 * measured.coverage->coverage);
+    for (std::size_t f = 0; f < 3; ++f) CHECK(fainter.features[f].vws == Approx(measured.features[f].vws).margin(0.01));
+    CHECK(value.text() == QString::fromStdString(percentText(fainter.coverage->coverage)));
+    REQUIRE(row.curve());
+
+    // Keys go to the ends, in one step; there the curve ends.
+    const QImage faint = w.picture();
+    slider.setFocus();
+    QTest::keyClick(&slider, Qt::Key_End);
+    QTest::keyClick(&slider, Qt::Key_Home);
+    QTest::keyClick(&slider, Qt::Key_End);
+    CHECK(w.document().stepCount() == steps + 2);
+    CHECK(w.picture() != faint);
+    CHECK(w.document().measures()->coverage->coverage ==
+          Approx(row.curve()->strongest().coverage.coverage).epsilon(0.01));
+    for (std::size_t f = 0; f < 3; ++f)
+        CHECK(w.document().measures()->features[f].vws == Approx(measured.features[f].vws).margin(0.01));
+    w.document().undo();
+    CHECK(w.picture() == faint);
+    CHECK(row.curve()); // it still lies on it
+    w.document().undo();
+    CHECK(w.picture() == picture);
+    CHECK(w.document().tf() == before);
+    // Other shares, another curve.
+    w.document().setTf(tents(3, 0.5), "others");
+    CHECK(row.curve() == nullptr);
+}
+
+TEST_CASE("the density slider scales all opacities, is one step, and springs back", "[shapes]") {
+    OpenWindow w;
+    w.child<QToolButton>("densityAll").click();
     w.document().setTf(tents(3, 0.1), "thin");
     const TransferFunction before = w.document().tf();
     const QImage picture = w.picture();
     const int steps = w.document().stepCount();
     auto& slider = w.child<QSlider>("densitySlider");
-    auto& factor = w.child<QLabel>("densityFactor");
+    auto& factor = w.child<QLabel>("densityValue");
     CHECK(factor.text() == QStringLiteral("× 1.00"));
     const auto send = [&](QEvent::Type type, const QPointF& at, Qt::MouseButton button, Qt::MouseButtons held) {
         QMouseEvent event(type, at, slider.mapToGlobal(at), button, held, {});

@@ -17,7 +17,7 @@ public:
         : m_volume(std::move(volume)), m_targets(std::move(targets)), m_engine(makeCpuEngine(m_volume)) {}
 
     const Geometry& geometry() const override { return m_volume->geometry(); }
-    OptimizeResult solve(const ReachProblem& p, const JobControl& job) override {
+    OptimizeResult solve(const ReachProblem& p, bool, const JobControl& job) override {
         const WeightFields weights = saliencyFields(*m_volume, p.tf);
         OptimizeOptions options;
         options.method = SearchMethod::Newton;
@@ -135,7 +135,7 @@ TEST_CASE("verdicts agree with a brute-force grid", "[optimize][verdict]") {
         const std::vector<double> start = featureOpacities(held.problem.tf);
         const double least = gridMinimum(tools, held.problem, start);
         if (least < 0.05) continue;
-        const OptimizeResult found = tools.solve(held.problem, {});
+        const OptimizeResult found = tools.solve(held.problem, false, {});
         INFO("case " << number << ", grid " << least << ", found " << found.history[found.best].objective);
         const Verdict verdict =
             explain(tools, held.problem, held.targets, found, {.tolerance = 0.03, .otherViews = false});
@@ -194,7 +194,7 @@ TEST_CASE("what is clipped away is said to be out of sight, and that the clippin
     ReachProblem p{View(cameraFromView(volume->geometry(), 0, 0, 1, Projection::Orthographic)), twoTents(), {{}, {}}};
     p.view.clipping.hi.x = 0.45; // of 24: all of the right half lies beyond
     EngineTools tools(volume, {0.5, 0.5});
-    const OptimizeResult found = tools.solve(p, {});
+    const OptimizeResult found = tools.solve(p, false, {});
     CHECK(found.history[found.best].objective == Approx(0.5)); // W = (1, 0) whatever the opacities are
     const Verdict v = explain(tools, p, {0.5, 0.5}, found, {});
     REQUIRE_FALSE(v.limits.empty());
@@ -216,7 +216,7 @@ TEST_CASE("what has the colour of the background needs another one", "[optimize]
     // Apart from the other half, black on black has no saliency at all.
     p.view.clipping.lo.x = 0.0;
     EngineTools tools(volume, {0.2, 0.8});
-    const OptimizeResult found = tools.solve(p, {});
+    const OptimizeResult found = tools.solve(p, false, {});
     const Verdict v = explain(tools, p, {0.2, 0.8}, found, {});
     if (v.objective >= 0.03) {
         REQUIRE_FALSE(v.helps.empty());
@@ -231,7 +231,7 @@ TEST_CASE("a locked feature in front is held responsible, and the view from behi
     p.tf = withFeatureOpacities(p.tf, {0.9, 0.5});
     p.limits[0].locked = true;
     EngineTools tools(volume, {0.3, 0.7});
-    const OptimizeResult found = tools.solve(p, {});
+    const OptimizeResult found = tools.solve(p, false, {});
     // 12 layers of opacity 0.9 let 1e-12 through (8 of them at 16 voxels' width).
     CHECK(found.history[found.best].vws[1] < 0.01);
     const Verdict v = explain(tools, p, {0.3, 0.7}, found, {});

@@ -61,6 +61,14 @@ TEST_CASE("runs are paths of the features that bear their names", "[session][spa
     const auto paths = pathsOfRuns({refinement, other, old}, tents(3), axes);
     REQUIRE(paths.size() == 1); // the others know no f2
     CHECK(paths[0].name == "run 2");
+    old.number = 7;
+    old.start.edit([](RunStart& start) {
+        start.tf = tents(3);
+        start.options.method = SearchMethod::Line;
+    });
+    CHECK(pathsOfRuns({old}, tents(3), axes)[0].name == "run 7, line");
+    old.name = "from above";
+    CHECK(pathsOfRuns({old}, tents(3), axes)[0].name == "from above");
     CHECK(paths[0].best == 1);
     REQUIRE(paths[0].states.size() == 2);
     CHECK(paths[0].states[1].opacity == std::vector<double>{0.3, 0.4, 0});

@@ -200,6 +200,17 @@ SliceViews randomSlices(Random& random) {
     return s;
 }
 
+FieldView randomField(Random& random) {
+    FieldView f;
+    if (random.chance(0.7)) f.kind = kFieldKinds[static_cast<std::size_t>(random.below(5))].kind;
+    f.feature = static_cast<FeatureId>(random.below(4));
+    f.colorMap = oneOf(random, std::array{"ember", "sand", kFeatureColorMap});
+    f.strength = random.between(1e-6, 1);
+    f.threshold = random.between(0, 0.999);
+    if (random.chance(0.5)) f.top = random.between(1e-12, 1e3);
+    return f;
+}
+
 } // namespace
 
 double oddNumber(Random& random, double lo, double hi) {
@@ -283,6 +294,7 @@ Session randomSession(std::uint32_t number) {
     if (random.chance(0.7)) s.optimize = randomOptimize(random);
     if (random.chance(0.7)) s.refine = randomRefine(random);
     if (random.chance(0.7)) s.slices = randomSlices(random);
+    s.field = randomField(random);
     for (int i = random.below(4); i > 0; --i) s.addRun(randomRun(random));
     s.extraJson = randomExtra(random);
     return s;

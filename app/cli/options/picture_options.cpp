@@ -31,7 +31,7 @@ void PictureOptions::add(CLI::App& app) {
     app.add_flag("--jitter", jitter, "shift the samples of each pixel, against bands of colour");
     addValue(
         app, "--feature", "NAME", [this](const std::string& text, const std::string&) { feature = text; },
-        "draw the voxels of this feature alone");
+        "draw the voxels of this feature alone, or of a field what it is in them");
     light.add(app);
 }
 
@@ -50,13 +50,18 @@ void PictureOptions::applyTo(Scene& scene) const {
     if (!feature) return;
     const FeatureId id = scene.tf.features[parseFeature(*feature, "--feature", scene.tf)].id;
     scene.session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; });
+    scene.session.field.edit([&](FieldView& view) { view.feature = id; });
+}
+
+void PictureOptions::applyTo(PictureInput& picture) const {
+    if (step) picture.settings.stepInD0 = *step;
+    picture.settings.jitter = jitter;
+    picture.settings.validate();
 }
 
 PictureInput PictureOptions::pictureOf(const Scene& scene) const {
     PictureInput picture = pictureInput(scene, size.width, size.height, transparent);
-    if (step) picture.settings.stepInD0 = *step;
-    picture.settings.jitter = jitter;
-    picture.settings.validate();
+    applyTo(picture);
     return picture;
 }
 

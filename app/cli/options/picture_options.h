@@ -27,6 +27,8 @@ struct PictureOptions {
     void applyTo(SceneInputs& inputs) const;
     /// What needs the transfer function. Throws UsageError where no feature has the name.
     void applyTo(Scene& scene) const;
+    /// --step and --jitter. Throws UsageError.
+    void applyTo(PictureInput& picture) const;
     PictureInput pictureOf(const Scene& scene) const;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "optimize/visibility_words.h"
 #include "tf/shown_tf.h"
 #include "workbench.h"
 
@@ -26,11 +27,15 @@ QString sayOf(const OptimizeResult& result, int restarts) {
                           .arg(fixed4(best.objective), fixed4(result.history.front().objective),
                                counted(result.iterations(), QObject::tr("move"), QObject::tr("moves")));
     if (restarts > 0) figures += QObject::tr("; restarted from the new view");
+    if (const std::string faint = faintText(result); !faint.empty()) // not without what makes it visible
+        return QObject::tr("%1: %2 (%3)")
+            .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
+                 QString::fromStdString(faint), figures);
     switch (result.reason) {
     case StopReason::Converged:
         return QObject::tr("On target: %1.").arg(figures);
     case StopReason::NoProgress:
-        return QObject::tr("Not on target: no step came nearer; %1.").arg(figures);
+        return QObject::tr("Not on target: nothing came nearer; %1. Looking for the reason…").arg(figures);
     default:
         return QObject::tr("Stopped at the most moves allowed: %1.").arg(figures);
     }
@@ -52,7 +57,18 @@ OptimizeController::OptimizeController(Workbench& bench)
               return result;
           },
           [this](const Task& task, OptimizeResult& result) { finish(task, result); }, WhenBusy::StopOld,
-          &bench.compute()) {
+          &bench.compute()),
+      m_explaining(
+          [&workspace = bench.workspace()](const Question& q, const JobControl& job) {
+              return workspace.explain(q.task.input, q.task.targets, q.task.limits, q.task.options, q.found,
+                                       {job.stop, {}});
+          },
+          [this](const Question&, Verdict& verdict) {
+              QStringList sentences;
+              for (const std::string& sentence : verdict.sentences) sentences << QString::fromStdString(sentence);
+              say(sentences.join(' '));
+          },
+          WhenBusy::StopOld, &bench.compute()) {
     connect(&m_job, &JobBase::busyChanged, this, [this] {
         m_bench.results().setPaused(isRunning());
         Q_EMIT runningChanged();
@@ -68,8 +84,16 @@ OptimizeController::OptimizeController(Workbench& bench)
     connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.data != after.data) cancel();
         if (isRunning() && !(measureInput(after).view == m_task.input.view)) restart(measureInput(after).view);
-        if (!m_message.isEmpty() && !isRunning() && !(present() == m_about)) say({});
+        if (!m_message.isEmpty() && !isRunning() && !(present() == m_about)) {
+            m_question.reset();
+            m_explaining.cancel();
+            say({});
+        }
     });
+    connect(&bench.results(), &Results::changed, this, &OptimizeController::askWhy);
+    connect(&m_explaining, &JobBase::busyChanged, this, &OptimizeController::messageChanged);
+    connect(&m_explaining, &JobBase::failed, this,
+            [this](const Error& error) { say(tr("Not on target; why is not known: %1.").arg(QString(error.what()))); });
 }
 
 OptimizeController::~OptimizeController() { ++m_number; }
@@ -103,6 +127,8 @@ void OptimizeController::start() {
     store.commit();
     say({});
     m_restarts = 0;
+    m_question.reset();
+    m_explaining.cancel();
     const About about = present();
     begin({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
            *store.session().optimize});
@@ -163,10 +189,10 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     Run run = runOf(result, task.start());
     run.started = m_run.started;
     run.seconds = static_cast<double>(m_since.elapsed()) / 1000;
-    store.preview(tr("Optimize"), [&](Session& session) {
-        session.setTf(tf);
-        session.addRun(run);
-    });
+    // The start, where a run ends before its first move was shown.
+    if (!store.isPreviewing()) store.preview(tr("Optimize"), [](Session&) {});
+    store.record([&](Session& session) { session.addRun(run); }); // undo takes back what came of it
+    store.preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     store.commit();
     MeasureInput input = task.input;
     input.tf = shownTf(tf);
@@ -175,6 +201,19 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     if (!(present() == About{input, task.targets}))
         return say(tr("Something has changed since it began; nothing is known of what is there now."));
     say(sayOf(result, m_restarts));
+    if (best.objective < task.options.tolerance) return;
+    m_question = Question{task, result};
+    m_question->task.input = input;
+    askWhy();
+}
+
+// The figures of what is shown come first: both need the same engine.
+void OptimizeController::askWhy() {
+    if (!m_question || isRunning() || !m_bench.results().measuresAreCurrent()) return;
+    Question question = std::move(*m_question);
+    m_question.reset();
+    if (!(present() == m_about)) return;
+    m_explaining.start(std::move(question), tr("the reason"));
 }
 
 } // namespace pellucid::gui

@@ -38,6 +38,9 @@ public:
     const Run* underWay() const { return isRunning() ? &m_run : nullptr; }
     int restarts() const { return m_restarts; } ///< because the view has turned
 
+    /// Whether the reason is being looked for why the latest run is not on target.
+    bool isExplaining() const { return m_question || m_explaining.isRunning(); }
+
     /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present
     /// state any more.
     const QString& message() const { return m_message; }
@@ -70,6 +73,12 @@ private:
     void restart(const View& view);
     void showMove(const Task& task, int move, const OptimizeState& state);
     void finish(const Task& task, const OptimizeResult& result);
+    /// What a run that is not on target is to be explained by.
+    struct Question {
+        Task task; ///< with the input that was found
+        OptimizeResult found;
+    };
+    void askWhy();
 
     Workbench& m_bench;
     QString m_message;
@@ -81,7 +90,9 @@ private:
     double m_objective = 0, m_firstObjective = 0;
     Run m_run;
     QElapsedTimer m_since; // the run's start
+    std::optional<Question> m_question; // waits for the figures of the answer, which come first
     Job<Task, OptimizeResult> m_job;
+    Job<Question, Verdict> m_explaining;
 };
 
 } // namespace pellucid::gui

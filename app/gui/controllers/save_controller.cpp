@@ -6,6 +6,7 @@
 #include <QPushButton>
 #include <QSettings>
 
+#include "controllers/field_controller.h"
 #include "controllers/open_controller.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
@@ -32,8 +33,7 @@ SaveController::SaveController(Workbench& bench)
               const auto renderer = makeRenderer(EngineChoice::Auto, picture.input.volume);
               Image image = renderer->render(picture.input.camera, picture.input.tf, picture.input.settings, job);
               job.throwIfStopped();
-              if (picture.reference.any())
-                  drawMarks(image, annotationMarks(annotationInput(picture.input, picture.reference)));
+              if (picture.around.show.any()) drawMarks(image, annotationMarks(picture.around));
               writeImage(image, picture.path.toStdString());
               return picture.path;
           },
@@ -140,9 +140,12 @@ bool SaveController::saveTf(const QString& path) {
 
 void SaveController::saveImage(const SaveImageOptions& options) {
     if (!m_bench.store().hasVolume()) return;
-    const Picture picture{
-        pictureInput(m_bench.scene(), options.size.width(), options.size.height(), options.transparent),
-        options.reference ? *m_bench.scene().session.reference : FrameOfReference::none(), options.path};
+    Picture picture{
+        m_bench.fields().picture(options.size.width(), options.size.height(), options.transparent), {}, options.path};
+    if (options.reference)
+        picture.around = m_bench.fields().annotation(picture.input, *m_bench.scene().session.reference);
+    else
+        picture.around.show = FrameOfReference::none();
     try {
         picture.input.settings.validate();
         checkImageSuffix(options.path.toStdString());
@@ -216,7 +219,8 @@ void SaveController::chooseImage() {
     if (!m_bench.store().hasVolume()) return;
     const QString folder = QSettings().value("imageFolder", QDir::homePath()).toString();
     SaveImageDialog dialog(QDir(folder).filePath(baseName(m_bench.scene()) + ".png"), m_seen,
-                           m_bench.scene().session.reference->any(), m_bench.window());
+                           m_bench.scene().session.reference->any() || m_bench.fields().field() != nullptr,
+                           m_bench.window());
     while (dialog.exec() == QDialog::Accepted) {
         const SaveImageOptions options = dialog.options();
         if (options.path.isEmpty()) continue;

@@ -50,7 +50,7 @@ Q_SIGNALS:
 private:
     struct Picture {
         PictureInput input;
-        FrameOfReference reference;
+        AnnotationInput around; ///< shows nothing where nothing is wanted
         QString path;
     };
     struct ReportTask {

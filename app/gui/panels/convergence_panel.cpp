@@ -79,7 +79,7 @@ PanelInfo convergencePanel() {
             .title = QObject::tr("Convergence"),
             .area = Qt::BottomDockWidgetArea,
             .visible = false,
-            .tabOf = "transferFunction",
+            .tabOf = "tf",
             .keys = QKeySequence("Ctrl+Shift+C"),
             .tip = QObject::tr("How optimizations go: distance, VWS and opacities over the moves; runs compared"),
             .make = [](Workbench& bench, QWidget* parent) {
@@ -147,6 +147,9 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
         m_list->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
     m_list->setContextMenuPolicy(Qt::CustomContextMenu);
     m_list->setMinimumWidth(200);
+    m_list->installEventFilter(this);
+    m_list->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    connect(m_list, &QTreeWidget::itemDoubleClicked, this, &ConvergencePanel::rename);
     connect(m_list, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) { itemChanged(item); });
     connect(m_list, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
         if (m_filling || item == nullptr) return;
@@ -279,7 +282,7 @@ void ConvergencePanel::fillList() {
         item->setText(kDistance, shortNumber(run.after));
         item->setText(kSeconds, run.seconds > 0 ? shortNumber(run.seconds) : QString());
         for (const int column : {kMoves, kDistance, kSeconds})
-            item->setTextAlignment(column, static_cast<int>(Qt::AlignRight | Qt::AlignVCenter));
+            item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
         for (int column = 0; column <= kSeconds; ++column) item->setToolTip(column, tipOf(run));
         if (ended) {
             item->setFlags(item->flags() | Qt::ItemIsUserCheckable | Qt::ItemIsEditable);
@@ -356,9 +359,24 @@ void ConvergencePanel::clear() {
     changeRuns(m_bench, tr("Clear runs"), [](std::vector<Run>& runs) { std::erase_if(runs, isCurve); });
 }
 
-void ConvergencePanel::keyPressEvent(QKeyEvent* event) {
-    if (event->key() == Qt::Key_Delete && m_list->hasFocus()) return remove();
-    QWidget::keyPressEvent(event);
+bool ConvergencePanel::eventFilter(QObject* watched, QEvent* event) {
+    if (watched != m_list || event->type() != QEvent::KeyPress) return QWidget::eventFilter(watched, event);
+    switch (static_cast<QKeyEvent*>(event)->key()) {
+    case Qt::Key_F2:
+        rename();
+        return true;
+    case Qt::Key_Delete:
+        remove();
+        return true;
+    default:
+        return QWidget::eventFilter(watched, event);
+    }
+}
+
+void ConvergencePanel::rename() {
+    QTreeWidgetItem* const item = m_list->currentItem();
+    if (item != nullptr && item->flags().testFlag(Qt::ItemIsEditable) && !m_bench.isReadOnly())
+        m_list->editItem(item, kTitle); // whatever column the mouse was on
 }
 
 void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
@@ -368,8 +386,7 @@ void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
     const Run* const run = shownRun();
     if (ofList && item != nullptr) {
         const bool ended = item->flags().testFlag(Qt::ItemIsEditable) && !m_bench.isReadOnly();
-        menu.addAction(tr("Rename"), this, [this] { m_list->editItem(m_list->currentItem(), kTitle); })
-            ->setEnabled(ended);
+        menu.addAction(tr("Rename"), this, &ConvergencePanel::rename)->setEnabled(ended);
         menu.addAction(tr("Delete"), this, &ConvergencePanel::remove)->setEnabled(ended);
         menu.addAction(tr("Delete all"), this, &ConvergencePanel::clear)->setEnabled(ended);
         menu.addSeparator();

@@ -6,6 +6,7 @@
 
 #include <QWidget>
 
+#include "report/plot.h"
 #include "session/session.h"
 
 class QBoxLayout;
@@ -34,7 +35,7 @@ public:
 protected:
     void showEvent(QShowEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
-    void keyPressEvent(QKeyEvent* event) override;
+    bool eventFilter(QObject* watched, QEvent* event) override; ///< F2 and Del in the list
 
 private:
     static constexpr int kUnderWay = 0; ///< in place of the number of a run that has not ended
@@ -50,6 +51,7 @@ private:
     void itemChanged(QTreeWidgetItem* item);
     void chooseFile(const QString& suffix);
     void showMenu(const QPoint& global, bool ofList);
+    void rename();
     void remove();
     void clear();
 

@@ -30,7 +30,6 @@
 #include "lock_mark.h"
 #include "opacity_editor.h"
 #include "panel.h"
-#include "panels/profile_settings.h"
 #include "theme.h"
 #include "workbench.h"
 
@@ -155,7 +154,7 @@ QPushButton* button(const QString& text, const char* name, const QString& tip, Q
 FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_model(new FeaturesModel(bench.store(), bench.results(), this)),
       m_table(new QTableView(this)), m_bars(new TargetBars(bench.store(), bench.results())),
-      m_density(new DensitySlider(bench.store(), this)), m_add(new QToolButton(this)), m_colors(new QToolButton(this)),
+      m_density(new DensitySlider(bench, this)), m_add(new QToolButton(this)), m_colors(new QToolButton(this)),
       m_targets(new QToolButton(this)), m_method(new QComboBox(this)),
       m_refine(button(tr("&Refine"), "refineButton",
                       tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this)),
@@ -281,7 +280,6 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     column->addWidget(makeColorRow());
     column->addLayout(status);
     column->addLayout(choices);
-    column->addWidget(new ProfileSettings(m_bench, this));
     column->addLayout(buttons);
 
     const auto triggers = [this](QPushButton* b, const char* action) {

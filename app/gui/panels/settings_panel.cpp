@@ -11,6 +11,7 @@
 
 #include "number_box.h"
 #include "panel.h"
+#include "panels/profile_settings.h"
 #include "panels/scrolled.h"
 #include "theme.h"
 #include "workbench.h"
@@ -170,6 +171,7 @@ void SettingsPanel::addOptimization(QFormLayout& form) {
 void SettingsPanel::addMeasuring(QFormLayout& form) {
     const auto settings = [this]() -> const MeasureSettings& { return *m_bench.store().session().measure; };
     form.addRow(heading(tr("Saliency and visibility"), this));
+    form.addRow(new ProfileSettings(m_bench, this));
     const auto number = [&](const char* id, const QString& label, const Range& range, const QString& tip,
                             const QString& suffix, auto get, auto set) {
         auto* box = numberBox(id, range, tip);
@@ -267,7 +269,7 @@ void SettingsPanel::follow() {
     for (QWidget* widget : findChildren<QWidget*>()) {
         const bool isControl = qobject_cast<QComboBox*>(widget) || qobject_cast<QAbstractSpinBox*>(widget) ||
                                qobject_cast<QAbstractButton*>(widget);
-        if (isControl && !qobject_cast<QComboBox*>(widget->parentWidget())) widget->setEnabled(ready);
+        if (isControl && !qobject_cast<ProfileSettings*>(widget->parentWidget())) widget->setEnabled(ready);
     }
     for (const auto& show : m_show) show();
     m_showing = false;

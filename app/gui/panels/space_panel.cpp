@@ -24,7 +24,6 @@
 #include "session/space_inputs.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
-#include "theme.h"
 #include "workbench.h"
 
 namespace pellucid::gui {
@@ -80,6 +79,7 @@ SpacePanel::SpacePanel(Workbench& bench, QWidget* parent)
           },
           [this](const Task& task, ParameterSpace& space) {
               m_space = std::make_shared<const ParameterSpace>(std::move(space));
+              m_targets = task.targets;
               m_inputs = task.inputs;
               m_computedFeatures = task.features;
               m_usedFactor = task.factor;
@@ -113,9 +113,10 @@ SpacePanel::SpacePanel(Workbench& bench, QWidget* parent)
     m_scale->addItems({tr("linear"), tr("logarithmic")});
     m_scale->setToolTip(tr("Opacities along an axis: from 0 to 1 in equal steps, or from 0.001 to 1 in equal factors"));
     m_factor->setObjectName("spaceFactor");
-    for (const auto& [text, factor] :
-         {std::pair{tr("automatic"), 0}, {tr("full volume"), 1}, {tr("halved"), 2}, {tr("a quarter"), 4}})
-        m_factor->addItem(text, factor);
+    m_factor->addItem(tr("automatic"), 0);
+    m_factor->addItem(tr("full volume"), 1);
+    m_factor->addItem(tr("halved"), 2);
+    m_factor->addItem(tr("a quarter"), 4);
     m_factor->setToolTip(tr("What is sampled: the volume, or a copy that is coarser along each axis.\n"
                             "Automatic: coarser where the whole would take long"));
     m_shown->setObjectName("spaceShown");
@@ -320,8 +321,10 @@ void SpacePanel::refresh() {
     const bool hasTwo = m_bench.store().hasVolume() && axes().features.size() >= 2;
     const bool current = isCurrent(), running = m_job.isRunning(), mayEdit = current && !m_bench.isReadOnly();
     if (current) // F follows from W
-        if (ParameterSpace now = withTargets(*m_space, targets()); now.targets != m_space->targets)
-            m_space = std::make_shared<const ParameterSpace>(std::move(now));
+        if (std::vector<double> wanted = targets(); wanted != m_targets) {
+            m_space = std::make_shared<const ParameterSpace>(withTargets(*m_space, wanted));
+            m_targets = std::move(wanted);
+        }
     m_compute->setEnabled(hasTwo && !running && !current);
     m_cancel->setVisible(running);
     m_progress->setVisible(running);

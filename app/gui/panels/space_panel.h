@@ -91,6 +91,7 @@ private:
     QLabel *m_words, *m_reading;
     SpaceCanvas* m_canvas;
     std::shared_ptr<const ParameterSpace> m_space;
+    std::vector<double> m_targets;           ///< shares that its F is of
     Inputs m_inputs;                         ///< of m_space
     std::vector<Feature> m_computedFeatures; ///< likewise
     int m_usedFactor = 1;

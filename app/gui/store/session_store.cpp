@@ -137,6 +137,10 @@ void SessionStore::preview(const QString& text, const Change& change) {
     if (first) Q_EMIT historyChanged();
 }
 
+void SessionStore::record(const Change& change) {
+    if (m_committed) change(m_committed->session);
+}
+
 void SessionStore::commit(const QString& mergeKey) {
     if (!m_committed) return;
     Scene before = withPresentGaze(std::move(*m_committed));

@@ -45,6 +45,9 @@ public:
     bool isPreviewing() const { return m_committed.has_value(); }
     /// The scene without the preview.
     const Scene& committed() const { return m_committed ? *m_committed : m_scene; }
+    /// Changes the state before the preview, and so what every preview of it shows: undo leaves it as it is. For
+    /// records of what was done, of which nothing that is drawn or computed depends.
+    void record(const Change& change);
     void commit(const QString& mergeKey = {});
     void cancel();
 

@@ -1,0 +1,65 @@
+// What a verdict needs of a workspace.
+#include "session/workspace.h"
+
+namespace pellucid {
+
+class WorkspaceTools final : public VerdictTools {
+public:
+    WorkspaceTools(Workspace& workspace, const MeasureInput& input, const std::vector<double>& targets,
+                   const OptimizeOptions& options)
+        : m_workspace(workspace), m_input(input), m_targets(targets), m_options(options) {
+        m_options.method = SearchMethod::Newton; // what the method at hand reaches says nothing of what can be reached
+    }
+
+    const Geometry& geometry() const override { return m_input.volume->geometry(); }
+
+    OptimizeResult solve(const ReachProblem& problem, bool rough, const JobControl& job) override {
+        const MeasureInput input = inputOf(problem);
+        VisibilityEngine& engine = m_workspace.engine(input);
+        const WeightFields& weights = m_workspace.weights(input, job);
+        std::vector<std::unique_ptr<VwsFunction>> functions;
+        functions.push_back(std::make_unique<EngineVws>(engine, input.view, input.tf, weights, input.settings.vws));
+        if (input.settings.profile == Profile::Default)
+            for (auto& level : m_workspace.coarser(input, job).functions(input.view, input.tf, input.settings.vws))
+                functions.push_back(std::move(level));
+        const std::size_t first = rough && functions.size() > 1 ? 1 : 0;
+        OptimizeProblem search{*functions[first], m_targets, problem.limits};
+        for (std::size_t i = first + 1; i < functions.size(); ++i) search.coarser.push_back(functions[i].get());
+        OptimizeResult result = optimize(search, m_options, job);
+        if (result.reason == StopReason::Cancelled) throw Cancelled{};
+        return result;
+    }
+
+    std::vector<FeatureSums> sums(const ReachProblem& problem, const std::vector<std::vector<double>>& candidates,
+                                  const JobControl& job) override {
+        const MeasureInput input = inputOf(problem);
+        std::vector<TransferFunction> tfs;
+        for (const auto& x : candidates) tfs.push_back(withFeatureOpacities(problem.tf, x));
+        VisibilityEngine& engine = m_workspace.engine(input);
+        return engine.sums(input.view, tfs, &m_workspace.weights(input, job), job);
+    }
+
+private:
+    MeasureInput inputOf(const ReachProblem& problem) const {
+        MeasureInput input = m_input;
+        input.view = problem.view;
+        input.tf = problem.tf;
+        return input;
+    }
+
+    Workspace& m_workspace;
+    MeasureInput m_input;
+    std::vector<double> m_targets;
+    OptimizeOptions m_options;
+};
+
+Verdict Workspace::explain(const MeasureInput& input, const std::vector<double>& targets,
+                           const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                           const OptimizeResult& found, const JobControl& job) {
+    WorkspaceTools tools(*this, input, targets, options);
+    // The published profile has views of its own.
+    return pellucid::explain(tools, {input.view, input.tf, limits}, found.targets, found,
+                             {options.tolerance, input.settings.profile == Profile::Default}, job);
+}
+
+} // namespace pellucid
