@@ -463,7 +463,7 @@ DensityAnswer atDensity(const DensityProblem& problem, const std::vector<double>
         if (!coverage && part == 1) next = corrector.correct(place, true, {});
         if (!next || next->objective >= allowed)
             next = corrector.correct(place, false, asked ? std::optional(wanted) : std::nullopt);
-        if (next->objective < allowed) {
+        if (next->objective < allowed && (coverage || tracer.coverageAt(next->y) > 0.98 * own)) {
             found = *next;
             break;
         }

@@ -651,6 +651,26 @@ TEST_CASE("the fixed step moves each opacity by 0.05 times twice the distance to
     CHECK(std::sqrt(length) == Approx(0.02));
 }
 
+TEST_CASE("optimize goes to the strong end or to a coverage, with the same shares; measure tells it again", "[cli]") {
+    const Workshop w;
+    const std::vector<std::string> base{"optimize", "sample:shells", "--size",   "24",    "--tf",     "tents:3:0.1",
+                                        "--engine", "cpu",           "--target", "1,3,6", "--out-tf", "a.tf.json"};
+    const json strong = w.json(base);
+    CHECK(strong["objective"].back().get<double>() < 0.001);
+    CHECK(strong["strongest_coverage"].get<double>() >= strong["coverage"].get<double>());
+    const double wanted = strong["coverage"].get<double>() / 2;
+    auto arguments = base;
+    arguments.insert(arguments.end(), {"--coverage", std::to_string(wanted)});
+    const json half = w.json(arguments);
+    CHECK(half["objective"].back().get<double>() < 0.001);
+    CHECK(half["coverage"].get<double>() == Approx(wanted).epsilon(0.01));
+    for (std::size_t f = 0; f < 3; ++f) CHECK(half["opacity"].back()[f] < strong["opacity"].back()[f]);
+    const json again = w.json({"measure", "sample:shells", "--size", "24", "--tf", "a.tf.json", "--engine", "cpu"});
+    CHECK(again["coverage"].get<double>() == Approx(half["coverage"].get<double>()).margin(1e-6));
+    for (std::size_t f = 0; f < 3; ++f)
+        CHECK(again["features"][f]["cover"].get<double>() == Approx(half["covers"][f].get<double>()).margin(1e-6));
+}
+
 TEST_CASE("an unreached target is an error only where it is demanded", "[cli]") {
     const Workshop w;
     std::vector<std::string> arguments{

@@ -4,12 +4,10 @@
 // of the default over the largest of the curve. A volume is a file or sample:NAME; @N after it makes it coarser by N.
 #include <chrono>
 #include <cstdio>
-#include <cstring>
-#include <random>
 #include <string>
 
-#include "engines/engines.h"
 #include "optimize/density_curve.h"
+#include "optimize/visibility_words.h"
 #include "session/scene.h"
 #include "session/workspace.h"
 
@@ -17,61 +15,55 @@ using namespace pellucid;
 
 namespace {
 
-constexpr double kReached = 0.01;
-
 struct Worst {
     double held = 0, ofLargest = 2;
     int cases = 0, reached = 0, heldAll = 0, strong = 0;
 };
 
-void run(const std::string& label, const MeasureInput& input, const std::vector<double>& wanted, Worst& worst) {
+void run(const std::string& label, MeasureInput input, const std::vector<double>& wanted, Worst& worst) {
     Workspace workspace;
-    VisibilityEngine& engine = workspace.engine(input);
-    const EngineVws function(engine, input.view, input.tf, workspace.weights(input), input.settings.vws);
-    const std::vector<double> targets = normalizedTargets(wanted, function.featureCount());
+    const std::vector<double> targets = normalizedTargets(wanted, input.tf.features.size());
     OptimizeOptions options;
     options.method = SearchMethod::Newton;
-    options.tolerance = 0.001;
     const auto clock = std::chrono::steady_clock::now;
     const auto start = clock();
     const OptimizeResult result = workspace.optimize(input, targets, {}, options);
-    const double searched = std::chrono::duration<double>(clock() - start).count();
-    const OptimizeState& best = result.history[result.best];
-    const RayBundle rays(*input.volume, input.tf, input.view, kCoverageRays);
-    const DensityProblem problem{function, nullptr, rays};
     const auto middle = clock();
-    const DensityAnswer answer = atDensity(problem, targets, best.opacity);
-    const double moved = std::chrono::duration<double>(clock() - middle).count();
-    const DensityCurve curve =
-        densityCurve(problem, best.opacity, answer.point.objective < kReached ? targets : std::vector<double>{});
+    const OptimizeState& best = result.history[result.best];
+    input.tf = result.tf;
+    const DensityCurve curve = workspace.densityCurve(input, {});
+    const auto seconds = [](auto from, auto to) { return std::chrono::duration<double>(to - from).count(); };
+    const double searched = seconds(start, middle), followed = seconds(middle, clock());
 
-    // Along the curve, as the slider moves.
+    // Along the curve, as the slider moves, down to a quarter.
     const double end = curve.strongest().coverage.coverage;
     std::vector<std::vector<double>> places;
-    for (int n = 0; n <= 22; ++n) places.push_back(curve.at(end * std::pow(0.25, n / 22.0)));
-    places.push_back(answer.point.opacity);
-    double held = 0;
+    for (int n = 0; n < 23; ++n) places.push_back(curve.at(end * std::pow(0.25, n / 22.0)));
+    places.push_back(best.opacity);
+    const EngineVws function(workspace.engine(input), input.view, input.tf, workspace.weights(input),
+                             input.settings.vws);
     const auto vws = function.evaluate(places);
-    for (const auto& w : vws) held = std::max(held, objectiveOf(w, curve.shares));
+    // Of reachable targets against these, else against the closest shares.
+    const bool reached = best.objective < 0.001;
+    double held = 0;
+    for (const auto& w : vws) held = std::max(held, objectiveOf(w, reached ? targets : curve.shares));
     const double reach = curve.faintest().coverage.coverage / end;
-    const double ofLargest = answer.point.coverage.coverage / std::max(end, 1e-9);
-
+    const double ofLargest = result.seen->coverage.coverage / std::max(end, 1e-9);
     std::string opacities;
-    for (const double x : answer.point.opacity) {
+    for (const double x : best.opacity) {
         char text[32];
         std::snprintf(text, sizeof text, " %.4f", x);
         opacities += text;
     }
-    std::printf("%-34s F %.4f -> %.4f  coverage %.3f -> %.3f (curve %.3f, to %.2f)  held %.4f  of largest %.3f  "
-                "%zu points %d+%d evaluations, search %.1f s density %.1f s opacities%s\n",
-                label.c_str(), best.objective, answer.point.objective,
-                coverageOf(rays, withFeatureOpacities(input.tf, best.opacity)).coverage, answer.point.coverage.coverage,
-                end, reach, held, ofLargest, curve.points.size(), answer.evaluations, curve.evaluations, searched,
-                moved, opacities.c_str());
+    std::printf("%-38s F %.4f  coverage %.3f (curve %.3f, to %.2f of it)  held %.4f  of largest %.3f  %d moves, "
+                "%d+%d evaluations, %.1f+%.1f s, opacities%s%s\n",
+                label.c_str(), best.objective, result.seen->coverage.coverage, end, reach, held, ofLargest,
+                result.iterations(), result.evaluations, curve.evaluations, searched, followed, opacities.c_str(),
+                result.seen->faint ? (std::string("\n    faint: ") + faintText(result)).c_str() : "");
     std::fflush(stdout);
     ++worst.cases;
-    worst.reached += answer.point.objective < 0.001;
-    worst.heldAll += held < 0.01 && reach < 0.26;
+    worst.reached += reached;
+    worst.heldAll += held < 0.01 && (reach < 0.26 || curve.isPoint());
     worst.strong += ofLargest > 0.95;
     worst.held = std::max(worst.held, held);
     worst.ofLargest = std::min(worst.ofLargest, ofLargest);
