@@ -192,6 +192,8 @@ private:
         add("refine500_over_render", refined, main(BenchRow::Render, threads), 1, "<= 0.05");
         if (const BenchResult* const optimized = main(BenchRow::Optimize, threads, 8))
             add("optimize_over_sweeps", optimized, sweep8, optimized->extra.at("iterations").get<double>(), "<= 3");
+        add("newton_over_optimize", main(BenchRow::OptimizeNewton, threads), main(BenchRow::Optimize, threads), 1,
+            "<= 0.5");
         if (const auto flat = flatness(threads)) all.push_back({"flatness", *flat, "<= 1.25"});
         return all;
     }
@@ -225,7 +227,8 @@ private:
             if (r.row == BenchRow::Sweep)
                 label += *r.candidates == 1 ? ", 1 TF" : ", " + std::to_string(*r.candidates) + " TFs";
             if (r.row == BenchRow::Jacobian) label += ", " + std::to_string(*r.features) + " features";
-            if (r.row == BenchRow::Optimize) label += ", " + j["iterations"].dump() + " moves";
+            if (r.row == BenchRow::Optimize || r.row == BenchRow::OptimizeNewton)
+                label += ", " + j["iterations"].dump() + " moves";
             table.add({label, r.volume, r.tf.value_or(""), r.engine, std::to_string(r.threads), secondsText(r.seconds),
                        secondsText(r.cpuSeconds), fixedText(j["ns_per_voxel"], 2), fixedText(j["gb_per_s"], 2),
                        fixedText(100 * j["memcpy_share"].get<double>(), 1) + " %"});
@@ -299,8 +302,8 @@ Command addBench(CLI::App& program) {
     addValue(
         *app, "--only", "ROW,...",
         [o](const std::string& text, const std::string& option) { o->only = parseRows(text, option); },
-        "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, refine, "
-        "refine-500, refine-direct, render");
+        "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
+        "optimize-newton, refine, refine-500, refine-direct, render");
     addValue(
         *app, "--repeat", "N",
         [o](const std::string& text, const std::string& option) {

@@ -176,11 +176,13 @@ Answer run(const Options& o, Progress& progress) {
     std::string text = textOf(result, engine + profileText(input.settings), seconds);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
     addProfile(json, input.settings);
+    std::vector<std::string> remarks;
     if (result.history[result.best].objective >= options.tolerance) {
         const Verdict verdict =
             workspace.explain(input, targets, limits, options, result, progress.phase("explaining"));
         for (const std::string& sentence : verdict.sentences) text += sentence + "\n";
         json["verdict"] = jsonFromVerdict(verdict, scene.tf);
+        remarks = verdict.sentences;
     }
     if (o.scene.camera.best) {
         const ViewAngles angles = viewAngles(input.view.camera, input.volume->geometry());
@@ -188,7 +190,9 @@ Answer run(const Options& o, Progress& progress) {
         json.update(jsonFromView(input.view.camera, input.volume->geometry()));
     }
     Answer answer{std::move(text), std::move(json), opened.notices(), failureOf(o, options, result)};
-    o.report.write(scene, options, result, seconds.search, workspace, progress, answer);
+    RunStart start = runStartOf(scene, options);
+    start.limits = limits;
+    o.report.write(scene, std::move(start), result, seconds.search, std::move(remarks), workspace, progress, answer);
     return answer;
 }
 

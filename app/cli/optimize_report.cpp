@@ -57,10 +57,11 @@ void ReportOptions::check(const SceneOptions& scene) const {
     }
 }
 
-void ReportOptions::write(const Scene& scene, const OptimizeOptions& options, const OptimizeResult& result,
-                          double seconds, Workspace& workspace, Progress& progress, Answer& answer) const {
+void ReportOptions::write(const Scene& scene, RunStart start, const OptimizeResult& result, double seconds,
+                          std::vector<std::string> remarks, Workspace& workspace, Progress& progress,
+                          Answer& answer) const {
     if (!folder && !curves) return;
-    Run run = runOf(result, runStartOf(scene, options));
+    Run run = runOf(result, std::move(start));
     run.seconds = seconds;
     if (curves) {
         writeCurves(run, *curves);
@@ -68,7 +69,7 @@ void ReportOptions::write(const Scene& scene, const OptimizeOptions& options, co
         answer.json["curves"] = *curves;
     }
     if (!folder) return;
-    ReportRequest request{.run = run, .scene = scene, .command = commandLine()};
+    ReportRequest request{.run = run, .scene = scene, .remarks = std::move(remarks), .command = commandLine()};
     request.width = size.value_or(ImageSize{}).width;
     request.height = size.value_or(ImageSize{}).height;
     request.program = std::string("Pellucid ") + PELLUCID_VERSION;

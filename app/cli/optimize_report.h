@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "parse.h"
@@ -19,9 +20,9 @@ struct ReportOptions {
     /// What can be told before the work: throws UsageError and FileError.
     void check(const SceneOptions& scene) const;
     /// Draws, measures and writes what was asked for, and tells of it in `answer`. `scene` is that of the start,
-    /// `seconds` those of the search.
-    void write(const Scene& scene, const OptimizeOptions& options, const OptimizeResult& result, double seconds,
-               Workspace& workspace, Progress& progress, Answer& answer) const;
+    /// `seconds` those of the search, `remarks` sentences about the result.
+    void write(const Scene& scene, RunStart start, const OptimizeResult& result, double seconds,
+               std::vector<std::string> remarks, Workspace& workspace, Progress& progress, Answer& answer) const;
 };
 
 } // namespace pellucid::cli

@@ -27,10 +27,10 @@ _pellucid_cli() {
         --along) choices="top bottom front back left right" ;;
         --kernel) choices="thesis narrow" ;;
         --method)
-            choices="fixed line parallel"
+            choices="newton parallel line fixed"
             [[ $command == refine ]] && choices="greedy exact"
             ;;
-        --direction) choices="gradient" ;;
+        --direction) choices="gradient backward second exact" ;;
         --field)
             choices="visibility saliency saliency-brightness saliency-saturation vws"
             [[ $command == render ]] && choices+=" none"
@@ -43,7 +43,7 @@ _pellucid_cli() {
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
-            choices="setup saliency saliency-direct sweep slices jacobian optimize refine refine-500 refine-direct render"
+            choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton refine refine-500 refine-direct render"
             ;;
         --mode) choices="composite mip minip average surface" ;;
         --slice) choices="x: y: z:" ;;

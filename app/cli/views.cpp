@@ -77,8 +77,8 @@ struct Seconds {
     double saliency = 0, map = 0, best = 0, total = 0;
 };
 
-std::string textOf(const ViewMetric& metric, const std::string& feature, const ViewSearch& search, const BestView& b,
-                   const Geometry& geometry, const std::string& engine, const Seconds& seconds) {
+std::string textOf(const ViewMetric& metric, const std::string& feature, const BestView& b, const Geometry& geometry,
+                   const std::string& engine, const Seconds& seconds) {
     const std::string head = metric.figure == Figure::Objective ? "distance F"
                              : metric.figure == Figure::Vws     ? "VWS of " + feature
                                                                 : "visibility of " + feature;
@@ -90,15 +90,15 @@ std::string textOf(const ViewMetric& metric, const std::string& feature, const V
     add("best", b.best);
     add("present", b.present);
     add("worst", b.worst);
-    return table.text() + countText(search.map.values.size()) + " directions, " +
-           countText(static_cast<std::size_t>(search.views)) + " views on the coarse volume, " +
+    return table.text() + countText(b.map.values.size()) + " directions, " +
+           countText(static_cast<std::size_t>(b.coarseViews)) + " views on the coarse volume, " +
            std::to_string(b.views) + " on the full one\nengine " + engine + ": map " + secondsText(seconds.map) +
            ", best " + secondsText(seconds.best) + ", saliency " + secondsText(seconds.saliency) + ", total " +
            secondsText(seconds.total) + "\n";
 }
 
-Json jsonOf(const ViewMetric& metric, const std::string& feature, const ViewSearch& search, const BestView& b,
-            const Volume& volume, const std::string& engine, const Seconds& seconds) {
+Json jsonOf(const ViewMetric& metric, const std::string& feature, const BestView& b, const Volume& volume,
+            const std::string& engine, const Seconds& seconds) {
     Json json{{"command", "views"}, {"metric", name(metric.figure)}};
     if (metric.figure == Figure::Objective)
         json["target"] = metric.targets;
@@ -114,16 +114,16 @@ Json jsonOf(const ViewMetric& metric, const std::string& feature, const ViewSear
     json["worst"] = seen(b.worst);
     json["coarsening"] = coarseningForViews(volume.dims());
     Json views = Json::array();
-    for (std::size_t i = 0; i < search.map.values.size(); ++i) {
-        const Vec3& d = search.map.directions[i];
+    for (std::size_t i = 0; i < b.map.values.size(); ++i) {
+        const Vec3& d = b.map.directions[i];
         const ViewAngles angles = anglesOf(d);
         views.push_back({{"azimuth", angles.azimuth},
                          {"elevation", angles.elevation},
                          {"direction", jsonFromVector(d)},
-                         {"value", search.map.values[i]}});
+                         {"value", b.map.values[i]}});
     }
     json["views"] = views;
-    json["evaluations"] = {{"coarse", search.views}, {"full", b.views}};
+    json["evaluations"] = {{"coarse", b.coarseViews}, {"full", b.views}};
     json["engine"] = engine;
     json["volume"] = jsonFromVolume(volume);
     json["seconds"] = {
@@ -154,20 +154,19 @@ Answer run(const Options& o, Progress& progress) {
     Stopwatch watch;
     const ViewSearch search = views.search(input, metric, o.count, progress.phase("views"));
     seconds.map = watch.seconds();
-    views.release();
     const auto [engine, saliencySeconds] = prepare(workspace, input, progress);
     seconds.saliency = saliencySeconds;
     watch = Stopwatch();
-    const BestView best = bestView(workspace, input, search, progress.phase("the best of them"));
+    const BestView best = views.best(workspace, input, search, progress.phase("the best of them"));
     seconds.best = watch.seconds();
     seconds.total = total.seconds();
 
     if (o.outCamera) writeCamera(best.best.camera, *o.outCamera);
-    if (o.map && isTable(*o.map)) writeTextAtomically(*o.map, tableOf(search.map));
-    if (o.map && !isTable(*o.map)) writeImage(pictureOf(search.map), *o.map);
+    if (o.map && isTable(*o.map)) writeTextAtomically(*o.map, tableOf(best.map));
+    if (o.map && !isTable(*o.map)) writeImage(pictureOf(best.map), *o.map);
     const std::string feature = o.feature.value_or("");
-    return {textOf(metric, feature, search, best, input.volume->geometry(), engine, seconds),
-            jsonOf(metric, feature, search, best, *input.volume, engine, seconds),
+    return {textOf(metric, feature, best, input.volume->geometry(), engine, seconds),
+            jsonOf(metric, feature, best, *input.volume, engine, seconds),
             opened.notices(),
             {}};
 }

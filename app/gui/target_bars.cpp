@@ -60,7 +60,6 @@ TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
     m_box->setAlignment(Qt::AlignRight);
     m_box->hide();
     m_box->installEventFilter(this);
-    connect(m_box, &QLineEdit::returnPressed, this, &TargetBars::takeTyped);
     connect(m_box, &QLineEdit::textEdited, this, [this](const QString& text) {
         m_box->setStyleSheet(shareFromText(text) ? QString() : QStringLiteral("color: %1").arg(theme::kFalls.name()));
     });
@@ -203,9 +202,21 @@ void TargetBars::endTyping() {
 
 bool TargetBars::eventFilter(QObject* watched, QEvent* event) {
     if (watched == m_box && m_typed >= 0) {
-        if (event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {
-            endTyping();
-            return true;
+        if (event->type() == QEvent::KeyPress) {
+            switch (static_cast<QKeyEvent*>(event)->key()) {
+            case Qt::Key_Return:
+            case Qt::Key_Enter:
+                takeTyped();
+                return true;
+            case Qt::Key_Escape:
+                endTyping();
+                return true;
+            case Qt::Key_Up: // of another feature
+            case Qt::Key_Down:
+                return true;
+            default:
+                break;
+            }
         }
         if (event->type() == QEvent::FocusOut && static_cast<QFocusEvent*>(event)->reason() != Qt::PopupFocusReason) {
             if (shareFromText(m_box->text()))
@@ -308,8 +319,9 @@ bool TargetBars::event(QEvent* event) {
     // Where the bars have the focus, L is theirs and not the light's.
     if (event->type() == QEvent::ShortcutOverride) {
         const auto* key = static_cast<QKeyEvent*>(event);
-        if (key->modifiers() == Qt::NoModifier && key->key() == Qt::Key_L && count() > 0) event->accept();
-        return QWidget::event(event);
+        if (key->modifiers() != Qt::NoModifier || key->key() != Qt::Key_L || count() == 0) return QWidget::event(event);
+        event->accept();
+        return true;
     }
     if (event->type() != QEvent::ToolTip) return QWidget::event(event);
     const auto* help = static_cast<QHelpEvent*>(event);

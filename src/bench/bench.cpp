@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "optimize/coarser.h"
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
 #include "saliency/saliency_direct.h"
@@ -94,7 +95,8 @@ public:
     CaseBench(const BenchCase& of, const BenchOptions& options, const JobControl& job)
         : m_case(of), m_options(options) {
         const auto wanted = [&](BenchRow row) { return of.rows.count(row) > 0; };
-        const bool measured = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize);
+        const bool measured = wanted(BenchRow::Sweep) || wanted(BenchRow::Jacobian) || wanted(BenchRow::Optimize) ||
+                              wanted(BenchRow::OptimizeNewton);
         const bool weighted = measured || wanted(BenchRow::Slices);
         if (measured || wanted(BenchRow::Setup)) m_engine = makeEngine(options.engine, of.volume, options.quality);
         if (wanted(BenchRow::Setup)) addSetup();
@@ -105,6 +107,7 @@ public:
         if (wanted(BenchRow::Slices)) addSlices();
         if (wanted(BenchRow::Jacobian)) addJacobians(job);
         if (wanted(BenchRow::Optimize)) addOptimize();
+        if (wanted(BenchRow::OptimizeNewton)) addNewton(job);
         if (wanted(BenchRow::Refine)) addRefine();
         if (wanted(BenchRow::Refine500)) addPaletteClick(BenchRow::Refine500, refine);
         if (wanted(BenchRow::RefineDirect)) addPaletteClick(BenchRow::RefineDirect, refineReference);
@@ -224,6 +227,38 @@ private:
         });
     }
 
+    /// Coarser copies are there, too, as they are from the second optimization of a volume on.
+    void addNewton(const JobControl& job) {
+        if (m_case.tf.features.empty()) return;
+        const Stopwatch watch;
+        m_coarser.emplace(
+            m_case.volume,
+            [this](std::shared_ptr<const Volume> volume) {
+                return makeEngine(m_options.engine, std::move(volume), m_options.quality);
+            },
+            job);
+        m_coarser->setWeights(m_weights, job);
+        add(row(BenchRow::OptimizeNewton, m_engine->name(), 8), 0,
+            [this, setup = watch.seconds()](BenchResult& r, const JobControl& j) {
+                const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
+                const auto copies = m_coarser->functions(m_case.view, m_case.tf, {});
+                OptimizeProblem problem{function, benchTargets(m_case.tf.features.size())};
+                for (const auto& copy : copies) problem.coarser.push_back(copy.get());
+                const OptimizeResult found = optimize(problem, {}, j);
+                if (found.reason == StopReason::Cancelled) throw Cancelled{};
+                // The start, and with each move derivatives and candidates; coarser copies have an eighth of the
+                // voxels.
+                const int sweeps = 1 + found.iterations();
+                r.bytes = sweeps * sweepBytes();
+                r.extra = {{"iterations", found.iterations()},
+                           {"coarse_iterations", found.coarseIterations()},
+                           {"evaluations", found.evaluations},
+                           {"coarser_copies_seconds", setup},
+                           {"objective", found.history[found.best].objective},
+                           {"converged", found.converged()}};
+            });
+    }
+
     void addRefine() {
         add(row(BenchRow::Refine, "cpu"), sampleBytes(), [this](BenchResult& r, const JobControl& j) {
             r.extra = {{"iterations", refine(makeHistogram(*m_case.volume), m_case.tf, {}, j).iterations}};
@@ -274,6 +309,7 @@ private:
     const BenchOptions& m_options;
     std::unique_ptr<VisibilityEngine> m_engine; ///< null where no row needs one
     std::unique_ptr<VisibilityEngine> m_slices; ///< made when first needed
+    std::optional<CoarserVolumes> m_coarser;    ///< likewise
     std::optional<Histogram> m_histogram;
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;
@@ -324,6 +360,8 @@ const char* name(BenchRow row) {
         return "jacobian";
     case BenchRow::Optimize:
         return "optimize";
+    case BenchRow::OptimizeNewton:
+        return "optimize-newton";
     case BenchRow::Refine:
         return "refine";
     case BenchRow::Refine500:

@@ -27,16 +27,17 @@ enum class BenchRow {
     Sweep,
     Slices,
     Jacobian,
-    Optimize,
+    Optimize,       ///< by parallel line search
+    OptimizeNewton, ///< the same targets
     Refine,
     Refine500,
     RefineDirect,
     Render
 };
-inline constexpr std::array kBenchRows{BenchRow::Setup,        BenchRow::Saliency, BenchRow::SaliencyDirect,
-                                       BenchRow::Sweep,        BenchRow::Slices,   BenchRow::Jacobian,
-                                       BenchRow::Optimize,     BenchRow::Refine,   BenchRow::Refine500,
-                                       BenchRow::RefineDirect, BenchRow::Render};
+inline constexpr std::array kBenchRows{BenchRow::Setup,     BenchRow::Saliency,       BenchRow::SaliencyDirect,
+                                       BenchRow::Sweep,     BenchRow::Slices,         BenchRow::Jacobian,
+                                       BenchRow::Optimize,  BenchRow::OptimizeNewton, BenchRow::Refine,
+                                       BenchRow::Refine500, BenchRow::RefineDirect,   BenchRow::Render};
 const char* name(BenchRow row); ///< "setup" … "render"
 /// Throws UsageError that names `where`.
 BenchRow benchRowFromName(const std::string& name, const std::string& where);

@@ -66,8 +66,8 @@ WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, co
                             saturation += units >> 16;
                             ++count;
                         }
-                row[static_cast<std::size_t>(i)] =
-                    (brightness + count / 2) / count | (saturation + count / 2) / count << 16;
+                row[static_cast<std::size_t>(i)] = (brightness + count / 2) / count | (saturation + count / 2) / count
+                                                                                          << 16;
             }
             coarse.store(at(dims, 0, j, k), row.data(), row.size());
         }

@@ -10,14 +10,14 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kLeastOpacity = 1e-7;     ///< of a peak that is wanted: a logarithm has no place for 0
-constexpr double kMostOpacity = 1 - 2e-7;  ///< beyond, extinction is capped (docs/method.md, "Visibility")
-constexpr double kCoarseGoal = 2e-4;       ///< F on coarser volumes
-constexpr double kTinyShare = 1e-3;        ///< added to shares before their logarithm is taken
-constexpr int kMostCoarseMoves = 40;       ///< of one descent
-constexpr std::size_t kBatch = 8;          ///< candidates in one call of the engine
-constexpr int kSpread = 64;                ///< starts, where it is stuck
-constexpr std::size_t kRefined = 3;        ///< of them, that are followed
+constexpr double kLeastOpacity = 1e-7;                 ///< of a peak that is wanted: a logarithm has no place for 0
+constexpr double kMostOpacity = 1 - 2e-7;              ///< beyond, extinction is capped (docs/method.md, "Visibility")
+constexpr double kCoarseGoal = 2e-4;                   ///< F on coarser volumes
+constexpr double kTinyShare = 1e-3;                    ///< added to shares before their logarithm is taken
+constexpr int kMostCoarseMoves = 40;                   ///< of one descent
+constexpr std::size_t kBatch = 8;                      ///< candidates in one call of the engine
+constexpr int kSpread = 64;                            ///< starts, where it is stuck
+constexpr std::size_t kRefined = 3;                    ///< of them, that are followed
 constexpr double kLeastSpread = 1e-4, kMostSpread = 3; ///< their optical depths
 
 double depthOf(double x) { return -std::log1p(-std::clamp(x, kLeastOpacity, kMostOpacity)); }
@@ -138,8 +138,8 @@ NewtonSearch::Point NewtonSearch::stepped(const Linear& at, const Step& step) co
     for (std::size_t j = 0; j < n; ++j) {
         if (p[j] == 0) continue;
         const double y = std::exp(logOf(x[j]) + p[j]);
-        x[j] = std::clamp(step.variable == Variable::Depth ? -std::expm1(-y) : y, m_limits[j].lowest,
-                          m_limits[j].highest);
+        x[j] =
+            std::clamp(step.variable == Variable::Depth ? -std::expm1(-y) : y, m_limits[j].lowest, m_limits[j].highest);
     }
     return x;
 }

@@ -58,7 +58,7 @@ private:
     const OptimizeOptions& m_options;
     const JobControl& m_job;
     Arrive m_arrive;
-    double m_goal; ///< F on the volume
+    double m_goal;            ///< F on the volume
     std::vector<bool> m_held; ///< features that no move changes
     int m_evaluations = 0, m_spreadStarts = 0;
     int m_moves = 0, m_coarseMoves = 0; ///< of this descent

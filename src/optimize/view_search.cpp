@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -17,11 +18,14 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-constexpr int kValleys = 6;                     ///< best places of the map that are followed between its directions
-constexpr int kFinalists = 4;                   ///< of them, measured on the full volume
-constexpr int kMoves = 24;                      ///< of each, at most
-constexpr double kFinestStep = 0.5 * kPi / 180; ///< radians, of the steps between directions
-constexpr double kFullStep = 4.0 * kPi / 180;   ///< of the first step on the full volume
+constexpr int kAnchors = 12; ///< directions that tell how the full volume differs from the coarse one
+constexpr int kValleys = 6;  ///< best places of the map, measured on the full volume
+constexpr int kFollowed = 3; ///< the best of them, from which it goes on
+constexpr int kRounds = 3;   ///< of each: down on the coarse volume, then a look at the full one
+constexpr int kMoves = 8;    ///< of each round, at most, four views each
+constexpr double kFinestStep = 1.0 * kPi / 180; ///< radians, of these moves
+constexpr double kNoMatter = 0.0005;            ///< of a value
+constexpr double kReached = 0.001;              ///< F: nothing is to be gained any more
 
 constexpr int kReachSpread = 24; ///< directions from which opacities are searched, beside the best ones of the map
 constexpr int kReachMoves = 6;   ///< of each search, at most
@@ -42,47 +46,53 @@ Vec3 moved(const Vec3& direction, double angle, double turn) {
     return glm::normalize(std::cos(angle) * direction + std::sin(angle) * (std::cos(turn) * u + std::sin(turn) * v));
 }
 
-/// The value of directions on one level.
+/// Figures of directions on one level.
 class Judge {
 public:
-    Judge(const ViewLevel& level, const ViewSubject& subject, const ViewMetric& metric)
-        : m_level(level), m_subject(subject), m_metric(metric) {}
+    Judge(const ViewLevel& level, const ViewSubject& subject, const ViewMetric& metric, const JobControl& job)
+        : m_level(level), m_subject(subject), m_metric(metric), m_stop{job.stop, {}} {}
 
     Camera cameraFor(const Vec3& direction) const {
         return lookingFrom(m_subject.view.camera, m_level.engine.volume().geometry(), direction);
     }
-    SeenView look(const Camera& camera, const JobControl& job) {
-        const View view(camera, m_subject.view.clipping);
+    std::vector<double> look(const Camera& camera) {
         ++m_views;
-        const auto sums = m_level.engine.sums(view, {&m_subject.tf, 1}, &m_level.weights, {job.stop, {}});
-        return {camera, m_metric.valueOf(sums[0], m_subject.options)};
+        const View view(camera, m_subject.view.clipping);
+        return m_metric.figuresOf(m_level.engine.sums(view, {&m_subject.tf, 1}, &m_level.weights, m_stop)[0],
+                                  m_subject.options);
     }
-    SeenView look(const Vec3& direction, const JobControl& job) { return look(cameraFor(direction), job); }
+    std::vector<double> look(const Vec3& direction) { return look(cameraFor(direction)); }
     int views() const { return m_views; }
 
 private:
     const ViewLevel& m_level;
     const ViewSubject& m_subject;
     const ViewMetric& m_metric;
+    JobControl m_stop;
     int m_views = 0;
 };
 
+/// A direction and what it is worth.
 struct Place {
     Vec3 direction;
-    SeenView seen;
+    double value = 0;
 };
 
-/// Tries four neighbours, goes to the best, and halves the step where none is better, until it is below `finest` or
-/// `moves` have been tried.
-Place descend(Judge& judge, const ViewMetric& metric, Place at, double step, double finest, int moves,
-              const JobControl& job, const std::function<void()>& tell = {}) {
-    for (int move = 0; step >= finest && move < moves; ++move) {
+std::vector<double> sumOf(std::vector<double> a, const std::vector<double>& b, double sign = 1) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += sign * b[i];
+    return a;
+}
+
+/// Tries four neighbours, goes to the best, and halves the step where none is better, until it is below kFinestStep or
+/// kMoves have been made.
+template <class Value>
+Place descend(const Value& value, const ViewMetric& metric, Place at, double step) {
+    for (int move = 0; step >= kFinestStep && move < kMoves; ++move) {
         Place best = at;
         for (int side = 0; side < 4; ++side) {
             const Vec3 direction = moved(at.direction, step, side * kPi / 2 + (move % 2) * kPi / 4);
-            Place next{direction, judge.look(direction, job)};
-            if (metric.isBetter(next.seen.value, best.seen.value)) best = next;
-            if (tell) tell();
+            const Place next{direction, value(direction)};
+            if (metric.isBetter(next.value, best.value)) best = next;
         }
         if (best.direction == at.direction) step /= 2;
         at = best;
@@ -158,16 +168,15 @@ const char* name(ViewMetric::Figure figure) {
     return "";
 }
 
-double ViewMetric::valueOf(const FeatureSums& sums, const VwsOptions& options) const {
-    switch (figure) {
-    case Figure::Objective:
-        return objectiveOf(vwsOf(sums, options), targets);
-    case Figure::Vws:
-        return vwsOf(sums, options)[feature];
-    case Figure::Visibility:
-        return sums.allVisibility > 0 ? sums.visibility[feature] / sums.allVisibility : 0;
-    }
-    return 0;
+std::vector<double> ViewMetric::figuresOf(const FeatureSums& sums, const VwsOptions& options) const {
+    if (figure != Figure::Visibility) return vwsOf(sums, options);
+    std::vector<double> shares = sums.visibility;
+    for (double& share : shares) share = sums.allVisibility > 0 ? share / sums.allVisibility : 0;
+    return shares;
+}
+
+double ViewMetric::valueOf(const std::vector<double>& figures) const {
+    return figure == Figure::Objective ? objectiveOf(figures, targets) : std::clamp(figures[feature], 0.0, 1.0);
 }
 
 std::size_t ViewMap::best() const {
@@ -210,61 +219,102 @@ double ViewMap::interpolated(const Vec3& direction) const {
 ViewSearch searchViews(const ViewLevel& level, const ViewSubject& subject, const ViewMetric& metric, int count,
                        const JobControl& job, const std::function<void(const ViewMap&)>& watch) {
     validate(subject, metric);
-    Judge judge(level, subject, metric);
+    Judge judge(level, subject, metric, job);
     ViewSearch result;
     ViewMap& map = result.map;
     map.metric = metric;
-
-    constexpr double kMapShare = 0.8; // of the work; how much comes after the map is not known before
     const std::vector<Vec3> directions = spreadDirections(count);
     for (std::size_t i = 0; i < directions.size(); ++i) {
-        map.values.push_back(judge.look(directions[i], job).value);
+        job.throwIfStopped();
+        result.figures.push_back(judge.look(directions[i]));
+        map.values.push_back(metric.valueOf(result.figures.back()));
         map.directions.push_back(directions[i]);
-        job.report(kMapShare * static_cast<double>(i + 1) / static_cast<double>(directions.size()));
+        job.report(static_cast<double>(i + 1) / static_cast<double>(directions.size()));
         if (watch && (map.values.size() % kWatchEvery == 0 || map.values.size() == directions.size())) watch(map);
     }
-
-    std::vector<Place> places;
-    std::vector<std::size_t> valleys = valleysOf(map);
-    if (valleys.size() > kValleys) valleys.resize(kValleys);
-    const double spacing = spacingOf(directions.size());
-    for (std::size_t i = 0; i < valleys.size(); ++i) {
-        const Place start{directions[valleys[i]], {judge.cameraFor(directions[valleys[i]]), map.values[valleys[i]]}};
-        places.push_back(descend(judge, metric, start, spacing / 2, kFinestStep, kMoves, job));
-        job.report(kMapShare + (1 - kMapShare) * static_cast<double>(i + 1) / static_cast<double>(valleys.size()));
-    }
-    std::stable_sort(places.begin(), places.end(),
-                     [&](const Place& a, const Place& b) { return metric.isBetter(a.seen.value, b.seen.value); });
-    if (places.size() > kFinalists) places.resize(kFinalists);
-    for (const Place& place : places) result.finalists.push_back(place.direction);
-    result.views = judge.views();
     return result;
 }
 
-BestView bestView(const ViewLevel& full, const ViewSubject& subject, const ViewSearch& search, int moves,
+BestView bestView(const ViewLevel& coarse, const ViewLevel& full, const ViewSubject& subject, const ViewSearch& search,
                   const JobControl& job) {
     const ViewMetric& metric = search.map.metric;
+    const std::vector<Vec3>& directions = search.map.directions;
     validate(subject, metric);
-    Judge judge(full, subject, metric);
-    const double expected = static_cast<double>(search.finalists.size()) + 2 + 4 * moves;
-    const auto tell = [&] { job.report(std::min(1.0, judge.views() / expected)); };
-
+    Judge rough(coarse, subject, metric, job), exact(full, subject, metric, job);
+    constexpr double kMost = 2 + kAnchors + kValleys + kFollowed * kRounds; // views of the full volume
     BestView result;
-    result.present = judge.look(subject.view.camera, job);
-    Place best{-subject.view.camera.forward(), result.present};
-    for (const Vec3& direction : search.finalists) {
-        const Place place{direction, judge.look(direction, job)};
-        if (metric.isBetter(place.seen.value, best.seen.value)) best = place;
-        tell();
+    std::optional<Place> best;
+    const auto consider = [&](const Place& place, const Camera& camera) {
+        if (best && !metric.isBetter(place.value, best->value)) return;
+        best = place;
+        result.best = {camera, place.value};
+    };
+    const auto measured = [&](const Vec3& direction) {
+        const Camera camera = exact.cameraFor(direction);
+        const std::vector<double> figures = exact.look(camera);
+        consider({direction, metric.valueOf(figures)}, camera);
+        job.report(std::min(1.0, exact.views() / kMost));
+        return figures;
+    };
+    const Camera& present = subject.view.camera;
+    result.present = {present, metric.valueOf(exact.look(present))};
+    consider({-present.forward(), result.present.value}, present);
+
+    // Means over blocks shift all figures of a view, and those of neighbouring views by nearly as much: the shift is
+    // measured in a few directions, and averaged between them.
+    std::vector<std::vector<double>> shifts;
+    for (std::size_t i = 0; i < std::min<std::size_t>(kAnchors, directions.size()); ++i)
+        shifts.push_back(sumOf(measured(directions[i]), search.figures[i], -1));
+    result.map = search.map;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        std::vector<double> shift(search.figures[i].size(), 0.0);
+        double weights = 0;
+        for (std::size_t a = 0; a < shifts.size(); ++a) {
+            const double weight = 1 / (std::pow(angleBetween(directions[i], directions[a]), 2) + 1e-4);
+            shift = sumOf(std::move(shift), shifts[a], weight);
+            weights += weight;
+        }
+        for (double& v : shift) v /= weights;
+        result.map.values[i] = metric.valueOf(sumOf(search.figures[i], shift));
     }
-    best = descend(judge, metric, best, kFullStep, kFinestStep, moves, job, tell);
-    result.best = best.seen;
+
+    std::vector<std::size_t> valleys = valleysOf(result.map);
+    if (valleys.size() > kValleys) valleys.resize(kValleys);
+    struct Start {
+        Place place;
+        std::vector<double> shift;
+    };
+    std::vector<Start> starts{{{-present.forward(), result.present.value}, {}}};
+    for (const std::size_t i : valleys) {
+        const std::vector<double> figures = measured(directions[i]);
+        starts.push_back({{directions[i], metric.valueOf(figures)}, sumOf(figures, search.figures[i], -1)});
+    }
+    std::stable_sort(starts.begin(), starts.end(),
+                     [&](const Start& a, const Start& b) { return metric.isBetter(a.place.value, b.place.value); });
+    if (starts.size() > kFollowed) starts.resize(kFollowed);
+    const double spacing = spacingOf(directions.size());
+    const auto isReached = [&] { return metric.figure == ViewMetric::Figure::Objective && best->value < kReached; };
+    for (Start& start : starts) {
+        Place at = start.place;
+        if (start.shift.empty()) start.shift = sumOf(exact.look(present), rough.look(at.direction), -1);
+        double step = spacing / 2;
+        for (int round = 0; round < kRounds && !isReached(); ++round, step /= 2) {
+            const Place next = descend([&](const Vec3& d) { return metric.valueOf(sumOf(rough.look(d), start.shift)); },
+                                       metric, at, step);
+            if (std::abs(next.value - at.value) < kNoMatter) break;
+            const std::vector<double> figures = measured(next.direction);
+            start.shift = sumOf(figures, rough.look(next.direction), -1);
+            at = {next.direction, metric.valueOf(figures)};
+        }
+    }
     result.worst = result.present;
-    if (!search.map.isEmpty()) {
-        const SeenView worst = judge.look(search.map.directions[search.map.worst()], job);
+    if (!result.map.isEmpty()) {
+        const Camera camera = exact.cameraFor(directions[result.map.worst()]);
+        const SeenView worst{camera, metric.valueOf(exact.look(camera))};
         if (metric.isBetter(result.worst.value, worst.value)) result.worst = worst;
     }
-    result.views = judge.views();
+    result.views = exact.views();
+    result.coarseViews = static_cast<int>(directions.size()) + rough.views();
     job.report(1);
     return result;
 }
@@ -291,8 +341,10 @@ std::vector<ReachableView> reachableViews(const ViewLevel& level, const ViewSubj
     };
 
     std::vector<Camera> cameras{subject.view.camera};
-    for (const Vec3& direction : search.finalists)
-        cameras.push_back(lookingFrom(subject.view.camera, geometry, direction));
+    std::vector<std::size_t> valleys = valleysOf(search.map);
+    if (valleys.size() > kValleys) valleys.resize(kValleys);
+    for (const std::size_t i : valleys)
+        cameras.push_back(lookingFrom(subject.view.camera, geometry, search.map.directions[i]));
     for (int i = 0; i < kReachSpread && i < static_cast<int>(search.map.directions.size()); ++i)
         cameras.push_back(
             lookingFrom(subject.view.camera, geometry, search.map.directions[static_cast<std::size_t>(i)]));

@@ -29,8 +29,12 @@ struct ViewMetric {
     std::vector<double> targets = {}; ///< Objective: shares, one per feature, sum 1
     std::size_t feature = 0;          ///< index, of the others
 
-    /// In [0,1].
-    double valueOf(const FeatureSums& sums, const VwsOptions& options) const;
+    /// What the value is made of, per feature: W, or FV.
+    std::vector<double> figuresOf(const FeatureSums& sums, const VwsOptions& options) const;
+    double valueOf(const std::vector<double>& figures) const; ///< in [0,1]
+    double valueOf(const FeatureSums& sums, const VwsOptions& options) const {
+        return valueOf(figuresOf(sums, options));
+    }
     bool isBetter(double a, double b) const { return figure == Figure::Objective ? a < b : a > b; }
     bool operator==(const ViewMetric&) const = default;
 };
@@ -64,16 +68,15 @@ struct ViewMap {
     double interpolated(const Vec3& direction) const;
 };
 
-/// The map, and where between its directions it looks best.
+/// A map, and what its values are made of.
 struct ViewSearch {
     ViewMap map;
-    std::vector<Vec3> finalists; ///< directions, the best first: the bottoms of the best valleys
-    int views = 0;               ///< that were looked at
+    std::vector<std::vector<double>> figures; ///< of each direction
 };
 
-/// Looks from all over the sphere, then down the best valleys in steps of half a degree at last. `watch` gets the map
-/// as it grows, on the calling thread. The same bits for any number of threads. Throws Cancelled; UsageError for a
-/// count out of range, and for a feature or targets that `subject` has not.
+/// Looks from all over the sphere. `watch` gets the map as it grows, on the calling thread. The same bits for any
+/// number of threads. Throws Cancelled; UsageError for a count out of range, and for a feature or targets that
+/// `subject` has not.
 ViewSearch searchViews(const ViewLevel& level, const ViewSubject& subject, const ViewMetric& metric,
                        int count = kSphereViews, const JobControl& job = {},
                        const std::function<void(const ViewMap&)>& watch = {});
@@ -83,16 +86,19 @@ struct SeenView {
     double value = 0;
 };
 
-/// Figures of the full volume, whatever the search was made on.
+/// Figures of the full volume.
 struct BestView {
     SeenView best, worst;
     SeenView present; ///< the subject's own view
-    int views = 0;    ///< that were looked at
+    ViewMap map;      ///< that of the search, brought to the full volume by what was measured there
+    int views = 0;    ///< that were looked at on the full volume
+    int coarseViews = 0;
 };
 
-/// The best of the finalists and the present view, and of their neighbours in at most `moves` moves of four; and what
-/// the worst direction of the map is worth. Throws Cancelled.
-BestView bestView(const ViewLevel& full, const ViewSubject& subject, const ViewSearch& search, int moves = 3,
+/// Brings the map of `search`, which was made on `coarse`, to the full volume, by measuring some directions there; goes
+/// down from its best places, on the coarse level plus what the full one has differed by so far, and measures where
+/// that leads. The best of all that were measured on `full`, the present view among them. Throws Cancelled.
+BestView bestView(const ViewLevel& coarse, const ViewLevel& full, const ViewSubject& subject, const ViewSearch& search,
                   const JobControl& job = {});
 
 /// A view, and opacities by which it comes near the targets.

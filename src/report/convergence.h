@@ -26,7 +26,7 @@ struct RunCurve {
 };
 
 /// F over the moves of each run, 0 being the start, and the tolerance of each as a dashed line. Dots of moves on the
-/// halved volume are hollow; of a single run these moves are a band.
+/// coarser volumes are hollow; of a single run these moves are a band.
 Plot objectivePlot(std::span<const RunCurve> runs, bool logarithmic = false);
 /// VWS of each feature, in its colour, and its target as a dashed line.
 Plot vwsPlot(const Run& run);

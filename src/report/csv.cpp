@@ -51,7 +51,7 @@ std::string csvOf(std::span<const Run* const> runs) {
     for (const Run* run : runs)
         for (const Column& c : columnsOf(*run))
             if (std::find(columns.begin(), columns.end(), c) == columns.end()) columns.push_back(c);
-    std::string csv = "run,method,move,resolution,F";
+    std::string csv = "run,method,move,level,F";
     for (const Column& c : columns)
         for (const char* what : {"VWS ", "target ", "opacity "}) csv += "," + csvField(what + c.title());
     csv += "\n";
@@ -60,7 +60,7 @@ std::string csvOf(std::span<const Run* const> runs) {
         for (std::size_t i = 0; i < run->history.size(); ++i) {
             const OptimizeState& state = run->history[i];
             csv += csvField(titleOf(*run)) + "," + csvField(methodText(*run)) + "," + std::to_string(i) + "," +
-                   (state.level == 0 ? "full" : "half") + "," + number(state.objective);
+                   std::to_string(state.level) + "," + number(state.objective);
             for (const Column& c : columns) {
                 const auto at = static_cast<std::size_t>(std::find(own.begin(), own.end(), c) - own.begin());
                 for (const std::vector<double>* values : {&state.vws, &run->targets, &state.opacity})

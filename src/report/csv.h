@@ -11,7 +11,7 @@ namespace pellucid {
 /// `text` as one field. What a spreadsheet would take for a formula (= + − @ in front) gets an apostrophe before it.
 std::string csvField(const std::string& text);
 
-/// A line per state of each run: run, method, move (0: the start), resolution ("full" or "half"), F, then for each
+/// A line per state of each run: run, method, move (0: the start), level (see OptimizeState), F, then for each
 /// feature its VWS, its target and its opacity. Features of several runs are found by their names; where a run has no
 /// such feature the fields are empty. Numbers with all their digits.
 std::string csvOf(std::span<const Run* const> runs);

@@ -84,11 +84,16 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const ReportRequest&
                               ", w1 = " + shortText(m.saliency.w1) + ", w2 = " + shortText(m.saliency.w2)},
              {"Shares of brightness and saturation", "u1 = " + shortText(m.vws.u1) + ", u2 = " + shortText(m.vws.u2)}});
     rows.insert(rows.end(), {{"Method", name(o.method)},
-                             {"Direction", name(o.direction) + std::string(", normalized: ") + yesNo(o.normalize)},
-                             {"Step", shortText(o.step)},
                              {"Tolerance", "F < " + shortText(o.tolerance)},
-                             {"Most moves", std::to_string(o.maxIterations)},
-                             {"Coarse to fine", yesNo(o.coarse)}});
+                             {"Most moves", std::to_string(o.maxIterations)}});
+    if (o.method == SearchMethod::Newton) {
+        rows.emplace_back("Coarse to fine", yesNo(o.coarse));
+        rows.emplace_back("Restarts where it is stuck", yesNo(o.restarts));
+    } else {
+        rows.emplace_back("Direction", std::string(name(o.direction)) + ", normalized: " + yesNo(o.normalize));
+        rows.emplace_back("Step", shortText(o.step));
+        if (o.direction == Direction::Gradient) rows.emplace_back("b", shortText(o.b));
+    }
     if (o.coverage) rows.emplace_back("Wanted coverage", shortText(*o.coverage));
     if (request.run.evaluations > 0) rows.emplace_back("Evaluations of W", std::to_string(request.run.evaluations));
     if (request.run.seconds > 0) rows.emplace_back("Time", shortText(request.run.seconds) + " s");

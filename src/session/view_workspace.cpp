@@ -32,6 +32,11 @@ ViewSubject viewSubject(const MeasureInput& input) {
 }
 
 void ViewWorkspace::release() {
+    const std::lock_guard lock(m_mutex);
+    forget();
+}
+
+void ViewWorkspace::forget() {
     m_engine.reset();
     m_volume.reset();
     m_haveWeights = false;
@@ -40,7 +45,7 @@ void ViewWorkspace::release() {
 
 ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job) {
     if (m_volume != input.volume || !m_engine) {
-        release();
+        forget();
         const int factor = coarseningForViews(input.volume->dims());
         const auto coarse =
             factor == 1 ? input.volume : std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
@@ -62,19 +67,24 @@ ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job)
 ViewSearch ViewWorkspace::search(const MeasureInput& input, const ViewMetric& metric, int count, const JobControl& job,
                                  const std::function<void(const ViewMap&)>& watch) {
     const ViewSubject subject = viewSubject(input);
+    const std::lock_guard lock(m_mutex);
     return searchViews(level(input, job), subject, metric, count, job, watch);
 }
 
 std::vector<ReachableView> ViewWorkspace::reach(const MeasureInput& input, const ViewSearch& search,
                                                 const std::vector<OpacityLimits>& limits,
                                                 const OptimizeOptions& options, const JobControl& job) {
+    const std::lock_guard lock(m_mutex);
     return reachableViews(level(input, job), viewSubject(input), search, limits, options, job);
 }
 
-BestView bestView(Workspace& workspace, const MeasureInput& input, const ViewSearch& search, const JobControl& job) {
+BestView ViewWorkspace::best(Workspace& workspace, const MeasureInput& input, const ViewSearch& search,
+                             const JobControl& job) {
     const ViewSubject subject = viewSubject(input);
     VisibilityEngine& engine = workspace.engine(input);
-    return bestView(ViewLevel{engine, workspace.weights(input, {job.stop, {}})}, subject, search, 3, job);
+    const WeightFields& weights = workspace.weights(input, {job.stop, {}});
+    const std::lock_guard lock(m_mutex);
+    return bestView(level(input, job), ViewLevel{engine, weights}, subject, search, job);
 }
 
 ViewAndOpacities optimizeViewAndOpacities(Workspace& workspace, ViewWorkspace& views, const MeasureInput& input,
@@ -95,7 +105,7 @@ ViewAndOpacities optimizeViewAndOpacities(Workspace& workspace, ViewWorkspace& v
                 if (watch) watch(from, state);
             });
         if (result.reason == StopReason::Cancelled) throw Cancelled{};
-        return ViewAndOpacities{from, std::move(result), search.views};
+        return ViewAndOpacities{from, std::move(result), static_cast<int>(search.map.values.size() + reached.size())};
     };
     const auto objectiveAt = [](const ViewAndOpacities& v) { return v.result.history[v.result.best].objective; };
 

@@ -578,7 +578,7 @@ TEST_CASE("optimize reaches the targets and tells the way there", "[cli]") {
     const Workshop w;
     const std::vector<std::string> base{"optimize",    "sample:shells", "--size", "24",       "--tf",
                                         "tents:3:0.1", "--engine",      "cpu",    "--target", "1,3,6"};
-    for (const std::string method : {"parallel", "line"}) {
+    for (const std::string method : {"newton", "parallel", "line"}) {
         INFO(method);
         auto arguments = base;
         arguments.insert(arguments.end(), {"--method", method, "--out-tf", method + ".tf.json", "--require-converged"});
@@ -614,6 +614,17 @@ TEST_CASE("optimize reaches the targets and tells the way there", "[cli]") {
             w.json({"measure", "sample:shells", "--size", "24", "--tf", method + ".tf.json", "--engine", "cpu"});
         for (std::size_t f = 0; f < 3; ++f)
             CHECK(again["features"][f]["vws"].get<double>() == Approx(j["vws"].back()[f].get<double>()).margin(1e-3));
+    }
+    // What is locked stays, what is limited stays within; the others do what they can.
+    auto limited = base;
+    limited.insert(limited.end(), {"--lock", "f1", "--limits", "f3:0.2:0.3", "--direction", "exact", "--b", "2",
+                                   "--no-coarse", "--no-restarts"});
+    const json held = w.json(limited);
+    CHECK(held["direction"] == "exact");
+    for (const json& opacity : held["opacity"]) {
+        CHECK(opacity[0] == 0.1);
+        CHECK(opacity[2].get<double>() >= 0.2); // the start, 0.1, is taken there
+        CHECK(opacity[2].get<double>() <= 0.3);
     }
     const Outcome text = w.run(base);
     CHECK(text.status == 0);

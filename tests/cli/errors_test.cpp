@@ -161,8 +161,13 @@ TEST_CASE("wrong values of refine and optimize are wrong usage", "[cli][errors]"
     for (const char* target : {"1,1", "1,1,1,1", "0,0,0", "-1,1,1", "1,nan,1", "1,,1"})
         checkFails(w, kOptimize + Words{"--target", target}, 2, "--target");
     const Words targeted = kOptimize + Words{"--target", "1,1,1"};
-    checkFails(w, targeted + Words{"--method", "newton"}, 2, "newton");
-    checkFails(w, targeted + Words{"--direction", "backward"}, 2, "--direction");
+    checkFails(w, targeted + Words{"--method", "newton2"}, 2, "newton2");
+    checkFails(w, targeted + Words{"--direction", "upward"}, 2, "--direction");
+    checkFails(w, targeted + Words{"--b", "0"}, 2, "--b");
+    checkFails(w, targeted + Words{"--lock", "nobody"}, 2, "--lock");
+    checkFails(w, targeted + Words{"--limits", "nobody:0:1"}, 2, "--limits");
+    for (const char* limits : {"bone", "bone:0.1", "bone:0.5:0.1", "bone:-1:1", "bone:0:2", ":0:1"})
+        checkFails(w, targeted + Words{"--limits", limits}, 2, "--limits");
     checkFails(w, targeted + Words{"--step", "0"}, 2, "--step");
     checkFails(w, targeted + Words{"--tolerance", "-0.1"}, 2, "--tolerance");
     checkFails(w, targeted + Words{"--max-iterations", "many"}, 2, "--max-iterations");

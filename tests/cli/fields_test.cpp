@@ -28,9 +28,11 @@ Volume readVolume(const std::filesystem::path& path) {
 
 TEST_CASE("the visibility of a homogeneous slab falls as α(1 − α)^k", "[cli][fields]") {
     const Workshop w;
-    // 6 × 5 × 6 voxels of value 100, one feature over everything of α = 0.3, seen along y: plane k from the eye has
-    // v = 0.3 · 0.7^k (docs/method.md, "Visibility").
-    w.write("slab.raw", std::string(6 * 5 * 6, static_cast<char>(100)));
+    // 6 × 5 × 6 voxels whose values differ along x alone, α = 0.3 for all of them, seen along y: plane k from the eye
+    // has v = 0.3 · 0.7^k (docs/method.md, "Visibility").
+    std::string values;
+    for (int i = 0; i < 6 * 5 * 6; ++i) values += static_cast<char>(100 + i % 6);
+    w.write("slab.raw", values);
     w.write("flat.tf.json",
             R"({"format":"pellucid-tf","version":1,"range":[0,200],"points":[{"x":0,"opacity":0.3,"color":"#ffffff"},
                 {"x":1,"opacity":0.3,"color":"#ffffff"}],"features":[{"name":"all/of: it","range":[0,1],

@@ -93,7 +93,7 @@ TEST_CASE("curves are written as a table or a drawing", "[cli][report]") {
     CHECK(o.status == 0);
     CHECK(o.out.find("wrote c.csv\n") != std::string::npos);
     const std::string csv = w.read("c.csv");
-    CHECK(csv.starts_with("run,method,move,resolution,F,VWS f1,target f1,opacity f1,"));
+    CHECK(csv.starts_with("run,method,move,level,F,VWS f1,target f1,opacity f1,"));
     // The start: opacities of the tents, targets 0.1, 0.3, 0.6.
     const std::string start = csv.substr(csv.find('\n') + 1, csv.find('\n', csv.find('\n') + 1) - csv.find('\n') - 1);
     CHECK(std::count(start.begin(), start.end(), ',') == 4 + 9);

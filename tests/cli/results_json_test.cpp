@@ -25,9 +25,13 @@ TEST_CASE("optimizations have their keys in the order of the manual", "[cli][jso
     r.reason = StopReason::Converged;
     const cli::Json j = cli::jsonFromOptimization(r, {});
     CHECK(keysOf(j) == std::vector<std::string>{"command", "method", "direction", "converged", "stopped", "iterations",
-                                                "evaluations", "target", "objective", "vws", "opacity", "tf"});
+                                                "coarse_iterations", "evaluations", "spread_starts", "best", "target",
+                                                "objective", "level", "vws", "opacity", "tf"});
     CHECK(j["command"] == "optimize");
-    CHECK(j["method"] == "parallel");
+    CHECK(j["method"] == "newton");
+    CHECK(j["coarse_iterations"] == 0);
+    CHECK(j["best"] == 1);
+    CHECK(j["level"] == cli::Json({0, 0}));
     CHECK(j["direction"] == "gradient");
     CHECK(j["converged"] == true);
     CHECK(j["iterations"] == r.iterations());

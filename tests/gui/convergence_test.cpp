@@ -211,7 +211,7 @@ TEST_CASE("curves are exported as table, picture and drawing", "[convergence]") 
     REQUIRE(csv.open(QIODevice::ReadOnly));
     const QStringList lines = QString::fromUtf8(csv.readAll()).split('\n', Qt::SkipEmptyParts);
     CHECK(static_cast<std::size_t>(lines.size()) == runsOf(w).front().history.size() + 1);
-    CHECK(lines.front().startsWith("run,method,move,resolution,F,VWS f1,"));
+    CHECK(lines.front().startsWith("run,method,move,level,F,VWS f1,"));
     const QImage picture(folder.filePath("c.png"));
     CHECK(picture.size() == QSize(1280, 2400)); // three plots of 640 × 400, at two pixels each
     CHECK(picture.pixelColor(2, 2) == QColor(Qt::white));

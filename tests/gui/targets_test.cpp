@@ -22,6 +22,7 @@
 #include "render/camera_motion.h"
 #include "selection.h"
 #include "session/target_presets.h"
+#include "tf/edit.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -87,7 +88,8 @@ TEST_CASE("a target is dragged, typed and locked; each is one step", "[targets]"
     type(w, 1, "50 %"); // the others divide the rest in their proportion
     const double first = w.document().targets()[0];
     CHECK(w.document().targets()[1] == Approx(0.5));
-    CHECK(std::accumulate(w.document().targets().begin(), w.document().targets().end(), 0.0) > 0);
+    const std::vector<double> shares = w.document().targets();
+    CHECK(std::accumulate(shares.begin(), shares.end(), 0.0) == Approx(1));
     CHECK(w.document().stepCount() == steps + 2);
     CHECK_FALSE(boxOf(w).isVisible());
     w.settle();
@@ -115,6 +117,7 @@ TEST_CASE("a target is dragged, typed and locked; each is one step", "[targets]"
     CHECK(w.document().stepCount() == steps + 5);
     for (int i = 0; i < 3; ++i) w.document().undo();
     CHECK(w.document().targets()[0] == Approx(first));
+    w.bench().selection().setFeature(w.document().tf().features[1].id); // as it was then
     w.settle();
     CHECK(image(bars) == open);
 }
@@ -139,7 +142,7 @@ TEST_CASE("targets by keys: a digit opens the box, L locks and leaves the light 
     QTest::keyClick(&bars, Qt::Key_Return);
     CHECK(boxOf(w).isVisible());
     QTest::keyClick(&boxOf(w), Qt::Key_Escape);
-    CHECK(bars.hasFocus());
+    CHECK_FALSE(boxOf(w).isVisible());
 }
 
 TEST_CASE("presets set all targets; locked ones stay", "[targets]") {
@@ -236,7 +239,7 @@ TEST_CASE("an opacity that is locked or limited is so in an optimization, and is
     w.optimizing().start();
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     const std::vector<double> after = featureOpacities(w.document().tf());
-    CHECK(after[1] == before[1]);
+    CHECK(after[1] == Approx(before[1]));
     CHECK(after[2] >= 0.3 - 1e-9);
     CHECK(after[2] <= 0.35 + 1e-9);
     CHECK(w.picture() != picture);
@@ -377,8 +380,7 @@ TEST_CASE("a view that turns during an optimization restarts it from there", "[t
     OpenWindow w;
     w.document().setTargets({0.2, 0.2, 0.6});
     bool turned = false;
-    const Camera other =
-        cameraFromView(w.document().volume()->geometry(), -70, 30, 1, Projection::Perspective);
+    const Camera other = cameraFromView(w.document().volume()->geometry(), -70, 30, 1, Projection::Perspective);
     QObject::connect(&w.optimizing(), &OptimizeController::moved, &w.window, [&] {
         if (w.optimizing().move() < 0 || turned) return;
         turned = true;

@@ -21,8 +21,8 @@ TEST_CASE("the curves of a run are its history", "[convergence]") {
     CHECK(f.series[1].points == std::vector<PlotPoint>{{0, 0.03}, {2, 0.03}});
     CHECK(f.x.hi == 2);
     CHECK(f.y.hi == Approx(0.44)); // a tenth above the largest value
-    // The move on the halved volume is half a move to both sides.
-    CHECK(f.bands == std::vector<PlotBand>{{0.5, 1.5, "half resolution"}});
+    // The move on a coarser volume is half a move to both sides.
+    CHECK(f.bands == std::vector<PlotBand>{{0.5, 1.5, "coarser volume"}});
 
     const Plot vws = vwsPlot(run);
     REQUIRE(vws.series.size() == 4); // a curve and a target for each of the two features
@@ -81,11 +81,11 @@ TEST_CASE("curves as a table", "[csv]") {
     const Run run = exampleRun();
     const Run* const only = &run;
     CHECK(csvOf(std::span(&only, 1)) ==
-          "run,method,move,resolution,F,VWS skin,target skin,opacity skin,"
+          "run,method,move,level,F,VWS skin,target skin,opacity skin,"
           "\"VWS bone, \"\"hard\"\"\",\"target bone, \"\"hard\"\"\",\"opacity bone, \"\"hard\"\"\"\n"
-          "newton 14:03,newton,0,full,0.4,0.8,0.25,0.5,0.2,0.75,0.5\n"
-          "newton 14:03,newton,1,half,0.1,0.3,0.25,0.05,0.7,0.75,0.8\n"
-          "newton 14:03,newton,2,full,0.02,0.24,0.25,0.005,0.76,0.75,0.9\n");
+          "newton 14:03,newton,0,0,0.4,0.8,0.25,0.5,0.2,0.75,0.5\n"
+          "newton 14:03,newton,1,1,0.1,0.3,0.25,0.05,0.7,0.75,0.8\n"
+          "newton 14:03,newton,2,0,0.02,0.24,0.25,0.005,0.76,0.75,0.9\n");
 
     // Another run, without bone but with two features named skin: each finds its own column.
     Run other = exampleRun();
@@ -95,6 +95,6 @@ TEST_CASE("curves as a table", "[csv]") {
     const std::array<const Run*, 2> both{&run, &other};
     const std::string csv = csvOf(both);
     CHECK(csv.substr(0, csv.find('\n')).ends_with(",VWS skin (2),target skin (2),opacity skin (2)"));
-    CHECK(csv.find("newton 14:03,newton,0,full,0.4,0.8,0.25,0.5,0.2,0.75,0.5,,,\n") != std::string::npos);
-    CHECK(csv.ends_with("'=1+1,newton,0,full,0.4,0.8,0.25,0.5,,,,0.2,0.75,0.5\n"));
+    CHECK(csv.find("newton 14:03,newton,0,0,0.4,0.8,0.25,0.5,0.2,0.75,0.5,,,\n") != std::string::npos);
+    CHECK(csv.ends_with("'=1+1,newton,0,0,0.4,0.8,0.25,0.5,,,,0.2,0.75,0.5\n"));
 }

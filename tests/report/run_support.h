@@ -5,7 +5,7 @@
 
 namespace pellucid::test {
 
-/// Newton on two features, three states, the second one on the halved volume.
+/// Newton on two features, three states, the second one on a coarser volume.
 inline Run exampleRun() {
     RunStart start;
     start.tf = tents(2);

@@ -150,7 +150,7 @@ Run randomRun(Random& random) {
     for (std::size_t i = 0; i < n; ++i) r.features.push_back("f" + std::to_string(i));
     r.targets = numbers();
     for (int i = random.below(5); i > 0; --i)
-        r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(2)});
+        r.history.push_back({oddNumber(random, 0, 1), numbers(), numbers(), random.below(4)});
     if (!r.history.empty()) r.best = static_cast<std::size_t>(random.below(static_cast<int>(r.history.size())));
     r.before = oddNumber(random, 0, 1e10);
     r.after = oddNumber(random, 0, 1);

@@ -1,6 +1,9 @@
-// optimize_sweep [--starts N] [--no-random] [--cases NAME,…] [--delta]: what every method reaches on volumes, views and
-// targets, as a table; and what the best of N random restarts of any method finds (on a volume of at most 48³ voxels,
-// then compared there). VOLUMES: files and sample:NAME, as arguments. One line per problem.
+// optimize_sweep VOLUME… [--starts N] [--newton-only] [--delta] [--tf tents:3|auto] [--azimuth A] [--which T]: what
+// Newton reaches on volumes (files, sample:NAME) under three tents and the automatic start, from three views, for three
+// targets each (rising, equal, falling); and on a copy of at most 48³ voxels Newton against the best of N random
+// restarts of the other methods, where Newton does not get below 0.001 there. --delta: root mean square differences of
+// W between the volume and its coarser copies instead, at three opacities. One line per problem; histories of those not
+// reached.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,12 +29,6 @@ std::vector<std::vector<double>> targetsFor(std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) rising.push_back(0.5 * static_cast<double>((i + 1) * (i + 2)));
     falling.assign(rising.rbegin(), rising.rend());
     return {rising, equal, falling};
-}
-
-/// Halved until it has at most `most` voxels.
-std::shared_ptr<const Volume> small(std::shared_ptr<const Volume> volume, std::size_t most) {
-    while (volume->size() > most) volume = halved(*volume);
-    return volume;
 }
 
 struct Tally {
@@ -87,18 +84,25 @@ int main(int argc, char** argv) {
             const WeightFields weights = saliencyFields(*scene.volume, scene.tf);
             CoarserVolumes coarser(scene.volume, make);
             coarser.setWeights(weights);
-            const auto tiny = small(scene.volume, 48 * 48 * 48);
+            std::shared_ptr<const Volume> tiny = scene.volume;
+            WeightFields tinyWeights = weights;
+            while (tiny->size() > 48 * 48 * 48) {
+                tinyWeights = halvedWeights(tinyWeights, *tiny);
+                tiny = halved(*tiny);
+            }
             const auto tinyEngine = make(tiny);
-            const WeightFields tinyWeights = saliencyFields(*tiny, scene.tf);
             for (const auto& [azimuth, elevation] : {std::pair{30.0, 20.0}, {0.0, 0.0}, {-115.0, -40.0}}) {
                 if (onlyAzimuth != -1000 && onlyAzimuth != azimuth) continue;
-                const View view{cameraFromView(scene.volume->geometry(), azimuth, elevation, 1, Projection::Perspective), {}};
+                const View view{
+                    cameraFromView(scene.volume->geometry(), azimuth, elevation, 1, Projection::Perspective), {}};
                 const EngineVws f(*engine, view, scene.tf, weights), ft(*tinyEngine, view, scene.tf, tinyWeights);
                 const auto coarse = coarser.functions(view, scene.tf, {});
                 std::vector<const VwsFunction*> levels;
                 for (const auto& c : coarse) levels.push_back(c.get());
                 if (delta) {
-                    const std::vector<std::vector<double>> xs{featureOpacities(scene.tf), std::vector<double>(scene.tf.features.size(), 0.02), std::vector<double>(scene.tf.features.size(), 0.9)};
+                    const std::vector<std::vector<double>> xs{featureOpacities(scene.tf),
+                                                              std::vector<double>(scene.tf.features.size(), 0.02),
+                                                              std::vector<double>(scene.tf.features.size(), 0.9)};
                     const auto full = f.evaluate(xs);
                     std::printf("%s %s %g,%g", path.c_str(), tfName.c_str(), azimuth, elevation);
                     for (std::size_t l = 0; l < levels.size(); ++l) {
@@ -117,8 +121,9 @@ int main(int argc, char** argv) {
                     const double seconds = watch.seconds();
                     const double found = r.history[r.best].objective;
                     std::printf("%-30s %-8s %4g,%-4g t%d  newton F %.5f moves %d coarse %d eval %d starts %d %s %.2fs",
-                                path.substr(path.find_last_of('/') + 1).c_str(), tfName.c_str(), azimuth, elevation, which++, found,
-                                r.iterations(), r.coarseIterations(), r.evaluations, r.spreadStarts, name(r.reason), seconds);
+                                path.substr(path.find_last_of('/') + 1).c_str(), tfName.c_str(), azimuth, elevation,
+                                which++, found, r.iterations(), r.coarseIterations(), r.evaluations, r.spreadStarts,
+                                name(r.reason), seconds);
                     double best = 1;
                     std::string by;
                     if (others) {
@@ -129,12 +134,15 @@ int main(int argc, char** argv) {
                         Random random(7);
                         for (int s = 0; s < starts && tinyFound >= 1e-3; ++s) { // else nobody is better by much
                             std::vector<double> x;
-                            for (std::size_t i = 0; i < scene.tf.features.size(); ++i) x.push_back(std::pow(10, random.between(-3.5, 0)));
+                            for (std::size_t i = 0; i < scene.tf.features.size(); ++i)
+                                x.push_back(std::pow(10, random.between(-3.5, 0)));
                             if (s == 0) x = featureOpacities(scene.tf);
                             TransferFunction base = withFeatureOpacities(scene.tf, x);
                             const EngineVws fs(*tinyEngine, view, base, tinyWeights);
                             OptimizeOptions o;
-                            o.method = s % 3 == 0 ? SearchMethod::Parallel : s % 3 == 1 ? SearchMethod::Line : SearchMethod::Fixed;
+                            o.method = s % 3 == 0   ? SearchMethod::Parallel
+                                       : s % 3 == 1 ? SearchMethod::Line
+                                                    : SearchMethod::Fixed;
                             o.direction = s % 4 == 3 ? Direction::Exact : Direction::Gradient;
                             if (s % 3 == 2) o.maxIterations = 60;
                             o.tolerance = 1e-3;
@@ -142,13 +150,15 @@ int main(int argc, char** argv) {
                             const OptimizeResult rs = optimize({fs, targets}, o);
                             if (rs.history[rs.best].objective < best) {
                                 best = rs.history[rs.best].objective;
-                                by = std::string(name(o.method)) + "/" + name(o.direction) + " start " + std::to_string(s);
+                                by = std::string(name(o.method)) + "/" + name(o.direction) + " start " +
+                                     std::to_string(s);
                             }
                             if (best < 1e-3) break;
                         }
                         const bool lost = (best < 0.03 && tinyFound >= 1e-3) || best < tinyFound - 0.005;
                         tally.lost += lost;
-                        std::printf("  | small: newton %.5f others %.5f (%s)%s", tinyFound, best, by.c_str(), lost ? " LOST" : "");
+                        std::printf("  | small: newton %.5f others %.5f (%s)%s", tinyFound, best, by.c_str(),
+                                    lost ? " LOST" : "");
                         tally.worst = std::max(tally.worst, tinyFound - best);
                     }
                     std::printf("\n");
@@ -169,7 +179,7 @@ int main(int argc, char** argv) {
         }
     if (!tally.moves.empty()) {
         std::sort(tally.moves.begin(), tally.moves.end());
-        std::printf("%d problems, newton below 0.001: %d, median moves %d, lost %d, worst difference %.4f\n", tally.problems,
-                    tally.below001, tally.moves[tally.moves.size() / 2], tally.lost, tally.worst);
+        std::printf("%d problems, newton below 0.001: %d, median moves %d, lost %d, worst difference %.4f\n",
+                    tally.problems, tally.below001, tally.moves[tally.moves.size() / 2], tally.lost, tally.worst);
     }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "output.h"
 #include "parse.h"
 
 namespace pellucid::cli {

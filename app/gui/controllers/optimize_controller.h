@@ -89,7 +89,7 @@ private:
     int m_move = -1, m_restarts = 0;
     double m_objective = 0, m_firstObjective = 0;
     Run m_run;
-    QElapsedTimer m_since; // the run's start
+    QElapsedTimer m_since;              // the run's start
     std::optional<Question> m_question; // waits for the figures of the answer, which come first
     Job<Task, OptimizeResult> m_job;
     Job<Question, Verdict> m_explaining;

@@ -31,10 +31,14 @@ bool ViewSearchController::Question::operator==(const Question& other) const {
 ViewSearchController::ViewSearchController(Workbench& bench, QObject* parent)
     : QObject(parent), m_bench(bench),
       m_judging(
-          [&workspace = bench.workspace()](const Judgement& task, const JobControl& job) {
-              return bestView(workspace, task.input, task.search, {job.stop, {}});
+          [this, &workspace = bench.workspace()](const Judgement& task, const JobControl& job) {
+              return m_views.best(workspace, task.input, task.search, {job.stop, {}});
           },
-          [this](const Judgement&, BestView& best) { m_best = best; }, WhenBusy::StopOld, &bench.compute()),
+          [this](const Judgement&, BestView& best) {
+              m_map = best.map;
+              m_best = best;
+          },
+          WhenBusy::StopOld, &bench.compute()),
       m_joint(
           [&workspace = bench.workspace()](const JointTask& task, const JobControl& job) {
               ViewWorkspace views;

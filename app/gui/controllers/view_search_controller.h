@@ -101,7 +101,7 @@ private:
     double m_progress = 0;
     int m_number = 0; ///< of the latest search
     QTimer m_wait;
-    ViewWorkspace m_views; ///< used on m_lane alone
+    ViewWorkspace m_views;
     Lane m_lane;
     std::optional<Question> m_jointQuestion; ///< of the optimization under way
     Job<Judgement, BestView> m_judging;

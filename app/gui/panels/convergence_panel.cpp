@@ -109,7 +109,7 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     const char* const names[] = {"objectivePlot", "vwsPlot", "opacityPlot"};
     const QString tips[] = {
         tr("F: the root mean square distance of the features' VWS from their targets, after each move;\n"
-           "dashed: the tolerance. Dots of moves on the halved volume are hollow.\n"
+           "dashed: the tolerance. Dots of moves on coarser volumes are hollow.\n"
            "Click on a dot: show that move. Double-click: export."),
         tr("VWS, each feature's share of what catches the eye, 0 to 1; dashed: the targets"),
         tr("The peak opacity of each feature, 0 to 1, of a path of one reference length d0")};
@@ -138,7 +138,7 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     m_list->setHeaderLabels({tr("Run"), tr("Moves"), tr("F"), tr("s")});
     m_list->headerItem()->setToolTip(kTitle, tr("Checked runs are compared in the first plot; the selected one has\n"
                                                 "the other two. F2 renames, Del deletes."));
-    m_list->headerItem()->setToolTip(kMoves, tr("Moves of the search, those on the halved volume too"));
+    m_list->headerItem()->setToolTip(kMoves, tr("Moves of the search, those on coarser volumes too"));
     m_list->headerItem()->setToolTip(kDistance, tr("Distance from the targets at the end"));
     m_list->headerItem()->setToolTip(kSeconds, tr("Seconds that the search took"));
     m_list->header()->setStretchLastSection(false);
