@@ -29,7 +29,7 @@ struct Faintness {
 
     /// The nearest shares that were found to be visible.
     struct Remedy {
-        std::vector<double> shares; ///< whole hundredths, sum 1
+        std::vector<double> shares; ///< whole hundredths or thousandths, sum 1
         std::vector<double> vws;    ///< evaluated, within 0.01 of them
         std::vector<double> opacity;
         Coverage coverage; ///< with these opacities

@@ -13,25 +13,29 @@ namespace {
 constexpr double kRidge = 1e-6;
 constexpr double kSolid = 0.99; // an opacity that more is not to be had of
 
-/// Shares as whole hundredths that sum to 1: the largest remainders are rounded up; what is wanted keeps one.
-std::vector<double> hundredths(const std::vector<double>& shares, const std::vector<double>& targets) {
+/// Shares as whole hundredths that sum to 1, thousandths where a wanted one is smaller: the largest remainders are
+/// rounded up; what is wanted keeps one.
+std::vector<double> rounded(const std::vector<double>& shares, const std::vector<double>& targets) {
+    int whole = 100;
+    for (std::size_t f = 0; f < shares.size(); ++f)
+        if (targets[f] > 0 && shares[f] < 0.01) whole = 1000;
     std::vector<int> parts;
     for (std::size_t f = 0; f < shares.size(); ++f)
-        parts.push_back(std::max(targets[f] > 0 ? 1 : 0, static_cast<int>(100 * shares[f])));
+        parts.push_back(std::max(targets[f] > 0 ? 1 : 0, static_cast<int>(whole * shares[f])));
     std::vector<std::size_t> order(shares.size());
     std::iota(order.begin(), order.end(), 0);
-    int left = 100 - std::accumulate(parts.begin(), parts.end(), 0);
+    int left = whole - std::accumulate(parts.begin(), parts.end(), 0);
     while (left != 0) {
-        const auto lacks = [&](std::size_t f) { return 100 * shares[f] - parts[f]; };
+        const auto lacks = [&](std::size_t f) { return whole * shares[f] - parts[f]; };
         const auto [least, most] = std::minmax_element(
             order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return lacks(a) < lacks(b); });
         const int step = left > 0 ? 1 : -1;
         parts[left > 0 ? *most : *least] += step;
         left -= step;
     }
-    std::vector<double> rounded;
-    for (const int p : parts) rounded.push_back(p / 100.0);
-    return rounded;
+    std::vector<double> round;
+    for (const int p : parts) round.push_back(static_cast<double>(p) / whole);
+    return round;
 }
 
 struct Bounds {
@@ -120,7 +124,7 @@ std::optional<Faintness::Remedy> visibleShares(const DensityProblem& problem, co
         job.throwIfStopped();
         remedy.opacity = depths.opacity(y);
         remedy.vws = problem.full.evaluate(std::vector<std::vector<double>>{remedy.opacity}, {job.stop, {}})[0];
-        if (remedy.shares.empty()) remedy.shares = hundredths(remedy.vws, targets);
+        if (remedy.shares.empty()) remedy.shares = rounded(remedy.vws, targets);
         if (objectiveOf(remedy.vws, remedy.shares) < 1e-3) break;
         const Bounds bounds = stepBounds(depths, y, kReach);
         const Numbers step =

@@ -17,7 +17,7 @@ void makeVisible(OptimizeResult& result, const DensityProblem& problem, const Op
 std::optional<Faintness> faintnessOf(const Coverage& seen, const std::vector<double>& targets,
                                      const std::vector<double>& opacity, const std::vector<OpacityLimits>& limits);
 
-/// The shares nearest to `targets`, hundredths, of a picture that has kVisibleCoverage and of its faint features
+/// The shares nearest to `targets`, in round numbers, of a picture that has kVisibleCoverage and of its faint features
 /// kVisibleCover; empty where none were found. From `opacity`, an answer for `targets`. Throws as the functions do.
 std::optional<Faintness::Remedy> visibleShares(const DensityProblem& problem, const std::vector<double>& targets,
                                                const std::vector<double>& opacity, const Faintness& faint,

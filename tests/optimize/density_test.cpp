@@ -216,11 +216,12 @@ TEST_CASE("shares that force a picture to be faint are said so, with shares that
     view.camera.height = 24;
     const RayBundle rays(*volume, tf, view, kCoverageRays);
     const Proportional function(tf, {2000, 1});
-    const DensityProblem problem{function, nullptr, rays};
+    const std::vector<OpacityLimits> limits{{}, {0, 0.999}};
+    const DensityProblem problem{function, nullptr, rays, limits};
 
     OptimizeOptions options;
     options.method = SearchMethod::Newton;
-    OptimizeResult result = optimize({function, {1, 1}}, options);
+    OptimizeResult result = optimize({function, {1, 1}, limits}, options);
     REQUIRE(result.converged());
     makeVisible(result, problem, options);
     const OptimizeState& best = result.history[result.best];
@@ -248,13 +249,13 @@ TEST_CASE("shares that force a picture to be faint are said so, with shares that
                                          percentText(faint.remedy->shares[1])));
 
     // Of a picture that has them nothing is said, nor where somebody wanted it as faint as that.
-    OptimizeResult visible = optimize({function, {99, 1}}, options);
+    OptimizeResult visible = optimize({function, {99, 1}, limits}, options);
     makeVisible(visible, problem, options);
     REQUIRE(visible.seen);
     CHECK_FALSE(visible.seen->faint);
     CHECK(faintText(visible).empty());
     options.coverage = 0.1;
-    OptimizeResult wanted = optimize({function, {99, 1}}, options);
+    OptimizeResult wanted = optimize({function, {99, 1}, limits}, options);
     makeVisible(wanted, problem, options);
     CHECK(wanted.seen->coverage.coverage == Approx(0.1).epsilon(0.01));
     CHECK_FALSE(wanted.seen->faint);
