@@ -20,6 +20,7 @@ struct LiveUpdate {
     std::vector<double> opacity; ///< per feature
     std::vector<double> vws;     ///< W there
     double objective = 0;        ///< F there
+    bool approximate = false;    ///< W and F are those of the copy of half the resolution
 };
 
 /// F below which an update leaves opacities alone while things move: what is not seen is not worth a move.
