@@ -20,7 +20,9 @@ LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, bool
     const OptimizeResult result = workspace.approach(held.input, held.targets, held.limits, options, coarse, job);
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     const OptimizeState& best = result.history[result.best];
-    return {best.opacity, best.vws, best.objective};
+    const bool approximate = coarse && held.input.volume->size() > CoarserVolumes::kSmallest &&
+                             held.input.settings.profile == Profile::Default;
+    return {best.opacity, best.vws, best.objective, approximate};
 }
 
 } // namespace

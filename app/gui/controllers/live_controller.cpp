@@ -163,7 +163,7 @@ void LiveController::finish(const Task& task, const LiveUpdate& update) {
     }
     HeldTargets now = task.held;
     now.input.tf = shownTf(withShownOpacities(task.tf, update.opacity));
-    m_bench.results().addVws(now.input, update.vws);
+    if (!update.approximate) m_bench.results().addVws(now.input, update.vws); // bars show figures of the volume
     Q_EMIT updated(update.objective);
     if (m_dirty) return begin(false);
     if (!task.settles) return; // the rest does the last moves
