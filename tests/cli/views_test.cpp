@@ -9,6 +9,7 @@
 #include "image_io/image_file.h"
 
 using nlohmann::json;
+using pellucid::test::operator+;
 using pellucid::test::Outcome;
 using pellucid::test::Words;
 using pellucid::test::Workshop;
