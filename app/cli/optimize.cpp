@@ -108,6 +108,7 @@ std::string textOf(const OptimizeResult& r, const std::string& engine, const Sec
            plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
            std::to_string(r.iterations()) + " iterations, " +
            (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " on coarser volumes, " : "") +
+           (r.densitySteps() > 0 ? std::to_string(r.densitySteps()) + " steps along equal shares, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
            secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) + ", total " +
            secondsText(seconds.total) + "\n";

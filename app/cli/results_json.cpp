@@ -60,6 +60,7 @@ Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& option
            {"stopped", name(r.reason)},
            {"iterations", r.iterations()},
            {"coarse_iterations", r.coarseIterations()},
+           {"density_steps", r.densitySteps()},
            {"evaluations", r.evaluations},
            {"spread_starts", r.spreadStarts},
            {"best", r.best},

@@ -177,10 +177,12 @@ std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, doub
     return points;
 }
 
-/// Downhill on the level of `at`, to below `goal` if that goes.
-OptimizeState NewtonSearch::descend(Linear at, double goal) {
+/// Downhill on the level of `at`, to below `goal` if that goes. `borrowed`: the derivatives are those of a coarser copy,
+/// which will do for as long as they bring F down fast.
+OptimizeState NewtonSearch::descend(Linear at, double goal, bool borrowed) {
     constexpr int kFailures = 3, kSlowMoves = 4;
     constexpr double kSlow = 0.98; // of F that a move leaves
+    constexpr double kFast = 0.3;  // likewise
     const auto level = static_cast<std::size_t>(at.state.level);
     double caution = 1;
     int failures = 0, slow = 0;
@@ -190,19 +192,28 @@ OptimizeState NewtonSearch::descend(Linear at, double goal) {
         if (!known) at = linearize(level, at.state.opacity);
         known = true;
         const std::vector<Point> points = candidates(at, caution);
+        if (points.empty() && borrowed) {
+            known = borrowed = false;
+            continue;
+        }
         if (points.empty()) break;
         std::vector<OptimizeState> states = evaluate(level, points);
         const auto best = std::min_element(states.begin(), states.end(), lower);
         if (!lower(*best, at.state)) {
+            if (borrowed) {
+                known = borrowed = false;
+                continue;
+            }
             caution /= 10;
             ++failures;
             continue;
         }
+        borrowed = borrowed && best->objective < kFast * at.state.objective;
         slow = best->objective > kSlow * at.state.objective ? slow + 1 : 0;
         failures = 0;
         caution = std::min(1.0, caution * 3);
         at.state = std::move(*best);
-        known = false;
+        known = borrowed;
         arrive(at.state);
     }
     return at.state;
@@ -211,10 +222,13 @@ OptimizeState NewtonSearch::descend(Linear at, double goal) {
 /// From the end of a descent on a coarse level through finer ones, up to that on the volume.
 OptimizeState NewtonSearch::refined(OptimizeState from) {
     for (int level = from.level - 1; level >= 0; --level) {
-        Linear at = linearize(static_cast<std::size_t>(level), from.opacity);
+        const auto here = static_cast<std::size_t>(level);
+        // W differs little from one level to the next, and its derivatives do, too: those of the copy are cheaper.
+        Linear at = linearize(here + 1, from.opacity);
+        at.state = evaluate(here, {from.opacity})[0];
         m_coarseMoves = 0;
         arrive(at.state);
-        from = descend(std::move(at), level == 0 ? m_goal : kCoarseGoal);
+        from = descend(std::move(at), level == 0 ? m_goal : kCoarseGoal, true);
     }
     return from;
 }

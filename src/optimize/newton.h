@@ -48,7 +48,7 @@ private:
     Point inside(Point x) const;
     std::vector<Point> candidates(const Linear& at, double caution) const;
     Point stepped(const Linear& at, const Step& step) const;
-    OptimizeState descend(Linear at, double goal);
+    OptimizeState descend(Linear at, double goal, bool borrowed = false);
     OptimizeState refined(OptimizeState from);
     std::vector<OptimizeState> spread(const OptimizeState& best);
 

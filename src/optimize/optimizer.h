@@ -78,13 +78,17 @@ struct OptimizeResult {
     std::vector<double> targets;        ///< normalised
     std::vector<OptimizeState> history; ///< the start, then each move
     std::size_t best = 0;               ///< index into history of `tf`, a state of level 0
+    /// How many states of the history the search has made; those behind them came after it, along equal shares
+    /// (makeVisible()). 0: all.
+    std::size_t searched = 0;
     int evaluations = 0;                ///< of W, on any level
     int spreadStarts = 0;               ///< Newton: starts tried all over the opacities, because it was stuck
     StopReason reason = StopReason::MaxIterations;
     std::optional<Seen> seen = {}; ///< of `tf`: of those who ask for it (visible_answer.h)
 
-    int iterations() const;       ///< moves on the volume
-    int coarseIterations() const; ///< states on coarser ones
+    int iterations() const;       ///< moves of the search on the volume
+    int coarseIterations() const; ///< its states on coarser ones
+    int densitySteps() const;     ///< states after the search, along equal shares
     bool converged() const { return reason == StopReason::Converged; }
 };
 

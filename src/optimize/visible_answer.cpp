@@ -154,6 +154,7 @@ void makeVisible(OptimizeResult& result, const DensityProblem& problem, const Op
         if (moves) {
             DensityAnswer answer = atDensity(problem, result.targets, best.opacity, options.coverage, job);
             result.evaluations += answer.evaluations;
+            result.searched = result.history.size();
             if (answer.point.objective >= options.tolerance && best.objective < options.tolerance) {
                 // What is on target stays so.
                 answer.point = {best.opacity, best.vws, best.objective, seen.coverage};

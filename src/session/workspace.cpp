@@ -50,6 +50,8 @@ void Workspace::releaseEngine() {
     m_engine.reset();
     m_coarser.reset();
     m_engineVolume.reset();
+    m_rays.reset();
+    m_raysVolume.reset();
 }
 
 bool Workspace::haveWeights(const MeasureInput& input) const {

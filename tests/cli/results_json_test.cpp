@@ -25,8 +25,8 @@ TEST_CASE("optimizations have their keys in the order of the manual", "[cli][jso
     r.reason = StopReason::Converged;
     const cli::Json j = cli::jsonFromOptimization(r, {});
     CHECK(keysOf(j) == std::vector<std::string>{"command", "method", "direction", "converged", "stopped", "iterations",
-                                                "coarse_iterations", "evaluations", "spread_starts", "best", "target",
-                                                "objective", "level", "vws", "opacity", "tf"});
+                                                "coarse_iterations", "density_steps", "evaluations", "spread_starts",
+                                                "best", "target", "objective", "level", "vws", "opacity", "tf"});
     CHECK(j["command"] == "optimize");
     CHECK(j["method"] == "newton");
     CHECK(j["coarse_iterations"] == 0);

@@ -49,9 +49,10 @@ private:
 
 /// Extinctions per d0 of a grid: logarithmic from faint to what alpha's cap allows.
 constexpr double kFaintest = 1e-5, kStrongest = 16.0;
+constexpr int kSamples = 5; ///< along each axis, in each round
 double opacityAt(double y) { return -std::expm1(-std::exp(y)); }
 
-/// The least F by brute force: a grid over the logarithms of the free extinctions, and two finer ones around its best.
+/// The least F by brute force: a grid over the logarithms of the free extinctions, and five finer ones around its best.
 double gridMinimum(EngineTools& tools, const ReachProblem& p, const std::vector<double>& start) {
     const std::size_t n = start.size();
     std::vector<double> lo(n), hi(n);
@@ -63,10 +64,10 @@ double gridMinimum(EngineTools& tools, const ReachProblem& p, const std::vector<
     double best = 1e9;
     std::vector<double> bestY(n);
     std::vector<double> from = lo, to = hi;
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0; round < 6; ++round) {
         std::vector<std::vector<double>> ys{{}};
         for (std::size_t i = 0; i < n; ++i) {
-            const int samples = p.limits[i].locked ? 1 : 13;
+            const int samples = p.limits[i].locked ? 1 : kSamples;
             std::vector<std::vector<double>> next;
             for (const auto& y : ys)
                 for (int k = 0; k < samples; ++k) {
@@ -86,10 +87,10 @@ double gridMinimum(EngineTools& tools, const ReachProblem& p, const std::vector<
                 best = all[k];
                 bestY = ys[k];
             }
-        for (std::size_t i = 0; i < n; ++i) { // two cells to each side
-            const double cell = (to[i] - from[i]) / 12;
-            from[i] = std::max(lo[i], bestY[i] - 2 * cell);
-            to[i] = std::min(hi[i], bestY[i] + 2 * cell);
+        for (std::size_t i = 0; i < n; ++i) { // a cell and a half to each side
+            const double cell = (to[i] - from[i]) / (kSamples - 1);
+            from[i] = std::max(lo[i], bestY[i] - 1.5 * cell);
+            to[i] = std::min(hi[i], bestY[i] + 1.5 * cell);
         }
     }
     return best;
@@ -102,7 +103,7 @@ struct HeldCase {
 
 /// Three tents of a random volume; one or two of them locked, or kept from being faint, against what is wanted of them.
 HeldCase heldCase(std::uint32_t number, std::shared_ptr<const Volume>& volume) {
-    RandomCase c = randomCase(number, 0.6);
+    RandomCase c = randomCase(number, 0.3);
     volume = c.volume;
     Random random(1000 + number);
     HeldCase held;
@@ -133,9 +134,9 @@ TEST_CASE("verdicts agree with a brute-force grid", "[optimize][verdict]") {
         const HeldCase held = heldCase(number, volume);
         EngineTools tools(volume, held.targets);
         const std::vector<double> start = featureOpacities(held.problem.tf);
-        const double least = gridMinimum(tools, held.problem, start);
-        if (least < 0.05) continue;
         const OptimizeResult found = tools.solve(held.problem, false, {});
+        if (found.history[found.best].objective < 0.05) continue; // within reach
+        const double least = gridMinimum(tools, held.problem, start);
         INFO("case " << number << ", grid " << least << ", found " << found.history[found.best].objective);
         const Verdict verdict =
             explain(tools, held.problem, held.targets, found, {.tolerance = 0.03, .otherViews = false});
