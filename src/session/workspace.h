@@ -44,8 +44,8 @@ public:
                     const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                     const OptimizeResult& found, const JobControl& job = {});
 
-    /// The same from nearby, as shares alone want it: no other picture's strength is looked for. `coarse`: on the copy of
-    /// half the resolution and nothing else, where there is one.
+    /// The same from nearby, as shares alone want it: no other picture's strength is looked for. `coarse`: on the copy
+    /// of half the resolution and nothing else, where there is one.
     OptimizeResult approach(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool coarse,
                             const JobControl& job = {});
