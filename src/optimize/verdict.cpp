@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "tf/color.h"
 
@@ -19,7 +20,7 @@ constexpr std::size_t kViewsVerified = 3; ///< on the whole volume, until one he
 
 /// Around the volume: six sides and eight corners, degrees.
 std::vector<ViewAngles> viewsAround(double zoom) {
-    const double corner = std::atan(std::sqrt(0.5)) * 180 / 3.14159265358979323846;
+    const double corner = std::atan(std::sqrt(0.5)) * 180 / std::numbers::pi;
     std::vector<ViewAngles> views{{0, 90, zoom}, {0, -90, zoom}};
     for (const double azimuth : {0.0, 90.0, 180.0, -90.0}) {
         views.push_back({azimuth, 0, zoom});
@@ -190,6 +191,10 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
     const OptimizeState& nearest = found.history[found.best];
     Verdict verdict{nearest.objective, nearest.vws, nearest.opacity, {}, {}, {}, {}};
     verdict.occlusion = occlusionAt(tools, problem, nearest.opacity, job);
+    if (nearest.objective < options.tolerance) {
+        verdict.sentences = {"Within reach: Newton's method gets to " + fText(nearest.objective) + "."};
+        return verdict;
+    }
 
     const auto helps = [&](double objective) { return objective < nearest.objective - kHelps; };
     for (std::size_t j = 0; j < n; ++j) {

@@ -39,7 +39,8 @@ public:
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                             const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
 
-    /// Why the answer of optimize() of this input is not on target, and what would help. Throws as measure() does.
+    /// Why the answer of optimize() of this input is not on target, and what would help. Where another method, or more
+    /// moves, could find a better one, that is looked for first. Throws as measure() does.
     Verdict explain(const MeasureInput& input, const std::vector<double>& targets,
                     const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                     const OptimizeResult& found, const JobControl& job = {});
