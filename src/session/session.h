@@ -124,6 +124,7 @@ struct FieldView {
 inline constexpr const char* kFeatureColorMap = "feature";
 /// Throws UsageError where `name` is no colour map and not kFeatureColorMap.
 void checkFieldColorMap(const std::string& name);
+
 /// What an optimization began with: enough to do it again with the same data.
 struct RunStart {
     TransferFunction tf; ///< as people edit it, in its own range; without points: not known
