@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "optimize/visibility_words.h"
 #include "tf/color.h"
 
 namespace pellucid {
@@ -90,12 +91,6 @@ TransferFunction withColor(TransferFunction tf, std::size_t feature, const Rgb& 
     return tf;
 }
 
-std::string percent(double share) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), share < 0.0995 ? "%.1f %%" : "%.0f %%", 100 * share);
-    return text.data();
-}
-
 std::string fText(double objective) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "F = %.4f", objective);
@@ -115,7 +110,8 @@ std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& probl
     std::vector<std::string> sentences, shares;
     for (std::size_t i = 0; i < targets.size(); ++i)
         if (std::abs(v.vws[i] - targets[i]) > 0.005)
-            shares.push_back(features[i].name + " " + percent(v.vws[i]) + " (wanted " + percent(targets[i]) + ")");
+            shares.push_back(features[i].name + " " + percentText(v.vws[i]) + " (wanted " + percentText(targets[i]) +
+                             ")");
     sentences.push_back("Out of reach: " + fText(v.objective) + " is the nearest" +
                         (shares.empty() ? "" : ", with " + listed(shares)) + ".");
     const auto reached = [&](double objective) {
