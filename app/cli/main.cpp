@@ -208,8 +208,7 @@ int run(const std::vector<std::string>& arguments) {
     const std::array commands{addInfo(program),     addSamples(program), addPresets(program), addGenerate(program),
                               addRender(program),   addMeasure(program), addFields(program),  addRefine(program),
                               addOptimize(program), addSpace(program),   addPropose(program), addProbe(program),
-                              addViews(program),
-                              addBench(program)};
+                              addViews(program),    addBench(program)};
     CommonOptions common;
     for (const Command& command : commands) addCommonOptions(*command.app, common);
 

@@ -103,10 +103,11 @@ std::string textOf(const OptimizeResult& r, const std::string& engine, const Sec
         table.add({r.tf.features[i].name, fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
                    fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
                    fixedText(r.seen->coverage.covers[i], 4)});
-    return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + ", at most " +
-           fixedText(r.seen->strongest, 4) + " with these shares\n" + faintLine(r) + "objective " +
-           plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
-           std::to_string(r.iterations()) + " iterations, " +
+    const double coverage = r.seen->coverage.coverage, strongest = r.seen->strongest;
+    return table.text() + "coverage " + fixedText(coverage, 4) +
+           (strongest > coverage ? ", up to " + fixedText(strongest, 4) + " with these shares" : "") + "\n" +
+           faintLine(r) + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
+           name(r.reason) + " after " + std::to_string(r.iterations()) + " iterations, " +
            (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " on coarser volumes, " : "") +
            (r.densitySteps() > 0 ? std::to_string(r.densitySteps()) + " steps along equal shares, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +

@@ -38,15 +38,6 @@ std::vector<std::string> namesOf(const TransferFunction& tf) {
     return names;
 }
 
-std::size_t featureNamed(const TransferFunction& tf, const std::string& wanted, const std::string& option) {
-    std::string known;
-    for (std::size_t f = 0; f < tf.features.size(); ++f) {
-        if (tf.features[f].name == wanted) return f;
-        known += (known.empty() ? "'" : ", '") + tf.features[f].name + "'";
-    }
-    throw UsageError("no feature is named '" + wanted + "'", option, "known: " + known);
-}
-
 ViewAngles parseSpaceView(const std::string& text, const std::string& option) {
     const auto v = parseReals(text, option);
     const std::string form = "give AZIMUTH,ELEVATION[,ZOOM]: degrees, elevation from -90 to 90, zoom from 0.1 to 10";
@@ -90,7 +81,7 @@ ParameterAxes axesOf(const Options& o, const TransferFunction& tf, const std::ve
         return axes;
     }
     for (const std::string& one : *o.features) {
-        const std::size_t f = featureNamed(tf, one, "--features");
+        const std::size_t f = parseFeature(one, "--features", tf);
         if (tf.features[f].hidden)
             throw UsageError("the feature '" + one + "' is hidden", "--features", "choose others");
         axes.features.push_back(f);
@@ -193,7 +184,7 @@ Answer run(const Options& o, Progress& progress) {
     const ParameterAxes axes = axesOf(o, scene.tf, targets);
     const std::vector<std::string> names = namesOf(scene.tf);
     SpaceView view;
-    view.shown = o.show == "F" ? kObjective : static_cast<int>(featureNamed(scene.tf, o.show, "--show"));
+    view.shown = o.show == "F" ? kObjective : static_cast<int>(parseFeature(o.show, "--show", scene.tf));
 
     MeasureInput input = measureInput(scene);
     const bool published = input.settings.profile == Profile::Published; // knows planes of voxels, and no lengths

@@ -109,8 +109,8 @@ bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 
 bool Workbench::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
-           !m_optimizing->isRunning() && !m_optimizing->isExplaining() && !m_refining->isBusy() && !m_live->isBusy() && !m_results.isBusy() &&
-           !m_fields->isBusy();
+           !m_optimizing->isRunning() && !m_optimizing->isExplaining() && !m_refining->isBusy() && !m_live->isBusy() &&
+           !m_results.isBusy() && !m_fields->isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

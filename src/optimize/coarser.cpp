@@ -31,13 +31,12 @@ ExcerptPlan planOf(const Volume& volume) {
 } // namespace
 
 std::shared_ptr<const Volume> halved(const Volume& volume, const JobControl& job) {
-    const Volume coarse = excerptOf(volume, planOf(volume), job);
-    Geometry geometry = coarse.geometry();
-    geometry.referenceLength = volume.geometry().d0();
-    Volume result(geometry, coarse.samples(), volume.missing());
-    result.title = volume.title;
-    result.format = volume.format;
-    return std::make_shared<const Volume>(throughWindowOf(std::move(result), volume.range()));
+    ExcerptPlan plan = planOf(volume);
+    plan.referenceLength = volume.geometry().d0();
+    Volume coarse = excerptOf(volume, plan, job);
+    coarse.excerpt.reset(); // nobody sees it: there is nothing to tell
+    coarse.notices.clear();
+    return std::make_shared<const Volume>(std::move(coarse));
 }
 
 WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, const JobControl& job) {

@@ -10,12 +10,10 @@
 namespace pellucid {
 
 /// Each voxel the mean of two along every axis whose spacing is below 1.5 times the smallest one; the reference length,
-/// and with it opacity and σ, stays that of `volume`. Intensities mean what they did. Throws
-/// Cancelled.
+/// and with it opacity and σ, stays that of `volume`. Intensities mean what they did. Throws Cancelled.
 std::shared_ptr<const Volume> halved(const Volume& volume, const JobControl& job = {});
 
-/// The weights of halved(volume), of those of the volume: means over the same voxels. Throws
-/// Cancelled.
+/// The weights of halved(volume), of those of the volume: means over the same voxels. Throws Cancelled.
 WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, const JobControl& job = {});
 
 /// The copies of one volume, with an engine and weights each. None of small volumes.

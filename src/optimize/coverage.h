@@ -36,6 +36,7 @@ struct Faintness {
         bool operator==(const Remedy&) const = default;
     };
     std::optional<Remedy> remedy;
+    bool searched = true; ///< the strongest picture and the remedy were looked for; false: no move was allowed
     bool operator==(const Faintness&) const = default;
 };
 

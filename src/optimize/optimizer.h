@@ -48,7 +48,8 @@ struct OptimizeOptions {
     int maxIterations = 200; ///< moves on the volume, ≥ 0
     bool coarse = true;      ///< Newton: the first moves on coarser volumes, where the problem has some
     bool restarts = true;    ///< Newton: where it is stuck it tries starts spread over all opacities
-    /// Newton: mean alpha that is wanted of the picture, (0, 1]; empty: as strong as shares allow.
+    /// Mean alpha that is wanted of the picture, (0, 1]; empty: with Newton as strong as shares allow, else as it
+    /// comes.
     std::optional<double> coverage = {};
     /// Line and Parallel: the lengths 1, 2, 4 and 8 base steps (docs/method.md, "The published profile"). Follows from
     /// the profile and is kept in no session.

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
+#include "optimize/visibility_words.h"
 #include "tf/color.h"
 
 namespace pellucid {
@@ -19,7 +21,7 @@ constexpr std::size_t kViewsVerified = 3; ///< on the whole volume, until one he
 
 /// Around the volume: six sides and eight corners, degrees.
 std::vector<ViewAngles> viewsAround(double zoom) {
-    const double corner = std::atan(std::sqrt(0.5)) * 180 / 3.14159265358979323846;
+    const double corner = std::atan(std::sqrt(0.5)) * 180 / std::numbers::pi;
     std::vector<ViewAngles> views{{0, 90, zoom}, {0, -90, zoom}};
     for (const double azimuth : {0.0, 90.0, 180.0, -90.0}) {
         views.push_back({azimuth, 0, zoom});
@@ -89,12 +91,6 @@ TransferFunction withColor(TransferFunction tf, std::size_t feature, const Rgb& 
     return tf;
 }
 
-std::string percent(double share) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), share < 0.0995 ? "%.1f %%" : "%.0f %%", 100 * share);
-    return text.data();
-}
-
 std::string fText(double objective) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "F = %.4f", objective);
@@ -114,7 +110,8 @@ std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& probl
     std::vector<std::string> sentences, shares;
     for (std::size_t i = 0; i < targets.size(); ++i)
         if (std::abs(v.vws[i] - targets[i]) > 0.005)
-            shares.push_back(features[i].name + " " + percent(v.vws[i]) + " (wanted " + percent(targets[i]) + ")");
+            shares.push_back(features[i].name + " " + percentText(v.vws[i]) + " (wanted " + percentText(targets[i]) +
+                             ")");
     sentences.push_back("Out of reach: " + fText(v.objective) + " is the nearest" +
                         (shares.empty() ? "" : ", with " + listed(shares)) + ".");
     const auto reached = [&](double objective) {
@@ -190,6 +187,10 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
     const OptimizeState& nearest = found.history[found.best];
     Verdict verdict{nearest.objective, nearest.vws, nearest.opacity, {}, {}, {}, {}};
     verdict.occlusion = occlusionAt(tools, problem, nearest.opacity, job);
+    if (nearest.objective < options.tolerance) {
+        verdict.sentences = {"Within reach: Newton's method gets to " + fText(nearest.objective) + "."};
+        return verdict;
+    }
 
     const auto helps = [&](double objective) { return objective < nearest.objective - kHelps; };
     for (std::size_t j = 0; j < n; ++j) {

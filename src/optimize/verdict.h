@@ -75,8 +75,9 @@ struct VerdictOptions {
     bool otherViews = true;  ///< whether views around are tried, a search each
 };
 
-/// Of a search that has ended above the tolerance: `found` is the answer of a global search of `problem`. Nothing is
-/// said that was not tried: every F is one that a search of the whole volume has reached. Throws Cancelled.
+/// `found` is the answer of a global search of `problem`; where that is below the tolerance the verdict is that, and no
+/// more. Nothing is said that was not tried: every F is one that a search of the whole volume has reached. Throws
+/// Cancelled.
 Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vector<double>& targets,
                 const OptimizeResult& found, const VerdictOptions& options = {}, const JobControl& job = {});
 

@@ -26,11 +26,13 @@ std::string percentText(double share) {
 
 std::string faintText(const TransferFunction& tf, const Faintness& faint, double strongest) {
     std::string text;
-    if (faint.picture) text = "the picture has " + percentText(strongest) + " of alpha at most";
+    if (faint.picture)
+        text = "the picture has " + percentText(strongest) + " of alpha" + (faint.searched ? " at most" : "");
     if (!faint.features.empty())
         text += (text.empty() ? "" : ", and ") + namesOf(tf, faint.features) +
                 (faint.features.size() == 1 ? " has" : " have") + " less than " + percentText(kFaintCover) +
                 (faint.features.size() == 1 ? " where it is seen" : " where they are seen");
+    if (!faint.searched) return text + "."; // what could be had instead nobody knows
     if (!faint.limiting.empty())
         text += ", because " + namesOf(tf, faint.limiting) + " cannot become more opaque and more of " +
                 "anything else would take from " + (faint.limiting.size() == 1 ? "its share" : "their shares");

@@ -179,8 +179,11 @@ void makeVisible(OptimizeResult& result, const DensityProblem& problem, const Op
             seen.strongest = std::max(seen.strongest, strongest.coverage);
         }
         seen.faint = faintnessOf(strongest, result.targets, opacity, problem.limits);
-        if (seen.faint && options.maxIterations > 0)
-            seen.faint->remedy = visibleShares(problem, result.targets, opacity, *seen.faint, job);
+        if (seen.faint) {
+            seen.faint->searched = options.maxIterations > 0;
+            if (seen.faint->searched)
+                seen.faint->remedy = visibleShares(problem, result.targets, opacity, *seen.faint, job);
+        }
         result.seen = std::move(seen);
     } catch (const Cancelled&) {
         result.reason = StopReason::Cancelled;

@@ -30,8 +30,7 @@ public:
     explicit Sheet(const AnnotationInput& input, const NamedBox* box = nullptr)
         : MarkMaker(input.picture.width, input.picture.height, input.density, groundOf(input.picture)), m_in(input),
           m_width(input.picture.width), m_height(input.picture.height), m_project(input.camera, m_width, m_height),
-          m_cap(capHeight), m_margin(margin),
-          m_box(box) {}
+          m_cap(capHeight), m_margin(margin), m_box(box) {}
 
     std::vector<Mark> marks() {
         const FrameOfReference& show = m_in.show;

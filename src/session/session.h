@@ -124,6 +124,7 @@ struct FieldView {
 inline constexpr const char* kFeatureColorMap = "feature";
 /// Throws UsageError where `name` is no colour map and not kFeatureColorMap.
 void checkFieldColorMap(const std::string& name);
+
 /// What an optimization began with: enough to do it again with the same data.
 struct RunStart {
     TransferFunction tf; ///< as people edit it, in its own range; without points: not known
@@ -195,8 +196,8 @@ struct Session {
 inline constexpr std::size_t kMostRuns = 50;
 
 /// Shares that the features of `tf` are wanted to have, in their order, sum 1: their goals, scaled; those whose target
-/// is locked keep theirs as far as the sum is 1. A feature without a goal has the mean of the others; where all are 0 or
-/// none has one, shares are equal. Empty without features.
+/// is locked keep theirs as far as the sum is 1. A feature without a goal has the mean of the others; where all are 0
+/// or none has one, shares are equal. Empty without features.
 std::vector<double> targetsOf(const TransferFunction& tf, const FeatureGoals& goals);
 /// The goals after the features of `tf` (which have identities) got `targets`, in their order.
 FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const std::vector<double>& targets);
@@ -204,8 +205,8 @@ FeatureGoals withTargets(FeatureGoals goals, const TransferFunction& tf, const s
 std::vector<OpacityLimits> limitsOf(const TransferFunction& tf, const FeatureGoals& goals);
 /// Features of `tf`, in their order, whose share stays where others are set: locked or hidden ones.
 std::vector<bool> heldTargets(const TransferFunction& tf, const FeatureGoals& goals);
-/// One share set to `value`, as far as those that are `held` (one per feature, or empty: none is) leave room for it; the
-/// others divide the rest in their old proportion. As it is where nobody else could give way.
+/// One share set to `value`, as far as those that are `held` (one per feature, or empty: none is) leave room for it;
+/// the others divide the rest in their old proportion. As it is where nobody else could give way.
 std::vector<double> withTarget(std::vector<double> targets, std::size_t feature, double value,
                                const std::vector<bool>& held = {});
 /// The goals after the target of one feature was locked or let go: shares are what they were.

@@ -16,14 +16,14 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-} // namespace
-
 /// What measuring takes under these settings.
 MemoryUse useUnder(const MeasureSettings& settings) {
     const MemoryUse use = toMeasure("measuring");
     if (settings.profile == Profile::Published) return byPublished(use);
     return settings.engine == EngineChoice::Reference ? byReference(use) : use;
 }
+
+} // namespace
 
 VisibilityEngine& Workspace::engine(const MeasureInput& input) {
     const MeasureSettings& settings = input.settings;
@@ -34,6 +34,10 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
         if (m_weightsVolume != input.volume) { // what was measured before needs no room any more
             m_weightsVolume.reset();
             m_weights = {};
+        }
+        if (m_raysVolume != input.volume) {
+            m_raysVolume.reset();
+            m_rays.reset();
         }
         requireMemory(useUnder(settings), input.volume->title, input.volume->dims(), input.volume->sampleType());
         m_engine = settings.profile == Profile::Published ? makePublishedEngine(input.volume)

@@ -39,13 +39,14 @@ public:
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                             const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
 
-    /// Why the answer of optimize() of this input is not on target, and what would help. Throws as measure() does.
+    /// Why the answer of optimize() of this input is not on target, and what would help. Where another method, or more
+    /// moves, could find a better one, that is looked for first. Throws as measure() does.
     Verdict explain(const MeasureInput& input, const std::vector<double>& targets,
                     const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                     const OptimizeResult& found, const JobControl& job = {});
 
-    /// The same from nearby, as shares alone want it: no other picture's strength is looked for. `coarse`: on the copy of
-    /// half the resolution and nothing else, where there is one.
+    /// The same from nearby, as shares alone want it: no other picture's strength is looked for. `coarse`: on the copy
+    /// of half the resolution and nothing else, where there is one.
     OptimizeResult approach(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool coarse,
                             const JobControl& job = {});

@@ -8,7 +8,10 @@ public:
     WorkspaceTools(Workspace& workspace, const MeasureInput& input, const std::vector<double>& targets,
                    const OptimizeOptions& options)
         : m_workspace(workspace), m_input(input), m_targets(targets), m_options(options) {
-        m_options.method = SearchMethod::Newton; // what the method at hand reaches says nothing of what can be reached
+        // What the method at hand reaches, in as many moves as it may, says nothing of what can be reached.
+        m_options.method = SearchMethod::Newton;
+        m_options.restarts = true;
+        m_options.maxIterations = OptimizeOptions{}.maxIterations;
     }
 
     const Geometry& geometry() const override { return m_input.volume->geometry(); }
@@ -56,10 +59,22 @@ private:
 Verdict Workspace::explain(const MeasureInput& input, const std::vector<double>& targets,
                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                            const OptimizeResult& found, const JobControl& job) {
-    WorkspaceTools tools(*this, input, targets, options);
-    // The published profile has views of its own.
-    return pellucid::explain(tools, {input.view, input.tf, limits}, found.targets, found,
-                             {options.tolerance, input.settings.profile == Profile::Default}, job);
+    const ReachProblem problem{input.view, input.tf, limits};
+    // Only this search ends where nothing is nearer; of others, and of one that was stopped, nobody knows.
+    const bool isGlobal =
+        options.method == SearchMethod::Newton && options.restarts && found.reason == StopReason::NoProgress;
+    try {
+        WorkspaceTools tools(*this, input, targets, options);
+        const OptimizeResult nearest = isGlobal ? found : tools.solve(problem, false, job);
+        // The published profile has views of its own.
+        return pellucid::explain(tools, problem, nearest.targets, nearest,
+                                 {options.tolerance, input.settings.profile == Profile::Default}, job);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (...) {
+        releaseEngine(); // it is not trusted again
+        throw;
+    }
 }
 
 } // namespace pellucid

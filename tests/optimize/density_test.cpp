@@ -278,6 +278,9 @@ TEST_CASE("shares and parts of alpha in words", "[density]") {
         "the picture has 6.5 % of alpha at most, and 'f1' and 'f2' have less than 2.0 % where they are seen, because "
         "'f3' cannot become more opaque and more of anything else would take from its share. No shares close to these "
         "were found that would be visible.");
+    faint.searched = false; // of a search without a move nothing is said that was not looked for
+    CHECK(faintText(tf, faint, 0.065) ==
+          "the picture has 6.5 % of alpha, and 'f1' and 'f2' have less than 2.0 % where they are seen.");
 }
 
 TEST_CASE("on a real view equal shares are kept over a tenth of the coverage and more", "[density]") {

@@ -193,3 +193,25 @@ TEST_CASE("saliency is computed again for colours and features, never for opacit
     const auto other = std::make_shared<const Volume>(*volume);
     CHECK_THROWS_AS(cache.weights(inputOf(other, tf), stopped), Cancelled);
 }
+
+TEST_CASE("a search that was stopped says nothing of what can be reached", "[session][workspace]") {
+    const MeasureInput input = measureInput(sceneOf("sample:shells", "tents:3"));
+    const std::vector<double> targets{1.0 / 6, 2.0 / 6, 3.0 / 6};
+    OptimizeOptions options;
+    options.method = SearchMethod::Fixed;
+    options.maxIterations = 1;
+    Workspace workspace;
+    // A base step of 0.05 along 2(W − t) moves no opacity by more than 0.1: far from where f1 does not hide the others.
+    const OptimizeResult found = workspace.optimize(input, targets, {}, options);
+    REQUIRE(found.history[found.best].objective > options.tolerance);
+    const Verdict verdict = workspace.explain(input, targets, std::vector<OpacityLimits>(3), options, found);
+    CHECK(verdict.objective < options.tolerance); // shells are in sight, salient and free: any shares can be had
+    CHECK(verdict.limits.empty());
+    CHECK(verdict.helps.empty());
+    REQUIRE(verdict.sentences.size() == 1);
+    CHECK(verdict.sentences[0].starts_with("Within reach: "));
+    std::vector<double> vws;
+    const MeasureInput there{input.volume, withFeatureOpacities(input.tf, verdict.opacity), input.view, input.settings};
+    for (const FeatureMeasures& f : workspace.measure(there).features) vws.push_back(f.vws);
+    CHECK(objectiveOf(vws, targets) == Approx(verdict.objective).margin(1e-4));
+}

@@ -15,8 +15,8 @@ struct CameraOptions {
     std::optional<ViewAngles> view;
     std::optional<NamedView> namedView;
     bool orthographic = false;
-    bool mayBeBest = false; ///< of a command that finds the view itself: --view best
-    bool best = false;      ///< that is what is asked for
+    bool mayBeBest = false;             ///< of a command that finds the view itself: --view best
+    bool best = false;                  ///< that is what is asked for
     std::optional<ViewAngles> fallback; ///< the command's own, where neither options nor session say
 
     void add(CLI::App& app);

@@ -171,7 +171,7 @@ void LiveController::finish(const Task& task, const LiveUpdate& update) {
     m_bench.results().setPaused(false);
     if (update.objective >= task.held.options.tolerance)
         m_bench.optimizing().say(
-            tr("Live: the targets cannot be held from this view; F = %1.").arg(update.objective, 0, 'f', 4));
+            tr("Live: the targets are not held from this view; F = %1.").arg(update.objective, 0, 'f', 4));
     Q_EMIT busyChanged();
 }
 

@@ -415,7 +415,9 @@ void RefineController::setGhostShown(bool shown) {
 // Live: after every edit that refinement may answer differently, as part of it.
 QString RefineController::follow(const Scene& before, const Scene& after, Session& session) {
     const RefineSettings& settings = *after.session.refine;
-    if (m_quiet || !settings.live || after.session.holdTargets || !isReady() || !after.histogram || before.data != after.data) return {};
+    if (m_quiet || !settings.live || after.session.holdTargets || !isReady() || !after.histogram ||
+        before.data != after.data)
+        return {};
     // An optimization has found what it was asked for.
     if (!(before.session.runs == after.session.runs) || before.session.frame != after.session.frame) return {};
     const TransferFunction *was = before.session.tf(), *is = after.session.tf();

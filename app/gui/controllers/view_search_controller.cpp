@@ -270,8 +270,9 @@ void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities&
     const ViewAngles angles = viewAngles(found.input.view.camera, task.input.volume->geometry());
     const auto degrees = [](double value) { return QString::number(value, 'f', 0); };
     m_bench.optimizing().say(
-        (found.result.converged() ? tr("On target from azimuth %1°, elevation %2°: F = %3, from %4.")
-                                  : tr("As near as any view gets, from azimuth %1°, elevation %2°: F = %3, from %4."))
+        (found.result.converged()
+             ? tr("On target from azimuth %1°, elevation %2°: F = %3, from %4.")
+             : tr("Not on target; the nearest view found is azimuth %1°, elevation %2°: F = %3, from %4."))
             .arg(degrees(angles.azimuth), degrees(angles.elevation), QString::number(best.objective, 'f', 4),
                  QString::number(start.objective, 'f', 4)));
 }

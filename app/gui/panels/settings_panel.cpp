@@ -164,7 +164,7 @@ void SettingsPanel::addOptimization(QFormLayout& form) {
     check("normalizeCheck", tr("&Normalize the direction"),
           tr("The direction has length 1, as section 5.3.4 prints it"), &OptimizeOptions::normalize, isStepped);
     check("coarseCheck", tr("&Coarse to fine"),
-          tr("Newton: the first moves on a volume of half the size, the last on the full one"),
+          tr("Newton: the first moves on coarser copies of the volume, the last on the volume itself"),
           &OptimizeOptions::coarse, [isStepped] { return !isStepped(); });
 }
 

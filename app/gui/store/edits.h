@@ -57,7 +57,7 @@ inline void editOpacityLimits(SessionStore& store, int feature, const OpacityLim
         });
     });
 }
-/// The same without what hides it.
+/// As the session has them: a hidden feature is not locked by that here.
 inline OpacityLimits opacityLimits(const SessionStore& store, int feature) {
     const FeatureGoals& goals = *store.session().goals;
     const auto goal = goals.find(store.scene().tf.features.at(static_cast<std::size_t>(feature)).id);

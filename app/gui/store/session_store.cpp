@@ -270,7 +270,8 @@ void SessionStore::setTfSaved() {
     for (const auto& [id, goal] : *m_clean->goals) {
         const auto now = other.goals->find(id);
         if (now == other.goals->end() || now->second.target != goal.target || now->second.locked != goal.locked ||
-            now->second.lowest != goal.lowest || now->second.highest != goal.highest || now->second.targetLocked != goal.targetLocked)
+            now->second.lowest != goal.lowest || now->second.highest != goal.highest ||
+            now->second.targetLocked != goal.targetLocked)
             return;
     }
     other.goals = m_clean->goals; // those of new features came with them
