@@ -25,8 +25,7 @@ std::vector<ViewAngles> viewsAround(double zoom) {
     std::vector<ViewAngles> views{{0, 90, zoom}, {0, -90, zoom}};
     for (const double azimuth : {0.0, 90.0, 180.0, -90.0}) {
         views.push_back({azimuth, 0, zoom});
-        views.push_back({azimuth + 45, corner, zoom});
-        views.push_back({azimuth + 45, -corner, zoom});
+        for (const double elevation : {corner, -corner}) views.push_back({azimuth - 45, elevation, zoom});
     }
     return views;
 }

@@ -165,15 +165,16 @@ TEST_CASE("verdicts agree with a brute-force grid", "[optimize][verdict]") {
 
 namespace {
 
-/// Two boxes of 24³: the left half holds 0.25, the right half 0.75; nothing around them.
-std::shared_ptr<const Volume> halves() {
+/// In 24³, the left half holds 0.25, the right half 0.75; nothing around them, nor within `gap` of the border between.
+std::shared_ptr<const Volume> halves(int gap = 0) {
     Geometry g;
     g.dims = {24, 24, 24};
     std::vector<float> values;
     for (int k = 0; k < 24; ++k)
         for (int j = 0; j < 24; ++j)
             for (int i = 0; i < 24; ++i) {
-                const bool inside = std::min({i, j, k}) >= 4 && std::max({i, j, k}) < 20;
+                const bool inside =
+                    std::min({i, j, k}) >= 4 && std::max({i, j, k}) < 20 && (i < 12 - gap || i >= 12 + gap);
                 values.push_back(!inside ? 0.0F : i < 12 ? 0.25F : 0.75F);
             }
     values[0] = 1;
@@ -208,21 +209,23 @@ TEST_CASE("what is clipped away is said to be out of sight, and that the clippin
 }
 
 TEST_CASE("what has the colour of the background needs another one", "[optimize][verdict]") {
-    const auto volume = halves();
+    // Six voxels apart, more than 2σ = 4: black in black has no saliency at all.
+    const auto volume = halves(3);
     ReachProblem p{View(cameraFromView(volume->geometry(), 0, 0, 1, Projection::Orthographic)), twoTents(), {{}, {}}};
     for (ControlPoint& c : p.tf.points)
-        if (c.x > 0.5)
-            c.color = {0, 0, 0}; // as the background of saliency: no weight anywhere but next to the left half
+        if (c.x > 0.5) c.color = {0, 0, 0};
     p.tf.features[1].color = {0, 0, 0};
-    // Apart from the other half, black on black has no saliency at all.
-    p.view.clipping.lo.x = 0.0;
     EngineTools tools(volume, {0.2, 0.8});
     const OptimizeResult found = tools.solve(p, false, {});
+    CHECK(found.history[found.best].objective == Approx(0.8)); // W = (1, 0): sqrt((0.8² + 0.8²)/2)
     const Verdict v = explain(tools, p, {0.2, 0.8}, found, {});
-    if (v.objective >= 0.03) {
-        REQUIRE_FALSE(v.helps.empty());
-        CHECK(v.helps[0].kind == ReachHelp::Kind::Color);
-    }
+    REQUIRE_FALSE(v.limits.empty());
+    CHECK(v.limits[0].feature == 1);
+    CHECK(v.limits[0].reason == LimitReason::NoContrast);
+    REQUIRE_FALSE(v.helps.empty());
+    CHECK(v.helps[0].kind == ReachHelp::Kind::Color);
+    CHECK(v.helps[0].feature == 1);
+    CHECK(v.helps[0].objective < 0.01);
 }
 
 TEST_CASE("a locked feature in front is held responsible, and the view from behind is found", "[optimize][verdict]") {

@@ -192,8 +192,10 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     // The start, where a run ends before its first move was shown.
     if (!store.isPreviewing()) store.preview(tr("Optimize"), [](Session&) {});
     store.record([&](Session& session) { session.addRun(run); }); // undo takes back what came of it
+    m_answering = true;
     store.preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     store.commit();
+    m_answering = false;
     MeasureInput input = task.input;
     input.tf = shownTf(tf);
     m_bench.results().addVws(input, best.vws);

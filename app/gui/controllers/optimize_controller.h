@@ -29,6 +29,8 @@ public:
     void start();
     void cancel();
     bool isRunning() const { return m_job.isRunning(); }
+    /// What it has found is being put in place: nothing shall follow of that by itself.
+    bool isAnswering() const { return m_answering; }
 
     /// Of the run under way: its latest move (0 is the start; −1 before), and the distance F there.
     int move() const { return m_move; }
@@ -88,6 +90,7 @@ private:
     int m_number = 0;              ///< of the latest run: answers of others are dropped
     int m_move = -1, m_restarts = 0;
     double m_objective = 0, m_firstObjective = 0;
+    bool m_answering = false;
     Run m_run;
     QElapsedTimer m_since;              // the run's start
     std::optional<Question> m_question; // waits for the figures of the answer, which come first

@@ -419,7 +419,7 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
         before.data != after.data)
         return {};
     // An optimization has found what it was asked for.
-    if (!(before.session.runs == after.session.runs) || before.session.frame != after.session.frame) return {};
+    if (m_bench.optimizing().isAnswering() || before.session.frame != after.session.frame) return {};
     const TransferFunction *was = before.session.tf(), *is = after.session.tf();
     if (was == nullptr || is == nullptr) return {};
     const bool edited = hasMoved(*was, *is, settings.region.has_value());
