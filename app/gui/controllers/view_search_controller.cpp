@@ -110,13 +110,12 @@ void ViewSearchController::addActions() {
 
 std::optional<ViewSearchController::Question> ViewSearchController::questionOf(FeatureId feature) const {
     const Scene& scene = m_bench.scene();
-    if (!m_bench.store().hasVolume() || scene.tf.features.empty() ||
-        scene.session.measure->profile == Profile::Published)
-        return {};
+    const auto& features = scene.tf.features;
+    const bool allHidden = std::all_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; });
+    if (!m_bench.store().hasVolume() || allHidden || scene.session.measure->profile == Profile::Published) return {};
     Question question{measureInput(scene), {}};
     Camera& camera = question.input.view.camera;
     camera = lookingFrom(camera, scene.volume->geometry(), {0, -1, 0});
-    const auto& features = scene.tf.features;
     const auto judged = std::find_if(features.begin(), features.end(),
                                      [feature](const Feature& f) { return feature != 0 && f.id == feature; });
     if (judged != features.end()) {

@@ -291,6 +291,8 @@ void SpacePanel::keepChosen() {
 
 void SpacePanel::compute() {
     if (!m_bench.store().hasVolume() || m_job.isRunning() || axes().features.size() < 2) return;
+    const std::vector<Feature>& features = m_bench.scene().tf.features;
+    if (std::all_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; })) return;
     const Inputs now = inputs();
     Task task{measureInput(m_bench.scene()), targets(), now.axes, now.factor, now, m_bench.scene().tf.features};
     if (task.measured.settings.profile == Profile::Published)
@@ -321,7 +323,8 @@ void SpacePanel::refresh() {
     const bool hasTwo = m_bench.store().hasVolume() && axes().features.size() >= 2;
     const bool current = isCurrent(), running = m_job.isRunning(), mayEdit = current && !m_bench.isReadOnly();
     if (current) // F follows from W
-        if (std::vector<double> wanted = targets(); wanted != m_targets) {
+        if (std::vector<double> wanted = targets();
+            wanted != m_targets && std::any_of(wanted.begin(), wanted.end(), [](double t) { return t > 0; })) {
             m_space = std::make_shared<const ParameterSpace>(withTargets(*m_space, wanted));
             m_targets = std::move(wanted);
         }
