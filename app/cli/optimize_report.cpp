@@ -81,15 +81,15 @@ void ReportOptions::write(const Scene& scene, RunStart start, const OptimizeResu
     answer.text += "wrote " + file + "\n";
     Json states = Json::array();
     for (const ReportState& s : report.states) states.push_back({{"move", s.move}, {"ssim", s.ssim}});
+    Json threshold{{"objective", ThresholdCheck::kObjective},
+                   {"ssim", ThresholdCheck::kAlike},
+                   {"states", check.below},
+                   {"alike", check.alike}};
+    if (check.below > 0) threshold["least"] = check.least;
     answer.json["report"] = {{"file", file},
                              {"size", {request.width, request.height}},
                              {"states", states},
-                             {"threshold",
-                              {{"objective", ThresholdCheck::kObjective},
-                               {"ssim", ThresholdCheck::kAlike},
-                               {"states", check.below},
-                               {"alike", check.alike},
-                               {"least", check.below > 0 ? Json(check.least) : Json()}}}};
+                             {"threshold", std::move(threshold)}};
 }
 
 } // namespace pellucid::cli

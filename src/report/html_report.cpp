@@ -65,7 +65,9 @@ std::vector<ShareBar> barsOf(const Report& report, const OptimizeState& state,
 
 /// Opacity over the values, each feature in its colour.
 Plot tfPlot(const Report& report, const TransferFunction& tf, double most) {
-    const auto value = [&](double x) { return report.window.lo + x * (report.window.hi - report.window.lo); };
+    // Where all values are one the axis has a width all the same.
+    const double lo = report.window.lo, wide = report.window.hi > lo ? report.window.hi - lo : 1;
+    const auto value = [&](double x) { return lo + x * wide; };
     Plot plot{
         .title = "Transfer function",
         .x = {.label = report.unit.empty() ? "value" : "value (" + report.unit + ")", .lo = value(0), .hi = value(1)},

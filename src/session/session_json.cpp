@@ -626,9 +626,11 @@ Run toRun(const JsonValue& j) {
         return all;
     };
     r.targets = j["targets"].numbers();
-    for (const JsonValue& s : j["history"].items())
-        r.history.push_back({s["objective"].number(), perFeature(s["vws"]), perFeature(s["opacity"]),
+    for (const JsonValue& s : j["history"].items()) {
+        for (const JsonValue& opacity : s["opacity"].items()) opacity.number(0, 1);
+        r.history.push_back({s["objective"].number(0, kMost), perFeature(s["vws"]), perFeature(s["opacity"]),
                              s.has("level") ? static_cast<int>(s["level"].integer(0, 64)) : 0});
+    }
     if (!r.history.empty()) perFeature(j["targets"]);
     r.best = static_cast<std::size_t>(j["best"].integer(0, INT64_MAX));
     if (r.best > 0 && r.best >= r.history.size()) j["best"].fail("the history has no such state");
