@@ -79,11 +79,13 @@ TEST_CASE("a field takes the place of the data and gives it back", "[fields]") {
     CHECK(fieldsOf(w).state() == State::Off);
     CHECK(fieldsOf(w).field() == nullptr); // at once
     CHECK(w.picture() == data);
-    // The key brings it back, and takes it away.
-    QTest::keyClick(&w.window, Qt::Key_V);
+    // The key brings it back, and takes it away. Keys are for the window that is active.
+    w.window.activateWindow();
+    REQUIRE(QTest::qWaitForWindowActive(&w.window, kPatience));
+    QTest::keyClick(&w.view(), Qt::Key_V);
     CHECK(viewOf(w).kind == FieldKind::Visibility);
     CHECK(w.picture() == field);
-    QTest::keyClick(&w.window, Qt::Key_V);
+    QTest::keyClick(&w.view(), Qt::Key_V);
     CHECK(w.picture() == data);
 }
 
