@@ -14,7 +14,7 @@ LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, bool
     options.method = SearchMethod::Newton; // from nearby it arrives in a move or two
     options.coverage.reset();
     options.coarse = false;
-    options.restarts = false;
+    options.restarts = !coarse; // where the hand rests there is time for them
     options.tolerance = std::min(options.tolerance, kLiveGoal);
     options.maxIterations = moves;
     const OptimizeResult result = workspace.approach(held.input, held.targets, held.limits, options, coarse, job);
