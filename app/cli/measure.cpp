@@ -95,8 +95,9 @@ Answer run(const Options& o, Progress& progress) {
 
     Seconds seconds;
     seconds.saliency = saliencySeconds;
-    const Measures m = workspace.measure(input, progress.phase("visibility"));
+    Measures m = workspace.measure(input, progress.phase("visibility"));
     seconds.visibility = workspace.seconds().visibility;
+    m.coverage = workspace.coverage(input, progress.phase("coverage"));
     Matrices matrices;
     if (o.jacobian) {
         matrices.jacobian = workspace.jacobian(input, progress.phase("derivatives"));

@@ -68,9 +68,6 @@ std::string listing(const std::vector<std::pair<std::string, std::string>>& line
     return text;
 }
 
-std::string fixedText(double value, int digits) {
-    return printed(("%." + std::to_string(digits) + "f").c_str(), value);
-}
 std::string plainText(double value) { return printed("%.6g", value); }
 
 std::string countText(std::size_t value) {

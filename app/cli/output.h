@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/round_numbers.h"
 #include "base/error.h"
 #include "volume/volume.h"
 
@@ -36,7 +37,6 @@ private:
 /// Aligned "name  value" lines.
 std::string listing(const std::vector<std::pair<std::string, std::string>>& lines);
 
-std::string fixedText(double value, int digits); ///< "0.407"
 std::string plainText(double value);             ///< the shortest of six significant digits: "0.957031", "1e+06"
 std::string countText(std::size_t value);        ///< "26,470,255"
 std::string bytesText(std::size_t bytes);        ///< "12.3 MiB"

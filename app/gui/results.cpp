@@ -21,12 +21,13 @@ Results::Results(SessionStore& store, Lane& lane, Workspace& workspace, QObject*
     : QObject(parent), m_store(store),
       m_measuring(
           [&workspace](const Request& request, const JobControl& job) {
-              Figures figures{request.input, {}, {}, {}, {}};
+              Figures figures{request.input, {}, {}, {}, {}, {}};
               if (request.measures) figures.measures = workspace.measure(request.input, job);
               if (request.influence) {
                   figures.influence = workspace.jacobian(request.input, job);
                   figures.occlusion = workspace.occlusion(request.input, job);
               }
+              if (request.coverage) figures.coverage = workspace.coverage(request.input, job);
               figures.engine = QString::fromStdString(workspace.engine(request.input).name());
               return figures;
           },
@@ -89,6 +90,7 @@ void Results::keep(Figures figures) {
             figures.influence = at->influence;
             figures.occlusion = at->occlusion;
         }
+        if (figures.coverage && figures.measures) figures.measures->coverage = figures.coverage;
         m_known.erase(at);
     }
     m_known.push_front(std::move(figures));
@@ -97,7 +99,7 @@ void Results::keep(Figures figures) {
 
 void Results::request() {
     if (m_paused || !m_store.hasVolume() || m_throttle.isActive()) return;
-    if (measuresAreCurrent() && (!m_influenceWanted || influenceIsCurrent())) return;
+    if (measuresAreCurrent() && !lacksCoverage() && (!m_influenceWanted || influenceIsCurrent())) return;
     if (m_measuring.isRunning()) return; // its end asks again
     // The picture wants the processors too: half of the time is its own while the hand moves.
     const qint64 pause = m_sinceStart.isValid() ? std::max(kLeastPause, 2 * m_lastTook) - m_sinceStart.elapsed() : 0;
@@ -107,9 +109,11 @@ void Results::request() {
 void Results::begin() {
     if (m_paused || !m_store.hasVolume()) return;
     const bool influence = m_influenceWanted && !influenceIsCurrent();
-    if (measuresAreCurrent() && !influence) return;
+    const bool coverage = lacksCoverage();
+    if (measuresAreCurrent() && !influence && !coverage) return;
     m_sinceStart.restart();
-    m_measuring.start({m_present, !measuresAreCurrent(), influence}, QString::fromStdString(m_present.volume->title));
+    m_measuring.start({m_present, !measuresAreCurrent(), influence, coverage},
+                      QString::fromStdString(m_present.volume->title));
 }
 
 void Results::show(const Figures& figures) {
@@ -117,8 +121,12 @@ void Results::show(const Figures& figures) {
         m_measured = figures;
         m_vwsOnly = false;
     }
+    if (figures.coverage && m_measured.measures && m_measured.input == figures.input)
+        m_measured.measures->coverage = figures.coverage;
     if (figures.influence) m_derived = figures;
 }
+
+bool Results::lacksCoverage() const { return measuresAreCurrent() && !m_measured.measures->coverage; }
 
 const Measures* Results::measures() const {
     if (!m_measured.measures || !m_store.hasVolume() || !sameNames(m_measured.input.tf, m_store.scene().tf))

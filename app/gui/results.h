@@ -60,11 +60,12 @@ private:
         std::optional<Measures> measures;
         std::optional<std::vector<std::vector<double>>> influence;
         OcclusionMatrix occlusion; // where there is an influence
+        std::optional<Coverage> coverage;
         QString engine;
     };
     struct Request {
         MeasureInput input;
-        bool measures = true, influence = false;
+        bool measures = true, influence = false, coverage = false;
     };
 
     void follow(const Scene& before, const Scene& after);
@@ -72,6 +73,7 @@ private:
     void begin();
     void keep(Figures figures);
     void show(const Figures& figures);
+    bool lacksCoverage() const; // of current figures: it waits until the hand rests
     const Figures* known(const MeasureInput& input) const;
 
     SessionStore& m_store;

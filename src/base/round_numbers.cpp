@@ -36,9 +36,12 @@ double roundNumberBelow(double most) {
     return power * (multiple >= 10 ? 10 : multiple >= 5 ? 5 : multiple >= 2 ? 2 : 1);
 }
 
+std::string fixedText(double value, int decimals) { return printed(value, std::chars_format::fixed, decimals); }
+std::string shortText(double value) { return printed(value, std::chars_format::general, 4); }
+
 std::string numberText(double value, double span) {
     const double size = std::max(std::abs(value), span);
-    if (size != 0 && (size >= 1e7 || size < 1e-3)) return printed(value, std::chars_format::general, 4);
+    if (size != 0 && (size >= 1e7 || size < 1e-3)) return shortText(value);
     if (span <= 0) return printed(value, std::chars_format::general, 6);
     std::string text = printed(value, std::chars_format::fixed, std::max(0, decimalsFor(span) - 1));
     if (text.find('.') != std::string::npos) {

@@ -1,4 +1,4 @@
-// Round numbers and their texts, for axes, scales and legends.
+// Round numbers, and numbers as texts, for axes, scales, legends and reports; the same in every locale.
 #pragma once
 
 #include <string>
@@ -15,6 +15,9 @@ double roundNumberBelow(double most);
 
 /// `value` with as many digits as tell apart values in a range of width `span`; the same in every locale.
 std::string numberText(double value, double span);
+
+std::string fixedText(double value, int decimals); ///< "0.407"
+std::string shortText(double value);               ///< at most four significant digits: "0.0312", "1.2e-05"
 
 /// Decimals that tell apart values in a range of width `span`, [0, 12].
 int decimalsFor(double span);

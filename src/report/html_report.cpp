@@ -1,4 +1,5 @@
 #include "report/html_report.h"
+#include "base/round_numbers.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +7,6 @@
 
 #include "report/convergence.h"
 #include "report/csv.h"
-#include "report/report_text.h"
 #include "report/share_bars.h"
 #include "report/svg_plot.h"
 #include "session/session.h"

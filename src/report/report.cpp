@@ -1,4 +1,5 @@
 #include "report/report.h"
+#include "base/round_numbers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,6 @@
 #include "render/ssim.h"
 #include "report/csv.h"
 #include "report/html_report.h"
-#include "report/report_text.h"
 #include "session/session_json.h"
 #include "tf/shown_tf.h"
 

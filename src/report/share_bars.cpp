@@ -1,8 +1,7 @@
 #include "report/share_bars.h"
+#include "base/round_numbers.h"
 
 #include <algorithm>
-
-#include "report/report_text.h"
 
 namespace pellucid {
 

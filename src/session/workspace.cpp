@@ -144,13 +144,16 @@ Measures Workspace::measure(const MeasureInput& input, const JobControl& job) {
             const WeightFields& w = weights(input, all ? job.part(0, 2) : job);
             Measures measures =
                 pellucid::measure(e, input.view, input.tf, w, input.settings.vws, all ? job.part(1, 2) : job);
-            measures.coverage = coverageOf(rays(input, {job.stop, {}}), input.tf);
             if (input.settings.profile == Profile::Published) // closed intervals, where bins of a histogram are not
                 measures.features = featureMeasures(e.sums(input.view, {&input.tf, 1}, &w)[0], input.settings.vws);
             m_seconds.visibility = measures.visibilitySeconds;
             return measures;
         },
         [this] { releaseEngine(); });
+}
+
+Coverage Workspace::coverage(const MeasureInput& input, const JobControl& job) {
+    return coverageOf(rays(input, job), input.tf);
 }
 
 std::vector<std::vector<double>> Workspace::jacobian(const MeasureInput& input, const JobControl& job) {

@@ -25,8 +25,10 @@ public:
         double visibility = 0; ///< the sweeps
     };
 
-    /// The figures of one view. Throws FileError where memory does not suffice, Error, Cancelled.
+    /// The figures of one view, without its coverage. Throws FileError where memory does not suffice, Error, Cancelled.
     Measures measure(const MeasureInput& input, const JobControl& job = {});
+    /// Rays of their own: of a new view it costs as much as several sweeps of a small volume.
+    Coverage coverage(const MeasureInput& input, const JobControl& job = {});
     /// ∂W_i/∂x_j as [i][j], see vwsJacobian().
     std::vector<std::vector<double>> jacobian(const MeasureInput& input, const JobControl& job = {});
     /// What every voxel contributes, of one kind; where `feature` of the input's transfer function is not −1, of its
