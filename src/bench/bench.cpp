@@ -165,7 +165,7 @@ private:
     /// Into memory that is there, as the window does after an edit.
     void addSaliency(BenchRow which, decltype(updateSaliencyFields)* update) {
         add(row(which, "cpu"), 0, [this, update](BenchResult& r, const JobControl& job) {
-            update(m_weights, *m_case.volume, m_case.tf, {}, job);
+            update(m_weights, *m_case.volume, m_case.tf, {}, job, nullptr);
             r.bytes = sampleBytes() + voxels() * bytesPerVoxel(m_weights);
         });
     }

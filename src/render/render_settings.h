@@ -2,14 +2,18 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "render/clipping.h"
 #include "tf/color.h"
 #include "tf/transfer_function.h"
+#include "volume/voxel_colors.h"
 
 namespace pellucid {
+
+struct Ground;
 
 /// What becomes of the intensities along a ray (docs/method.md, "The picture").
 enum class RenderMode {
@@ -46,6 +50,9 @@ struct RenderSettings {
     Clipping clipping;
     bool jitter = false;  ///< shifts the samples of each pixel by a part of a step, against banding
     int onlyFeature = -1; ///< index: draw the voxels of this feature alone; −1: all
+    std::shared_ptr<const VoxelColors>
+        colors; ///< in place of those of the transfer function, on the volume's grid; null: none
+    std::shared_ptr<const Ground> ground; ///< what lies under the volume, opaque; null: nothing
 
     void validate() const; ///< throws UsageError
     bool operator==(const RenderSettings&) const = default;

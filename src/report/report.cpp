@@ -140,7 +140,8 @@ Session sessionAtStart(const Run& run, const Session& now) {
     session.measure = start.measure;
     session.optimize = start.options;
     session.runs = {};
-    const TransferFunction& tf = *session.tf(); // with identities
+    const auto held = session.tf();
+    const TransferFunction& tf = *held; // with identities
     session.goals.set(withTargets(*session.goals, tf, run.targets));
     session.goals.edit([&](FeatureGoals& goals) {
         for (std::size_t f = 0; f < start.limits.size(); ++f) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "tf/lch.h"
@@ -33,6 +34,10 @@ bool onLine(const ControlPoint& a, const ControlPoint& p, const ControlPoint& b)
            close(a.color.b, p.color.b, b.color.b);
 }
 
+Rgb rgbOf(std::uint32_t voxelColor) {
+    return {(voxelColor & 255u) / 255.0, (voxelColor >> 8 & 255u) / 255.0, (voxelColor >> 16 & 255u) / 255.0};
+}
+
 /// Whether all values of a type fit into a table.
 template <class T>
 constexpr bool kTabulated = sizeof(T) <= 2;
@@ -44,8 +49,14 @@ Appearance appearanceOf(const Rgb& srgb) {
     return {lch.lightness / 100, lch.chroma / 100};
 }
 
-AppearanceReader::AppearanceReader(const Volume& volume, const TransferFunction& tf, const Rgb& background)
-    : m_volume(volume), m_sampler(tf), m_features(tf.features), m_background(appearanceOf(background)) {
+AppearanceReader::AppearanceReader(const Volume& volume, const TransferFunction& tf, const Rgb& background,
+                                   const VoxelColors* colors)
+    : m_volume(volume), m_colors(colors), m_sampler(tf), m_features(tf.features),
+      m_background(appearanceOf(background)) {
+    if (m_colors != nullptr) {
+        PELLUCID_CHECK(m_colors->dims == volume.dims());
+        return;
+    }
     for (const Feature& f : m_features) m_breaks.insert(m_breaks.end(), {f.a, f.b});
     for (const ControlPoint& p : tf.points) m_breaks.push_back(p.x);
     if (bytesPerSample(volume.sampleType()) <= 2)
@@ -118,7 +129,41 @@ void AppearanceReader::tabulateIntensities() {
     });
 }
 
+void AppearanceReader::readColoredRow(std::size_t first, int count, Pair* out) const {
+    // Neighbours have few different colours, but not in runs.
+    struct Known {
+        std::uint32_t color = 0; // no voxel's: those have an opaque byte
+        Pair pair = 0;
+    };
+    constexpr std::uint32_t kKnown = 1024;
+    thread_local std::array<Known, kKnown> s_known;
+    const Pair background = pairOf(m_background);
+    std::visit(
+        [&](const auto& values) {
+            for (int x = 0; x < count; ++x) {
+                const std::size_t voxel = first + static_cast<std::size_t>(x);
+                const double s = m_volume.intensityOfValue(static_cast<double>(values[voxel]));
+                if (featureAt(m_features, s) < 0) {
+                    out[x] = background;
+                    continue;
+                }
+                const std::uint32_t color = m_colors->rgba[voxel];
+                Known& known = s_known[(color * 2654435761u) >> 22];
+                if (known.color != color) known = {color, pairOf(appearanceOf(rgbOf(color)))};
+                out[x] = known.pair;
+            }
+        },
+        m_volume.samples());
+}
+
+Appearance AppearanceReader::at(std::size_t voxel) const {
+    const double s = m_volume.intensity(voxel);
+    if (m_colors == nullptr) return atIntensity(s);
+    return featureAt(m_features, s) < 0 ? m_background : appearanceOf(rgbOf(m_colors->rgba[voxel]));
+}
+
 void AppearanceReader::readRow(std::size_t first, int count, Pair* out) const {
+    if (m_colors != nullptr) return readColoredRow(first, count, out);
     std::visit(
         [&](const auto& values) {
             using T = typename std::decay_t<decltype(values)>::value_type;

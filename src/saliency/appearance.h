@@ -18,9 +18,11 @@ Appearance appearanceOf(const Rgb& srgb);
 /// O_b and O_s of every voxel of a volume under a transfer function, read row by row so that no field is stored.
 class AppearanceReader {
 public:
-    AppearanceReader(const Volume& volume, const TransferFunction& tf, const Rgb& background);
+    /// `colors`, if any, outlive this.
+    AppearanceReader(const Volume& volume, const TransferFunction& tf, const Rgb& background,
+                     const VoxelColors* colors = nullptr);
 
-    Appearance at(std::size_t voxel) const { return atIntensity(m_volume.intensity(voxel)); }
+    Appearance at(std::size_t voxel) const;
 
     /// Brightness and saturation as two floats, in this order in memory.
     using Pair = std::uint64_t;
@@ -41,11 +43,13 @@ private:
     };
     Appearance atIntensity(double s) const;
     Pair pairAt(double s, Latest& latest) const;
+    void readColoredRow(std::size_t first, int count, Pair* out) const;
     void tabulateSamples();
     void tabulateIntensities();
     Bin binAt(int index) const;
 
     const Volume& m_volume;
+    const VoxelColors* m_colors;
     TfSampler m_sampler;
     std::vector<Feature> m_features;
     Appearance m_background;

@@ -57,12 +57,12 @@ void sweepTile(const BallPair& balls, const std::array<std::vector<std::vector<f
 } // namespace
 
 void updateSaliencyFieldsDirect(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
-                                const SaliencyOptions& options, const JobControl& job) {
+                                const SaliencyOptions& options, const JobControl& job, const VoxelColors* colors) {
     validate(options);
     const BallPair balls = ballsOf(volume.geometry(), options);
     const Tiling tiling(volume.dims(), balls);
     const std::array weights{runWeights(balls[0]), runWeights(balls[1])};
-    const AppearanceReader reader(volume, tf, options.background);
+    const AppearanceReader reader(volume, tf, options.background, colors);
     keepWeightFields(fields, volume.dims(), options); // every voxel is written
     std::atomic<std::size_t> done = 0;
     parallelFor(tiling.count(), [&](std::size_t i) {

@@ -9,6 +9,7 @@ namespace pellucid {
 /// vectors, tiles and threads, but without sharing sums between neighbours or leaving out what is of one colour. What
 /// `pellucid-cli bench` compares the fast way with.
 void updateSaliencyFieldsDirect(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
-                                const SaliencyOptions& options = {}, const JobControl& job = {});
+                                const SaliencyOptions& options = {}, const JobControl& job = {},
+                                const VoxelColors* colors = nullptr);
 
 } // namespace pellucid

@@ -131,20 +131,20 @@ private:
 } // namespace
 
 WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options,
-                            const JobControl& job) {
+                            const JobControl& job, const VoxelColors* colors) {
     WeightFields fields;
-    updateSaliencyFields(fields, volume, tf, options, job);
+    updateSaliencyFields(fields, volume, tf, options, job, colors);
     return fields;
 }
 
 void updateSaliencyFields(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
-                          const SaliencyOptions& options, const JobControl& job) {
+                          const SaliencyOptions& options, const JobControl& job, const VoxelColors* colors) {
     validate(options);
     job.throwIfStopped();
     const BallPair balls = ballsOf(volume.geometry(), options);
     const Tiling tiling(volume.dims(), balls);
     const BallPlan plan(balls, tiling.stride());
-    const AppearanceReader reader(volume, tf, options.background);
+    const AppearanceReader reader(volume, tf, options.background, colors);
     const bool used = keepWeightFields(fields, volume.dims(), options);
     std::atomic<std::size_t> done = 0;
     parallelFor(tiling.count(), [&](std::size_t i) {

@@ -7,6 +7,7 @@
 #include "saliency/weight_fields.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
+#include "volume/voxel_colors.h"
 
 namespace pellucid {
 
@@ -34,17 +35,20 @@ bool keepWeightFields(WeightFields& fields, const Int3& dims, const SaliencyOpti
 /// and points between which no colour bends, such as those that scaling a feature inserts.
 TransferFunction colorsOf(const TransferFunction& tf);
 
-/// Depends on the colours and features of `tf`, never on its opacities. Throws Error for options out of range.
+/// Depends on the colours and features of `tf`, never on its opacities. With `colors`, voxels in features have those in
+/// place of the transfer function's. Throws Error for options out of range.
 WeightFields saliencyFields(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options = {},
-                            const JobControl& job = {});
+                            const JobControl& job = {}, const VoxelColors* colors = nullptr);
 
 /// The same into `fields`, whose memory is used again where it fits: the system takes longer to hand out new pages than
 /// the sums take. What was there is gone, also where this throws.
 void updateSaliencyFields(WeightFields& fields, const Volume& volume, const TransferFunction& tf,
-                          const SaliencyOptions& options = {}, const JobControl& job = {});
+                          const SaliencyOptions& options = {}, const JobControl& job = {},
+                          const VoxelColors* colors = nullptr);
 
 /// The same by the book: double precision, a direct sum over each ball. The oracle; slow.
 WeightFields saliencyFieldsReference(const Volume& volume, const TransferFunction& tf,
-                                     const SaliencyOptions& options = {}, const JobControl& job = {});
+                                     const SaliencyOptions& options = {}, const JobControl& job = {},
+                                     const VoxelColors* colors = nullptr);
 
 } // namespace pellucid

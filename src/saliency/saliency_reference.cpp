@@ -31,9 +31,9 @@ Appearance meanOver(const BallKernel& ball, const Grid<Appearance>& o, const Int
 } // namespace
 
 WeightFields saliencyFieldsReference(const Volume& volume, const TransferFunction& tf, const SaliencyOptions& options,
-                                     const JobControl& job) {
+                                     const JobControl& job, const VoxelColors* colors) {
     validate(options);
-    const AppearanceReader reader(volume, tf, options.background);
+    const AppearanceReader reader(volume, tf, options.background, colors);
     Grid<Appearance> o(volume.dims());
     for (std::size_t i = 0; i < o.size(); ++i) o[i] = reader.at(i);
     const BallKernel centre(volume.geometry(), options.sigma, options.kernel);

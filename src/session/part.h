@@ -29,6 +29,9 @@ public:
         if (!(value == *m_value)) m_value = std::make_shared<const T>(std::move(value));
     }
 
+    /// Never null; the same as long as the part is the same.
+    const std::shared_ptr<const T>& shared() const noexcept { return m_value; }
+
     bool isSame(const Part& other) const noexcept { return m_value == other.m_value; }
     bool operator==(const Part& other) const { return isSame(other) || *m_value == *other.m_value; }
 

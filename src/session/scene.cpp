@@ -5,6 +5,7 @@
 
 #include "optimize/first_sight.h"
 #include "render/published_engine.h"
+#include "session/scene_data.h"
 #include "tf/color_maps.h"
 #include "tf/formats/tf_file.h"
 #include "tf/shown_tf.h"
@@ -17,22 +18,6 @@ namespace {
 /// Whether a window of these ends can stand for data of these values; constant data has no window but its value.
 bool isWindow(const ValueRange& range) { return range.lo < range.hi; }
 
-std::shared_ptr<const Volume> throughWindow(const std::shared_ptr<const Volume>& data,
-                                            const std::optional<ValueRange>& window) {
-    if (!window || *window == data->range()) return data;
-    return std::make_shared<const Volume>(data->withRange(*window));
-}
-
-const ValueRange& windowOf(const Variable& variable, const Volume& data) {
-    return variable.window ? *variable.window : data.range();
-}
-
-std::shared_ptr<const Volume> read(VolumeSource source, const MemoryUse& then, const JobControl& job) {
-    source.range.reset();
-    source.then = then;
-    return std::make_shared<const Volume>(loadVolume(source, job));
-}
-
 /// The window of a proposal, where it is another one than that of the data.
 std::optional<ValueRange> windowToSet(const Proposal& proposal, const Volume& data) {
     if (!isWindow(data.range()) || proposal.window == data.range()) return {};
@@ -43,7 +28,8 @@ std::optional<ValueRange> windowToSet(const Proposal& proposal, const Volume& da
 void proposeStart(Scene& scene, const JobControl& job) {
     if (scene.session.tf() != nullptr) return;
     auto proposal = std::make_shared<const Proposal>(propose(*scene.volume, {job.stop, {}}));
-    if (!scene.session.variable().window)
+    // Frames of a series are compared: their window is that of all values.
+    if (!scene.session.variable().window && !scene.series->varies())
         if (const std::optional<ValueRange> window = windowToSet(*proposal, *scene.data)) {
             scene.session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
             scene.volume = throughWindow(scene.data, window);
@@ -59,7 +45,8 @@ void proposeStart(Scene& scene, const JobControl& job) {
 /// The session's transfer function in the window.
 void resolveTf(Scene& scene) {
     const ValueRange& window = scene.volume->range();
-    const TransferFunction& tf = *scene.session.tf();
+    const auto held = scene.session.tf();
+    const TransferFunction& tf = *held;
     if (!isWindow(window)) {
         scene.tf = tf;
     } else if (tf.range) {
@@ -76,7 +63,7 @@ void resolveTf(Scene& scene) {
 void forgetStart(Session& session) {
     session.variables.edit([](std::vector<Variable>& all) {
         all.front().window.reset();
-        all.front().track.keys.clear();
+        all.front().track = {};
     });
 }
 
@@ -109,8 +96,11 @@ Session sessionOf(const VolumeSource& source) {
 
 bool needsData(const Session& session, const Scene& basis) {
     if (session.isEmpty() || basis.data == nullptr) return !session.isEmpty();
-    const Variable& now = session.variable();
-    return !(now.source == basis.session.variable().source) || windowOf(now, *basis.data) != basis.volume->range();
+    const Variable &now = session.variable(), &before = basis.session.variable();
+    if (!sameOrigin(now, before)) return true;
+    const int frame = basis.series->nearest(session.frame);
+    if (frame != basis.session.frame) return !basis.series->isShown(frame, now.window);
+    return now.window != before.window && windowOf(now, *basis.series) != basis.volume->range();
 }
 
 void placeAsPublished(const Session& session, const Volume& data, TransferFunction& tf) {
@@ -122,22 +112,38 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     Scene scene;
     scene.session = std::move(session);
     if (scene.session.isEmpty()) return scene;
-    const Variable& variable = scene.session.variable();
-    const bool sameData = basis.data && basis.session.variable().source == variable.source;
-    scene.data = sameData ? basis.data : read(variable.source, then, job);
-    const bool sameWindow = sameData && windowOf(variable, *basis.data) == basis.volume->range();
-    scene.volume = sameWindow ? basis.volume : throughWindow(scene.data, variable.window);
-    if (sameData) scene.unit = basis.unit;
+    SeriesFinder finder(scene, basis, then, job);
+    scene.series = finder.of(scene.session.variable());
+    scene.session.frame = scene.series->nearest(scene.session.frame);
+    const int frame = scene.session.frame;
+    const bool sameSeries = scene.series == basis.series;
+    const bool sameData = sameSeries && basis.session.frame == frame;
+    scene.data = sameData ? basis.data : scene.series->load(frame, job);
+    const ValueRange window = windowOf(scene.session.variable(), *scene.series, job);
+    const bool sameWindow = sameData && window == basis.volume->range();
     if (sameWindow) {
+        scene.volume = basis.volume;
         scene.histogram = basis.histogram;
         scene.codes = basis.codes;
+    } else if (scene.series->varies() && scene.series->isShown(frame, window)) {
+        ShownFrame shown = scene.series->show(frame, window, job);
+        scene.data = std::move(shown.data);
+        scene.volume = std::move(shown.volume);
+        scene.histogram = std::move(shown.histogram);
+        scene.codes = std::move(shown.codes);
+    } else {
+        scene.volume = throughWindow(scene.data, window);
     }
+    if (sameSeries) scene.unit = basis.unit;
+    followTargetKeys(scene.session, basis);
     proposeStart(scene, job);
     if (sameWindow && !scene.proposal && scene.session.tf() == basis.session.tf()) {
         scene.tf = basis.tf; // the very same
     } else {
         resolveTf(scene);
     }
+    resolveColors(scene, basis, finder, job);
+    resolveGround(scene, basis, job);
     if (scene.session.camera) {
         scene.camera = *scene.session.camera;
     } else {
@@ -191,6 +197,7 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
         forgetStart(session);
     else if (inputs.tf)
         tf = loadTf(*inputs.tf);
+    if (inputs.frame) session.frame = *inputs.frame;
     std::optional<ValueRange> window = inputs.range;
     if (!window && tf && tf->range) window = tf->range;
     if (window) session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
@@ -198,6 +205,9 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (tf) session.setTf(*tf);
     const bool windowIsOpen = !session.variable().window;
     Scene scene = resolve(std::move(session), {}, inputs.then, job);
+    if (inputs.frame && *inputs.frame != scene.session.frame)
+        throw UsageError("there is no frame " + std::to_string(*inputs.frame), scene.series->listing().title,
+                         "give 0 to " + std::to_string(scene.series->size() - 1));
     if (tf && windowIsOpen) { // what kind of samples there are is known now
         placeAsPublished(scene.session, *scene.data, *tf);
         if (tf->range) {
@@ -235,9 +245,10 @@ MeasureInput measureInput(const Scene& scene) {
         settings.profile = wanted.profile;
         settings.along = wanted.along;
         const Camera camera = cameraAlong(scene.volume->geometry(), wanted.along);
-        return {scene.volume, shownTf(scene.tf), {camera, *scene.session.clipping}, settings};
+        return {scene.volume, shownTf(scene.tf), {camera, *scene.session.clipping}, settings, {}};
     }
-    return {scene.volume, shownTf(scene.tf), {scene.camera, *scene.session.clipping}, *scene.session.measure};
+    return {
+        scene.volume, shownTf(scene.tf), {scene.camera, *scene.session.clipping}, *scene.session.measure, scene.colors};
 }
 
 RunStart runStartOf(const Scene& scene, const OptimizeOptions& options) {
@@ -265,6 +276,8 @@ PictureInput pictureInput(const Scene& scene, int width, int height, bool transp
     s.light = display.light;
     s.clipping = *scene.session.clipping;
     s.onlyFeature = scene.onlyFeature();
+    s.colors = scene.colors;
+    s.ground = scene.ground;
     return input;
 }
 
@@ -341,6 +354,7 @@ TransferFunction fieldSliceTf(TransferFunction tf) {
 
 PictureInput fieldPictureInput(const Scene& scene, const Field& field, int width, int height, bool transparent) {
     PictureInput input = plainPictureInput(scene, width, height);
+    input.settings.colors.reset();
     const FieldView& view = *scene.session.field;
     input.volume = field.volume;
     input.tf = stretched(fieldTf(view, scene.tf.features), topOf(view, field), field.volume->range().hi);
@@ -366,6 +380,7 @@ PictureInput plainPictureInput(const Scene& scene, int width, int height) {
     input.settings.mode = RenderMode::Composite;
     input.settings.light = {};
     input.settings.onlyFeature = -1;
+    input.settings.ground.reset();
     return input;
 }
 

@@ -1,17 +1,21 @@
 // From what a user named to what can be drawn and measured: the one way, for the window, the command line and tests.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "render/annotation.h"
+#include "render/ground.h"
 #include "render/standard_view.h"
 #include "session/session.h"
 #include "tf/proposal.h"
 #include "volume/histogram.h"
 #include "volume/intensity_grid.h"
+#include "volume/time_series.h"
+#include "volume/voxel_colors.h"
 
 namespace pellucid {
 
@@ -26,6 +30,12 @@ struct Scene {
     std::shared_ptr<const Histogram> histogram; ///< 256 bins of `volume`; null before prepareToShow()
     std::shared_ptr<const IntensityGrid> codes; ///< of `volume`, kept for those who draw and measure; likewise
     std::optional<std::string> unit;            ///< of the data: "HU", "" where unknown; empty before prepareToShow()
+    std::shared_ptr<TimeSeries> series;         ///< of the variable that is drawn, one frame or many; null like `data`
+    /// Of the other variables that channels name, and of those that derived ones are made of, by their names.
+    std::map<std::string, std::shared_ptr<TimeSeries>> others;
+    std::shared_ptr<const VoxelColors> colors; ///< of HsbMapping, of this frame; null: those of the transfer function
+    double hsbA = 1, hsbB = 1;                 ///< scales that `colors` were made with
+    std::shared_ptr<const Ground> ground;      ///< null: none
     std::shared_ptr<const Proposal> proposal; ///< where this resolving proposed window and transfer function; else null
 
     /// Wanted shares of the features, in their order; 0 of hidden ones.
@@ -41,6 +51,7 @@ inline constexpr const char* kAutomaticTf = "auto";
 
 /// What a user may name beside a session, or in place of one. Everything given overrides the session.
 struct SceneInputs {
+    std::optional<int> frame;        ///< of the series, from 0; in place of the session's
     Session session;                 ///< what to start from: its variable's source is what is opened
     std::optional<std::string> tf;   ///< a file, tents:N[:PEAK], ramp:N, preset:NAME or kAutomaticTf
     std::optional<ValueRange> range; ///< intensity window, data units
@@ -83,10 +94,13 @@ struct AutomaticStart {
 AutomaticStart automaticStart(const Scene& scene, const View& view, const JobControl& job = {});
 
 /// The scene of a session; a session without transfer function gets what the data propose, not tuned. Data that `basis`
-/// has is taken from there: where source and window are the same this costs next to nothing, where only the window
-/// differs no file is read.
+/// has is taken from there: where source, frame and window are the same this costs next to nothing, where only the
+/// window differs no file is read. A frame beyond the end becomes the last one. Targets of another frame than that of
+/// `basis` are those of the session's target keys; other targets in the same frame become its key, where there are
+/// keys.
 Scene resolve(Session session, const Scene& basis, const MemoryUse& then = {}, const JobControl& job = {});
-/// Whether resolve() would read a file or go over all voxels.
+/// Whether resolve() would read a file or go over all voxels. Colours of several variables are no reason: where they
+/// are to be made anew for a change at hand, that is done at once.
 bool needsData(const Session& session, const Scene& basis);
 
 /// Makes what a window needs of the volume besides: all that takes time, off its thread.
@@ -101,6 +115,7 @@ struct MeasureInput {
     TransferFunction tf;
     View view;
     MeasureSettings settings;
+    std::shared_ptr<const VoxelColors> colors; ///< null: those of the transfer function
     bool operator==(const MeasureInput&) const = default;
 };
 /// Of the published profile the view is that of its axis (cameraAlong()), wherever the camera is, and what the profile

@@ -9,13 +9,58 @@
 #include "base/check.h"
 #include "tf/color_maps.h"
 #include "tf/shown_tf.h"
+#include "tf/tf_between.h"
 
 namespace pellucid {
 
-const Part<TransferFunction>* TfTrack::at(int frame) const {
+std::shared_ptr<const TransferFunction> TfTrack::at(int frame) const {
     if (keys.empty()) return nullptr;
     const auto next = keys.upper_bound(frame);
-    return next == keys.begin() ? &next->second : &std::prev(next)->second;
+    if (next == keys.begin()) return next->second.shared();
+    const auto before = std::prev(next);
+    if (next == keys.end() || before->first == frame) return before->second.shared();
+    const double t = static_cast<double>(frame - before->first) / (next->first - before->first);
+    if (auto between = tfBetween(*before->second, *next->second, t))
+        return std::make_shared<const TransferFunction>(std::move(*between));
+    return before->second.shared();
+}
+
+int TfTrack::keyBefore(int frame) const {
+    if (keys.empty()) return -1;
+    const auto next = keys.upper_bound(frame);
+    return next == keys.begin() ? next->first : std::prev(next)->first;
+}
+
+const char* name(AdaptSettings::Mode mode) {
+    switch (mode) {
+    case AdaptSettings::Mode::Static:
+        return "static";
+    case AdaptSettings::Mode::Refine:
+        return "refine";
+    case AdaptSettings::Mode::Optimize:
+        return "optimize";
+    }
+    PELLUCID_CHECK(false);
+}
+
+std::optional<AdaptSettings::Mode> adaptModeFromName(const std::string& text) {
+    for (const auto mode : {AdaptSettings::Mode::Static, AdaptSettings::Mode::Refine, AdaptSettings::Mode::Optimize})
+        if (text == name(mode)) return mode;
+    return {};
+}
+
+std::map<FeatureId, double> targetsBetween(const TargetKeys& keys, int frame) {
+    const auto next = keys.upper_bound(frame);
+    if (next == keys.begin()) return next->second;
+    const auto before = std::prev(next);
+    if (next == keys.end()) return before->second;
+    const double t = static_cast<double>(frame - before->first) / (next->first - before->first);
+    std::map<FeatureId, double> targets = before->second;
+    for (const auto& [id, target] : next->second) {
+        const auto [found, isNew] = targets.try_emplace(id, target);
+        if (!isNew) found->second += t * (target - found->second);
+    }
+    return targets;
 }
 
 RefineOptions RefineSettings::options() const {
@@ -36,10 +81,22 @@ void checkFieldColorMap(const std::string& name) {
     }
 }
 
-const TransferFunction* Session::tf() const {
+const Variable* Session::variableNamed(const std::string& name) const {
+    for (const Variable& v : *variables)
+        if (v.name == name) return &v;
+    return nullptr;
+}
+
+std::shared_ptr<const TransferFunction> Session::tf() const { return tfAt(frame); }
+
+std::shared_ptr<const TransferFunction> Session::tfAt(int at) const {
     if (isEmpty()) return nullptr;
-    const Part<TransferFunction>* part = variable().track.at(frame);
-    return part == nullptr ? nullptr : &part->get();
+    const TfTrack& track = variable().track;
+    if (adapt->mode == AdaptSettings::Mode::Static || track.keys.empty()) return track.at(at);
+    const int key = track.keyBefore(at);
+    const auto next = track.adapted.upper_bound(at);
+    if (next != track.adapted.begin() && std::prev(next)->first > key) return std::prev(next)->second.tf.shared();
+    return track.keys.at(key).shared();
 }
 
 namespace {
@@ -141,7 +198,8 @@ bool sameIdentities(const TransferFunction& a, const TransferFunction& b) {
 
 void Session::setTf(TransferFunction tf) {
     PELLUCID_CHECK(!isEmpty());
-    const TransferFunction* const before = this->tf();
+    const std::shared_ptr<const TransferFunction> held = this->tf();
+    const TransferFunction* const before = held.get();
     Identification identification(tf);
     identification.adopt(before, *goals);
     identification.addNew(firstUnused(*this));
@@ -159,8 +217,8 @@ void Session::setTf(TransferFunction tf) {
 
     std::vector<Variable> all = *variables;
     auto& keys = all.front().track.keys;
-    const auto after = keys.upper_bound(frame);
-    const int key = keys.empty() ? 0 : after == keys.begin() ? after->first : std::prev(after)->first;
+    const bool oneForAll = keys.size() <= 1 && adapt->mode == AdaptSettings::Mode::Static;
+    const int key = keys.empty() ? 0 : oneForAll ? keys.begin()->first : frame;
     const auto there = keys.find(key);
     if (there != keys.end() && *there->second == tf && sameIdentities(*there->second, tf)) return;
     keys[key] = Part<TransferFunction>(std::move(tf));

@@ -19,31 +19,90 @@
 #include "saliency/saliency_field.h"
 #include "session/part.h"
 #include "tf/transfer_function.h"
+#include "volume/derived.h"
 #include "volume/loader.h"
 
 namespace pellucid {
 
-/// The transfer function of a variable over time: from each key frame on, until the next one.
-struct TfTrack {
-    std::map<int, Part<TransferFunction>> keys; ///< frame → transfer function, in the data units of its `range`
+/// A transfer function that was made for a frame, and what it was made of.
+struct AdaptedTf {
+    Part<TransferFunction> tf;
+    std::string basis; ///< fingerprint of all that it depends on (adapt.h); another one now: it is to be made anew
+    bool operator==(const AdaptedTf&) const = default;
+};
 
-    /// The one of the latest key that is not after `frame`, else the first. Empty where there are no keys.
-    const Part<TransferFunction>* at(int frame) const;
+/// The transfer function of a variable over time.
+struct TfTrack {
+    std::map<int, Part<TransferFunction>> keys; ///< key frame → transfer function, in the data units of its `range`
+    std::map<int, AdaptedTf> adapted; ///< what AdaptSettings made of them, for other frames than those of keys
+
+    /// By hand: between two keys with the same points and features halfway from the one to the other, else the latest
+    /// key that is not after `frame`, else the first. Null where there are no keys.
+    std::shared_ptr<const TransferFunction> at(int frame) const;
+    /// The key that `frame` goes back to: the latest not after it, else the first; −1 without keys.
+    int keyBefore(int frame) const;
     bool operator==(const TfTrack&) const = default;
 };
+
+/// How transfer functions follow the frames of a series (docs/method.md, "Transfer functions over time").
+struct AdaptSettings {
+    enum class Mode {
+        Static,  ///< keys alone
+        Refine,  ///< each frame's refined transfer function starts the next one's (§3.4.4)
+        Optimize ///< each frame to the targets, from the one before (§5.4.1)
+    };
+    Mode mode = Mode::Static;
+    double coherence = 0; ///< ≥ 0; how much jumps from frame to frame are held back; infinity: as static
+    bool operator==(const AdaptSettings&) const = default;
+};
+const char* name(AdaptSettings::Mode mode); ///< "static", "refine", "optimize"
+std::optional<AdaptSettings::Mode> adaptModeFromName(const std::string& name);
 
 /// One variable of the data: where it comes from, and how its values are read and drawn.
 struct Variable {
     std::string name = "x";
-    VolumeSource source;              ///< its `range` and `then` are not used: the window is below
-    std::optional<ValueRange> window; ///< data units of intensity 0 and 1; empty: smallest and largest value
+    VolumeSource source;                  ///< its `range` and `then` are not used: the window is below
+    std::optional<Derivation> derivation; ///< made of another variable; `source` is not used then
+    std::optional<ValueRange>
+        window; ///< data units of intensity 0 and 1; empty: smallest and largest value of all frames
     TfTrack track;
     std::string extraJson; ///< unknown keys of the file it came from
 
     bool operator==(const Variable&) const = default;
 };
 
+/// Colours by several variables in place of those of the transfer function (docs/method.md, "Selective saturation and
+/// brightness"). The first variable of the session drives opacity. Channels name variables, plain or derived
+/// (Derivation::text()).
+struct HsbMapping {
+    bool on = false;
+    std::string saturation, brightness, hue; ///< empty: saturation and brightness 1, hue `hueFrom`
+    std::optional<double> a, b;              ///< scales of saturation and darkness, ≥ 0; empty: automaticScale()
+    double hueFrom = 0, hueTo = 240;         ///< degrees, at intensity 0 and 1 of the variable `hue`
+    bool operator==(const HsbMapping&) const = default;
+};
+
+/// A height field under the volume.
+struct GroundView {
+    std::string path; ///< a volume file of one layer, or raw with `raw`, or a sample; empty: none
+    std::optional<RawLayout> raw;
+    std::optional<double> missing;
+    std::optional<double> scale; ///< world units per unit of height; empty: as readGround() says
+    std::string colorMap = "terrain";
+    double relief = 1; ///< strength of the shading, [0, 1]
+    bool shown = true;
+    bool operator==(const GroundView&) const = default;
+};
+
+/// Targets at key frames, halfway between them in between; before the first and after the last, those of these.
+using TargetKeys = std::map<int, std::map<FeatureId, double>>;
+
 inline constexpr double kLargestTarget = 1e9; ///< only proportions count
+inline constexpr double kLargestScale = 1e9;  ///< of HsbMapping
+
+/// Targets of `frame`; keys are not empty. Features that one of the two keys around it does not know have those of the
+/// other.
+std::map<FeatureId, double> targetsBetween(const TargetKeys& keys, int frame);
 
 /// What belongs to a feature, wherever its interval goes.
 struct FeatureGoal {
@@ -160,9 +219,13 @@ Run runOf(const OptimizeResult& result, RunStart start);
 
 /// A value: copies share their parts, so that they cost next to nothing, and comparing parts tells what has changed.
 struct Session {
-    Part<std::vector<Variable>> variables; ///< one today; empty: nothing is open
-    int frame = 0;
-    Part<FeatureGoals> goals;
+    Part<std::vector<Variable>> variables; ///< the first drives opacity; empty: nothing is open
+    int frame = 0;                         ///< of the series, from 0
+    Part<FeatureGoals> goals;              ///< of the present frame
+    Part<TargetKeys> targetKeys;           ///< empty: targets are the same in all frames
+    Part<AdaptSettings> adapt;
+    Part<HsbMapping> hsb;
+    Part<GroundView> ground;
     bool holdTargets = false;     ///< live: opacities follow camera, colours and settings so that targets are held
     std::optional<Camera> camera; ///< empty: the home view of the volume
     Part<Clipping> clipping;      ///< what is cut away, of pictures and of figures
@@ -180,10 +243,15 @@ struct Session {
 
     bool isEmpty() const { return variables->empty(); }
     const Variable& variable() const { return variables->front(); } ///< the one that is drawn; isEmpty() is false
-    /// The transfer function of this frame, in its own range; null before there is one.
-    const TransferFunction* tf() const;
+    /// Null where there is no variable of this name.
+    const Variable* variableNamed(const std::string& name) const;
+    /// The transfer function of this frame, in its own range; null before there is one. Where transfer functions adapt,
+    /// the one that was made for the frame, else that of the nearest frame before it back to its key.
+    std::shared_ptr<const TransferFunction> tf() const;
+    std::shared_ptr<const TransferFunction> tfAt(int frame) const;
 
-    /// Sets the transfer function of this frame's key; isEmpty() is false. Its features that have no identity yet get
+    /// Sets the transfer function of this frame; isEmpty() is false. Where there is one key and nothing adapts, it is
+    /// that of all frames; else this frame becomes a key. Its features that have no identity yet get
     /// that of a feature with the same name and interval, else the same name, else the same interval; each time of the
     /// present transfer function, else of those that have left it. Else they get a new one.
     void setTf(TransferFunction tf);

@@ -152,6 +152,13 @@ json fromSource(const VolumeSource& s, const std::string& folder, DataPaths path
                     {"spacing", fromVec(s.raw->spacing)},
                     {"skip", s.raw->skipBytes}};
     }
+    for (const std::string& path : s.more) j["more"].push_back(storedPath(path, folder, paths));
+    if (s.frames) {
+        j["frames"] = {{"first", s.frames->first}, {"stride", s.frames->stride}};
+        if (s.frames->last) j["frames"]["last"] = *s.frames->last;
+    }
+    if (s.step != 0) j["step"] = s.step;
+    if (!s.array.empty()) j["array"] = s.array;
     if (s.component != 0) j["component"] = s.component;
     if (s.missing) j["missing"] = *s.missing;
     if (s.downsample != 0) j["downsample"] = s.downsample;
@@ -202,6 +209,17 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
         s.path = foundPath(path, folder);
     }
     if (j.has("raw")) s.raw = toRawLayout(j["raw"]);
+    if (j.has("more"))
+        for (const JsonValue& path : j["more"].items()) s.more.push_back(foundPath(path.text(), folder));
+    if (j.has("frames")) {
+        constexpr int kMost = std::numeric_limits<int>::max();
+        const JsonValue f = j["frames"];
+        s.frames = FrameRange{
+            static_cast<int>(f["first"].integer(0, kMost)), {}, static_cast<int>(f["stride"].integer(1, kMost))};
+        if (f.has("last")) s.frames->last = static_cast<int>(f["last"].integer(s.frames->first, kMost));
+    }
+    if (j.has("step")) s.step = static_cast<int>(j["step"].integer(0, std::numeric_limits<int>::max()));
+    if (j.has("array")) s.array = j["array"].text();
     if (j.has("component")) s.component = static_cast<int>(j["component"].integer(0, 1'000'000));
     if (j.has("missing")) s.missing = j["missing"].number();
     if (j.has("downsample")) s.downsample = static_cast<int>(j["downsample"].integer(1, 65536));
@@ -217,11 +235,29 @@ VolumeSource toSource(const JsonValue& j, const std::string& folder, std::vector
     return s;
 }
 
+Derivation toDerivation(const JsonValue& j) {
+    try {
+        if (const auto derivation = parseDerivation(j.text())) return *derivation;
+    } catch (const UsageError& e) {
+        j.fail(e.problem());
+    }
+    j.fail("no such derivation", "write gradient:NAME, volatility:NAME:FRAMES or difference:NAME:FRAME");
+}
+
+constexpr std::int64_t kMostFrames = 1'000'000'000;
+
 json fromVariable(const Variable& v, const std::string& folder, DataPaths paths) {
-    json j{{"name", v.name}, {"source", fromSource(v.source, folder, paths)}, {"transfer_functions", json::array()}};
+    json j{{"name", v.name}, {"transfer_functions", json::array()}};
+    if (v.derivation)
+        j["derived"] = v.derivation->text();
+    else
+        j["source"] = fromSource(v.source, folder, paths);
     if (v.window) j["window"] = fromRange(*v.window);
     for (const auto& [frame, tf] : v.track.keys)
         j["transfer_functions"].push_back({{"frame", frame}, {"tf", jsonFromTf(*tf, Identities::Keep)}});
+    for (const auto& [frame, adapted] : v.track.adapted)
+        j["adapted"].push_back(
+            {{"frame", frame}, {"tf", jsonFromTf(*adapted.tf, Identities::Keep)}, {"basis", adapted.basis}});
     addUnknownKeys(j, v.extraJson);
     return j;
 }
@@ -229,13 +265,106 @@ json fromVariable(const Variable& v, const std::string& folder, DataPaths paths)
 Variable toVariable(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
     Variable v;
     v.name = j["name"].text();
-    v.source = toSource(j["source"], folder, notices);
+    if (j.has("derived"))
+        v.derivation = toDerivation(j["derived"]);
+    else
+        v.source = toSource(j["source"], folder, notices);
     if (j.has("window")) v.window = toRange(j["window"]);
     for (const JsonValue& key : j["transfer_functions"].items())
-        v.track.keys[static_cast<int>(key["frame"].integer(0, 1'000'000'000))] =
+        v.track.keys[static_cast<int>(key["frame"].integer(0, kMostFrames))] =
             Part<TransferFunction>(tfFromJson(key["tf"], Identities::Keep));
-    v.extraJson = j.unknownKeys({"name", "source", "window", "transfer_functions"});
+    if (j.has("adapted"))
+        for (const JsonValue& item : j["adapted"].items())
+            v.track.adapted[static_cast<int>(item["frame"].integer(0, kMostFrames))] = {
+                Part<TransferFunction>(tfFromJson(item["tf"], Identities::Keep)), item["basis"].text()};
+    v.extraJson = j.unknownKeys({"name", "source", "derived", "window", "transfer_functions", "adapted"});
     return v;
+}
+
+json fromTargetKeys(const TargetKeys& keys) {
+    json list = json::array();
+    for (const auto& [frame, targets] : keys) {
+        json item{{"frame", frame}, {"targets", json::array()}};
+        for (const auto& [id, target] : targets) item["targets"].push_back({{"id", id}, {"target", target}});
+        list.push_back(std::move(item));
+    }
+    return list;
+}
+TargetKeys toTargetKeys(const JsonValue& j) {
+    TargetKeys keys;
+    for (const JsonValue& item : j.items()) {
+        auto& targets = keys[static_cast<int>(item["frame"].integer(0, kMostFrames))];
+        for (const JsonValue& t : item["targets"].items())
+            targets[static_cast<FeatureId>(t["id"].integer(1, INT64_MAX))] = t["target"].number(0, kLargestTarget);
+    }
+    return keys;
+}
+
+json fromAdapt(const AdaptSettings& a) {
+    json j{{"mode", name(a.mode)}};
+    if (std::isinf(a.coherence))
+        j["coherence"] = "infinite";
+    else
+        j["coherence"] = a.coherence;
+    return j;
+}
+AdaptSettings toAdapt(const JsonValue& j) {
+    AdaptSettings a;
+    const auto mode = adaptModeFromName(j["mode"].text());
+    if (!mode) j["mode"].fail("no such mode", "write static, refine or optimize");
+    a.mode = *mode;
+    if (j["coherence"].json().is_string()) {
+        if (j["coherence"].text() != "infinite") j["coherence"].fail("no such coherence", "write a number or infinite");
+        a.coherence = std::numeric_limits<double>::infinity();
+    } else {
+        a.coherence = j["coherence"].number(0, kHuge);
+    }
+    return a;
+}
+
+json fromHsb(const HsbMapping& h) {
+    json j{{"on", h.on},   {"saturation", h.saturation}, {"brightness", h.brightness},
+           {"hue", h.hue}, {"hue_from", h.hueFrom},      {"hue_to", h.hueTo}};
+    if (h.a) j["a"] = *h.a;
+    if (h.b) j["b"] = *h.b;
+    return j;
+}
+HsbMapping toHsb(const JsonValue& j) {
+    HsbMapping h;
+    h.on = j["on"].boolean();
+    h.saturation = j["saturation"].text();
+    h.brightness = j["brightness"].text();
+    h.hue = j["hue"].text();
+    h.hueFrom = j["hue_from"].number(-360, 360);
+    h.hueTo = j["hue_to"].number(-360, 360);
+    if (j.has("a")) h.a = j["a"].number(0, kLargestScale);
+    if (j.has("b")) h.b = j["b"].number(0, kLargestScale);
+    return h;
+}
+
+json fromGround(const GroundView& g, const std::string& folder, DataPaths paths) {
+    VolumeSource source;
+    source.path = g.path;
+    source.raw = g.raw;
+    source.missing = g.missing;
+    json j{{"color_map", g.colorMap}, {"relief", g.relief}, {"shown", g.shown}};
+    if (!g.path.empty()) j["source"] = fromSource(source, folder, paths);
+    if (g.scale) j["scale"] = *g.scale;
+    return j;
+}
+GroundView toGround(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
+    GroundView g;
+    if (j.has("source")) {
+        const VolumeSource source = toSource(j["source"], folder, notices);
+        g.path = source.path;
+        g.raw = source.raw;
+        g.missing = source.missing;
+    }
+    if (j.has("scale")) g.scale = j["scale"].number(-kHuge, kHuge);
+    g.colorMap = j["color_map"].text();
+    g.relief = j["relief"].number(0, 1);
+    g.shown = j["shown"].boolean();
+    return g;
 }
 
 json fromGoals(const FeatureGoals& goals) {
@@ -664,6 +793,10 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"refine", fromRefine(*s.refine)},
            {"slices", fromSlices(*s.slices)},
            {"field", fromField(*s.field)},
+           {"target_keys", fromTargetKeys(*s.targetKeys)},
+           {"adapt", fromAdapt(*s.adapt)},
+           {"hsb", fromHsb(*s.hsb)},
+           {"ground", fromGround(*s.ground, folder, paths)},
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
@@ -678,8 +811,9 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     Session& s = file.session;
     std::vector<Variable> variables;
     for (const JsonValue& v : j["variables"].items()) variables.push_back(toVariable(v, folder, file.notices));
-    if (variables.size() > 1)
-        j["variables"].fail("it has more than one variable", "leave one: this program draws one at a time");
+    std::set<std::string> names;
+    for (const Variable& v : variables)
+        if (!names.insert(v.name).second) j["variables"].fail("each variable needs a name of its own");
     s.variables = std::move(variables);
     if (j.has("frame")) s.frame = static_cast<int>(j["frame"].integer(0, 1'000'000'000));
     if (j.has("features")) s.goals = toGoals(j["features"]);
@@ -693,6 +827,10 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("refine")) s.refine = toRefine(j["refine"]);
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
     if (j.has("field")) s.field = toField(j["field"]);
+    if (j.has("target_keys")) s.targetKeys = toTargetKeys(j["target_keys"]);
+    if (j.has("adapt")) s.adapt = toAdapt(j["adapt"]);
+    if (j.has("hsb")) s.hsb = toHsb(j["hsb"]);
+    if (j.has("ground")) s.ground = toGround(j["ground"], folder, file.notices);
     if (j.has("runs")) {
         std::vector<Run> runs;
         int highest = 0;
@@ -705,9 +843,9 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         }
         s.runs = std::move(runs);
     }
-    s.extraJson =
-        j.unknownKeys({"format", "version", "variables", "frame", "features", "hold_targets", "camera", "clip",
-                       "display", "reference", "measure", "optimize", "refine", "slices", "field", "runs", "title"});
+    s.extraJson = j.unknownKeys({"format", "version",     "variables", "frame",   "features", "hold_targets", "camera",
+                                 "clip",   "display",     "reference", "measure", "optimize", "refine",       "slices",
+                                 "field",  "target_keys", "adapt",     "hsb",     "ground",   "runs",         "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -60,7 +60,8 @@ void Workspace::releaseEngine() {
 
 bool Workspace::haveWeights(const MeasureInput& input) const {
     return m_weightsVolume == input.volume && m_weightsOptions == input.settings.saliency &&
-           m_weightsProfile == input.settings.profile && m_weightsTf == colorsOf(input.tf);
+           m_weightsProfile == input.settings.profile && m_weightsColors == input.colors &&
+           m_weightsTf == colorsOf(input.tf);
 }
 
 const WeightFields& Workspace::weights(const MeasureInput& input, const JobControl& job) {
@@ -75,7 +76,8 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
         if (published)
             m_weights = publishedSaliencyFields(*input.volume, input.tf, job);
         else
-            updateSaliencyFields(m_weights, *input.volume, input.tf, input.settings.saliency, job);
+            updateSaliencyFields(m_weights, *input.volume, input.tf, input.settings.saliency, job, input.colors.get());
+        m_weightsColors = input.colors;
         m_weightsTf = colorsOf(input.tf);
         m_weightsOptions = input.settings.saliency;
         m_weightsVolume = input.volume;

@@ -82,6 +82,7 @@ private:
     Profile m_engineProfile = Profile::Default, m_weightsProfile = Profile::Default;
     std::unique_ptr<VisibilityEngine> m_engine;
     TransferFunction m_weightsTf; // its colorsOf()
+    std::shared_ptr<const VoxelColors> m_weightsColors;
     SaliencyOptions m_weightsOptions;
     WeightFields m_weights;
     std::shared_ptr<const Volume> m_raysVolume;

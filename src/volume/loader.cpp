@@ -64,7 +64,7 @@ Volume sample(const VolumeSource& source, const JobControl& job) {
     if (source.component != 0)
         throw UsageError("a sample has one component", source.path, "ask for none", Remedy::NoComponent);
     Volume volume = makeSample(source.path.substr(kSamplePrefix.size()), source.sampleSize, source.seed, job,
-                               source.downsample > 1 || source.region ? MemoryUse{} : source.then);
+                               source.downsample > 1 || source.region ? MemoryUse{} : source.then, source.step);
     if (source.missing) {
         Volume other(volume.geometry(), volume.samples(), source.missing);
         if (volume.range() != volume.dataRange()) other = other.withRange(volume.range());

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/job.h"
 #include "volume/memory_use.h"
@@ -24,15 +25,28 @@ struct RawLayout {
 /// "NX,NY,NZ,TYPE[,little|big]"; throws UsageError.
 RawLayout parseRawLayout(const std::string& text);
 
-/// What to open: a path, or "sample:NAME".
+/// Frames first, first + stride, … up to `last` of a series, counted from 0.
+struct FrameRange {
+    int first = 0;
+    std::optional<int> last; ///< itself included; empty: to the end
+    int stride = 1;          ///< ≥ 1
+    bool operator==(const FrameRange&) const = default;
+};
+
+/// What to open: a path, or "sample:NAME". It may name more than one frame (series.h): by a printf pattern, a glob, a
+/// folder, a file with several time steps, or several files.
 struct VolumeSource {
     std::string path;
-    std::optional<RawLayout> raw;    ///< given: the file is headerless
-    std::optional<double> missing;   ///< this value is invalid (besides what the file declares)
-    std::optional<ValueRange> range; ///< the user's intensity window
-    int component = 0;               ///< of a multi-component file
-    int sampleSize = 0;              ///< --size of a sample, 0 = its default
-    std::uint32_t seed = 1;          ///< of a sample
+    std::vector<std::string> more;    ///< files of the frames after that of `path`, in their order
+    std::optional<FrameRange> frames; ///< only these of all that are there
+    int step = 0;                     ///< of a file (or sample) with several time steps, from 0: the one that is read
+    std::string array;                ///< of a file with several named arrays; empty: the first
+    std::optional<RawLayout> raw;     ///< given: the file is headerless
+    std::optional<double> missing;    ///< this value is invalid (besides what the file declares)
+    std::optional<ValueRange> range;  ///< the user's intensity window
+    int component = 0;                ///< of a multi-component file
+    int sampleSize = 0;               ///< --size of a sample, 0 = its default
+    std::uint32_t seed = 1;           ///< of a sample
     /// Each voxel is the mean of so many along each axis (see excerpt.h). 1: all voxels, or an error where memory has
     /// no room for them; 0: likewise, but by the smallest factor for which there is room.
     int downsample = 0;
@@ -42,7 +56,8 @@ struct VolumeSource {
     bool isSample() const { return path.starts_with("sample:"); }
     /// Whether both name the same data, whatever is done with it.
     bool operator==(const VolumeSource& o) const {
-        return path == o.path && raw == o.raw && missing == o.missing && range == o.range && component == o.component &&
+        return path == o.path && more == o.more && frames == o.frames && step == o.step && array == o.array &&
+               raw == o.raw && missing == o.missing && range == o.range && component == o.component &&
                sampleSize == o.sampleSize && seed == o.seed && downsample == o.downsample && region == o.region;
     }
 };

@@ -47,7 +47,7 @@ double smoothStep(double a, double b, double x) {
 /// Three solid disks one behind the other along x (fig. 4.1), hard edges: no voxel between two intensities, so that
 /// no disk has a skin of another feature's colour. Values 42, 126, 210 of the window 0 … 252 are the intensities
 /// 1/6, 1/2, 5/6 exactly, the centres of three tents.
-Volume makeDisks(const Geometry& geometry, std::uint32_t, const JobControl& job) {
+Volume makeDisks(const Geometry& geometry, const SampleOrder&, const JobControl& job) {
     const Int3 d = geometry.dims;
     auto values = fill<std::uint8_t>(d, job, [&](int i, int j, int k) -> std::uint8_t {
         const Vec3 p = (Vec3(i, j, k) + 0.5) / Vec3(d) - 0.5; // [−½, ½]
@@ -83,12 +83,12 @@ double shellsIntensity(const Vec3& p, double blur, std::uint32_t seed) {
     return plateaus + grain * inside(outer) + heart;
 }
 
-Volume makeShells(const Geometry& geometry, std::uint32_t seed, const JobControl& job) {
+Volume makeShells(const Geometry& geometry, const SampleOrder& order, const JobControl& job) {
     const Int3 d = geometry.dims;
     const double blur = 2.5 / d.x; // in units of half the box: about 2½ voxels from plateau to plateau
     auto values = fill<std::uint8_t>(d, job, [&](int i, int j, int k) {
         const Vec3 p = (Vec3(i, j, k) + 0.5) / Vec3(d) * 2.0 - 1.0;
-        return rounded<std::uint8_t>(255.0 * shellsIntensity(p, blur, seed), 0, 255);
+        return rounded<std::uint8_t>(255.0 * shellsIntensity(p, blur, order.seed), 0, 255);
     });
     return Volume(geometry, std::move(values)).withRange({0, 255});
 }
@@ -195,13 +195,13 @@ double kneeHounsfield(const Vec3& p, double voxel, std::uint32_t seed) {
     return value;
 }
 
-Volume makeKnee(const Geometry& geometry, std::uint32_t seed, const JobControl& job) {
+Volume makeKnee(const Geometry& geometry, const SampleOrder& order, const JobControl& job) {
     constexpr double kNoiseHounsfield = 15;
     const Vec3 center = 0.5 * (geometry.worldFromVoxel(Vec3(0)) + geometry.worldFromVoxel(Vec3(geometry.dims - 1)));
     const double voxel = std::cbrt(geometry.spacing.x * geometry.spacing.y * geometry.spacing.z);
     auto values = fill<std::int16_t>(geometry.dims, job, [&](int i, int j, int k) {
-        const double clean = kneeHounsfield(geometry.worldFromVoxel({i, j, k}) - center, voxel, seed);
-        return rounded<std::int16_t>(clean + kNoiseHounsfield * whiteNoise(i, j, k, seed + 5), -1024, 3071);
+        const double clean = kneeHounsfield(geometry.worldFromVoxel({i, j, k}) - center, voxel, order.seed);
+        return rounded<std::int16_t>(clean + kNoiseHounsfield * whiteNoise(i, j, k, order.seed + 5), -1024, 3071);
     });
     return Volume(geometry, std::move(values));
 }
@@ -211,7 +211,7 @@ Volume makeKnee(const Geometry& geometry, std::uint32_t seed, const JobControl& 
 struct Sample {
     SampleInfo info;
     Vec3 defaultSpacing;
-    Volume (*make)(const Geometry&, std::uint32_t seed, const JobControl&);
+    Volume (*make)(const Geometry&, const SampleOrder&, const JobControl&);
 };
 
 const std::vector<Sample>& table() {
@@ -249,22 +249,35 @@ const std::vector<SampleInfo>& samples() {
     return kInfos;
 }
 
-Volume makeSample(const std::string& name, int size, std::uint32_t seed, const JobControl& job, const MemoryUse& then) {
-    constexpr int kLeast = 8, kMost = 8192;
+namespace {
+
+const Sample& sampleNamed(const std::string& name) {
     const auto found =
         std::find_if(table().begin(), table().end(), [&](const Sample& s) { return s.info.name == name; });
-    if (found == table().end()) {
-        std::string known;
-        for (const SampleInfo& info : samples()) known += (known.empty() ? "" : ", ") + info.name;
-        throw UsageError("there is no sample of this name", "sample:" + name, "the samples are " + known);
-    }
+    if (found != table().end()) return *found;
+    std::string known;
+    for (const SampleInfo& info : samples()) known += (known.empty() ? "" : ", ") + info.name;
+    throw UsageError("there is no sample of this name", "sample:" + name, "the samples are " + known);
+}
+
+} // namespace
+
+const SampleInfo& sampleInfo(const std::string& name) { return sampleNamed(name).info; }
+
+Volume makeSample(const std::string& name, int size, std::uint32_t seed, const JobControl& job, const MemoryUse& then,
+                  int step) {
+    constexpr int kLeast = 8, kMost = 8192;
+    const Sample& sample = sampleNamed(name);
+    if (step < 0 || step >= sample.info.frames)
+        throw UsageError("there is no step " + std::to_string(step), "sample:" + name,
+                         "give 0 to " + std::to_string(sample.info.frames - 1));
     if (size != 0 && (size < kLeast || size > kMost))
         throw UsageError("the size " + std::to_string(size) + " is not possible", "sample:" + name,
                          "give " + std::to_string(kLeast) + " to " + std::to_string(kMost) + " voxels");
-    const Geometry geometry = geometryOf(*found, size);
+    const Geometry geometry = geometryOf(sample, size);
     const std::uint64_t bytes = voxelCount(geometry.dims) * 2; // of 16-bit samples, the largest there are
     requireMemory(then, "sample:" + name, geometry.dims, SampleType::U16, bytes, bytes);
-    Volume volume = found->make(geometry, seed, job);
+    Volume volume = sample.make(geometry, {seed, step}, job);
     volume.title = name;
     volume.format = "sample";
     return volume;

@@ -225,10 +225,15 @@ TEST_CASE("wrong sessions are refused", "[session][json]") {
     CHECK_THAT(with("/measure/engine", "cuda"), Catch::Contains("/measure/engine") && Catch::Contains("cpu"));
     CHECK_THAT(with("/optimize/method", "simplex"), Catch::Contains("/optimize/method"));
     CHECK_THAT(with("/optimize/step", 0), Catch::Contains("/optimize"));
+    CHECK_THAT(with("/adapt/mode", "always"), Catch::Contains("/adapt/mode"));
+    CHECK_THAT(with("/adapt/coherence", "much"), Catch::Contains("/adapt/coherence"));
+    CHECK_THAT(with("/adapt/coherence", -1), Catch::Contains("/adapt/coherence"));
+    CHECK_THAT(with("/hsb/hue_from", 1e6), Catch::Contains("/hsb/hue_from"));
+    CHECK_THAT(with("/ground/relief", 2), Catch::Contains("/ground/relief"));
     CHECK_THAT(with("/features/1/id", good["features"][0]["id"]), Catch::Contains("/features/1/id"));
     json two = good;
     two["variables"].push_back(two["variables"][0]);
-    CHECK_THAT(messageOf(two), Catch::Contains("more than one variable"));
+    CHECK_THAT(messageOf(two), Catch::Contains("a name of its own"));
 }
 
 TEST_CASE("session and data can be moved together", "[session][json]") {

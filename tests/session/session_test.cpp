@@ -216,7 +216,7 @@ TEST_CASE("a transfer function holds from its key frame to the next", "[session]
     CHECK(track.at(0) == nullptr);
     const auto named = [](const char* name) { return Part<TransferFunction>(tfOf({feature(name, 0, 1)})); };
     track.keys = {{2, named("two")}, {5, named("five")}};
-    const auto nameAt = [&](int frame) { return (*track.at(frame))->features[0].name; };
+    const auto nameAt = [&](int frame) { return track.at(frame)->features[0].name; };
     CHECK(nameAt(-1) == "two"); // the first, before there is any
     CHECK(nameAt(0) == "two");
     CHECK(nameAt(2) == "two");
@@ -225,15 +225,17 @@ TEST_CASE("a transfer function holds from its key frame to the next", "[session]
     CHECK(nameAt(1000) == "five");
 }
 
-TEST_CASE("the key frame that holds is the one that is set", "[session]") {
+TEST_CASE("one key is that of all frames, among several the present frame becomes one", "[session]") {
     Session s = opened();
     s.frame = 7;
     s.setTf(tents(1)); // the first key holds from the beginning
     CHECK(s.variable().track.keys.count(0) == 1);
     s.variables.edit([](std::vector<Variable>& all) { all[0].track.keys[5] = Part<TransferFunction>(tents(2)); });
     s.setTf(tents(4));
-    CHECK(s.variable().track.keys.size() == 2);
+    CHECK(s.variable().track.keys.size() == 3);
     CHECK(s.tf()->features.size() == 4);
+    s.frame = 6; // of the key at 5: what has other features is not gone to evenly
+    CHECK(s.tf()->features.size() == 2);
     s.frame = 4;
     CHECK(s.tf()->features.size() == 1);
 }

@@ -79,8 +79,55 @@ Variable randomVariable(Random& random, int& features) {
         features = std::max(features, static_cast<int>(tf.features.size()));
         v.track.keys[k == 0 ? random.below(3) : 10 * k + random.below(10)] = Part<TransferFunction>(std::move(tf));
     }
+    for (int i = keys == 0 ? 0 : random.below(3); i > 0; --i) {
+        TransferFunction tf = randomTf(random);
+        features = std::max(features, static_cast<int>(tf.features.size()));
+        v.track.adapted[100 + i] = {Part<TransferFunction>(std::move(tf)), "fingerprint " + std::to_string(i)};
+    }
     v.extraJson = randomExtra(random);
     return v;
+}
+
+/// Beside those that a session begins with.
+Variable randomDerived(Random& random) {
+    Variable v;
+    v.name = "derived";
+    v.derivation = Derivation{oneOf(random, std::array{Derivation::Kind::Gradient, Derivation::Kind::Volatility,
+                                                       Derivation::Kind::Difference}),
+                              "density", 1 + random.below(20), random.below(10)};
+    if (v.derivation->kind != Derivation::Kind::Volatility) v.derivation->frames = Derivation{}.frames;
+    if (v.derivation->kind != Derivation::Kind::Difference) v.derivation->reference = 0;
+    return v;
+}
+
+void addSeriesParts(Session& s, Random& random) {
+    if (!s.isEmpty() && random.chance(0.4))
+        s.variables.edit([&](std::vector<Variable>& all) { all.push_back(randomDerived(random)); });
+    if (random.chance(0.3)) {
+        TargetKeys keys;
+        for (int i = 1 + random.below(3); i > 0; --i)
+            keys[10 * i][static_cast<FeatureId>(1 + random.below(4))] = oddNumber(random, 0, 1);
+        s.targetKeys = keys;
+    }
+    s.adapt = AdaptSettings{static_cast<AdaptSettings::Mode>(random.below(3)),
+                            random.chance(0.2) ? std::numeric_limits<double>::infinity() : oddNumber(random, 0, 100)};
+    if (random.chance(0.5)) {
+        HsbMapping hsb;
+        hsb.on = random.chance(0.5);
+        hsb.saturation = "volatility:x:10";
+        hsb.brightness = random.chance(0.5) ? "derived" : "";
+        if (random.chance(0.5)) hsb.a = oddNumber(random, 0, 100);
+        hsb.hueFrom = oddNumber(random, 0, 360);
+        s.hsb = hsb;
+    }
+    if (random.chance(0.5)) {
+        GroundView ground;
+        ground.path = "sample:disks";
+        if (random.chance(0.5)) ground.scale = oddNumber(random, 0.1, 10);
+        ground.relief = oddNumber(random, 0, 1);
+        ground.shown = random.chance(0.5);
+        s.ground = ground;
+    }
 }
 
 FeatureGoals randomGoals(Random& random, int features) {
@@ -296,6 +343,7 @@ Session randomSession(std::uint32_t number) {
     if (random.chance(0.7)) s.slices = randomSlices(random);
     s.field = randomField(random);
     for (int i = random.below(4); i > 0; --i) s.addRun(randomRun(random));
+    addSeriesParts(s, random);
     s.extraJson = randomExtra(random);
     return s;
 }

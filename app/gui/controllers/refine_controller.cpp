@@ -420,7 +420,7 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
         return {};
     // An optimization has found what it was asked for.
     if (m_bench.optimizing().isAnswering() || before.session.frame != after.session.frame) return {};
-    const TransferFunction *was = before.session.tf(), *is = after.session.tf();
+    const auto was = before.session.tf(), is = after.session.tf();
     if (was == nullptr || is == nullptr) return {};
     const bool edited = hasMoved(*was, *is, settings.region.has_value());
     if (!edited && before.session.refine == after.session.refine) return {};

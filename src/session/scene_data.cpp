@@ -1,0 +1,169 @@
+#include "session/scene_data.h"
+
+#include <algorithm>
+
+#include "session/ground_file.h"
+#include "tf/hsb_colors.h"
+
+namespace pellucid {
+
+bool sameOrigin(const Variable& a, const Variable& b) {
+    return a.derivation == b.derivation && (a.derivation || a.source == b.source);
+}
+
+ValueRange windowOf(const Variable& variable, TimeSeries& series, const JobControl& job) {
+    return variable.window ? *variable.window : series.range(job);
+}
+
+std::shared_ptr<const Volume> throughWindow(const std::shared_ptr<const Volume>& data,
+                                            const std::optional<ValueRange>& window) {
+    if (!window || *window == data->range() || !(window->lo < window->hi)) return data;
+    return std::make_shared<const Volume>(data->withRange(*window));
+}
+
+// ---- variables
+
+std::shared_ptr<TimeSeries> SeriesFinder::find(const std::string& name) {
+    const Session& session = m_scene.session;
+    if (!session.isEmpty() && session.variable().name == name && m_scene.series) return m_scene.series;
+    if (const auto known = m_scene.others.find(name); known != m_scene.others.end()) return known->second;
+    if (std::find(m_path.begin(), m_path.end(), name) != m_path.end())
+        throw UsageError("it is made of itself", "variable " + name, "make it of another variable");
+    m_path.push_back(name);
+    std::shared_ptr<TimeSeries> series;
+    if (const Variable* variable = session.variableNamed(name))
+        series = of(*variable);
+    else if (const auto derivation = parseDerivation(name))
+        series = derived(name, *derivation);
+    else
+        throw UsageError("there is no variable of this name", "variable " + name, "the variables are " + knownNames());
+    m_path.pop_back();
+    m_scene.others[name] = series;
+    return series;
+}
+
+std::shared_ptr<TimeSeries> SeriesFinder::of(const Variable& variable) {
+    if (variable.derivation) return derived(variable.name, *variable.derivation);
+    for (const Variable& before : *m_basis.session.variables)
+        if (sameOrigin(before, variable))
+            if (const auto series = knownOf(before.name)) return series;
+    VolumeSource source = variable.source;
+    source.range.reset();
+    return TimeSeries::open(source, m_then, m_job);
+}
+
+std::shared_ptr<TimeSeries> SeriesFinder::knownOf(const std::string& name) const {
+    if (!m_basis.session.isEmpty() && m_basis.session.variable().name == name) return m_basis.series;
+    const auto found = m_basis.others.find(name);
+    return found == m_basis.others.end() ? nullptr : found->second;
+}
+
+std::shared_ptr<TimeSeries> SeriesFinder::derived(const std::string& name, const Derivation& derivation) {
+    std::shared_ptr<TimeSeries> base = find(derivation.of);
+    if (const auto before = knownOf(name); before && knownOf(derivation.of) == base) {
+        const Variable* variable = m_basis.session.variableNamed(name);
+        if (variable == nullptr || variable->derivation == derivation) return before;
+    }
+    return derive(std::move(base), derivation);
+}
+
+std::string SeriesFinder::knownNames() const {
+    std::string names;
+    for (const Variable& v : *m_scene.session.variables) names += (names.empty() ? "" : ", ") + v.name;
+    return names + "; or gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME";
+}
+
+// ---- targets
+
+void followTargetKeys(Session& session, const Scene& basis) {
+    if (session.targetKeys->empty()) return;
+    if (basis.session.frame == session.frame && session.targetKeys.isSame(basis.session.targetKeys)) {
+        if (session.goals.isSame(basis.session.goals)) return;
+        const auto targetsIn = [](const FeatureGoals& goals) {
+            std::map<FeatureId, double> targets;
+            for (const auto& [id, goal] : goals) targets[id] = goal.target;
+            return targets;
+        };
+        std::map<FeatureId, double> targets = targetsIn(*session.goals);
+        if (targets != targetsIn(*basis.session.goals))
+            session.targetKeys.edit([&](TargetKeys& keys) { keys[session.frame] = std::move(targets); });
+        return;
+    }
+    session.goals.edit([&](FeatureGoals& goals) {
+        for (const auto& [id, target] : targetsBetween(*session.targetKeys, session.frame))
+            if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
+    });
+}
+
+// ---- colours
+
+namespace {
+
+/// The frame of a variable on the grid of the picture, through its window. Null for an empty name.
+std::shared_ptr<const Volume> channelOf(Scene& scene, SeriesFinder& finder, const std::string& name,
+                                        const JobControl& job) {
+    if (name.empty()) return nullptr;
+    const std::shared_ptr<TimeSeries> series = finder.find(name);
+    const Variable* variable = scene.session.variableNamed(name);
+    std::optional<ValueRange> window = variable != nullptr ? variable->window : std::nullopt;
+    const std::optional<Derivation> derivation = variable != nullptr ? variable->derivation : parseDerivation(name);
+    // Volatility is a deviation of intensities: it is its own measure.
+    if (!window && derivation && derivation->kind == Derivation::Kind::Volatility) window = ValueRange{0, 1};
+    std::shared_ptr<const Volume> volume = series->load(series->nearest(scene.session.frame), job);
+    if (!onSameGrid(volume->geometry(), scene.volume->geometry()))
+        volume = std::make_shared<const Volume>(resampledTo(*volume, scene.volume->geometry(), job));
+    return throughWindow(volume, window ? *window : series->range(job));
+}
+
+/// Whether colours, and what they are made of, are those of `basis`.
+bool sameColors(const Scene& scene, const Scene& basis) {
+    return scene.data == basis.data && scene.session.hsb == basis.session.hsb &&
+           std::equal(scene.session.variables->begin(), scene.session.variables->end(),
+                      basis.session.variables->begin(), basis.session.variables->end(),
+                      [](const Variable& a, const Variable& b) {
+                          return a.name == b.name && sameOrigin(a, b) && a.window == b.window;
+                      });
+}
+
+} // namespace
+
+void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const JobControl& job) {
+    const HsbMapping& hsb = *scene.session.hsb;
+    if (!hsb.on) return;
+    if (basis.colors && sameColors(scene, basis)) {
+        scene.colors = basis.colors;
+        scene.others = basis.others;
+        scene.hsbA = basis.hsbA;
+        scene.hsbB = basis.hsbB;
+        return;
+    }
+    HsbInput input;
+    input.dims = scene.volume->dims();
+    input.saturation = channelOf(scene, finder, hsb.saturation, job);
+    input.brightness = channelOf(scene, finder, hsb.brightness, job);
+    input.hue = channelOf(scene, finder, hsb.hue, job);
+    // Automatic scales stay what they were when the mapping began, so that frames can be compared.
+    const HsbMapping& was = *basis.session.hsb;
+    const bool sameMapping = basis.colors && was.saturation == hsb.saturation && was.brightness == hsb.brightness &&
+                             basis.series == scene.series;
+    const auto scale = [&](const std::optional<double>& set, double before, const std::shared_ptr<const Volume>& v) {
+        if (set) return *set;
+        return sameMapping ? before : v ? automaticScale(*v) : 1.0;
+    };
+    scene.hsbA = input.a = scale(hsb.a, basis.hsbA, input.saturation);
+    scene.hsbB = input.b = scale(hsb.b, basis.hsbB, input.brightness);
+    input.hueFrom = hsb.hueFrom;
+    input.hueTo = hsb.hueTo;
+    scene.colors = std::make_shared<const VoxelColors>(hsbColors(input, job));
+}
+
+void resolveGround(Scene& scene, const Scene& basis, const JobControl& job) {
+    const GroundView& view = *scene.session.ground;
+    if (view.path.empty() || !view.shown) return;
+    if (basis.ground && *basis.session.ground == view && basis.series == scene.series)
+        scene.ground = basis.ground;
+    else
+        scene.ground = std::make_shared<const Ground>(readGround(view, scene.volume->geometry(), job));
+}
+
+} // namespace pellucid

@@ -1,0 +1,54 @@
+// What resolve() makes of a session beside its first variable: other variables, their colours, the ground, targets.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "session/scene.h"
+
+namespace pellucid {
+
+/// Whether both variables have the same values, whatever they are called and seen through.
+bool sameOrigin(const Variable& a, const Variable& b);
+
+/// The window of the variable that `series` has the values of: its own, or all values.
+ValueRange windowOf(const Variable& variable, TimeSeries& series, const JobControl& job = {});
+
+/// `data` through `window`; empty: as it is.
+std::shared_ptr<const Volume> throughWindow(const std::shared_ptr<const Volume>& data,
+                                            const std::optional<ValueRange>& window);
+
+/// Finds and makes the series of a scene's variables: those of `basis` where they are the same. All outlive this.
+class SeriesFinder {
+public:
+    SeriesFinder(Scene& scene, const Scene& basis, const MemoryUse& then, const JobControl& job)
+        : m_scene(scene), m_basis(basis), m_then(then), m_job(job) {}
+
+    /// Of a variable of the session, or of a derivation of one, by name; kept in Scene::others. Throws UsageError where
+    /// there is none.
+    std::shared_ptr<TimeSeries> find(const std::string& name);
+    std::shared_ptr<TimeSeries> of(const Variable& variable);
+
+private:
+    std::shared_ptr<TimeSeries> knownOf(const std::string& name) const;
+    std::shared_ptr<TimeSeries> derived(const std::string& name, const Derivation& derivation);
+    std::string knownNames() const;
+
+    Scene& m_scene;
+    const Scene& m_basis;
+    const MemoryUse& m_then;
+    const JobControl& m_job;
+    std::vector<std::string> m_path; // of derivations, down to the one that is looked for
+};
+
+/// Targets of the present frame: from the keys where frame or keys are others than those of `basis`, else into them.
+void followTargetKeys(Session& session, const Scene& basis);
+
+/// Scene::colors and their scales; those of `basis` where nothing has changed.
+void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const JobControl& job);
+
+/// Scene::ground, likewise.
+void resolveGround(Scene& scene, const Scene& basis, const JobControl& job);
+
+} // namespace pellucid

@@ -1,0 +1,31 @@
+// Selective saturation and brightness (docs/method.md, "Selective saturation and brightness"; thesis eq. 6.1).
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "base/job.h"
+#include "volume/volume.h"
+#include "volume/voxel_colors.h"
+
+namespace pellucid {
+
+/// What drives the colour of a voxel. A channel's value is the intensity of its variable through its volume's window,
+/// [0,1]; volumes have the grid of the first.
+struct HsbInput {
+    Int3 dims{0, 0, 0};
+    std::shared_ptr<const Volume> saturation; ///< null: saturation 1
+    std::shared_ptr<const Volume> brightness; ///< null: brightness 1
+    std::shared_ptr<const Volume> hue;        ///< null: hueFrom everywhere
+    double a = 1, b = 1;                      ///< saturation = clip(a·S), brightness = 1 − clip(b·Y); ≥ 0
+    double hueFrom = 0, hueTo = 240;          ///< degrees, of intensity 0 and 1 of `hue`
+};
+
+/// Eq. 6.1, hexcone HSB to sRGB, rounded to 8 bits. An invalid voxel of a variable has the value 0.
+/// Throws Cancelled.
+VoxelColors hsbColors(const HsbInput& input, const JobControl& job = {});
+
+/// A sensible scale for a channel: the 99th percentile of the values above 0 becomes 1. 1 where none is.
+double automaticScale(const Volume& channel);
+
+} // namespace pellucid

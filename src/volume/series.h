@@ -1,0 +1,41 @@
+// What a source names over time: its frames, told by names and headers alone.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volume/loader.h"
+
+namespace pellucid {
+
+/// One time step.
+struct SeriesFrame {
+    VolumeSource source; ///< of this step alone: what loadVolume() takes
+    double time = 0;     ///< in SeriesListing::timeUnit; the index where the data tell no times
+    std::string name;    ///< for people: its file, or "step 7"
+};
+
+/// The frames of a source in their order; at least one.
+struct SeriesListing {
+    std::vector<SeriesFrame> frames;
+    std::string timeUnit;                    ///< "s", "ms", …; empty: not known
+    bool hasTimes = false;                   ///< SeriesFrame::time comes from the data
+    std::string title;                       ///< what all frames are called together
+    std::optional<ValueRange> declaredRange; ///< of the values of all frames, where it is known without reading them
+    std::vector<std::string> notices;        ///< files that were passed over, and the like
+
+    /// "frame 7", "t = 12.3 s", "step 7".
+    std::string label(int frame) const;
+};
+
+/// Lists what `source` names: a printf pattern ("f%02d.raw"), a glob ("f*.mhd"), a folder of volume files, a file with
+/// several time steps, several files (VolumeSource::more), a sample with frames, or a single volume. Names are sorted
+/// as people count: f2 before f10. Nothing but headers is read. Throws FileError where nothing is found, UsageError for
+/// VolumeSource::frames that are not there.
+SeriesListing listSeries(const VolumeSource& source, const JobControl& job = {});
+
+/// Whether `path` names files by a printf pattern or a glob, rather than one.
+bool isSeriesPattern(const std::string& path);
+
+} // namespace pellucid

@@ -1,0 +1,295 @@
+#include "volume/time_series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "base/memory.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::size_t kMostBudget = std::size_t{2} << 30;
+
+/// Counts of valid values in equal bins of their range.
+std::vector<std::uint32_t> valueCounts(const Volume& volume) {
+    std::vector<std::uint32_t> counts(FrameSummary::kBins, 0);
+    const ValueRange& range = volume.dataRange();
+    const double scale = range.lo < range.hi ? FrameSummary::kBins / (range.hi - range.lo) : 0;
+    const bool allValid = volume.invalidCount() == 0;
+    std::visit(
+        [&](const auto& values) {
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                if (!allValid && !volume.isValid(i)) continue;
+                const int bin = static_cast<int>((static_cast<double>(values[i]) - range.lo) * scale);
+                ++counts[static_cast<std::size_t>(std::min(bin, FrameSummary::kBins - 1))];
+            }
+        },
+        volume.samples());
+    return counts;
+}
+
+bool sameGrid(const Geometry& a, const Geometry& b) {
+    const auto near = [](const Vec3& p, const Vec3& q, double scale) {
+        return std::abs(p.x - q.x) + std::abs(p.y - q.y) + std::abs(p.z - q.z) <= 1e-6 * scale;
+    };
+    const double size = a.radius();
+    return a.dims == b.dims && near(a.spacing, b.spacing, a.d0()) && near(a.origin, b.origin, size) &&
+           near(a.directions[0], b.directions[0], 1) && near(a.directions[1], b.directions[1], 1) &&
+           near(a.directions[2], b.directions[2], 1);
+}
+
+std::string dimsOf(const Int3& d) {
+    return std::to_string(d.x) + " x " + std::to_string(d.y) + " x " + std::to_string(d.z);
+}
+
+/// Of the frame's data and codes.
+std::size_t bytesOf(const Volume& volume) { return (volume.isMapped() ? 0 : volume.memoryBytes()) + 2 * volume.size(); }
+
+} // namespace
+
+TimeSeries::TimeSeries(SeriesListing listing, Maker make)
+    : m_listing(std::move(listing)), m_make(std::move(make)), m_summaries(m_listing.frames.size()),
+      m_budget(static_cast<std::size_t>(std::min<std::uint64_t>(availableMemoryBytes() / 4, kMostBudget))) {
+    if (varies()) m_range = m_listing.declaredRange;
+}
+
+std::shared_ptr<TimeSeries> TimeSeries::open(const VolumeSource& source, const MemoryUse& then, const JobControl& job) {
+    SeriesListing listing = listSeries(source, job);
+    for (SeriesFrame& frame : listing.frames) {
+        frame.source.range.reset();
+        frame.source.then = then;
+    }
+    auto sources = std::make_shared<std::vector<SeriesFrame>>(listing.frames);
+    return std::make_shared<TimeSeries>(std::move(listing), [sources](int frame, const JobControl& control) {
+        return loadVolume((*sources)[static_cast<std::size_t>(frame)].source, control);
+    });
+}
+
+void TimeSeries::touch(int frame) {
+    m_used.remove(frame);
+    m_used.push_front(frame);
+}
+
+void TimeSeries::makeRoom(std::size_t bytes) {
+    const auto held = [&] {
+        std::size_t sum = m_loading.size() * m_frameBytes;
+        for (const auto& [frame, entry] : m_entries) sum += entry.bytes;
+        return sum;
+    };
+    while (!m_used.empty() && held() + bytes > m_budget) {
+        m_entries.erase(m_used.back());
+        m_used.pop_back();
+    }
+}
+
+void TimeSeries::note(int frame, const Volume& volume) {
+    FrameSummary summary;
+    summary.isKnown = true;
+    summary.range = volume.dataRange();
+    summary.validCount = volume.size() - volume.invalidCount();
+    if (summary.validCount > 0 && varies()) summary.counts = valueCounts(volume);
+    const std::lock_guard lock(m_mutex);
+    m_summaries[static_cast<std::size_t>(frame)] = std::move(summary);
+}
+
+void TimeSeries::noteProblem(int frame, const std::string& problem) {
+    const std::lock_guard lock(m_mutex);
+    FrameSummary& summary = m_summaries[static_cast<std::size_t>(frame)];
+    summary = {};
+    summary.isKnown = true;
+    summary.problem = problem;
+}
+
+std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job) {
+    PELLUCID_CHECK(frame >= 0 && frame < size());
+    {
+        std::unique_lock lock(m_mutex);
+        while (true) { // one reads, the others wait for it
+            if (const auto found = m_entries.find(frame); found != m_entries.end()) {
+                touch(frame);
+                return found->second.data;
+            }
+            if (!m_loading.contains(frame)) break;
+            m_loaded.wait(lock);
+            job.throwIfStopped();
+        }
+        makeRoom(m_frameBytes);
+        m_loading.insert(frame);
+    }
+    const auto finish = [&](std::shared_ptr<const Volume> volume) {
+        const std::lock_guard lock(m_mutex);
+        m_loading.erase(frame);
+        if (volume) {
+            Entry& entry = m_entries[frame];
+            entry.data = volume;
+            entry.bytes = bytesOf(*volume);
+            m_frameBytes = std::max(m_frameBytes, entry.bytes);
+            if (!m_geometry) m_geometry = volume->geometry();
+            touch(frame);
+        }
+        m_loaded.notify_all();
+    };
+    try {
+        auto volume = std::make_shared<Volume>(m_make(frame, job));
+        std::optional<Geometry> grid;
+        bool known = false;
+        {
+            const std::lock_guard lock(m_mutex);
+            grid = m_geometry;
+            known = m_summaries[static_cast<std::size_t>(frame)].isKnown;
+        }
+        if (grid && !sameGrid(*grid, volume->geometry()))
+            throw FileError("its grid (" + dimsOf(volume->dims()) + ") is not that of the series (" +
+                                dimsOf(grid->dims) + ")",
+                            m_listing.frames[static_cast<std::size_t>(frame)].source.path, "leave it out");
+        if (varies()) volume->title = m_listing.title;
+        if (!known) note(frame, *volume);
+        finish(volume);
+        return volume;
+    } catch (const Error& error) {
+        noteProblem(frame, error.problem());
+        finish(nullptr);
+        throw;
+    } catch (...) {
+        finish(nullptr);
+        throw;
+    }
+}
+
+ShownFrame TimeSeries::show(int frame, const std::optional<ValueRange>& window, const JobControl& job) {
+    const ValueRange wanted = window ? *window : range(job);
+    std::shared_ptr<const Volume> data = load(frame, job);
+    {
+        const std::lock_guard lock(m_mutex);
+        const auto found = m_entries.find(frame);
+        if (found != m_entries.end() && found->second.shown.volume && found->second.window == wanted)
+            return found->second.shown;
+    }
+    ShownFrame shown;
+    shown.data = data;
+    shown.volume = wanted == data->range() || !(wanted.lo < wanted.hi)
+                       ? data
+                       : std::make_shared<const Volume>(data->withRange(wanted));
+    job.throwIfStopped();
+    shown.histogram = std::make_shared<const Histogram>(makeHistogram(*shown.volume));
+    job.throwIfStopped();
+    shown.codes = sharedIntensityGrid(*shown.volume);
+    const std::lock_guard lock(m_mutex);
+    if (const auto found = m_entries.find(frame); found != m_entries.end() && found->second.data == data) {
+        found->second.window = wanted;
+        found->second.shown = shown;
+    }
+    return shown;
+}
+
+bool TimeSeries::isShown(int frame, const std::optional<ValueRange>& window) const {
+    const std::lock_guard lock(m_mutex);
+    const auto found = m_entries.find(frame);
+    if (found == m_entries.end() || !found->second.shown.volume) return false;
+    if (window) return found->second.window == window;
+    return varies() ? m_range && found->second.window == m_range : found->second.window == found->second.data->range();
+}
+
+ValueRange TimeSeries::range(const JobControl& job) {
+    if (!varies()) return load(0, job)->dataRange();
+    {
+        const std::lock_guard lock(m_mutex);
+        if (m_range) return *m_range;
+    }
+    survey(job);
+    const std::lock_guard lock(m_mutex);
+    return *m_range;
+}
+
+bool TimeSeries::isSurveyed() const {
+    const std::lock_guard lock(m_mutex);
+    return std::all_of(m_summaries.begin(), m_summaries.end(), [](const FrameSummary& s) { return s.isKnown; });
+}
+
+void TimeSeries::survey(const JobControl& job) {
+    std::optional<Error> first;
+    for (int frame = 0; frame < size(); ++frame) {
+        job.throwIfStopped();
+        if (summary(frame).isKnown) continue;
+        try {
+            load(frame, {job.stop, {}});
+        } catch (const Error& error) {
+            if (!first) first = error;
+        }
+        job.report((frame + 1.0) / size());
+    }
+    const std::lock_guard lock(m_mutex);
+    if (m_range) return;
+    ValueRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    bool any = false, readable = false;
+    for (const FrameSummary& s : m_summaries) {
+        readable = readable || s.problem.empty();
+        if (!s.problem.empty() || s.validCount == 0) continue;
+        range.lo = std::min(range.lo, s.range.lo);
+        range.hi = std::max(range.hi, s.range.hi);
+        any = true;
+    }
+    if (!readable) {
+        if (first) throw *first;
+        throw Error("no frame of the series can be read", m_listing.title, "copy its files again");
+    }
+    m_range = any ? range : ValueRange{0, 0};
+}
+
+FrameSummary TimeSeries::summary(int frame) const {
+    const std::lock_guard lock(m_mutex);
+    return m_summaries.at(static_cast<std::size_t>(frame));
+}
+
+std::vector<double> TimeSeries::countsIn(int frame, const ValueRange& window, int bins) const {
+    const FrameSummary s = summary(frame);
+    if (!s.isKnown || s.counts.empty() || !(window.lo < window.hi)) return {};
+    std::vector<double> out(static_cast<std::size_t>(bins), 0.0);
+    const double width = (s.range.hi - s.range.lo) / FrameSummary::kBins;
+    const auto binOf = [&](double value) { return (value - window.lo) / (window.hi - window.lo) * bins; };
+    for (int b = 0; b < FrameSummary::kBins; ++b) {
+        const double count = s.counts[static_cast<std::size_t>(b)];
+        if (count == 0) continue;
+        // Spread evenly over the bins that the values of this one lie in.
+        const double from = std::clamp(binOf(s.range.lo + b * width), 0.0, bins - 1e-9);
+        const double to = std::clamp(binOf(s.range.lo + (b + 1) * width), 0.0, bins - 1e-9);
+        const int first = static_cast<int>(from), last = static_cast<int>(to);
+        if (first == last) {
+            out[static_cast<std::size_t>(first)] += count;
+            continue;
+        }
+        for (int i = first; i <= last; ++i)
+            out[static_cast<std::size_t>(i)] +=
+                count * (std::min(to, i + 1.0) - std::max(from, double(i))) / (to - from);
+    }
+    return out;
+}
+
+void TimeSeries::setBudget(std::size_t bytes) {
+    const std::lock_guard lock(m_mutex);
+    m_budget = bytes;
+    makeRoom(0);
+}
+
+std::size_t TimeSeries::budget() const {
+    const std::lock_guard lock(m_mutex);
+    return m_budget;
+}
+
+std::size_t TimeSeries::heldBytes() const {
+    const std::lock_guard lock(m_mutex);
+    std::size_t sum = m_loading.size() * m_frameBytes;
+    for (const auto& [frame, entry] : m_entries) sum += entry.bytes;
+    return sum;
+}
+
+int TimeSeries::roomFor() const {
+    const std::lock_guard lock(m_mutex);
+    if (m_frameBytes == 0) return size();
+    return std::max(1, static_cast<int>(std::min<std::size_t>(m_budget / m_frameBytes, m_listing.frames.size())));
+}
+
+} // namespace pellucid
