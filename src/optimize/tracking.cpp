@@ -38,6 +38,13 @@ public:
         : m_function(function), m_targets(targets), m_limits(std::move(limits)), m_options(options), m_job(job),
           m_features(movable(targets, m_limits)) {
         m_start = inside(featureOpacities(function.base()));
+        for (const std::size_t f : m_features) {
+            Point& row = m_metric.emplace_back();
+            for (const std::size_t g : m_features)
+                row.push_back(!options.metric.empty() ? options.metric[f][g]
+                              : f == g                ? 1.0 / static_cast<double>(m_features.size())
+                                                      : 0.0);
+        }
     }
 
     Tracked run() {
@@ -115,7 +122,15 @@ private:
         return x;
     }
 
-    double jump(const Point& x) const { return opacityJump(m_start, x, m_targets, m_limits); }
+    /// The square of a jump.
+    double jump(const Point& x) const {
+        Point v;
+        for (const std::size_t f : m_features) v.push_back(logDepth(x[f]) - logDepth(m_start[f]));
+        double square = 0;
+        for (std::size_t p = 0; p < v.size(); ++p)
+            for (std::size_t q = 0; q < v.size(); ++q) square += v[p] * m_metric[p][q] * v[q];
+        return square;
+    }
 
     /// Within the wanted distance the nearer one, else the one of smaller F. NaN never wins.
     bool better(const std::vector<double>& vws, const Point& x, const std::vector<double>& otherVws,
@@ -126,7 +141,7 @@ private:
         return f < g || (std::isnan(g) && !std::isnan(f));
     }
 
-    /// The step d with |d_j| ≤ reach and within limits that minimises |r + J d|²/n + μ·|y − y₀ + d|²/m.
+    /// The step d with |d_j| ≤ reach and within limits that minimises |r + J d|²/n + μ·jump(y + d)².
     Point step(const Rows& j, const Point& r, const Point& v, double mu, double reach, const Point& y) const {
         const std::size_t m = m_features.size();
         const double n = static_cast<double>(r.size());
@@ -140,8 +155,11 @@ private:
         double most = 0;
         for (std::size_t p = 0; p < m; ++p) most = std::max(most, a[p][p]);
         for (std::size_t p = 0; p < m; ++p) {
-            a[p][p] += std::max(mu / static_cast<double>(m), std::max(1e-9 * most, 1e-200));
-            g[p] += mu / static_cast<double>(m) * v[p];
+            for (std::size_t q = 0; q < m; ++q) {
+                a[p][q] += mu * m_metric[p][q];
+                g[p] += mu * m_metric[p][q] * v[q];
+            }
+            a[p][p] += std::max(1e-9 * most, 1e-200);
             const OpacityLimits& limit = m_limits[m_features[p]];
             lowest[p] = std::clamp(logDepth(limit.lowest) - y[p], -reach, 0.0);
             highest[p] = std::clamp(logDepth(limit.highest) - y[p], 0.0, reach);
@@ -186,7 +204,7 @@ private:
             const double reach = length * caution;
             const Point most = step(j, r, v, 0, reach, y); // the smallest F of the model
             if (foretold(most) < wanted) {                 // of those that are near enough the one nearest to the start
-                double lo = -12, hi = 4;                   // log10 μ: F of the model grows with it
+                double lo = -16, hi = 6;                   // log10 μ: F of the model grows with it
                 for (int i = 0; i < 40; ++i) {
                     const double middle = (lo + hi) / 2;
                     (foretold(step(j, r, v, std::pow(10, middle), reach, y)) < wanted ? lo : hi) = middle;
@@ -205,20 +223,13 @@ private:
     const JobControl& m_job;
     const std::vector<std::size_t> m_features;
     Point m_start;
+    Matrix m_metric; // of the movable features
     int m_evaluations = 0;
 };
 
 } // namespace
 
 double TrackOptions::distance() const { return std::max(kTrackGoal, coherence * kCoherentDistance); }
-
-double opacityJump(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& targets,
-                   const std::vector<OpacityLimits>& limits) {
-    const std::vector<std::size_t> features = movable(targets, limits);
-    double square = 0;
-    for (const std::size_t f : features) square += std::pow(logDepth(to[f]) - logDepth(from[f]), 2);
-    return features.empty() ? 0 : std::sqrt(square / static_cast<double>(features.size()));
-}
 
 Tracked track(const VwsFunction& function, const std::vector<double>& targets, const std::vector<OpacityLimits>& given,
               const TrackOptions& options, const JobControl& job) {
