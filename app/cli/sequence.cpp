@@ -428,7 +428,7 @@ Command addSequence(CLI::App& program) {
             o->coherence = text == "inf" ? std::numeric_limits<double>::infinity() : parseReal(text, option, 0, 1e6);
         },
         "how much jumps of the transfer function are held back: 0 not at all, inf: as static; with optimize opacities "
-        "stay as near to those of the frame before as a distance of L/100 from the targets allows (default 1)");
+        "stay as near to those of the frame before as a distance of L/100 from the targets allows (default 2)");
     addValue(
         *app, "--tolerance", "F",
         [o](const std::string& text, const std::string& option) { o->tolerance = parseRealAbove(text, option, 0, 1); },
