@@ -48,7 +48,6 @@ public:
     }
 
     Tracked run() {
-        const double goal = m_options.distance();
         Tracked at;
         at.opacity = m_start;
         if (std::isinf(m_options.coherence) || m_options.maxMoves == 0 || m_features.empty()) {
@@ -67,9 +66,11 @@ public:
                 at.vws = std::move(linear.vws);
                 at.objective = objectiveOf(at.vws, m_targets);
                 derivative = std::move(linear.derivative);
+                at.least = leastOf(at.vws, derivative);
+                m_goal = std::hypot(m_options.distance(), at.least);
                 known = true;
             }
-            if (at.objective <= goal || at.moves >= m_options.maxMoves) break;
+            if (at.objective <= m_goal || at.moves >= m_options.maxMoves) break;
             const std::vector<Point> candidates = candidatesFrom(at, derivative, caution);
             if (candidates.empty()) break;
             const auto vws = m_function.evaluate(candidates, m_job);
@@ -83,13 +84,13 @@ public:
                 caution /= 8;
                 continue;
             }
-            const bool slow = reached > goal && reached > kSlow * at.objective;
+            const bool slow = reached > m_goal && reached > kSlow * at.objective;
             at.opacity = candidates[best];
             at.vws = vws[best];
             at.objective = reached;
             ++at.moves;
             known = false;
-            if (reached <= goal || slow) break;
+            if (reached <= m_goal || slow) break;
         }
         at.evaluations = m_evaluations;
         return at;
@@ -122,6 +123,24 @@ private:
         return x;
     }
 
+    /// F where features that nothing can raise have 0, and the others divide what is left as well as it goes.
+    double leastOf(const Point& vws, const Rows& derivative) const {
+        double lost = 0, square = 0;
+        int others = 0;
+        for (std::size_t i = 0; i < vws.size(); ++i) {
+            const bool absent = vws[i] < 1e-9 && std::all_of(derivative[i].begin(), derivative[i].end(),
+                                                             [](double d) { return std::abs(d) < 1e-9; });
+            if (!absent) {
+                ++others;
+                continue;
+            }
+            lost += m_targets[i];
+            square += m_targets[i] * m_targets[i];
+        }
+        if (others > 0) square += lost * lost / others;
+        return std::sqrt(square / static_cast<double>(vws.size()));
+    }
+
     /// The square of a jump.
     double jump(const Point& x) const {
         Point v;
@@ -135,9 +154,8 @@ private:
     /// Within the wanted distance the nearer one, else the one of smaller F. NaN never wins.
     bool better(const std::vector<double>& vws, const Point& x, const std::vector<double>& otherVws,
                 const Point& other) const {
-        const double goal = m_options.distance();
         const double f = objectiveOf(vws, m_targets), g = objectiveOf(otherVws, m_targets);
-        if (f <= goal && g <= goal) return jump(x) < jump(other);
+        if (f <= m_goal && g <= m_goal) return jump(x) < jump(other);
         return f < g || (std::isnan(g) && !std::isnan(f));
     }
 
@@ -199,7 +217,7 @@ private:
             }
             if (x != at.opacity && std::find(points.begin(), points.end(), x) == points.end()) points.push_back(x);
         };
-        const double wanted = kSafety * m_options.distance();
+        const double wanted = std::hypot(kSafety * m_options.distance(), at.least);
         for (const double length : {3.0, 1.0, 0.3, 0.1}) {
             const double reach = length * caution;
             const Point most = step(j, r, v, 0, reach, y); // the smallest F of the model
@@ -223,7 +241,8 @@ private:
     const JobControl& m_job;
     const std::vector<std::size_t> m_features;
     Point m_start;
-    Matrix m_metric; // of the movable features
+    Matrix m_metric;   // of the movable features
+    double m_goal = 0; // F that is good enough
     int m_evaluations = 0;
 };
 

@@ -27,12 +27,14 @@ struct Tracked {
     std::vector<double> opacity; ///< per feature
     std::vector<double> vws;     ///< W there
     double objective = 0;        ///< F there
+    /// The smallest F that there can be: 0, but where wanted features have no voxel in sight.
+    double least = 0;
     int moves = 0;
     int evaluations = 0; ///< of W, derivatives included
 };
 
 /// The opacities with the smallest jump from those of function.base() whose distance F from `targets` is at most
-/// options.distance(); where there are none, those of the smallest F that moves downhill find. `limits`: one per
+/// √(options.distance()² + least²); where there are none, those of the smallest F that moves downhill find. `limits`: one per
 /// feature, or empty. Throws UsageError as normalizedTargets() does, Cancelled.
 Tracked track(const VwsFunction& function, const std::vector<double>& targets, const std::vector<OpacityLimits>& limits,
               const TrackOptions& options, const JobControl& job = {});

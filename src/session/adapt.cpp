@@ -370,7 +370,7 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         if (settings.coherence > 0 && !std::isinf(settings.coherence)) track.metric = pictureMetric(scene, quiet);
         Tracked found = pellucid::track(function, targets, limits, track, quiet);
         // Moves downhill are stuck far from the targets: other starts may not be.
-        const double enough = std::max(basis.session.optimize->tolerance, track.distance());
+        const double enough = std::hypot(std::max(basis.session.optimize->tolerance, track.distance()), found.least);
         if (!std::isinf(settings.coherence) && found.objective > enough) {
             MeasureInput from = input;
             from.tf = withFeatureOpacities(input.tf, found.opacity);

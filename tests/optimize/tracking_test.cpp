@@ -132,3 +132,13 @@ TEST_CASE("a target of 0 is followed to the lowest opacity", "[tracking]") {
     CHECK(found.opacity[2] == 0);
     CHECK(found.objective <= kTrackGoal);
 }
+
+TEST_CASE("a feature that is not there does not keep the others from their targets", "[tracking]") {
+    const Tracked found = track(SideBySide({4, 2, 0}, {0.1, 0.1, 0.1}), kEqual, {}, {});
+    // The two others share 1: each is 1/6 above its third, the absent one 1/3 below.
+    const double least = std::sqrt((1.0 / 9 + 2.0 / 36) / 3);
+    CHECK(found.least == Approx(least));
+    CHECK(found.objective == Approx(least).margin(1e-5));
+    CHECK(found.vws[0] == Approx(0.5).margin(0.002));
+    CHECK(found.moves <= 3);
+}
