@@ -71,7 +71,7 @@ _pellucid_cli() {
             compopt -o filenames 2>/dev/null
             return
             ;;
-        --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
+        --frames | --frame | --array | --cache | --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
