@@ -140,7 +140,7 @@ private:
     std::map<int, AdaptedFrame> m_planned;             ///< of planBothWays()
     std::vector<FrameFigures> m_figures, m_static;
     std::vector<Json> m_frames;
-    std::vector<std::string> m_pictures, m_notices;
+    std::vector<std::string> m_pictures;
 };
 
 /// The start frame's transfer function becomes a key; with targets it is optimized first.
@@ -260,10 +260,9 @@ std::optional<Frame> Sequence::next(int number) {
         throw;
     } catch (const Cancelled&) {
         throw;
-    } catch (const Error& error) {
+    } catch (const Error&) {
         if (m_scene.series->summary(number).problem.empty()) throw; // not of the frame
-        m_notices.push_back(m_scene.series->listing().label(number) + " is left out: " + error.what());
-        return {};
+        return {}; // Opened::notices() tells
     }
 }
 
@@ -424,7 +423,6 @@ Answer Sequence::run(const Opened& opened) {
     if (m_o.compare) asStatic = summaryOf(m_static);
     Answer answer{text(dynamic, asStatic), json(dynamic, asStatic), opened.notices(), {}};
     answer.json["seconds"] = {{"key", m_keySeconds}, {"total", total.seconds()}};
-    answer.notices.insert(answer.notices.end(), m_notices.begin(), m_notices.end());
     if (m_o.requireConverged) {
         const double tolerance = m_scene.session.optimize->tolerance;
         int missed = 0;
