@@ -1,5 +1,7 @@
 #include "controllers/open_controller.h"
 
+#include <algorithm>
+
 #include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
@@ -13,6 +15,9 @@
 #include "number_text.h"
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
+#include "series_dialog.h"
+#include "series_files.h"
+#include "session/scene_data.h"
 #include "tf/formats/tf_file.h"
 #include "tf/presets.h"
 #include "volume/excerpt.h"
@@ -44,13 +49,31 @@ bool hasKnownSuffix(const QString& path) {
     return QDir::match(patterns, QFileInfo(path).fileName());
 }
 
+/// Files of a folder that may be volumes: those with headers, else those without.
+QStringList volumesIn(const QString& folder) {
+    QStringList known, headerless;
+    for (const QFileInfo& file : QDir(folder).entryInfoList(QDir::Files)) {
+        if (hasKnownSuffix(file.fileName()))
+            known << file.filePath();
+        else if (isHeaderless(file.filePath()))
+            headerless << file.filePath();
+    }
+    QStringList& found = known.isEmpty() ? headerless : known;
+    std::sort(found.begin(), found.end(), comesBefore);
+    return found;
+}
+
 // Recent files that need more than a name to be opened again are kept as a session of nothing but their source.
 QString recentEntry(const VolumeSource& source) {
-    const QString path = QFileInfo(QString::fromStdString(source.path)).absoluteFilePath();
-    if (!source.raw && source.component == 0 && !source.missing && !source.region && source.downsample == 0)
-        return path;
+    const auto absolutePath = [](const std::string& path) {
+        return QFileInfo(QString::fromStdString(path)).absoluteFilePath().toStdString();
+    };
     VolumeSource absolute = source;
-    absolute.path = path.toStdString();
+    absolute.path = absolutePath(source.path);
+    for (std::string& path : absolute.more) path = absolutePath(path);
+    VolumeSource plain;
+    plain.path = absolute.path;
+    if (absolute == plain) return QString::fromStdString(plain.path);
     return QString::fromStdString(jsonFromSession(sessionOf(absolute), "", DataPaths::Absolute).dump());
 }
 
@@ -78,7 +101,14 @@ OpenController::OpenController(Workbench& bench)
           [](const DataChange& change, const JobControl& job) {
               Session session = change.basis.session;
               change.change(session);
-              Scene scene = resolve(std::move(session), change.basis, toView("showing"), job);
+              const MemoryUse then = toView("showing");
+              Scene scene = resolve(std::move(session), change.basis, then, job);
+              if (scene.proposal) { // a variable that has not been drawn yet comes to the front
+                  session = scene.session;
+                  session.setTf(tunedTf(scene, job));
+                  scene = resolve(std::move(session), scene, then, job);
+              }
+              openNewVariables(scene, change.basis, then, job);
               prepareToShow(scene, job);
               return scene;
           },
@@ -86,7 +116,16 @@ OpenController::OpenController(Workbench& bench)
               // Other edits may have come meanwhile: the change is made of what is there now.
               const bool otherVoxels = scene.data != change.basis.data;
               const std::vector<std::string> notices = scene.volume->notices;
-              m_bench.store().edit(change.text, {}, change.change, scene);
+              const auto andStart = [&](Session& session) {
+                  change.change(session);
+                  const Variable& made = scene.session.variable();
+                  if (!session.isEmpty() && session.variable().name == made.name && session.tf() == nullptr)
+                      session.variables.edit([&](std::vector<Variable>& all) {
+                          all.front().track = made.track;
+                          all.front().window = made.window;
+                      });
+              };
+              m_bench.store().edit(change.text, {}, andStart, scene);
               if (otherVoxels) showNotices(notices);
               if (const auto then = std::exchange(m_afterData, {})) then();
           }) {
@@ -122,6 +161,8 @@ void OpenController::addActions() {
                           tr("Open a volume, a session or a transfer function"), [this] { chooseVolume(); });
     open.inToolBar = true;
     actions.add(open);
+    actions.add(add("openSeriesAction", menu, tr("Open s&eries…"), {QKeySequence("Ctrl+Alt+O")},
+                    tr("Time steps: a folder, files by a pattern, or some of them"), [this] { chooseSeries(); }));
     actions.add(add("openRawAction", menu, tr("Open ra&w data…"), {},
                     tr("A file without a header: you say how its bytes lie"), [this] { chooseRaw(); }));
     ActionSpec clearRecent = add("clearRecentAction", recentMenuName(), tr("&Clear this list"), {}, {}, [this] {
@@ -132,7 +173,9 @@ void OpenController::addActions() {
     for (const SampleInfo& sample : samples()) {
         const QString name = QString::fromStdString(sample.name);
         actions.add(add("sample_" + name, menu + "/" + tr("&Samples"),
-                        QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)), {}, {},
+                        QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)) +
+                            (sample.frames > 1 ? tr(", %L1 frames").arg(sample.frames) : QString()),
+                        {}, {},
                         [this, name] {
                             VolumeSource source;
                             source.path = "sample:" + name.toStdString();
@@ -178,7 +221,7 @@ void OpenController::openVolume(const VolumeSource& source, const QString& tfSpe
         request.tfIsOptional = true;
         request.tfPath = tfSpec;
     }
-    m_busyText = tr("Opening %1…").arg(QFileInfo(QString::fromStdString(source.path)).fileName());
+    m_busyText = tr("Opening %1…").arg(titleOf(source));
     m_open.start(std::move(request), QString::fromStdString(source.path));
 }
 
@@ -318,6 +361,17 @@ void OpenController::editData(const QString& text, const SessionStore::Change& c
         if (then) then();
         return;
     }
+    editInJob(text, change, then);
+}
+
+void OpenController::editInJob(const QString& text, const SessionStore::Change& change,
+                               const std::function<void()>& then) {
+    SessionStore& store = m_bench.store();
+    if (!store.hasVolume() || m_bench.isReadOnly()) return;
+    store.commit();
+    Session next = store.session();
+    change(next);
+    if (next == store.session()) return;
     // The picture waits for the data, and shows everything at once.
     m_busyText = text + QChar(0x2026);
     m_afterData = then;
@@ -335,20 +389,65 @@ void OpenController::openPath(const QString& path) {
     if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source);
 }
 
-void OpenController::openAtStart(const QString& path, const QString& tfSpec) {
-    if (isSession(path)) return openSession(path);
-    VolumeSource source;
-    source.path = path.toStdString();
+void OpenController::openPaths(QStringList paths) {
+    if (paths.size() == 1) return openPath(paths.front());
+    try {
+        QString tf;
+        QStringList volumes;
+        for (const QString& path : paths) {
+            if (isSession(path)) throw UsageError("a session is opened alone", path.toStdString(), "choose one file");
+            if (isTf(path)) {
+                if (!tf.isEmpty())
+                    throw UsageError("this is a second transfer function", path.toStdString(), "choose one of them");
+                tf = path;
+            } else if (QFileInfo(path).isDir()) {
+                volumes << volumesIn(path);
+            } else {
+                volumes << path;
+            }
+        }
+        if (volumes.isEmpty()) throw UsageError("there are no volumes here", paths.front().toStdString(), "");
+        VolumeSource source = sourceOf(volumes);
+        if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source, tf);
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot open the files"), error);
+        Q_EMIT failed(error);
+    }
+}
+
+void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec) {
+    if (paths.size() == 1 && isSession(paths.front())) return openSession(paths.front());
+    VolumeSource source = sourceOf(paths);
     if (askRawLayout(source)) openVolume(source, tfSpec);
 }
 
 bool OpenController::askRawLayout(VolumeSource& source) {
+    if (source.isSample() || source.raw) return true;
     const QString path = QString::fromStdString(source.path);
-    if (source.isSample() || hasKnownSuffix(path) || !QFileInfo(path).isFile()) return true;
-    RawDialog dialog(path, m_bench.window());
+    QStringList files;
+    try {
+        files = QFileInfo(path).isDir() ? volumesIn(path) : filesOfFrames(source);
+    } catch (const Error&) {
+        return true; // opening tells what is wrong
+    }
+    if (files.isEmpty() || hasKnownSuffix(files.front()) || !QFileInfo(files.front()).isFile()) return true;
+    return askLayout(source, files);
+}
+
+bool OpenController::askLayout(VolumeSource& source, const QStringList& files) {
+    RawDialog dialog(files, m_bench.window());
     if (dialog.exec() != QDialog::Accepted) return false;
     source.raw = dialog.layoutOfFile();
+    source.missing = dialog.missing();
     return true;
+}
+
+std::optional<VolumeSource> OpenController::askSource(const QString& title) {
+    const QStringList paths = askFiles(title, {});
+    if (paths.isEmpty()) return {};
+    VolumeSource source = sourceOf(paths);
+    if (!askRawLayout(source)) return {};
+    return source;
 }
 
 // A window other than that of the data is worth a word, and one click to the other.
@@ -372,32 +471,42 @@ void OpenController::noteWindow(const TransferFunction& tf) {
 
 // ---- dialogs
 
-void OpenController::chooseVolume() {
+QStringList OpenController::askFiles(const QString& title, const QString& others) {
     QStringList patterns;
     for (const std::string& pattern : volumeFilePatterns()) patterns << QString::fromStdString(pattern);
     for (const char* raw : {"*.raw", "*.dat", "*.bin", "*.vol"}) {
         if (!patterns.contains(raw)) patterns << raw;
     }
-    const QString path =
-        QFileDialog::getOpenFileName(m_bench.window(), tr("Open"), QSettings().value("volumeFolder").toString(),
-                                     tr("Volumes, sessions, transfer functions (%1 *.pellucid.json %2);;All files (*)")
-                                         .arg(patterns.join(' '), tfPatterns()));
-    if (path.isEmpty()) return;
-    QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
-    openPath(path);
+    const QString all = patterns.join(' ');
+    const QString filter = others.isEmpty() ? tr("Volumes (%1)").arg(all)
+                                            : tr("Volumes, sessions, transfer functions (%1 %2)").arg(all, others);
+    const QStringList paths =
+        QFileDialog::getOpenFileNames(m_bench.window(), title, QSettings().value("volumeFolder").toString(),
+                                      filter + QStringLiteral(";;") + tr("All files (*)"));
+    if (!paths.isEmpty()) QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
+    return paths;
+}
+
+void OpenController::chooseVolume() {
+    const QStringList paths = askFiles(tr("Open"), QStringLiteral("*.pellucid.json ") + tfPatterns());
+    if (!paths.isEmpty()) openPaths(paths);
+}
+
+void OpenController::chooseSeries() {
+    SeriesDialog dialog(QSettings().value("volumeFolder").toString(), m_bench.window());
+    if (dialog.exec() != QDialog::Accepted) return;
+    VolumeSource source = dialog.source();
+    QSettings().setValue("volumeFolder", QFileInfo(QString::fromStdString(source.path)).absolutePath());
+    if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source);
 }
 
 void OpenController::chooseRaw() {
-    const QString path = QFileDialog::getOpenFileName(
+    const QStringList paths = QFileDialog::getOpenFileNames(
         m_bench.window(), tr("Open raw data"), QSettings().value("volumeFolder").toString(), tr("All files (*)"));
-    if (path.isEmpty()) return;
-    QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
-    RawDialog dialog(path, m_bench.window());
-    if (dialog.exec() != QDialog::Accepted || !m_bench.saving().maybeSave()) return;
-    VolumeSource source;
-    source.path = path.toStdString();
-    source.raw = dialog.layoutOfFile();
-    openVolume(source);
+    if (paths.isEmpty()) return;
+    QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
+    VolumeSource source = sourceOf(paths);
+    if (askLayout(source, filesOfFrames(source)) && m_bench.saving().maybeSave()) openVolume(source);
 }
 
 void OpenController::chooseTf() {
@@ -433,13 +542,14 @@ void OpenController::updateRecentFiles() {
     menu->removeAction(clear);
     const QStringList files = QSettings().value(kRecentKey).toStringList();
     for (const QString& entry : files) {
-        QString path = entry;
+        VolumeSource source;
         try {
-            path = QString::fromStdString(recentSource(entry).path);
+            source = recentSource(entry);
         } catch (const Error&) {
             continue; // of another version
         }
-        QAction* action = menu->addAction(QFileInfo(path).fileName(), this, [this, entry] { openRecent(entry); });
+        const QString path = QString::fromStdString(source.path);
+        QAction* action = menu->addAction(titleOf(source), this, [this, entry] { openRecent(entry); });
         action->setToolTip(path);
         action->setStatusTip(path);
     }

@@ -34,12 +34,21 @@ public:
     /// A path from the user: a session or a transfer function by its name, else a volume; what no format knows asks for
     /// its layout. Asks about unsaved work.
     void openPath(const QString& path);
+    /// Several at once: one is as openPath(); volumes are the frames of one series, in the order in which people count;
+    /// a transfer function among them is opened with them.
+    void openPaths(QStringList paths);
     /// The same as the first thing of a window, with a transfer function.
-    void openAtStart(const QString& path, const QString& tfSpec);
+    void openAtStart(const QStringList& paths, const QString& tfSpec);
+    /// Asks for the files of a volume or series, and for their layout where they have no header: for those who add it to
+    /// what is open. Empty: the user gave up.
+    std::optional<VolumeSource> askSource(const QString& title);
 
     /// A change of the session that needs other data, or the same through another window: one undo step named `text`
     /// once the data is there; `then` follows it. A later one takes the place of one under way.
     void editData(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
+    /// The same where no other data is needed, but what follows of it takes time: variables that are read, colours that
+    /// are made of several of them, a ground.
+    void editInJob(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
 
     bool isBusy() const { return m_open.isRunning() || m_data.isRunning(); }
     QString busyText() const; ///< "Opening scan.nrrd…"
@@ -83,7 +92,10 @@ private:
     void openRegion();
     void openWhole();
     bool askRawLayout(VolumeSource& source); ///< false: the user gave up
+    bool askLayout(VolumeSource& source, const QStringList& files); ///< likewise
     void chooseVolume();
+    void chooseSeries();
+    QStringList askFiles(const QString& title, const QString& others);
     void chooseRaw();
     void chooseTf();
     void noteWindow(const TransferFunction& tf);
