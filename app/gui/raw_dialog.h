@@ -35,8 +35,8 @@ public:
 private:
     void check();
 
-    qint64 m_bytes;     // of a file, as most have it
-    QStringList m_odd;  // names of files of another size
+    qint64 m_bytes;    // of a file, as most have it
+    QStringList m_odd; // names of files of another size
     QSpinBox* m_dims[3];
     QDoubleSpinBox* m_spacing[3];
     QComboBox *m_type, *m_endian;

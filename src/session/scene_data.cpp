@@ -74,9 +74,8 @@ bool SeriesFinder::isKnown(const Variable& variable) const {
         return base != nullptr && base->derivation == std::nullopt && isKnown(*base) &&
                knownOf(variable.name) != nullptr;
     }
-    return std::any_of(before.begin(), before.end(), [&](const Variable& v) {
-        return sameOrigin(v, variable) && knownOf(v.name) != nullptr;
-    });
+    return std::any_of(before.begin(), before.end(),
+                       [&](const Variable& v) { return sameOrigin(v, variable) && knownOf(v.name) != nullptr; });
 }
 
 void SeriesFinder::keepKnown() {

@@ -45,8 +45,8 @@ private:
     std::vector<std::string> m_path; // of derivations, down to the one that is looked for
 };
 
-/// Opens the variables that are not in `basis` and reads their present frame, so that faults of files are known at once.
-/// Throws as loadVolume() does.
+/// Opens the variables that are not in `basis` and reads their present frame, so that faults of files are known at
+/// once. Throws as loadVolume() does.
 void openNewVariables(Scene& scene, const Scene& basis, const MemoryUse& then, const JobControl& job);
 
 /// Targets of the present frame: from the keys where frame or keys are others than those of `basis`, else into them.

@@ -127,8 +127,7 @@ void renameVariable(Session& session, const std::string& from, const std::string
 }
 
 void removeVariable(Session& session, const std::string& name) {
-    if (session.variables->size() < 2)
-        throw UsageError("the last variable cannot be removed", name, "open other data");
+    if (session.variables->size() < 2) throw UsageError("the last variable cannot be removed", name, "open other data");
     if (const auto others = madeOf(session, name); !others.empty())
         throw UsageError("variable " + others.front() + " is made of it", name, "remove that one first");
     HsbMapping hsb = *session.hsb;
@@ -178,8 +177,7 @@ void setChannel(Session& session, Channel channel, const std::string& name) {
 }
 
 void swapOpacityAndBrightness(Session& session) {
-    if (const std::string other = session.hsb->brightness; !other.empty())
-        setChannel(session, Channel::Opacity, other);
+    if (const std::string other = session.hsb->brightness; !other.empty()) setChannel(session, Channel::Opacity, other);
 }
 
 std::optional<int> volatilityFrames(const Session& session) {

@@ -34,7 +34,8 @@ void removeVariable(Session& session, const std::string& name);
 /// What drives the channel: a variable, plain or derived ("volatility:x:10"); empty: nothing.
 std::string channelOf(const Session& session, Channel channel);
 /// Of opacity: the variable and the first one change places in the list and in all channels, so that volatility is that
-/// of the variable that is drawn; doing it again undoes it. One that is derived there becomes a variable of the session.
+/// of the variable that is drawn; doing it again undoes it. One that is derived there becomes a variable of the
+/// session.
 void setChannel(Session& session, Channel channel, const std::string& name);
 /// The same with the variable that drives brightness (thesis fig. 6.5); nothing without one.
 void swapOpacityAndBrightness(Session& session);

@@ -175,8 +175,7 @@ void OpenController::addActions() {
         actions.add(add("sample_" + name, menu + "/" + tr("&Samples"),
                         QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)) +
                             (sample.frames > 1 ? tr(", %L1 frames").arg(sample.frames) : QString()),
-                        {}, {},
-                        [this, name] {
+                        {}, {}, [this, name] {
                             VolumeSource source;
                             source.path = "sample:" + name.toStdString();
                             if (m_bench.saving().maybeSave()) openVolume(source);
@@ -492,12 +491,17 @@ void OpenController::chooseVolume() {
     if (!paths.isEmpty()) openPaths(paths);
 }
 
-void OpenController::chooseSeries() {
+std::optional<VolumeSource> OpenController::askSeries() {
     SeriesDialog dialog(QSettings().value("volumeFolder").toString(), m_bench.window());
-    if (dialog.exec() != QDialog::Accepted) return;
+    if (dialog.exec() != QDialog::Accepted) return {};
     VolumeSource source = dialog.source();
     QSettings().setValue("volumeFolder", QFileInfo(QString::fromStdString(source.path)).absolutePath());
-    if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source);
+    if (!askRawLayout(source)) return {};
+    return source;
+}
+
+void OpenController::chooseSeries() {
+    if (const auto source = askSeries(); source && m_bench.saving().maybeSave()) openVolume(*source);
 }
 
 void OpenController::chooseRaw() {

@@ -39,9 +39,10 @@ public:
     void openPaths(QStringList paths);
     /// The same as the first thing of a window, with a transfer function.
     void openAtStart(const QStringList& paths, const QString& tfSpec);
-    /// Asks for the files of a volume or series, and for their layout where they have no header: for those who add it to
-    /// what is open. Empty: the user gave up.
+    /// Asks for the files of a volume or series, and for their layout where they have no header: for those who add it
+    /// to what is open. Empty: the user gave up.
     std::optional<VolumeSource> askSource(const QString& title);
+    std::optional<VolumeSource> askSeries(); ///< likewise, by a folder or pattern
 
     /// A change of the session that needs other data, or the same through another window: one undo step named `text`
     /// once the data is there; `then` follows it. A later one takes the place of one under way.
@@ -91,7 +92,7 @@ private:
     /// What the clipping box leaves of the data, at full resolution; and back.
     void openRegion();
     void openWhole();
-    bool askRawLayout(VolumeSource& source); ///< false: the user gave up
+    bool askRawLayout(VolumeSource& source);                        ///< false: the user gave up
     bool askLayout(VolumeSource& source, const QStringList& files); ///< likewise
     void chooseVolume();
     void chooseSeries();
