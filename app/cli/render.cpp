@@ -117,6 +117,7 @@ Answer drawSlice(const Options& o, const Opened& opened, const PictureInput& pic
     const SlicePlane plane = o.slice.planeOf(g, picture.settings.width, picture.settings.height);
     SliceSettings settings = o.slice.settingsOf(opened.scene);
     settings.clipping = picture.settings.clipping;
+    settings.colors = picture.settings.colors;
     if (o.scene.field.isGiven()) {
         settings.tfStrength = 1;
         settings.window = picture.volume->range();
