@@ -8,11 +8,8 @@
 
 namespace pellucid::gui {
 
-/// As people count: f2 before f10; letters without their case.
-bool comesBefore(const QString& a, const QString& b);
-
 /// The source that names all of these files, in the order in which people count; they are not empty.
-VolumeSource sourceOf(QStringList paths);
+VolumeSource sourceOf(const QStringList& paths);
 
 /// What the source names, for titles and menus: "f01.mhd", "f01.mhd … f12.mhd (12 files)", "f%02d.mhd".
 QString titleOf(const VolumeSource& source);

@@ -82,6 +82,13 @@ void SeriesFinder::keepKnown() {
     const std::vector<Variable>& all = *m_scene.session.variables;
     for (std::size_t i = 1; i < all.size(); ++i)
         if (isKnown(all[i])) find(all[i].name);
+    // What channels name besides, whether they are drawn now or not.
+    const HsbMapping& hsb = *m_scene.session.hsb;
+    for (const std::string& name : {hsb.saturation, hsb.brightness, hsb.hue}) {
+        if (name.empty() || m_scene.session.variableNamed(name) != nullptr || knownOf(name) == nullptr) continue;
+        const Variable* of = m_scene.session.variableNamed(parseDerivation(name)->of);
+        if (of != nullptr && isKnown(*of)) find(name);
+    }
 }
 
 void openNewVariables(Scene& scene, const Scene& basis, const MemoryUse& then, const JobControl& job) {

@@ -114,9 +114,6 @@ void waitForSeries(OpenWindow& w, int frames) {
 } // namespace
 
 TEST_CASE("names are ordered as people count", "[series]") {
-    QStringList names{"f10.raw", "f2.raw", "F1.raw", "f02.raw", "g1.raw", "f10b.raw", "f.raw"};
-    std::sort(names.begin(), names.end(), comesBefore);
-    CHECK(names == QStringList{"f.raw", "F1.raw", "f02.raw", "f2.raw", "f10.raw", "f10b.raw", "g1.raw"});
     const VolumeSource source = sourceOf({"run/f10.raw", "run/f9.raw"});
     CHECK(source.path == "run/f9.raw");
     CHECK(source.more == std::vector<std::string>{"run/f10.raw"});
@@ -164,8 +161,7 @@ TEST_CASE("files are chosen together in the dialog", "[series]") {
     const QImage picture = w.picture();
     w.opening().openPaths({paths[0]});
     waitForSeries(w, 1);
-    CHECK(w.bench().scene().data->samples() == seriesOf(w).listing().frames.size() * 0 + w.bench().scene().data->samples());
-    CHECK(picture.size() == w.picture().size());
+    CHECK(w.picture() == picture); // the same frame, and the same automatic start
 }
 
 TEST_CASE("headerless files get one layout: byte order and missing value too", "[series]") {

@@ -1,8 +1,5 @@
 #include "controllers/open_controller.h"
 
-#include <algorithm>
-
-#include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QMenu>
@@ -21,6 +18,7 @@
 #include "tf/formats/tf_file.h"
 #include "tf/presets.h"
 #include "volume/excerpt.h"
+#include "volume/file_contents.h"
 #include "volume/procedural.h"
 #include "workbench.h"
 
@@ -39,29 +37,6 @@ QString tfPatterns() {
     return patterns.join(' ');
 }
 bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
-
-bool hasKnownSuffix(const QString& path) {
-    const QStringList patterns = [] {
-        QStringList all;
-        for (const std::string& pattern : volumeFilePatterns()) all << QString::fromStdString(pattern);
-        return all;
-    }();
-    return QDir::match(patterns, QFileInfo(path).fileName());
-}
-
-/// Files of a folder that may be volumes: those with headers, else those without.
-QStringList volumesIn(const QString& folder) {
-    QStringList known, headerless;
-    for (const QFileInfo& file : QDir(folder).entryInfoList(QDir::Files)) {
-        if (hasKnownSuffix(file.fileName()))
-            known << file.filePath();
-        else if (isHeaderless(file.filePath()))
-            headerless << file.filePath();
-    }
-    QStringList& found = known.isEmpty() ? headerless : known;
-    std::sort(found.begin(), found.end(), comesBefore);
-    return found;
-}
 
 // Recent files that need more than a name to be opened again are kept as a session of nothing but their source.
 QString recentEntry(const VolumeSource& source) {
@@ -400,7 +375,9 @@ void OpenController::openPaths(QStringList paths) {
                     throw UsageError("this is a second transfer function", path.toStdString(), "choose one of them");
                 tf = path;
             } else if (QFileInfo(path).isDir()) {
-                volumes << volumesIn(path);
+                VolumeSource folder;
+                folder.path = path.toStdString();
+                volumes << filesOfFrames(folder);
             } else {
                 volumes << path;
             }
@@ -422,14 +399,10 @@ void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec
 
 bool OpenController::askRawLayout(VolumeSource& source) {
     if (source.isSample() || source.raw) return true;
-    const QString path = QString::fromStdString(source.path);
-    QStringList files;
-    try {
-        files = QFileInfo(path).isDir() ? volumesIn(path) : filesOfFrames(source);
-    } catch (const Error&) {
-        return true; // opening tells what is wrong
-    }
-    if (files.isEmpty() || hasKnownSuffix(files.front()) || !QFileInfo(files.front()).isFile()) return true;
+    const QStringList files = filesOfFrames(source);
+    // What is not there, opening tells.
+    if (files.isEmpty() || hasVolumeSuffix(files.front().toStdString()) || !QFileInfo(files.front()).isFile())
+        return true;
     return askLayout(source, files);
 }
 
