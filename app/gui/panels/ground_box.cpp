@@ -18,7 +18,7 @@
 #include "controllers/open_controller.h"
 #include "number_box.h"
 #include "series_files.h"
-#include "tf/color_maps.h"
+#include "tf/terrain.h"
 #include "volume/procedural.h"
 #include "workbench.h"
 
@@ -63,8 +63,8 @@ GroundBox::GroundBox(Workbench& bench, QWidget* parent)
     m_remove->setToolTip(tr("No ground"));
     m_colorMap->setObjectName("groundColorMap");
     m_colorMap->setToolTip(tr("Colours from the lowest to the highest ground"));
-    for (const ColorMap& map : colorMaps())
-        m_colorMap->addItem(QString::fromStdString(map.title), QString::fromStdString(map.name));
+    for (const std::string& name : groundColorNames())
+        m_colorMap->addItem(QString::fromStdString(name), QString::fromStdString(name));
     m_scale->setObjectName("groundScale");
     m_scale->setRange(-1e9, 1e9);
     m_scale->setDecimals(6);
