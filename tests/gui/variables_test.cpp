@@ -57,8 +57,9 @@ struct Weather {
                       [f](const Vec3& p) {
                           return std::max(ball(p, {5, 5, 10}, 5), ball(p, {8.0 + 2 * f, 14, 10}, 5));
                       });
-        writeGrid(folder.filePath("rain.nrrd"), {kSide / 2, kSide / 2, kSide / 2}, 2,
-                  [](const Vec3& p) { return ball(p, {5, 5, 10}, 6); });
+        writeGrid(folder.filePath("rain.nrrd"), {kSide / 2, kSide / 2, kSide / 2}, 2, [](const Vec3& p) {
+            return ball(p, {5, 5, 10}, 6);
+        });
         writeGrid(folder.filePath("ground.nrrd"), {kSide, kSide, 1}, 1,
                   [](const Vec3& p) { return 4 * std::sin(p.x / 4); });
     }

@@ -87,23 +87,7 @@ OpenController::OpenController(Workbench& bench)
               prepareToShow(scene, job);
               return scene;
           },
-          [this](const DataChange& change, Scene& scene) {
-              // Other edits may have come meanwhile: the change is made of what is there now.
-              const bool otherVoxels = scene.data != change.basis.data;
-              const std::vector<std::string> notices = scene.volume->notices;
-              const auto andStart = [&](Session& session) {
-                  change.change(session);
-                  const Variable& made = scene.session.variable();
-                  if (!session.isEmpty() && session.variable().name == made.name && session.tf() == nullptr)
-                      session.variables.edit([&](std::vector<Variable>& all) {
-                          all.front().track = made.track;
-                          all.front().window = made.window;
-                      });
-              };
-              m_bench.store().edit(change.text, {}, andStart, scene);
-              if (otherVoxels) showNotices(notices);
-              if (const auto then = std::exchange(m_afterData, {})) then();
-          }) {
+          [this](const DataChange& change, Scene& scene) { showChanged(change, scene); }) {
     for (JobBase* job : {static_cast<JobBase*>(&m_open), static_cast<JobBase*>(&m_data)}) {
         connect(job, &JobBase::busyChanged, this, &OpenController::busyChanged);
         connect(job, &JobBase::progress, this, &OpenController::progress);
@@ -113,8 +97,10 @@ OpenController::OpenController(Workbench& bench)
         m_bench.showError(tr("Cannot open the file"), error);
         Q_EMIT failed(error);
     });
-    connect(&m_data, &JobBase::failed, this,
-            [this](const Error& error) { m_bench.showError(tr("Cannot change the data"), error); });
+    connect(&m_data, &JobBase::failed, this, [this](const Error& error) {
+        m_bench.showError(tr("Cannot change the data"), error);
+        nextChange();
+    });
 }
 
 OpenController::~OpenController() = default;
@@ -242,6 +228,8 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 }
 
 void OpenController::show(const Request& request, Opened& opened) {
+    m_edits.clear(); // they were of what was open
+    m_data.cancel();
     const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && isTfFile(request.tfPath);
     m_tfPath = tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString();
     std::vector<std::string> notices = opened.scene.volume->notices;
@@ -345,11 +333,51 @@ void OpenController::editInJob(const QString& text, const SessionStore::Change& 
     store.commit();
     Session next = store.session();
     change(next);
-    if (next == store.session()) return;
-    // The picture waits for the data, and shows everything at once.
-    m_busyText = text + QChar(0x2026);
-    m_afterData = then;
-    m_data.start({text, change, store.scene()}, QString::fromStdString(store.scene().volume->title));
+    if (next == store.session() && !m_data.isRunning()) return;
+    // A change of the same kind takes the place of one under way, others wait in line.
+    Edit edit{text, change, then};
+    if (!m_data.isRunning() || m_edit.text == text) return start(std::move(edit));
+    if (!m_edits.empty() && m_edits.back().text == text) m_edits.pop_back();
+    m_edits.push_back(std::move(edit));
+}
+
+void OpenController::start(Edit edit) {
+    const Scene& scene = m_bench.scene();
+    m_edit = std::move(edit);
+    m_busyText = m_edit.text + QChar(0x2026);
+    m_data.start({m_edit.text, m_edit.change, scene}, QString::fromStdString(scene.volume->title));
+}
+
+void OpenController::nextChange() {
+    if (m_edits.empty() || !m_bench.store().hasVolume()) return;
+    Edit edit = std::move(m_edits.front());
+    m_edits.pop_front();
+    start(std::move(edit));
+}
+
+// The picture has waited for the data, and shows everything at once.
+void OpenController::showChanged(const DataChange& change, Scene& scene) {
+    SessionStore& store = m_bench.store();
+    const auto andStart = [&](Session& session) {
+        change.change(session);
+        const Variable& made = scene.session.variable();
+        if (!session.isEmpty() && session.variable().name == made.name && session.tf() == nullptr)
+            session.variables.edit([&](std::vector<Variable>& all) {
+                all.front().track = made.track;
+                all.front().window = made.window;
+            });
+    };
+    // Other edits may have come meanwhile: the change is made of what is there now, and anew where that is other data.
+    Session present = store.committed().session;
+    andStart(present);
+    if (needsData(present, scene)) return start(std::move(m_edit));
+    const bool otherVoxels = scene.data != change.basis.data;
+    const std::vector<std::string> notices = scene.volume->notices;
+    const auto then = m_edit.then;
+    store.edit(change.text, {}, andStart, scene);
+    if (otherVoxels) showNotices(notices);
+    if (then) then();
+    if (!m_data.isRunning()) nextChange();
 }
 
 void OpenController::openPath(const QString& path) {
@@ -551,6 +579,7 @@ QString OpenController::busyText() const { return m_busyText; }
 
 void OpenController::cancel() {
     m_open.cancel();
+    m_edits.clear();
     m_data.cancel();
 }
 

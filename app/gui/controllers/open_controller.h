@@ -1,6 +1,8 @@
 // Opening: volumes, transfer functions and sessions, from every place that names one.
 #pragma once
 
+#include <deque>
+
 #include <QObject>
 #include <QStringList>
 
@@ -45,7 +47,8 @@ public:
     std::optional<VolumeSource> askSeries(); ///< likewise, by a folder or pattern
 
     /// A change of the session that needs other data, or the same through another window: one undo step named `text`
-    /// once the data is there; `then` follows it. A later one takes the place of one under way.
+    /// once the data is there; `then` follows it. A later one of the same name takes the place of one under way, others
+    /// wait for it.
     void editData(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
     /// The same where no other data is needed, but what follows of it takes time: variables that are read, colours that
     /// are made of several of them, a ground.
@@ -86,6 +89,15 @@ private:
         Scene basis;
     };
 
+    struct Edit {
+        QString text;
+        SessionStore::Change change;
+        std::function<void()> then;
+    };
+
+    void start(Edit edit);
+    void nextChange();
+    void showChanged(const DataChange& change, Scene& scene);
     static Opened load(const Request& request, const JobControl& job);
     void show(const Request& request, Opened& opened);
     void showNotices(const std::vector<std::string>& notices);
@@ -106,7 +118,8 @@ private:
 
     Workbench& m_bench;
     QString m_tfPath, m_sessionPath, m_busyText;
-    std::function<void()> m_afterData; ///< once the change under way has been made
+    Edit m_edit;              ///< the one under way
+    std::deque<Edit> m_edits; ///< those that wait for it
     Job<Request, Opened> m_open;
     Job<DataChange, Scene> m_data;
 };

@@ -22,6 +22,7 @@
 #include "series_files.h"
 #include "session/scene_data.h"
 #include "theme.h"
+#include "volume/file_contents.h"
 #include "volume/procedural.h"
 #include "workbench.h"
 
@@ -71,6 +72,8 @@ std::map<std::string, VariableInfo> lookAt(const Scene& scene, const JobControl&
             const int frame = series->nearest(scene.session.frame);
             const auto volume = series->load(frame, {job.stop, {}});
             info.frames = series->size();
+            const VolumeSource& source = series->listing().frames[static_cast<std::size_t>(frame)].source;
+            if (!variable.derivation && !source.isSample() && !source.raw) info.arrays = contentsOf(source, job).arrays;
             info.dims = volume->dims();
             info.sameGrid = onSameGrid(volume->geometry(), scene.volume->geometry());
             info.wholeRange =
@@ -381,6 +384,17 @@ void VariablesPanel::fillAddMenu() {
             }
             addFrom(source);
         });
+    }
+    for (const Variable& v : *session.variables) {
+        const auto info = m_infos.find(v.name);
+        if (info == m_infos.end() || info->second.arrays.size() < 2) continue;
+        QMenu* menu = m_addMenu->addMenu(tr("&Array of %1").arg(titleOf(v.source)));
+        for (const std::string& array : info->second.arrays) {
+            VolumeSource source = v.source;
+            source.array = array;
+            connect(action(*menu, textOf(array), "addArray_" + textOf(array)), &QAction::triggered, this,
+                    [this, source] { addFrom(source); });
+        }
     }
     m_addMenu->addSeparator();
     const bool varies = m_bench.scene().series && m_bench.scene().series->varies();

@@ -26,10 +26,11 @@ class Workbench;
 struct VariableInfo {
     Int3 dims{0, 0, 0};
     int frames = 1;
-    ValueRange range;        ///< data units
-    bool wholeRange = false; ///< of all frames, not of the present one alone
-    bool sameGrid = true;    ///< as the first variable
-    std::string problem;     ///< why it cannot be read; empty: it can
+    ValueRange range;                ///< data units
+    bool wholeRange = false;         ///< of all frames, not of the present one alone
+    bool sameGrid = true;            ///< as the first variable
+    std::vector<std::string> arrays; ///< of its file, where that has several
+    std::string problem;             ///< why it cannot be read; empty: it can
 };
 
 /// A variable of the session in words: "volatility of x, 10 frames", "p*.mhd".
