@@ -16,6 +16,8 @@
     PANEL(viewsPanel) \
     PANEL(settingsPanel) \
     PANEL(spacePanel) \
+    PANEL(playerPanel) \
+    PANEL(variablesPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

@@ -1,6 +1,7 @@
-// A plane of the grid as a picture: the colours of the transfer function over grey (docs/method.md, "Slices").
+// A plane of the grid as a picture: the colours of the transfer function, or of voxels, over grey (docs/method.md, "Slices").
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include <glm/vec2.hpp>
@@ -8,6 +9,7 @@
 #include "render/clipping.h"
 #include "render/image.h"
 #include "tf/transfer_function.h"
+#include "volume/voxel_colors.h"
 
 namespace pellucid {
 
@@ -79,6 +81,7 @@ struct SliceSettings {
     double tfStrength = 0.5; ///< 0: grey alone … 1: colours of the transfer function alone
     bool linear = true;      ///< false: each pixel has the value of the nearest voxel
     Clipping clipping;       ///< what is cut away is transparent
+    std::shared_ptr<const VoxelColors> colors; ///< in place of those of the transfer function; null: none
     bool operator==(const SliceSettings&) const = default;
     void validate() const; ///< throws UsageError
 };
