@@ -23,7 +23,7 @@ constexpr int kBand = 24;          ///< rows of the picture that are drawn by on
 constexpr int kBlock = 8;          ///< cells along each side of a block that is looked at, or not, as one
 constexpr double kSharpest = 0.75; ///< pixels: cells are not drawn smaller than this
 constexpr double kHair = 1e-6;     ///< of a triangle: what neighbours may overlap, so that no pixel is missed
-constexpr float kInTheShade = 0.25f, kUnderside = 0.45f;
+constexpr float kInTheShade = 0.4f, kUnderside = 0.45f;
 
 /// A vertex on the screen. `near` grows toward the eye and goes linearly over the screen: the inverse of the depth in
 /// perspective, the negative depth otherwise.
