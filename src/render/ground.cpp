@@ -278,10 +278,14 @@ private:
         // Rows of the picture go down: what runs against the clock on the map does so on the screen from above.
         const float side = (area < 0) == m_rightHanded ? 1.0f : -1.0f;
         const double perArea = 1 / area;
-        for (int y = y0; y < y1; ++y)
+        // What a vertex has of a pixel, and what a pixel to the right changes.
+        const double moreOfA = (static_cast<double>(b.y) - c.y) * perArea,
+                     moreOfB = (static_cast<double>(c.y) - a.y) * perArea;
+        for (int y = y0; y < y1; ++y) {
+            const double firstOfA = edge(b, c, x0 + 0.5, y + 0.5) * perArea,
+                         firstOfB = edge(c, a, x0 + 0.5, y + 0.5) * perArea;
             for (int x = x0; x < x1; ++x) {
-                const double px = x + 0.5, py = y + 0.5;
-                const double ofA = edge(b, c, px, py) * perArea, ofB = edge(c, a, px, py) * perArea;
+                const double ofA = firstOfA + (x - x0) * moreOfA, ofB = firstOfB + (x - x0) * moreOfB;
                 const double ofC = 1 - ofA - ofB;
                 if (ofA < -kHair || ofB < -kHair || ofC < -kHair) continue;
                 const double near = ofA * a.near + ofB * b.near + ofC * c.near;
@@ -302,6 +306,7 @@ private:
                     side * static_cast<float>(wa * static_cast<double>(a.shade) + wb * static_cast<double>(b.shade) +
                                               wc * static_cast<double>(c.shade));
             }
+        }
     }
 
     const Ground& m_ground;
