@@ -194,7 +194,7 @@ bool TimeSeries::isShown(int frame, const std::optional<ValueRange>& window) con
 }
 
 ValueRange TimeSeries::range(const JobControl& job) {
-    if (!varies()) return load(0, job)->dataRange();
+    if (!varies()) return load(0, job)->range();
     {
         const std::lock_guard lock(m_mutex);
         if (m_range) return *m_range;
