@@ -13,9 +13,9 @@ using pellucid::test::Workshop;
 namespace {
 
 /// Under a ramp that shows nothing of the volume, from above, over red.
-const Words kSmall{"render",  "sample:shells", "--sample-size", "16",     "--tf",         "ramp:1",  "--view",
-                   "0,90",    "--orthographic", "--size",        "40x40",  "--background", "1,0,0",   "--engine",
-                   "cpu",     "--mode",        "surface",       "--clip", "z:0.99:1"};
+const Words kSmall{"render", "sample:shells",  "--sample-size", "16",     "--tf",         "ramp:1", "--view",
+                   "0,90",   "--orthographic", "--size",        "40x40",  "--background", "1,0,0",  "--engine",
+                   "cpu",    "--mode",         "surface",       "--clip", "z:0.99:1"};
 
 } // namespace
 
@@ -59,8 +59,7 @@ TEST_CASE("what cannot be a ground is told with its option", "[cli][ground]") {
     refused({"--ground", "heights.raw", "--ground-map", "mud"}, "terrain");
     refused({"--ground", "heights.raw", "--ground-relief", "1.5"}, "--ground-relief");
     refused({"--ground", "heights.raw", "--ground-scale", "0"}, "--ground-scale");
-    const Outcome layers =
-        w.run(kSmall + Words{"--ground", "sample:shells", "--out", "p.png"});
+    const Outcome layers = w.run(kSmall + Words{"--ground", "sample:shells", "--out", "p.png"});
     CHECK(layers.status == 1);
     CHECK(layers.err.find("one layer") != std::string::npos);
     // The picture must not replace its own ground.

@@ -37,8 +37,8 @@ Camera above(double height) {
 }
 
 float depthAt(const GroundImage& image, int x, int y) {
-    return image.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.color.width) +
-                       static_cast<std::size_t>(x)];
+    return image
+        .depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.color.width) + static_cast<std::size_t>(x)];
 }
 
 void checkColor(const float* pixel, const Rgb& expected, double brightness = 1) {
@@ -313,8 +313,7 @@ TEST_CASE("the ground fades into the background as what is at its depth does", "
     block.settings.background = Rgb{0, 0, 1};
     block.settings.light.depthCue = 0.6;
     const Rgb color = groundColors("spiral")(0.5);
-    checkColor(block.drawn(homogeneous(0)).pixel(10, 10),
-               {0.7 * color.r, 0.7 * color.g, 0.7 * color.b + 0.3});
+    checkColor(block.drawn(homogeneous(0)).pixel(10, 10), {0.7 * color.r, 0.7 * color.g, 0.7 * color.b + 0.3});
 }
 
 TEST_CASE("previews and pictures that grow have the ground, too", "[ground]") {
