@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "optimize/refine_words.h"
+#include "optimize/drawn_colors.h"
 #include "optimize/region_colors.h"
 #include "output_files.h"
 #include "parse.h"
@@ -112,7 +113,7 @@ RefinePriority priorityOf(const Options& o, const Scene& scene, const TransferFu
     RefinePriority priority;
     priority.intensity = o.intensity;
     if (!o.intensity && !o.hue && !o.region) priority.intensity = scene.session.refine->intensity;
-    if (o.hue) priority.intensity = intensityOfHue(tf, *o.hue);
+    if (o.hue) priority.intensity = intensityOfHue(withDrawnColors(tf, *scene.volume, scene.colors.get()), *o.hue);
     if (priority.intensity) {
         said = {{"kind", "intensity"}, {"intensity", *priority.intensity}};
         if (o.hue) said["hue"] = *o.hue;
@@ -194,12 +195,17 @@ Answer run(const Options& o, Progress& progress) {
     const Histogram histogram = makeHistogram(*opened.scene.volume);
     const JobControl job = progress.phase("refining");
     const Stopwatch refining;
-    const RefineResult result = refine(histogram, tf, options, job);
+    const Scene& scene = opened.scene;
+    const RefineResult result = refineAsDrawn(histogram, tf, *scene.volume, scene.colors.get(), options, job);
     const double seconds = refining.seconds();
-    const RefineComparison comparison = compareMethods(histogram, tf, options, job);
+    const RefineComparison comparison = compareMethods(
+        histogram, options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get()), options,
+        job);
     if (o.outTf) writeTf(result.tf, *o.outTf);
+    Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
+    addVariables(json, scene);
     return {textOf(options, tf, result, comparison, priority, seconds),
-            jsonFromRefinement(tf, result, options.method, comparison, priority),
+            std::move(json),
             opened.notices(),
             {}};
 }
@@ -240,6 +246,7 @@ Command addRefine(CLI::App& program) {
     CLI::App* app = program.add_subcommand("refine", "Evens out the information along the transfer function (entropy)");
     const auto o = std::make_shared<Options>();
     o->scene.volume.add(*app, VolumeOptions::SizeIs::Both);
+    o->scene.variables.add(*app);
     o->scene.session.add(*app);
     o->scene.tf.add(*app);
     o->scene.camera.add(*app);
