@@ -103,7 +103,8 @@ std::string framesText(const Scene& scene) {
     if (listed.hasTimes) lines.emplace_back("time unit", listed.timeUnit.empty() ? "not known" : listed.timeUnit);
     if (const auto range = rangeOfAll(series)) lines.emplace_back("all frames", rangeText(range->lo, range->hi));
     for (const int f : brokenFrames(series))
-        lines.emplace_back("passed over", std::to_string(f) + ", " + listed.frames[static_cast<std::size_t>(f)].name + ": " + series.summary(f).problem);
+        lines.emplace_back("passed over", std::to_string(f) + ", " + listed.frames[static_cast<std::size_t>(f)].name +
+                                              ": " + series.summary(f).problem);
     for (const std::string& notice : listed.notices) lines.emplace_back("notice", notice);
     return listing(lines);
 }
