@@ -27,6 +27,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.engine.applyTo(inputs);
     options.saliency.applyTo(inputs);
     options.picture.applyTo(inputs);
+    options.ground.applyTo(inputs);
     options.field.applyTo(inputs);
     options.profile.applyTo(inputs);
     options.profile.requireNone(inputs, options.engine, options.saliency);

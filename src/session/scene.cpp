@@ -169,6 +169,7 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
         resolveTf(scene);
     }
     resolveColors(scene, basis, finder, job);
+    finder.keepKnown();
     resolveGround(scene, basis, job);
     if (scene.session.camera) {
         scene.camera = *scene.session.camera;
