@@ -197,7 +197,13 @@ public:
     /// `window`: the whole picture or a part of it.
     void prepare(const RenderSettings& settings, const Camera& camera, const Geometry& geometry,
                  const GroundWindow& window, const JobControl& job) {
-        Drawn wanted{settings.ground, camera, settings.light.depthCue, settings.background, window};
+        Drawn wanted{settings.ground,
+                     camera,
+                     geometry.boxCenter(),
+                     geometry.radius(),
+                     settings.light.depthCue,
+                     settings.background,
+                     window};
         if (m_drawn == wanted) return;
         m_drawn.reset();
         const GroundPicture picture = groundOf(settings, camera, geometry, window, job);
@@ -232,7 +238,8 @@ private:
     struct Drawn {
         std::shared_ptr<const Ground> ground;
         Camera camera;
-        double depthCue = 0;
+        Vec3 center; // of the box: what depths count from
+        double radius = 0, depthCue = 0;
         std::optional<Rgb> background;
         GroundWindow window;
         bool operator==(const Drawn&) const = default;
