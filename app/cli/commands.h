@@ -28,6 +28,7 @@ Command addFields(CLI::App& program);
 Command addPropose(CLI::App& program);
 Command addRefine(CLI::App& program);
 Command addOptimize(CLI::App& program);
+Command addSequence(CLI::App& program);
 Command addSpace(CLI::App& program);
 Command addProbe(CLI::App& program);
 Command addViews(CLI::App& program);

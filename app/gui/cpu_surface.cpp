@@ -107,9 +107,12 @@ CpuSurface::Plan CpuSurface::planFor(double samples) {
 
 void CpuSurface::setScene(const PictureInput& scene) {
     if (scene == m_scene) return;
+    // From one frame of a series to the next the old picture stays until the new one is there.
+    const bool otherData = !scene.volume || !m_scene.volume || scene.volume->title != m_scene.volume->title ||
+                           scene.volume->dims() != m_scene.volume->dims();
     const bool otherVolume = scene.volume != m_scene.volume;
     m_scene = scene;
-    if (otherVolume) { // nothing of the old one may be seen any more
+    if (otherVolume && otherData) { // nothing of the old one may be seen any more
         m_job.cancel();
         m_growing.reset();
         m_picture = {};
@@ -186,7 +189,8 @@ void CpuSurface::takeGrown() {
 
 void CpuSurface::show(const Task& task, const Picture& picture) {
     const bool full = task.growing || (task.plan.scale == 1 && task.plan.stepInD0 == kFullStep);
-    m_frame = {task.pixels.width(), task.pixels.height(), task.plan.scale, task.plan.stepInD0, full && !m_again};
+    m_frame = {task.pixels.width(), task.pixels.height(), task.plan.scale, task.plan.stepInD0, full && !m_again,
+               task.input.volume.get()};
     if (task.growing) {
         takeGrown();
         m_grow.stop();

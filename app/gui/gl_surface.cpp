@@ -270,7 +270,8 @@ void GlSurface::refine() {
 }
 
 void GlSurface::finishFrame(const Plan& plan, bool complete) {
-    m_frame = {pixelSize().width(), pixelSize().height(), plan.resolutionScale, plan.stepInD0, complete};
+    m_frame = {pixelSize().width(), pixelSize().height(), plan.resolutionScale, plan.stepInD0, complete,
+               m_scene.volume.get()};
     // Not from inside paintGL: whoever listens may ask for the picture.
     QMetaObject::invokeMethod(
         this,

@@ -1,7 +1,10 @@
 #include "input_habits.h"
 
+#include <QAbstractButton>
+#include <QAbstractItemView>
 #include <QAbstractSpinBox>
 #include <QApplication>
+#include <QComboBox>
 #include <QCursor>
 #include <QKeyEvent>
 #include <QLineEdit>
@@ -39,6 +42,13 @@ bool InputHabits::eventFilter(QObject* watched, QEvent* event) {
     switch (event->type()) {
     case QEvent::ShortcutOverride: {
         const auto* key = static_cast<QKeyEvent*>(event);
+        // What has the focus and is worked with Space keeps it.
+        if (key->key() == Qt::Key_Space && key->modifiers() == Qt::NoModifier &&
+            (qobject_cast<QAbstractButton*>(watched) != nullptr ||
+             qobject_cast<QAbstractItemView*>(watched) != nullptr || qobject_cast<QComboBox*>(watched) != nullptr)) {
+            event->accept();
+            return true;
+        }
         if (!key->matches(QKeySequence::Undo) && !key->matches(QKeySequence::Redo)) break;
         QAbstractSpinBox* box = numberBox(watched);
         if (box == nullptr || isBeingTyped(*box)) break;

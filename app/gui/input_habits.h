@@ -7,6 +7,7 @@ namespace pellucid::gui {
 
 /// Installed on the application:
 /// - undo in a number box that holds a finished number is the program's undo, not the box's own;
+/// - a button or list that has the focus keeps the space bar, whatever shortcut that is;
 /// - tool tips stay within the window that they belong to.
 class InputHabits : public QObject {
     Q_OBJECT

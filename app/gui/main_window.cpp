@@ -15,6 +15,7 @@
 #include "clip_layer.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
+#include "controllers/player_controller.h"
 #include "controllers/recovery_controller.h"
 #include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
@@ -58,6 +59,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     connect(m_view, &VolumeView::frameShown, this, [this] {
         m_bench->saving().setSeenSize({m_view->frame().width, m_view->frame().height});
         m_bench->refining().setViewSize({m_view->frame().width, m_view->frame().height});
+        m_bench->player().pictureShown(m_view->frame().volume);
         Q_EMIT settledChanged();
     });
     connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
@@ -95,6 +97,8 @@ void MainWindow::addPanels() {
             tabifyDockWidget(beside, dock);
             beside->raise();
         }
+        if (panel.below != nullptr)
+            splitDockWidget(findChild<QDockWidget*>(QString(panel.below) + "Dock"), dock, Qt::Vertical);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
         if (panel.shown)
@@ -163,7 +167,7 @@ void MainWindow::welcome() {
     auto* card = new WelcomeCard(m_view);
     // Another volume: it is no sample any more, and the first thing to try has been done.
     connect(&m_bench->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
-        if (before.data && before.data != after.data) card->dismiss();
+        if (before.series && before.series != after.series) card->dismiss();
     });
 }
 
@@ -201,12 +205,14 @@ void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
-    const QList<QUrl> urls = event->mimeData()->urls();
-    if (urls.isEmpty() || !urls.front().isLocalFile()) return;
+    QStringList paths;
+    for (const QUrl& url : event->mimeData()->urls())
+        if (url.isLocalFile()) paths << url.toLocalFile();
+    if (paths.isEmpty()) return;
     event->acceptProposedAction();
     // In a later turn: a dialog must not keep the program waiting that the file was dragged from.
     QMetaObject::invokeMethod(
-        this, [this, path = urls.front().toLocalFile()] { m_bench->opening().openPath(path); }, Qt::QueuedConnection);
+        this, [this, paths] { m_bench->opening().openPaths(paths); }, Qt::QueuedConnection);
 }
 
 } // namespace pellucid::gui

@@ -31,7 +31,7 @@ PaletteBar::PaletteBar(Workbench& bench, TfCanvas& canvas, QWidget* parent)
     setFixedHeight(30);
     setCursor(Qt::PointingHandCursor);
     connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.data != after.data) m_dragging = false;
+        if (before.series != after.series) m_dragging = false;
         if (!(before.tf == after.tf) || !(before.session.refine == after.session.refine)) update();
     });
     connect(&canvas.axis(), &IntensityAxis::changed, this, qOverload<>(&QWidget::update));

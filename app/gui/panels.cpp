@@ -16,6 +16,9 @@
     PANEL(viewsPanel) \
     PANEL(settingsPanel) \
     PANEL(spacePanel) \
+    PANEL(playerPanel) \
+    PANEL(variablesPanel) \
+    PANEL(temporalPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

@@ -37,6 +37,8 @@ Results::Results(SessionStore& store, Lane& lane, Workspace& workspace, QObject*
               m_engine = figures.engine;
               if (request.input == m_present || m_store.scene().volume == request.input.volume)
                   keep(std::move(figures));
+              else
+                  show(figures); // of the frame before
           },
           WhenBusy::FinishOld, &lane) {
     m_throttle.setSingleShot(true);
@@ -56,13 +58,21 @@ Results::Results(SessionStore& store, Lane& lane, Workspace& workspace, QObject*
 
 void Results::follow(const Scene& before, const Scene& after) {
     MeasureInput input = measureInput(after);
-    if (before.volume != after.volume) {
-        // Nobody waits for figures of a volume that is gone.
+    if (before.series != after.series || after.volume == nullptr) {
+        // Nobody waits for figures of data that are gone.
         m_measuring.cancel();
         m_known.clear();
         m_measured = {};
         m_derived = {};
         m_engine.clear();
+    } else if (before.volume != after.volume) {
+        // Another frame: figures of the one before are shown as what they are, and a measurement under way is let
+        // finish, else a series that plays would never have any. No more than two volumes are held.
+        std::erase_if(m_known, [&](const Figures& f) {
+            return f.input.volume != before.volume && f.input.volume != after.volume;
+        });
+        for (Figures* shown : {&m_measured, &m_derived})
+            if (shown->input.volume != after.volume) shown->input.volume.reset();
     }
     if (input == m_present) {
         if (!sameNames(before.tf, after.tf)) Q_EMIT changed();

@@ -120,7 +120,7 @@ SlicePlane SlicePane::planeOfSize(int pixelsWide, int pixelsHigh) const {
 SlicePlane SlicePane::plane() const { return planeOfSize(width(), height()); }
 
 void SlicePane::follow(const Scene& before, const Scene& after) {
-    if (before.data != after.data) {
+    if (before.series != after.series) {
         m_motion = Motion::None;
         m_zoom = 1;
         m_center.reset();

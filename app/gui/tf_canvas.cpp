@@ -81,7 +81,7 @@ void TfCanvas::setUnit(const QString& unit) {
 
 void TfCanvas::follow(const Scene& before, const Scene& after) {
     m_counts.setVolume(after.volume);
-    if (before.data != after.data) {
+    if (before.series != after.series) {
         m_drag.reset();
         m_hovered = -1;
         m_hoveredBar.reset();

@@ -10,7 +10,7 @@ ViewOverlay::ViewOverlay(SessionStore& store, QWidget* view) : QWidget(view), m_
     setAttribute(Qt::WA_NoSystemBackground);
     setFocusPolicy(Qt::NoFocus);
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.data != after.data) cancel(); // what was taken hold of is gone
+        if (before.series != after.series) cancel(); // what was taken hold of is gone
         if (m_glimpse) lookFrom(m_glimpse->camera);
         update();
     });

@@ -20,6 +20,7 @@ struct FrameInfo {
     double resolutionScale = 1; ///< rays per pixel along each axis
     double stepInD0 = 0.5;      ///< distance of samples along a ray
     bool complete = false;      ///< the best that will come of this scene
+    const Volume* volume = nullptr; ///< which one it shows; to be compared, no more
 };
 
 /// A child widget of the view that shows a scene: a coarse picture at once, a better one when the scene has stayed

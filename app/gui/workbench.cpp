@@ -6,6 +6,7 @@
 #include "controllers/live_controller.h"
 #include "controllers/open_controller.h"
 #include "controllers/optimize_controller.h"
+#include "controllers/player_controller.h"
 #include "controllers/recovery_controller.h"
 #include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
@@ -28,6 +29,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     m_opening = std::make_unique<OpenController>(*this);
     m_start = std::make_unique<StartController>(*this);
     m_recovery = std::make_unique<RecoveryController>(*this);
+    m_player = std::make_unique<PlayerController>(*this);
 
     // The menus stand in the order in which their first actions come.
     m_opening->addActions();
@@ -44,6 +46,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     addFrameActions(*this);
     m_fields->addActions();
     addSliceActions(*this);
+    m_player->addActions();
     addThemeActions(*this);
 
     connect(&m_store, &SessionStore::historyChanged, &m_actions, &Actions::refresh);
@@ -70,11 +73,13 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
     connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
     connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
     connect(m_fields.get(), &FieldController::busyChanged, this, &Workbench::idleChanged);
+    connect(m_player.get(), &PlayerController::changed, this, &Workbench::idleChanged);
 }
 
 Workbench::~Workbench() {
     m_store.disconnect(); // what ends below must not be heard by what has ended already
     m_results.disconnect();
+    m_player.reset();
     m_recovery.reset();
     m_start.reset();
     m_opening.reset();
@@ -110,7 +115,7 @@ bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
 bool Workbench::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
            !m_optimizing->isRunning() && !m_optimizing->isExplaining() && !m_refining->isBusy() && !m_live->isBusy() &&
-           !m_results.isBusy() && !m_fields->isBusy();
+           !m_results.isBusy() && !m_fields->isBusy() && !m_player->isBusy();
 }
 
 void Workbench::showError(const QString& title, const Error& error) {

@@ -19,6 +19,7 @@ class FieldController;
 class LiveController;
 class OpenController;
 class OptimizeController;
+class PlayerController;
 class RecoveryController;
 class RefineController;
 class SaveController;
@@ -58,6 +59,7 @@ public:
     RefineController& refining() { return *m_refining; }
     FieldController& fields() { return *m_fields; } ///< what is drawn in the place of the data
     LiveController& live() { return *m_live; }
+    PlayerController& player() { return *m_player; } ///< frames of a series
 
     /// Nothing may be edited: an optimization shows its moves.
     bool isReadOnly() const;
@@ -84,6 +86,7 @@ private:
     std::unique_ptr<OpenController> m_opening;
     std::unique_ptr<StartController> m_start;
     std::unique_ptr<RecoveryController> m_recovery;
+    std::unique_ptr<PlayerController> m_player;
 };
 
 } // namespace pellucid::gui

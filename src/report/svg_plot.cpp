@@ -103,6 +103,8 @@ std::size_t sequenceAt(std::string_view text) {
 
 } // namespace
 
+Rgb inkOnLight(PlotInk ink) { return rgbFromHex(inkOf(ink).light); }
+
 std::string escapedXml(const std::string& text) {
     std::string safe;
     const std::string_view all = text;

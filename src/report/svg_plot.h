@@ -12,6 +12,9 @@ namespace pellucid {
 /// XML has no way to write, become blanks; bytes that are no UTF-8 become U+FFFD.
 std::string escapedXml(const std::string& text);
 
+/// The colour of an ink on a white ground; not of Own, which brings its own.
+Rgb inkOnLight(PlotInk ink);
+
 /// Style rules for the classes of the drawings: dark texts on white; the reverse where whoever looks at it prefers
 /// dark. Without them drawings have the colours for a white ground.
 std::string plotStyle();

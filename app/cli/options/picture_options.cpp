@@ -2,7 +2,7 @@
 
 namespace pellucid::cli {
 
-void PictureOptions::add(CLI::App& app) {
+void PictureOptions::add(CLI::App& app, Mode modeIs) {
     addValue(
         app, "--size", "WxH",
         [this](const std::string& text, const std::string& option) { size = parseImageSize(text, option); },
@@ -18,16 +18,18 @@ void PictureOptions::add(CLI::App& app) {
         app, "--step", "D",
         [this](const std::string& text, const std::string& option) { step = parseRealAbove(text, option, 0, 16); },
         "largest distance of samples in reference lengths, the smallest voxel spacing (default 0.5)");
-    addValue(
-        app, "--mode", "composite|mip|minip|average|surface",
-        [this](const std::string& text, const std::string& option) {
-            mode = renderModeFromName(text);
-            if (!mode)
-                throw UsageError("'" + text + "' is no way to draw", option,
-                                 "use composite, mip, minip, average or surface");
-        },
-        "what becomes of the intensities along a ray: emission and absorption by the transfer function (default); the "
-        "largest, smallest or mean one, as grey; the first surface of each feature");
+    if (modeIs == Mode::Option)
+        addValue(
+            app, "--mode", "composite|mip|minip|average|surface",
+            [this](const std::string& text, const std::string& option) {
+                mode = renderModeFromName(text);
+                if (!mode)
+                    throw UsageError("'" + text + "' is no way to draw", option,
+                                     "use composite, mip, minip, average or surface");
+            },
+            "what becomes of the intensities along a ray: emission and absorption by the transfer function (default); "
+            "the "
+            "largest, smallest or mean one, as grey; the first surface of each feature");
     app.add_flag("--jitter", jitter, "shift the samples of each pixel, against bands of colour");
     addValue(
         app, "--feature", "NAME", [this](const std::string& text, const std::string&) { feature = text; },

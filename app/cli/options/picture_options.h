@@ -22,7 +22,9 @@ struct PictureOptions {
     LightOptions light;
     std::optional<std::string> feature;
 
-    void add(CLI::App& app);
+    /// Mode::OfSession: without --mode, which the command has for something else.
+    enum class Mode { Option, OfSession };
+    void add(CLI::App& app, Mode modeIs = Mode::Option);
     /// Throws UsageError for options of the light that do not go together.
     void applyTo(SceneInputs& inputs) const;
     /// What needs the transfer function. Throws UsageError where no feature has the name.

@@ -200,12 +200,12 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     column->addWidget(m_readOut);
 
     connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.data != after.data) {
+        if (before.series != after.series) {
             m_compared.clear();
             m_shown = -1;
             m_latest = 0;
         }
-        if (before.data != after.data || !before.session.runs.isSame(after.session.runs)) follow();
+        if (before.series != after.series || !before.session.runs.isSame(after.session.runs)) follow();
     });
     connect(&bench.optimizing(), &OptimizeController::moved, this, [this] { drawPlots(); });
     connect(&bench.optimizing(), &OptimizeController::runningChanged, this, &ConvergencePanel::follow);

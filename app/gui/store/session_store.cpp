@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "session/scene_data.h"
 
 namespace pellucid::gui {
 namespace {
@@ -12,11 +13,38 @@ constexpr std::size_t kMostSteps = 500;
 constexpr std::size_t kMostCameras = 200;
 constexpr std::size_t kMostData = 3; // volumes that the history keeps in memory, the present one among them
 
-// The session without where one looks: what has a history of its own, or none.
+// The goals with the targets that the session's keys, of which there are some, have at a frame.
+FeatureGoals goalsAt(const Session& session, int frame) {
+    FeatureGoals goals = *session.goals;
+    for (const auto& [id, target] : targetsBetween(*session.targetKeys, frame))
+        if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
+    return goals;
+}
+
+// The session without where and when one looks, which has a history of its own or none, and without what is made for
+// frames by itself.
 Session withoutGaze(Session session) {
     session.camera.reset();
     if (session.slices->crosshair) session.slices.edit([](SliceViews& s) { s.crosshair.reset(); });
+    session.frame = 0;
+    if (!session.targetKeys->empty()) session.goals.set(goalsAt(session, 0));
+    if (!session.isEmpty() && !session.variable().track.adapted.empty())
+        session.variables.edit([](std::vector<Variable>& all) { all.front().track.adapted.clear(); });
     return session;
+}
+
+bool isSeries(const Scene& scene) { return scene.series != nullptr && scene.series->varies(); }
+
+// What a step keeps of a scene. What can be made anew is not kept for a state that may never come back; of a series,
+// nothing of its frames.
+Scene kept(Scene scene, const Scene& other) {
+    scene.codes.reset();
+    if (!isSeries(scene) || scene.series != other.series) return scene;
+    scene.data.reset();
+    scene.volume.reset();
+    scene.histogram.reset();
+    scene.colors.reset();
+    return scene;
 }
 
 } // namespace
@@ -65,11 +93,56 @@ Scene SessionStore::withPresentGaze(Scene scene) const {
     return scene;
 }
 
+// A scene of another frame at the present one.
+Scene SessionStore::atPresentFrame(Scene scene) const {
+    scene = withPresentGaze(std::move(scene));
+    if (!isSeries(scene) || scene.series != m_scene.series) return scene; // with other data come its frames
+    Session session = scene.session;
+    session.frame = m_scene.session.frame;
+    if (!session.targetKeys->empty()) session.goals.set(goalsAt(session, session.frame));
+    // Data that are there are seen through another window at once.
+    Scene basis = m_scene;
+    basis.session.goals = session.goals;
+    basis.session.targetKeys = session.targetKeys;
+    Scene next = resolve(std::move(session), basis);
+    prepareToShow(next);
+    return next;
+}
+
+Scene SessionStore::movedTo(const Scene& shown, const Scene& from) {
+    Session session = from.session;
+    session.frame = shown.session.frame;
+    if (!session.targetKeys->empty()) session.goals.set(goalsAt(session, session.frame));
+    Scene basis = shown;
+    basis.session.goals = session.goals; // so that following the target keys takes none of them for an edit
+    basis.session.targetKeys = session.targetKeys;
+    return resolve(std::move(session), basis);
+}
+
+bool SessionStore::isShownBy(const Scene& shown) const {
+    if (!isSeries(m_scene) || shown.series != m_scene.series || shown.volume == nullptr) return false;
+    const auto fits = [&](const Scene& scene) {
+        Session session = scene.session;
+        session.frame = shown.session.frame;
+        return !needsData(session, shown) && session.hsb == shown.session.hsb &&
+               std::equal(session.variables->begin(), session.variables->end(), shown.session.variables->begin(),
+                          shown.session.variables->end(), [](const Variable& a, const Variable& b) {
+                              return a.name == b.name && sameOrigin(a, b) && a.window == b.window;
+                          });
+    };
+    return fits(m_scene) && (!m_committed || fits(*m_committed));
+}
+
+void SessionStore::setFrame(const Scene& shown) {
+    PELLUCID_CHECK(isShownBy(shown));
+    if (shown.session.frame == m_scene.session.frame) return;
+    if (m_committed) m_committed = movedTo(shown, *m_committed);
+    show(movedTo(shown, m_scene));
+}
+
 void SessionStore::push(const QString& text, const QString& mergeKey, Scene before) {
-    // What can be made anew is not kept for a state that may never come back.
-    Scene after = m_scene;
-    before.codes.reset();
-    after.codes.reset();
+    Scene after = kept(m_scene, before);
+    before = kept(std::move(before), m_scene);
     if (withoutGaze(before.session) == withoutGaze(m_scene.session)) return;
     m_steps.resize(m_index);
     const bool merges = !mergeKey.isEmpty() && m_index > 0 && m_steps.back().mergeKey == mergeKey;
@@ -93,12 +166,12 @@ void SessionStore::push(const QString& text, const QString& mergeKey, Scene befo
 // A step keeps the data that it needs to be undone at once. Memory ends before the history does: of the oldest steps
 // that need yet other volumes there is no way back.
 void SessionStore::forgetOldData() {
-    std::set<const Volume*> kept;
+    std::set<const Volume*> volumes;
     std::size_t first = m_steps.size();
     while (first > 0) {
         for (const Scene* scene : {&m_steps[first - 1].before, &m_steps[first - 1].after})
-            kept.insert(scene->data.get());
-        if (kept.size() > kMostData) break;
+            if (scene->data) volumes.insert(scene->data.get());
+        if (volumes.size() > kMostData) break;
         --first;
     }
     m_steps.erase(m_steps.begin(), m_steps.begin() + static_cast<std::ptrdiff_t>(first));
@@ -169,8 +242,7 @@ void SessionStore::amend(const Change& change) {
     show(resolve(std::move(session), m_scene));
     if (isPreviewing()) return;
     if (isLatest) {
-        m_steps.back().after = m_scene;
-        m_steps.back().after.codes.reset();
+        m_steps.back().after = kept(m_scene, m_steps.back().before);
     }
     if (clean) setClean();
 }
@@ -186,7 +258,7 @@ void SessionStore::undo() {
     if (isPreviewing()) return cancel(); // a drag under way is what is undone
     if (m_index == 0) return;
     --m_index;
-    show(withPresentGaze(m_steps[m_index].before));
+    show(atPresentFrame(m_steps[m_index].before));
     Q_EMIT historyChanged();
 }
 
@@ -194,7 +266,7 @@ void SessionStore::redo() {
     if (isPreviewing()) cancel();
     if (m_index >= m_steps.size()) return;
     ++m_index;
-    show(withPresentGaze(m_steps[m_index - 1].after));
+    show(atPresentFrame(m_steps[m_index - 1].after));
     Q_EMIT historyChanged();
 }
 

@@ -17,7 +17,8 @@ namespace pellucid::gui {
 /// An edit is one step of the history. A preview (while the mouse is down, while an optimization runs) is none: it
 /// shows a change of the committed session until commit() or cancel(). An edit, undo or redo during a preview ends that
 /// first: an edit commits it, undo and redo cancel it. The camera has a history of its own, the crosshair of the slices
-/// has none: undo never turns the view.
+/// and the frame of a series have none: undo never turns the view, nor goes to another frame. Steps of a series hold no
+/// volumes: they are undone on the frame that is there.
 class SessionStore : public QObject {
     Q_OBJECT
 public:
@@ -78,7 +79,15 @@ public:
     /// Where the slices meet, voxel coordinates. It has no history: undo leaves it where it is.
     void setCrosshair(const Vec3& voxel);
 
-    /// Nothing would be lost by closing: the present state is the one that was opened or saved.
+    /// Goes to the frame of `shown`: a scene of the present series with the data of another frame (resolve() made it
+    /// off this thread). All else stays as it is in the present session, a preview under way included; targets follow
+    /// their keys. isShownBy() must hold.
+    void setFrame(const Scene& shown);
+    /// Whether `shown` has all that the present session needs at its frame, so that setFrame() takes no time.
+    bool isShownBy(const Scene& shown) const;
+
+    /// Nothing would be lost by closing: the present state is the one that was opened or saved, whatever frame it is at
+    /// and whatever has been made for frames by itself.
     bool isClean() const;
     void setClean();
     void setUnsaved(); ///< it has no file, whatever it is compared with
@@ -101,6 +110,8 @@ private:
     /// Adds to `text` what followed.
     Scene changedBy(const Change& change, const Scene& from, const Scene& basis, QString& text) const;
     Scene withPresentGaze(Scene scene) const;
+    Scene atPresentFrame(Scene scene) const;
+    static Scene movedTo(const Scene& shown, const Scene& from);
 
     Scene m_scene;
     std::optional<Scene> m_committed; // while previewing

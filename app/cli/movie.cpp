@@ -1,0 +1,141 @@
+#include "movie.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "output.h"
+#include "parse.h"
+
+extern char** environ; // NOLINT: POSIX
+
+namespace pellucid::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kProgram = "ffmpeg";
+
+/// Empty where it is not installed.
+std::string findProgram() {
+    const char* const path = std::getenv("PATH");
+    for (const std::string& folder : split(path != nullptr ? path : "", ':')) {
+        const std::string file = (fs::path(folder.empty() ? "." : folder) / kProgram).string();
+        if (access(file.c_str(), X_OK) == 0 && !fs::is_directory(file)) return file;
+    }
+    return {};
+}
+
+/// A file name in a list for ffmpeg.
+std::string quoted(const std::string& name) {
+    std::string text = "'";
+    for (const char c : name) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+/// Files that go when this does.
+struct Scratch {
+    std::vector<std::string> files;
+    ~Scratch() {
+        std::error_code none;
+        for (const std::string& file : files) fs::remove(file, none);
+    }
+};
+
+/// Runs it, its messages into `log`; the exit status, −1 where it was ended by a signal. Throws Cancelled.
+int runProgram(const std::vector<std::string>& arguments, const std::string& log, const std::stop_token& stop) {
+    std::vector<char*> argv;
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&attributes, &none); // ours blocks what ends it
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    pid_t child = 0;
+    const int failed = posix_spawn(&child, arguments.front().c_str(), &files, &attributes, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
+    if (failed != 0) throw Error("ffmpeg cannot be started", arguments.front(), "check its installation");
+    int status = 0;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        if (stop.stop_requested()) {
+            kill(child, SIGKILL);
+            waitpid(child, &status, 0);
+            throw Cancelled{};
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+} // namespace
+
+void requireMovieWriter(const std::string& path, const std::string& option) {
+    if (fs::path(path).extension() != ".mp4")
+        throw UsageError("'" + path + "' does not end in .mp4", option, "give a name such as film.mp4");
+    if (findProgram().empty())
+        throw Error("ffmpeg is not installed", option,
+                    "install it, or leave the option out: the pictures of all frames are written anyway");
+}
+
+void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond, const std::string& path,
+                const std::stop_token& stop) {
+    if (pictures.empty()) return;
+    const Scratch scratch{{path + ".list", path + ".log", path + ".part.mp4"}};
+    std::string list = "ffconcat version 1.0\n";
+    const std::string duration = "duration " + plainText(1 / framesPerSecond) + "\n";
+    for (const std::string& picture : pictures)
+        list += "file " + quoted(fs::absolute(picture).string()) + "\n" + duration;
+    writeTextAtomically(scratch.files[0], list);
+    const int status = runProgram({findProgram(),
+                                   "-nostdin",
+                                   "-y",
+                                   "-loglevel",
+                                   "error",
+                                   "-f",
+                                   "concat",
+                                   "-safe",
+                                   "0",
+                                   "-i",
+                                   scratch.files[0],
+                                   "-r",
+                                   plainText(framesPerSecond),
+                                   "-vf",
+                                   "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                   "-c:v",
+                                   "libx264",
+                                   "-crf",
+                                   "18",
+                                   "-pix_fmt",
+                                   "yuv420p",
+                                   scratch.files[2]},
+                                  scratch.files[1], stop);
+    std::error_code failed;
+    if (status == 0 && fs::is_regular_file(scratch.files[2])) {
+        fs::rename(scratch.files[2], path, failed);
+        if (!failed) return;
+    }
+    std::string said = fs::exists(scratch.files[1]) ? readText(scratch.files[1]) : "";
+    said = oneLine(said.substr(0, 300));
+    throw Error("ffmpeg failed" + (said.empty() ? std::string() : ": " + said), path,
+                "the pictures are there; make the film by hand, or check that ffmpeg has libx264");
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,525 @@
+// `sequence`: the frames of a series, each under its transfer function: pictures, figures, curves.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <future>
+#include <limits>
+#include <map>
+
+#include "base/atomic_file.h"
+#include "base/parallel.h"
+#include "commands.h"
+#include "engines/engines.h"
+#include "image_io/image_file.h"
+#include "interrupt.h"
+#include "movie.h"
+#include "options/target_input.h"
+#include "output_files.h"
+#include "parse.h"
+#include "render/memory_needs.h"
+#include "report/image_plot.h"
+#include "report/svg_plot.h"
+#include "report/temporal_curves.h"
+#include "resolve.h"
+#include "session/adapt.h"
+#include "session/scene_data.h"
+#include "tf/formats/tf_json.h"
+#include "tf/shown_tf.h"
+
+namespace pellucid::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Mode = AdaptSettings::Mode;
+
+struct Options {
+    SceneOptions scene;
+    std::optional<Mode> mode;
+    std::optional<double> coherence;
+    std::optional<TargetInput> targets;
+    std::optional<double> tolerance;
+    std::optional<int> from;
+    bool bothWays = false, compare = false, requireConverged = false, noPictures = false;
+    std::string out;
+    std::optional<double> framesPerSecond;
+    std::optional<std::string> movie;
+};
+
+constexpr double kFramesPerSecond = 10;
+
+std::string fileOf(const Options& o, int frame, const char* suffix) {
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "frame_%04d", frame);
+    return (fs::path(o.out) / (std::string(name.data()) + suffix)).string();
+}
+std::string curvesOf(const Options& o, const char* suffix) {
+    return (fs::path(o.out) / (std::string("curves") + suffix)).string();
+}
+
+/// What can be told before the volume is read.
+void check(const Options& o) {
+    const std::array<std::string, 3> names{"curves.csv", "curves.svg", "curves.png"};
+    checkOutputFolder(o.out, "--out", names, inputFiles(o.scene));
+    if (o.scene.picture.transparent)
+        throw UsageError("flicker is of what is seen on a background", "--background transparent", "give a colour");
+    if (o.framesPerSecond && !o.movie)
+        throw UsageError("--fps is of a film", "--fps", "give --mp4 FILE too, or leave it out");
+    if (!o.movie) return;
+    if (o.noPictures) throw UsageError("a film is made of the pictures", "--no-pictures", "leave out one of the two");
+    checkOutputFile(*o.movie, "--mp4", inputFiles(o.scene));
+    requireMovieWriter(*o.movie, "--mp4");
+}
+
+/// The frame that is read while others are computed.
+class ReadAhead {
+public:
+    ReadAhead(std::shared_ptr<TimeSeries> series, ValueRange window) : m_series(std::move(series)), m_window(window) {}
+    ~ReadAhead() { m_stop.request_stop(); } // the future waits
+
+    void begin(int frame) {
+        if (frame < 0 || frame >= m_series->size() || m_series->roomFor() < 2) return;
+        if (m_reading.valid()) m_reading.wait();
+        m_reading =
+            std::async(std::launch::async, [series = m_series, window = m_window, stop = m_stop.get_token(), frame] {
+                try {
+                    series->show(frame, window, {stop, {}});
+                } catch (...) { // whoever needs the frame meets the same error
+                }
+            });
+    }
+
+private:
+    std::shared_ptr<TimeSeries> m_series;
+    ValueRange m_window;
+    std::stop_source m_stop;
+    std::future<void> m_reading;
+};
+
+/// One frame on its way.
+struct Frame {
+    int number = 0;
+    std::string problem;
+    Scene scene, asStatic;                  ///< the second one with --compare
+    std::optional<TransferFunction> before; ///< of the frame before
+    std::optional<AdaptedFrame> made;
+    FrameFigures figures, staticFigures;
+};
+
+class Sequence {
+public:
+    Sequence(const Options& o, Scene scene, Progress& progress)
+        : m_o(o), m_scene(std::move(scene)), m_progress(progress) {}
+
+    Answer run(const Opened& opened);
+
+private:
+    void prepareKey();
+    void planBothWays(ReadAhead& ahead);
+    std::optional<AdaptedFrame> adapted(int number, int key, const TransferFunction& previous);
+    std::optional<Frame> next(int number);
+    void finish(std::vector<Frame>& batch);
+    TemporalCurves curves() const;
+    std::string text(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
+    Json json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
+
+    const AdaptSettings& settings() const { return *m_scene.session.adapt; }
+
+    const Options& m_o;
+    Scene m_scene; ///< of the start frame; its session has all transfer functions that there are so far
+    Progress& m_progress;
+    int m_start = 0, m_keyMoves = -1;
+    double m_keySeconds = 0;
+    Workspace m_workspace;
+    std::vector<Workspace> m_sideBySide;
+    FrameAdapter m_adapter;
+    std::optional<TransferFunction> m_before, m_chain; ///< of the frame before; what the next one starts from
+    std::map<int, AdaptedFrame> m_planned;             ///< of planBothWays()
+    std::vector<FrameFigures> m_figures, m_static;
+    std::vector<Json> m_frames;
+    std::vector<std::string> m_pictures;
+};
+
+/// The start frame's transfer function becomes a key; with targets it is optimized first.
+void Sequence::prepareKey() {
+    const Stopwatch watch;
+    Session& session = m_scene.session;
+    m_start = session.frame;
+    session.adapt.edit([&](AdaptSettings& a) {
+        a.mode = m_o.mode.value_or(a.mode);
+        a.coherence = m_o.coherence.value_or(m_o.scene.session.file ? a.coherence : kUsualCoherence);
+    });
+    if (m_o.tolerance) session.optimize.edit([&](OptimizeOptions& options) { options.tolerance = *m_o.tolerance; });
+    if (m_o.targets) {
+        const std::vector<double> named = m_o.targets->of(m_scene);
+        const std::vector<double> targets =
+            atOption("--target", [&] { return normalizedTargets(named, m_scene.tf.features.size()); });
+        session.targetKeys.set({});
+        session.goals.set(withTargets(*session.goals, m_scene.tf, targets));
+        JobControl job = m_progress.phase("optimizing");
+        job.progress = nullptr;
+        int moves = -1;
+        const OptimizeResult result = m_workspace.optimize(
+            measureInput(m_scene), shownShares(m_scene.tf, targets), limitsOf(m_scene.tf, *session.goals),
+            *session.optimize, job, [&](const OptimizeState& state) {
+                m_progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
+            });
+        if (result.reason == StopReason::Cancelled) throw Cancelled{};
+        m_scene.tf = withShownOpacities(m_scene.tf, result.history[result.best].opacity);
+        m_keyMoves = result.iterations();
+    }
+    session.variables.edit(
+        [&](std::vector<Variable>& all) { all.front().track.keys[m_start] = Part<TransferFunction>(m_scene.tf); });
+    m_keySeconds = watch.seconds();
+}
+
+/// Empty where the frame is broken.
+std::optional<AdaptedFrame> Sequence::adapted(int number, int key, const TransferFunction& previous) {
+    try {
+        return m_adapter.adapt(m_scene, {number, key, previous, {}}, m_workspace, {interruptToken(), {}});
+    } catch (const Error&) {
+        if (m_scene.series->summary(number).problem.empty()) throw; // not of the frame
+        return {};
+    }
+}
+
+/// Forward, then from the last frame back: what must change later begins to change as early as the distance that is
+/// allowed for lets it, and the first frame, which no hand has made, gives way too.
+void Sequence::planBothWays(ReadAhead& ahead) {
+    const TfTrack track = m_scene.session.variable().track;
+    const int end = m_scene.series->size();
+    const auto isKey = [&](int frame) { return track.keys.contains(frame) && (frame != m_start || !m_o.targets); };
+    JobControl job = m_progress.phase("there and back");
+    std::optional<TransferFunction> chain = m_scene.tf;
+    for (int f = m_start + 1; f < end; ++f) {
+        job.throwIfStopped();
+        ahead.begin(f + 1);
+        if (isKey(f))
+            chain = *track.keys.at(f);
+        else if (auto made = adapted(f, track.keyBefore(f), *chain)) {
+            chain = made->tf;
+            m_planned[f] = std::move(*made);
+        }
+        job.report(0.5 * (f - m_start) / (end - m_start));
+    }
+    for (int f = end - 1; f >= m_start; --f) {
+        job.throwIfStopped();
+        if (f > m_start) ahead.begin(f - 1);
+        if (isKey(f)) {
+            chain = *track.keys.at(f);
+        } else if (f == m_start || m_planned.contains(f)) {
+            auto made = adapted(f, track.keyBefore(f), *chain);
+            if (!made) continue;
+            chain = made->tf;
+            if (f > m_start) {
+                made->moves += m_planned[f].moves;
+                made->seconds += m_planned[f].seconds;
+            }
+            m_planned[f] = std::move(*made);
+        }
+        job.report(0.5 + 0.5 * (end - f) / (end - m_start));
+    }
+}
+
+/// The frame with its transfer function, ready to be drawn and measured; empty where it is broken.
+std::optional<Frame> Sequence::next(int number) {
+    const JobControl job{interruptToken(), {}};
+    Frame frame;
+    frame.number = number;
+    try {
+        TransferFunction tf;
+        const TfTrack& track = m_scene.session.variable().track;
+        if (const auto planned = m_planned.find(number); planned != m_planned.end()) {
+            frame.made = planned->second;
+            tf = frame.made->tf;
+        } else if (settings().mode == Mode::Static) {
+            tf = *m_scene.session.tfAt(number);
+        } else if (track.keys.contains(number) || !m_chain) {
+            tf = *track.keys.at(track.keyBefore(number));
+        } else {
+            AdaptTask task{number, track.keyBefore(number), *m_chain, {}};
+            task.basis = fingerprintOf(m_scene.session, *m_scene.series, number, *m_chain);
+            const auto known = track.adapted.find(number); // a session brings some
+            if (known != track.adapted.end() && known->second.basis == task.basis) {
+                tf = *known->second.tf;
+            } else {
+                frame.made = m_adapter.adapt(m_scene, task, m_workspace, job);
+                tf = frame.made->tf;
+            }
+        }
+        frame.scene = sceneAt(m_scene, number, tf, job);
+        if (m_o.compare)
+            frame.asStatic = sceneAt(frame.scene, number, *m_scene.session.variable().track.keys.at(m_start), job);
+        frame.before = m_before;
+        m_before = m_chain = frame.scene.tf;
+        return frame;
+    } catch (const UsageError&) {
+        throw;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error&) {
+        if (m_scene.series->summary(number).problem.empty()) throw; // not of the frame
+        return {}; // Opened::notices() tells
+    }
+}
+
+/// Figures and pictures of frames, side by side.
+void Sequence::finish(std::vector<Frame>& batch) {
+    const JobControl job{interruptToken(), {}};
+    parallelFor(batch.size(), [&](std::size_t i) {
+        Frame& frame = batch[i];
+        Workspace& workspace = batch.size() == 1 ? m_workspace : m_sideBySide[i];
+        frame.figures = figuresOf(frame.scene, frame.before ? &*frame.before : nullptr, workspace, job);
+        if (frame.made) {
+            frame.figures.moves = frame.made->moves;
+            frame.figures.seconds = frame.made->seconds;
+        }
+        if (m_o.compare) {
+            frame.staticFigures = figuresOf(frame.asStatic, nullptr, workspace, job);
+            if (frame.before) frame.staticFigures.flicker = 0; // the same transfer function
+        }
+        writeTf(frame.scene.tf, fileOf(m_o, frame.number, ".tf.json"));
+        if (m_o.noPictures) return;
+        const PictureInput picture = m_o.scene.picture.pictureOf(frame.scene);
+        const Image image = makeRenderer(frame.scene.session.measure->engine, picture.volume)
+                                ->render(picture.camera, picture.tf, picture.settings, job);
+        writeImage(image, fileOf(m_o, frame.number, ".png"));
+        if (!m_o.compare) return;
+        const PictureInput still = m_o.scene.picture.pictureOf(frame.asStatic);
+        writeImage(makeRenderer(frame.scene.session.measure->engine, still.volume)
+                       ->render(still.camera, still.tf, still.settings, job),
+                   fileOf(m_o, frame.number, "_static.png"));
+    });
+    for (Frame& frame : batch) {
+        const FrameFigures& f = frame.figures;
+        Json one{{"frame", f.frame},           {"time", f.time},       {"vws", f.vws},
+                 {"visibility", f.visibility}, {"opacity", f.opacity}, {"target", f.targets},
+                 {"objective", f.objective}};
+        if (f.flicker) one["flicker"] = *f.flicker;
+        if (f.moves) {
+            one["moves"] = *f.moves;
+            one["seconds"] = f.seconds;
+        }
+        if (m_o.compare)
+            one["static"] = {{"vws", frame.staticFigures.vws},
+                             {"visibility", frame.staticFigures.visibility},
+                             {"objective", frame.staticFigures.objective}};
+        one["tf"] = Json::parse(jsonFromTf(frame.scene.tf).dump());
+        m_frames.push_back(std::move(one));
+        m_figures.push_back(f);
+        if (m_o.compare) m_static.push_back(frame.staticFigures);
+        if (!m_o.noPictures) m_pictures.push_back(fileOf(m_o, frame.number, ".png"));
+    }
+    batch.clear();
+}
+
+TemporalCurves Sequence::curves() const {
+    TemporalCurves curves;
+    for (const Feature& f : m_scene.tf.features) {
+        curves.features.push_back(f.name);
+        curves.colors.push_back(f.color);
+    }
+    curves.runs.push_back({name(settings().mode), m_figures});
+    if (m_o.compare) curves.runs.push_back({"static", m_static});
+    return curves;
+}
+
+std::string coherenceText(double coherence) { return std::isinf(coherence) ? "infinite" : plainText(coherence); }
+
+std::string Sequence::text(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const {
+    Table table({"frame", "F", "flicker", "moves", "seconds"});
+    for (const FrameFigures& f : m_figures)
+        table.add({std::to_string(f.frame), f.problem.empty() ? fixedText(f.objective, 4) : "broken",
+                   f.flicker ? fixedText(*f.flicker, 3) : "-", f.moves ? std::to_string(*f.moves) : "-",
+                   f.moves ? fixedText(f.seconds, 3) : "-"});
+    std::string text = table.text() + name(settings().mode);
+    if (settings().mode != Mode::Static) text += ", coherence " + coherenceText(settings().coherence);
+    text += ": RMS of F " + fixedText(dynamic.rms, 4) + ", flicker " + fixedText(dynamic.flicker, 3) + " on average";
+    if (settings().mode != Mode::Static)
+        text += ", " + fixedText(dynamic.moves, 2) + " moves and " + secondsText(dynamic.seconds) + " a frame";
+    text += "\n";
+    if (asStatic) text += "static: RMS of F " + fixedText(asStatic->rms, 4) + "\n";
+    return text + "wrote " + std::to_string(m_frames.size()) + " frames and curves.csv, curves.svg, curves.png to " +
+           m_o.out + (m_o.movie ? ", and " + *m_o.movie : "") + "\n";
+}
+
+Json jsonFromFigures(const SequenceFigures& f) {
+    return {{"rms", f.rms}, {"flicker", f.flicker}, {"moves", f.moves}, {"seconds", f.seconds}};
+}
+
+Json Sequence::json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const {
+    Json json{{"command", "sequence"}, {"mode", name(settings().mode)}};
+    if (settings().mode != Mode::Static) {
+        if (std::isinf(settings().coherence))
+            json["coherence"] = "infinite";
+        else
+            json["coherence"] = settings().coherence;
+    }
+    json["volume"] = jsonFromVolume(*m_scene.volume);
+    json["from"] = m_start;
+    json["frames"] = m_frames;
+    json["broken"] = Json::array();
+    for (const FrameFigures& f : m_figures)
+        if (!f.problem.empty()) json["broken"].push_back({{"frame", f.frame}, {"problem", f.problem}});
+    json["mean"] = jsonFromFigures(dynamic);
+    if (asStatic) json["static"] = {{"rms", asStatic->rms}};
+    json["files"] = {curvesOf(m_o, ".csv"), curvesOf(m_o, ".svg"), curvesOf(m_o, ".png")};
+    if (m_o.movie) json["files"].push_back(*m_o.movie);
+    return json;
+}
+
+Answer Sequence::run(const Opened& opened) {
+    const Stopwatch total;
+    prepareKey();
+    std::error_code ignored;
+    fs::create_directories(m_o.out, ignored);
+    const TimeSeries& series = *m_scene.series;
+    ReadAhead ahead(m_scene.series, windowOf(m_scene.session.variable(), *m_scene.series, {interruptToken(), {}}));
+    if (m_o.bothWays) {
+        if (settings().mode != Mode::Optimize)
+            throw UsageError("transfer functions are optimized both ways, or not", "--both-ways",
+                             "give --mode optimize too, or leave it out");
+        planBothWays(ahead);
+    }
+    const JobControl job = m_progress.phase("frames");
+    // Contexts of GL are not shared by threads; threads share a CPU well.
+    const bool cpu = makeRenderer(m_scene.session.measure->engine, m_scene.volume)->name() == "cpu" &&
+                     m_workspace.engine(measureInput(m_scene)).name() != "gl";
+    const int most = cpu ? std::clamp(series.roomFor() - 1, 1, threadCount()) : 1;
+    m_sideBySide = std::vector<Workspace>(static_cast<std::size_t>(most));
+    std::vector<Frame> batch;
+    for (int number = m_start; number < series.size(); ++number) {
+        job.throwIfStopped();
+        ahead.begin(number + 1);
+        if (auto frame = next(number)) {
+            batch.push_back(std::move(*frame));
+        } else {
+            finish(batch);
+            m_figures.push_back(brokenFigures(series, number));
+            if (m_o.compare) m_static.push_back(m_figures.back());
+        }
+        if (static_cast<int>(batch.size()) == most) finish(batch);
+        job.report((number + 1.0 - m_start) / (series.size() - m_start));
+    }
+    finish(batch);
+    if (m_frames.empty()) throw Error("no frame can be read", series.listing().title, "check its files");
+
+    m_progress.phase("writing");
+    const TemporalCurves all = curves();
+    const std::vector<Plot> plots = temporalPlots(all);
+    const PlotPage page{.width = 640, .height = 260};
+    writeTextAtomically(curvesOf(m_o, ".csv"), csvOf(all));
+    writeTextAtomically(curvesOf(m_o, ".svg"), svgOf(plots, page));
+    writeImage(imageOf(plots, page), curvesOf(m_o, ".png"));
+    if (m_o.movie)
+        writeMovie(m_pictures, m_o.framesPerSecond.value_or(kFramesPerSecond), *m_o.movie,
+                   m_progress.phase("film").stop);
+
+    const SequenceFigures dynamic = summaryOf(m_figures);
+    std::optional<SequenceFigures> asStatic;
+    if (m_o.compare) asStatic = summaryOf(m_static);
+    Answer answer{text(dynamic, asStatic), json(dynamic, asStatic), opened.notices(), {}};
+    answer.json["seconds"] = {{"key", m_keySeconds}, {"total", total.seconds()}};
+    if (m_o.requireConverged) {
+        const double tolerance = m_scene.session.optimize->tolerance;
+        int missed = 0;
+        double worst = 0;
+        for (const FrameFigures& f : m_figures)
+            if (f.problem.empty() && !(f.objective < tolerance)) {
+                ++missed;
+                worst = std::max(worst, f.objective);
+            }
+        if (missed > 0)
+            answer.failure = Error(
+                "the targets were not reached in " + std::to_string(missed) + " of " + std::to_string(dynamic.frames) +
+                    " frames (objective up to " + plainText(worst) + ", wanted below " + plainText(tolerance) + ")",
+                name(settings().mode), "lower --coherence, raise --tolerance, or choose other targets");
+    }
+    return answer;
+}
+
+Answer run(const Options& o, Progress& progress) {
+    check(o);
+    const bool optimizes = o.mode == Mode::Optimize;
+    if (optimizes && !o.targets && !o.scene.session.file)
+        throw UsageError("--target is required", "pellucid-cli sequence", "see pellucid-cli sequence --help");
+    Opened opened;
+    SceneInputs inputs = inputsOf(o.scene, {toMeasureAndDrawField(), true}, opened.sessionNotices);
+    if (o.from) inputs.frame = *o.from;
+    opened.scene = openScene(inputs, progress.phase("loading"));
+    o.scene.tf.applyTo(opened.scene);
+    o.scene.picture.applyTo(opened.scene);
+    return Sequence(o, opened.scene, progress).run(opened);
+}
+
+} // namespace
+
+Command addSequence(CLI::App& program) {
+    CLI::App* app = program.add_subcommand(
+        "sequence", "Draws and measures the frames of a series, each under a transfer function that may follow them");
+    const auto o = std::make_shared<Options>();
+    o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
+    o->scene.session.add(*app);
+    o->scene.tf.add(*app);
+    o->scene.camera.add(*app);
+    o->scene.clip.add(*app);
+    o->scene.engine.add(*app, "high: half the error, more time");
+    o->scene.saliency.add(*app);
+    o->scene.profile.add(*app);
+    addValue(
+        *app, "--mode", "static|refine|optimize",
+        [o](const std::string& text, const std::string& option) {
+            o->mode = adaptModeFromName(text);
+            if (!o->mode) throw UsageError("'" + text + "' is no mode", option, "use static, refine or optimize");
+        },
+        "one transfer function for all frames; each refined by entropy, or optimized to the targets, from that of the "
+        "frame before (default: the session's, else static)");
+    addValue(
+        *app, "--target", kTargetForms,
+        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        "shares of attention, as in optimize; the first frame's transfer function is optimized to them, in every mode");
+    addValue(
+        *app, "--coherence", "L|inf",
+        [o](const std::string& text, const std::string& option) {
+            o->coherence = text == "inf" ? std::numeric_limits<double>::infinity() : parseReal(text, option, 0, 1e6);
+        },
+        "how much jumps of the transfer function are held back: 0 not at all, inf: as static; with optimize opacities "
+        "stay as near to those of the frame before as a distance of L/100 from the targets allows (default 2)");
+    app->add_flag("--both-ways", o->bothWays,
+                  "with optimize: go forward, then from the last frame back, so that frames give way to what comes "
+                  "later, the first one too: least flicker, twice the time");
+    addValue(
+        *app, "--tolerance", "F",
+        [o](const std::string& text, const std::string& option) { o->tolerance = parseRealAbove(text, option, 0, 1); },
+        "a frame is on target below this distance (default 0.03)");
+    addValue(
+        *app, "--from", "FRAME",
+        [o](const std::string& text, const std::string& option) {
+            o->from = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
+        },
+        "begin with this frame of the series, from 0 (default: the session's, else 0)");
+    app->add_flag("--compare", o->compare, "measure and draw every frame under the first one's transfer function, too");
+    addValue(
+        *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },
+        "write frame_0000.png and frame_0000.tf.json of each frame, curves.csv, curves.svg and curves.png")
+        ->required();
+    app->add_flag("--no-pictures", o->noPictures, "write no pictures of the frames");
+    addValue(
+        *app, "--mp4", "FILE", [o](const std::string& text, const std::string&) { o->movie = text; },
+        "a film of the pictures too, where ffmpeg is installed");
+    addValue(
+        *app, "--fps", "N",
+        [o](const std::string& text, const std::string& option) {
+            o->framesPerSecond = parseRealAbove(text, option, 0, 240);
+        },
+        "frames of the film a second (default 10)");
+    app->add_flag("--require-converged", o->requireConverged,
+                  "exit status 1 where a frame is not on target; everything is written all the same");
+    o->scene.picture.add(*app, PictureOptions::Mode::OfSession);
+    return {app, [o](Progress& progress) { return run(*o, progress); }};
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,81 @@
+// Transfer functions that follow the frames of a series: key frames, and what is made for the frames between by itself.
+#pragma once
+
+#include <optional>
+
+#include <QObject>
+#include <QTimer>
+
+#include "jobs/job.h"
+#include "session/adapt.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// While the session's transfer functions adapt, those that are missing or of other inputs than the present ones are
+/// made one after the other on a thread of its own, beside what one looks at. Each is put in as it comes and is no step
+/// of the history. Waits while an optimization runs, data are fetched, or a hand drags.
+class AdaptController : public QObject {
+    Q_OBJECT
+public:
+    explicit AdaptController(Workbench& bench);
+    ~AdaptController() override;
+
+    void addActions();
+
+    /// All of these are undo steps.
+    void setMode(AdaptSettings::Mode mode);
+    void setCoherence(double coherence); ///< steps in a row become one
+    /// The transfer function of this frame is a key: what is made for the frames after it begins here.
+    void setTfKey();
+    void removeTfKey();
+    void setTargetKey(); ///< the targets of this frame are its own from now on
+    void removeTargetKey();
+    bool hasTfKey() const; ///< at this frame
+    bool hasTargetKey() const;
+    void goToKey(int direction); ///< the nearest before (−1) or after (1) this frame, of either kind
+
+    /// The transfer function of this frame for all that come after it: keys after it go.
+    void fromHereOn();
+
+    /// Of the present state, as of the latest look; {0, 0} in the mode static.
+    AdaptProgress progress() const { return m_progress; }
+    bool isStale(int frame) const; ///< what was made for it is of other inputs than the present ones
+    /// Transfer functions are being made, or will be.
+    bool isBusy() const { return m_job.isRunning() || m_timer.isActive(); }
+    bool isStopped() const { return m_stopped; }
+    void stop(); ///< until goOn(), or until mode or coherence are others
+    void goOn();
+
+Q_SIGNALS:
+    void changed(); ///< progress, busy or stopped
+    void adapted(const pellucid::AdaptedFrame& frame);
+
+private:
+    /// The state of the track, and what was made for the first frame that lacked something.
+    struct Answer {
+        AdaptProgress progress;
+        int firstStale = -1;
+        std::optional<AdaptedFrame> made;
+    };
+    struct Maker { ///< what the frames share; used in m_job alone, which does one thing at a time
+        Workspace workspace;
+        FrameAdapter adapter;
+    };
+    void follow(const Scene& before, const Scene& after);
+    void look();
+    void finish(const Scene& basis, Answer& answer);
+    bool isWanted() const;
+
+    Workbench& m_bench;
+    AdaptProgress m_progress;
+    int m_firstStale = -1, m_staleKey = -1;
+    bool m_stopped = false;
+    QTimer m_timer;
+    Maker m_maker;
+    Lane m_lane;
+    Job<Scene, Answer> m_job; // last: it ends before the rest goes
+};
+
+} // namespace pellucid::gui

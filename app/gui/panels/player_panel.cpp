@@ -1,0 +1,385 @@
+#include "panels/player_panel.h"
+
+#include <cmath>
+#include <limits>
+
+#include <QAction>
+#include <QComboBox>
+#include <QDockWidget>
+#include <QDoubleSpinBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPainter>
+#include <QProgressBar>
+#include <QSlider>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "controllers/adapt_controller.h"
+#include "controllers/player_controller.h"
+#include "number_box.h"
+#include "panel.h"
+#include "theme.h"
+#include "time_strip.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+enum class Sign { First, Previous, Play, Pause, Next, Last, Loop, Back };
+
+/// Signs of players, in the colour of texts.
+QIcon signOf(Sign sign) {
+    constexpr int kSide = 32;
+    QPixmap pixmap(kSide, kSide);
+    pixmap.setDevicePixelRatio(2);
+    pixmap.fill(Qt::transparent);
+    QPainter p(&pixmap);
+    p.setRenderHint(QPainter::Antialiasing);
+    p.setPen(Qt::NoPen);
+    p.setBrush(theme::kText);
+    const auto right = [&](double x, double w) { p.drawPolygon(QPolygonF{{x, 3}, {x + w, 8}, {x, 13}}); };
+    const auto left = [&](double x, double w) { p.drawPolygon(QPolygonF{{x + w, 3}, {x, 8}, {x + w, 13}}); };
+    const auto bar = [&](double x) { p.drawRect(QRectF(x, 3, 2, 10)); };
+    switch (sign) {
+    case Sign::First:
+        bar(3);
+        left(6, 7);
+        break;
+    case Sign::Previous:
+        left(3, 6);
+        bar(11);
+        break;
+    case Sign::Play:
+        right(4, 9);
+        break;
+    case Sign::Pause:
+        p.drawRect(QRectF(4, 3, 3, 10));
+        p.drawRect(QRectF(9, 3, 3, 10));
+        break;
+    case Sign::Next:
+        bar(3);
+        right(7, 6);
+        break;
+    case Sign::Last:
+        right(3, 7);
+        bar(11);
+        break;
+    case Sign::Back:
+        left(3, 9);
+        break;
+    case Sign::Loop:
+        p.setBrush(Qt::NoBrush);
+        p.setPen(QPen(theme::kText, 1.6));
+        p.drawArc(QRectF(3, 3, 10, 10), 60 * 16, 300 * 16);
+        p.setPen(Qt::NoPen);
+        p.setBrush(theme::kText);
+        p.drawPolygon(QPolygonF{{8, 0.5}, {12.5, 4}, {8, 7}});
+        break;
+    }
+    return QIcon(pixmap);
+}
+
+// The slider: 0 at the left end, infinity at the right one, logarithmic between them.
+constexpr int kCoherenceSteps = 100;
+constexpr double kLeastCoherence = 0.01, kMostCoherence = 100;
+
+double coherenceOf(int step) {
+    if (step <= 0) return 0;
+    if (step >= kCoherenceSteps) return std::numeric_limits<double>::infinity();
+    const double t = (step - 1.0) / (kCoherenceSteps - 2.0);
+    // To two digits: so are sessions and texts.
+    const double value = kLeastCoherence * std::pow(kMostCoherence / kLeastCoherence, t);
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    return std::round(value / unit) * unit;
+}
+
+int stepOf(double coherence) {
+    if (!(coherence > 0)) return 0;
+    if (std::isinf(coherence)) return kCoherenceSteps;
+    const double t = std::log(coherence / kLeastCoherence) / std::log(kMostCoherence / kLeastCoherence);
+    return std::clamp(1 + static_cast<int>(std::lround(t * (kCoherenceSteps - 2))), 1, kCoherenceSteps - 1);
+}
+
+QString coherenceText(double coherence) {
+    return std::isinf(coherence) ? QStringLiteral("∞") : QString::number(coherence, 'g', 2);
+}
+
+} // namespace
+
+PanelInfo playerPanel() {
+    return {.id = "player",
+            .title = QObject::tr("Time"),
+            .area = Qt::BottomDockWidgetArea,
+            .visible = false,
+            .below = "tf",
+            .keys = QKeySequence("Ctrl+3"),
+            .tip = QObject::tr("The frames of a series: play, step, key frames, transfer functions over time"),
+            .make = [](Workbench& bench, QWidget* parent) {
+                bench.actions().addGestures(
+                    {{QObject::tr("Time"), QObject::tr("Drag over the frames"), QObject::tr("go to the frame")},
+                     {QObject::tr("Time"), QObject::tr("Wheel, ← and →"), QObject::tr("one frame back, forward")},
+                     {QObject::tr("Time"), QObject::tr("Page up, page down"), QObject::tr("ten frames")}});
+                return new PlayerPanel(bench, parent);
+            }};
+}
+
+PlayerPanel::PlayerPanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_strip(new TimeStrip(this)), m_frame(new QLabel(this)),
+      m_rate(new QLabel(this)), m_surveyText(new QLabel(this)), m_stopSurvey(new QToolButton(this)),
+      m_speed(new QDoubleSpinBox(this)), m_survey(new QProgressBar(this)) {
+    PlayerController& player = bench.player();
+    auto* row = new QHBoxLayout;
+    row->setSpacing(2);
+    for (const auto& [action, name, sign] :
+         std::initializer_list<std::tuple<const char*, const char*, Sign>>{
+             {"firstFrameAction", "firstFrame", Sign::First},
+             {"previousFrameAction", "previousFrame", Sign::Previous},
+             {"playAction", "play", Sign::Play},
+             {"nextFrameAction", "nextFrame", Sign::Next},
+             {"lastFrameAction", "lastFrame", Sign::Last},
+             {"loopAction", "loopFrames", Sign::Loop},
+             {"backwardAction", "playBackward", Sign::Back}}) {
+        QToolButton* const made = button(action, name, signOf(sign));
+        if (sign == Sign::Play) m_play = made;
+        row->addWidget(made);
+    }
+    m_speed->setObjectName("framesPerSecond");
+    m_speed->setRange(PlayerController::kSlowest, PlayerController::kFastest);
+    m_speed->setDecimals(0);
+    m_speed->setSuffix(tr(" fps"));
+    m_speed->setToolTip(tr("Speed of play, frames a second, 1 to 60"));
+    m_speed->setValue(player.speed());
+    connect(m_speed, &QDoubleSpinBox::valueChanged, this, [&player](double value) { player.setSpeed(value); });
+    row->addWidget(m_speed);
+    row->addSpacing(8);
+    m_frame->setObjectName("frameLabel");
+    m_frame->setToolTip(tr("The frame that is shown: its time, in the unit of the data, and its number"));
+    row->addWidget(m_frame);
+    row->addSpacing(12);
+    m_rate->setObjectName("rateLabel");
+    m_rate->setToolTip(tr("Frames that were shown a second, of those that were due; frames that could not be read or\n"
+                          "drawn in time are dropped"));
+    makeFaint(*m_rate);
+    row->addWidget(m_rate);
+    row->addStretch(1);
+    m_surveyText->setObjectName("surveyLabel");
+    makeFaint(*m_surveyText);
+    m_survey->setObjectName("surveyProgress");
+    m_survey->setMaximumSize(100, 12);
+    m_survey->setTextVisible(false);
+    m_stopSurvey->setObjectName("surveyStop");
+    m_stopSurvey->setAutoRaise(true);
+    connect(m_stopSurvey, &QToolButton::clicked, this,
+            [&player] { player.isSurveying() ? player.stopSurvey() : player.goOnSurveying(); });
+    row->addWidget(m_surveyText);
+    row->addWidget(m_survey);
+    row->addWidget(m_stopSurvey);
+
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(4, 2, 4, 2);
+    column->setSpacing(2);
+    column->addLayout(row);
+    column->addWidget(m_strip, 1);
+    column->addWidget(adaptRow());
+
+    connect(m_strip, &TimeStrip::frameWanted, &player, &PlayerController::goTo);
+    connect(m_strip, &TimeStrip::stepWanted, &player, &PlayerController::step);
+    connect(&bench.store(), &SessionStore::changed, this, &PlayerPanel::follow);
+    connect(&player, &PlayerController::changed, this, &PlayerPanel::followPlayer);
+    connect(&player, &PlayerController::surveyed, this, &PlayerPanel::followSurvey);
+    connect(&player, &PlayerController::heldChanged, this, &PlayerPanel::followMarks);
+    connect(&player.adapting(), &AdaptController::changed, this, &PlayerPanel::followAdapting);
+    followPlayer();
+    followSurvey();
+    followAdapting();
+}
+
+QToolButton* PlayerPanel::button(const char* action, const char* name, const QIcon& icon, const QString& text) {
+    auto* made = new QToolButton(this);
+    made->setObjectName(name);
+    made->setIcon(icon);
+    made->setText(text);
+    made->setAutoRaise(true);
+    QAction* const does = m_bench.actions().find(action);
+    made->setToolTip(does->toolTip());
+    made->setAccessibleName(does->toolTip());
+    made->setCheckable(does->isCheckable());
+    const auto followAction = [made, does] {
+        made->setEnabled(does->isEnabled());
+        made->setChecked(does->isChecked());
+    };
+    connect(made, &QToolButton::clicked, does, [does, followAction] {
+        does->trigger();
+        followAction(); // a click has checked it by itself
+    });
+    connect(does, &QAction::changed, made, followAction);
+    followAction();
+    return made;
+}
+
+QWidget* PlayerPanel::adaptRow() {
+    AdaptController& adapting = m_bench.player().adapting();
+    auto* widget = new QWidget(this);
+    auto* row = new QHBoxLayout(widget);
+    row->setContentsMargins(0, 0, 0, 0);
+    row->setSpacing(2);
+    m_mode = new QComboBox(widget);
+    m_mode->setObjectName("adaptMode");
+    m_mode->addItems({tr("static"), tr("refine"), tr("optimize")});
+    m_mode->setToolTip(tr("How the transfer function follows the frames\n"
+                          "static: the keys, and what lies between them\n"
+                          "refine: that of the frame before, refined by entropy, priorities included\n"
+                          "optimize: opacities bring VWS to the targets in every frame"));
+    connect(m_mode, &QComboBox::activated, this,
+            [&adapting](int index) { adapting.setMode(static_cast<AdaptSettings::Mode>(index)); });
+    m_coherence = new QSlider(Qt::Horizontal, widget);
+    m_coherence->setObjectName("coherence");
+    m_coherence->setRange(0, kCoherenceSteps);
+    m_coherence->setFixedWidth(110);
+    m_coherence->setToolTip(tr("Coherence, 0 to ∞, without unit: how much jumps of the transfer function from frame to\n"
+                               "frame are held back; 0: each frame for itself, ∞: as static"));
+    connect(m_coherence, &QSlider::valueChanged, this,
+            [&adapting](int step) { adapting.setCoherence(coherenceOf(step)); });
+    m_coherenceText = new QLabel(widget);
+    m_coherenceText->setObjectName("coherenceLabel");
+    m_coherenceText->setMinimumWidth(m_coherenceText->fontMetrics().horizontalAdvance("0.0099"));
+    auto* label = new QLabel(tr("Transfer function:"), widget);
+    label->setBuddy(m_mode);
+    row->addWidget(label);
+    row->addWidget(m_mode);
+    row->addSpacing(6);
+    row->addWidget(new QLabel(tr("Coherence"), widget));
+    row->addWidget(m_coherence);
+    row->addWidget(m_coherenceText);
+    row->addSpacing(6);
+    for (const auto& [action, name, text] :
+         std::initializer_list<std::tuple<const char*, const char*, QString>>{
+             {"tfKeyAction", "tfKey", tr("◆ Key")},
+             {"targetKeyAction", "targetKey", tr("○ Targets")},
+             {"previousKeyAction", "previousKey", tr("‹ key")},
+             {"nextKeyAction", "nextKey", tr("key ›")},
+             {"fromHereAction", "fromHere", tr("From here on")}})
+        row->addWidget(button(action, name, {}, text));
+    row->addStretch(1);
+    m_adaptText = new QLabel(widget);
+    m_adaptText->setObjectName("adaptLabel");
+    makeFaint(*m_adaptText);
+    m_adapt = new QProgressBar(widget);
+    m_adapt->setObjectName("adaptProgress");
+    m_adapt->setMaximumSize(100, 12);
+    m_adapt->setTextVisible(false);
+    m_stopAdapt = new QToolButton(widget);
+    m_stopAdapt->setObjectName("adaptStop");
+    m_stopAdapt->setAutoRaise(true);
+    connect(m_stopAdapt, &QToolButton::clicked, this,
+            [&adapting] { adapting.isStopped() ? adapting.goOn() : adapting.stop(); });
+    for (QWidget* w : std::initializer_list<QWidget*>{m_adaptText, m_adapt, m_stopAdapt}) row->addWidget(w);
+    return widget;
+}
+
+void PlayerPanel::followAdapting() {
+    AdaptController& adapting = m_bench.player().adapting();
+    const Session& session = m_bench.store().session();
+    const AdaptSettings& settings = *session.adapt;
+    const bool open = m_bench.player().hasSeries() && !m_bench.isReadOnly();
+    const bool adapts = settings.mode != AdaptSettings::Mode::Static;
+    m_mode->setEnabled(open);
+    m_mode->setCurrentIndex(static_cast<int>(settings.mode));
+    m_coherence->setEnabled(open && adapts);
+    {
+        const QSignalBlocker quiet(m_coherence);
+        if (coherenceOf(m_coherence->value()) != settings.coherence) m_coherence->setValue(stepOf(settings.coherence));
+    }
+    m_coherenceText->setText(coherenceText(settings.coherence));
+    const AdaptProgress progress = adapting.progress();
+    m_adaptText->setVisible(adapts && open);
+    m_adaptText->setText(progress.done < progress.all
+                             ? tr("made for %L1 of %L2 frames").arg(progress.done).arg(progress.all)
+                             : tr("made for all frames"));
+    const bool making = adapts && open && progress.done < progress.all;
+    m_adapt->setVisible(making);
+    m_adapt->setRange(0, std::max(1, progress.all));
+    m_adapt->setValue(progress.done);
+    m_stopAdapt->setVisible(making);
+    m_stopAdapt->setText(adapting.isStopped() ? tr("Go on") : tr("Stop"));
+    m_stopAdapt->setToolTip(adapting.isStopped() ? tr("Make the transfer functions of the other frames")
+                                                 : tr("Make no more transfer functions of other frames for now"));
+    followMarks();
+}
+
+void PlayerPanel::showDock(bool shown) {
+    auto* dock = qobject_cast<QDockWidget*>(parentWidget());
+    if (dock == nullptr || dock->isHidden() == !shown) return;
+    dock->setVisible(shown);
+    m_shownByItself = shown;
+}
+
+void PlayerPanel::follow(const Scene& before, const Scene& after) {
+    const bool series = after.series && after.series->varies();
+    if (before.series != after.series) {
+        if (series)
+            showDock(true);
+        else if (m_shownByItself)
+            showDock(false);
+    }
+    if (before.volume != after.volume)
+        m_strip->setSeries(series ? after.series : nullptr, series ? after.volume->range() : ValueRange{0, 1});
+    if (before.volume != after.volume || before.session.frame != after.session.frame) followPlayer();
+    if (!before.session.variables.isSame(after.session.variables) ||
+        !before.session.targetKeys.isSame(after.session.targetKeys) || before.volume != after.volume ||
+        !before.session.adapt.isSame(after.session.adapt))
+        followAdapting();
+}
+
+void PlayerPanel::followPlayer() {
+    const PlayerController& player = m_bench.player();
+    const bool series = player.hasSeries();
+    m_play->setIcon(signOf(player.isPlaying() ? Sign::Pause : Sign::Play));
+    m_strip->setEnabled(series);
+    m_speed->setEnabled(series);
+    showNumber(*m_speed, player.speed());
+    m_rate->setText(player.rateText());
+    if (!series) return m_frame->setText({});
+    m_frame->setText(
+        tr("<b>%1</b> (%L2 of %L3)").arg(player.label(player.frame()).toHtmlEscaped()).arg(player.frame() + 1).arg(
+            player.frameCount()));
+    m_strip->setFrame(player.frame(), player.awaited());
+}
+
+void PlayerPanel::followSurvey() {
+    const PlayerController& player = m_bench.player();
+    const int known = player.knownCount(), count = player.frameCount();
+    const bool open = player.hasSeries() && known < count;
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_surveyText, m_survey, m_stopSurvey})
+        widget->setVisible(open);
+    m_survey->setRange(0, std::max(1, count));
+    m_survey->setValue(known);
+    m_surveyText->setText(tr("%L1 of %L2 frames known").arg(known).arg(count));
+    m_stopSurvey->setText(player.isSurveying() ? tr("Stop") : tr("Go on"));
+    m_stopSurvey->setToolTip(player.isSurveying() ? tr("Look at no more frames than are shown")
+                                                  : tr("Look at all frames, so that the strip shows them"));
+    m_strip->refresh();
+    followMarks();
+}
+
+void PlayerPanel::followMarks() {
+    PlayerController& player = m_bench.player();
+    if (!player.hasSeries()) return;
+    const Session& session = m_bench.store().session();
+    const TfTrack& track = session.variable().track;
+    std::vector<FrameMark> marks(static_cast<std::size_t>(player.frameCount()));
+    const bool keys = track.keys.size() > 1 || session.adapt->mode != AdaptSettings::Mode::Static;
+    for (int f = 0; f < player.frameCount(); ++f) {
+        FrameMark& mark = marks[static_cast<std::size_t>(f)];
+        mark.tfKey = keys && track.keys.contains(f);
+        mark.targetKey = session.targetKeys->contains(f);
+        mark.adapted = session.adapt->mode != AdaptSettings::Mode::Static && track.adapted.contains(f);
+        mark.stale = player.adapting().isStale(f);
+        mark.held = player.isHeld(f);
+        mark.problem = player.problemOf(f);
+    }
+    m_strip->setMarks(std::move(marks));
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,23 @@
+// How different the colours of two pictures look: ΔE of CIELAB.
+#pragma once
+
+#include <vector>
+
+#include "render/image.h"
+#include "tf/color.h"
+
+namespace pellucid {
+
+/// CIE76: the distance of two sRGB colours in CIELAB (white point D65). 0: the same; about 2.3: just noticed; 100:
+/// black to white.
+double deltaE(const Rgb& a, const Rgb& b);
+
+/// The mean over all pixels of ΔE between two pictures of one size, of what is seen over black where they are
+/// transparent. Components are rounded to 8 bits, as screens show them. The same bits for any thread count. Throws
+/// Error for pictures of different sizes.
+double meanDeltaE(const Image& a, const Image& b);
+
+/// CIELAB of what is seen of each pixel over black: L*, a*, b* one after the other, not rounded.
+std::vector<double> labPixels(const Image& image);
+
+} // namespace pellucid

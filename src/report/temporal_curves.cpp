@@ -1,0 +1,199 @@
+#include "report/temporal_curves.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "report/convergence.h"
+#include "report/csv.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr double kSmallestShown = 1e-5; ///< on logarithmic axes
+
+std::string number(double value) {
+    std::array<char, 64> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+    return {buffer.data(), end};
+}
+
+PlotAxis frameAxis(const TemporalCurves& curves) {
+    int first = 0, last = 1;
+    bool any = false;
+    for (const TemporalRun& run : curves.runs)
+        for (const FrameFigures& f : run.frames) {
+            first = any ? std::min(first, f.frame) : f.frame;
+            last = any ? std::max(last, f.frame) : f.frame;
+            any = true;
+        }
+    return {.label = "frame",
+            .lo = static_cast<double>(first),
+            .hi = static_cast<double>(std::max(last, first + 1)),
+            .whole = true};
+}
+
+/// A curve over the frames of a run, cut where there is no value.
+template <class ValueAt>
+void addCurve(Plot& plot, const TemporalRun& run, const std::string& name, const std::optional<Rgb>& color, bool dashed,
+              const ValueAt& valueAt) {
+    PlotSeries piece{.name = name, .color = color, .dashed = dashed, .points = {}};
+    const auto end = [&] {
+        if (piece.points.size() == 1) piece.dotted = true; // a line of one point is none
+        if (!piece.points.empty()) {
+            plot.series.push_back(piece);
+            piece.name.clear(); // once in the legend
+        }
+        piece.points.clear();
+        piece.dotted = false;
+    };
+    for (const FrameFigures& f : run.frames) {
+        const std::optional<double> value = f.problem.empty() ? valueAt(f) : std::nullopt;
+        if (value)
+            piece.points.push_back({static_cast<double>(f.frame), *value});
+        else
+            end();
+    }
+    end();
+}
+
+std::optional<double> at(const std::vector<double>& values, std::size_t i) {
+    return i < values.size() ? std::optional(values[i]) : std::nullopt;
+}
+
+double largest(const Plot& plot) {
+    double most = 0;
+    for (const PlotSeries& s : plot.series)
+        for (const PlotPoint& p : s.points) most = std::max(most, p.y);
+    return most;
+}
+
+void fitLinear(Plot& plot, double most) {
+    const double hi = largest(plot);
+    plot.y.lo = 0;
+    plot.y.hi = hi > 0 ? std::min(most, 1.1 * hi) : std::min(most, 1.0);
+}
+
+void fitDecades(Plot& plot) {
+    double lo = 1;
+    for (const PlotSeries& s : plot.series)
+        for (const PlotPoint& p : s.points) lo = std::min(lo, std::max(p.y, kSmallestShown));
+    plot.y.logarithmic = true;
+    plot.y.lo = std::pow(10, std::floor(std::log10(lo) + 1e-9));
+    plot.y.hi = std::max(plot.y.lo * 10, std::pow(10, std::ceil(std::log10(std::max(largest(plot), lo)) - 1e-9)));
+}
+
+Plot plotOf(const TemporalCurves& curves, std::string title, std::string label) {
+    Plot plot{.title = std::move(title), .x = frameAxis(curves), .y = {.label = std::move(label)}, .series = {}};
+    if (curves.present >= plot.x.lo && curves.present <= plot.x.hi) {
+        const double half = 0.002 * (plot.x.hi - plot.x.lo), x = curves.present;
+        plot.bands.push_back({std::max(plot.x.lo, x - half), std::min(plot.x.hi, x + half), ""});
+    }
+    return plot;
+}
+
+std::string titled(const TemporalCurves& curves, const std::string& what, std::size_t run) {
+    return curves.runs.size() > 1 ? what + ", " + curves.runs[run].name : what;
+}
+
+/// One curve per feature of a run.
+template <class Values>
+void addFeatures(Plot& plot, const TemporalCurves& curves, std::size_t run, bool named, bool dashed,
+                 const Values& valuesOf) {
+    for (std::size_t i = 0; i < curves.features.size(); ++i)
+        addCurve(plot, curves.runs[run], named ? curves.features[i] : std::string(),
+                 i < curves.colors.size() ? curves.colors[i] : curveColor(i), dashed,
+                 [&](const FrameFigures& f) { return at(valuesOf(f), i); });
+}
+
+} // namespace
+
+bool TemporalCurves::empty() const {
+    return std::all_of(runs.begin(), runs.end(), [](const TemporalRun& run) {
+        return std::all_of(run.frames.begin(), run.frames.end(),
+                           [](const FrameFigures& f) { return !f.problem.empty(); });
+    });
+}
+
+Plot temporalVwsPlot(const TemporalCurves& curves, std::size_t run, double highest) {
+    Plot plot = plotOf(curves, titled(curves, "Visibility-weighted saliency", run), "VWS");
+    addFeatures(
+        plot, curves, run, true, false, [](const FrameFigures& f) -> const auto& { return f.vws; });
+    addFeatures(
+        plot, curves, run, false, true, [](const FrameFigures& f) -> const auto& { return f.targets; });
+    fitLinear(plot, 1);
+    if (highest > 0) plot.y.hi = highest;
+    return plot;
+}
+
+Plot temporalVisibilityPlot(const TemporalCurves& curves, std::size_t run) {
+    Plot plot = plotOf(curves, titled(curves, "Feature visibility", run), "FV");
+    addFeatures(
+        plot, curves, run, true, false, [](const FrameFigures& f) -> const auto& { return f.visibility; });
+    fitLinear(plot, 1);
+    return plot;
+}
+
+Plot temporalOpacityPlot(const TemporalCurves& curves, std::size_t run, bool logarithmic) {
+    Plot plot = plotOf(curves, titled(curves, "Opacity of the peaks", run), "opacity per d0");
+    addFeatures(
+        plot, curves, run, true, false, [](const FrameFigures& f) -> const auto& { return f.opacity; });
+    logarithmic ? fitDecades(plot) : fitLinear(plot, 1);
+    return plot;
+}
+
+Plot temporalObjectivePlot(const TemporalCurves& curves) {
+    Plot plot = plotOf(curves, "Distance from the targets", "F");
+    for (std::size_t r = 0; r < curves.runs.size(); ++r)
+        addCurve(plot, curves.runs[r], curves.runs[r].name, curveColor(r), false,
+                 [](const FrameFigures& f) { return std::optional(f.objective); });
+    fitLinear(plot, 1);
+    return plot;
+}
+
+Plot temporalFlickerPlot(const TemporalCurves& curves) {
+    Plot plot = plotOf(curves, "Flicker", "mean ΔE");
+    for (std::size_t r = 0; r < curves.runs.size(); ++r)
+        addCurve(plot, curves.runs[r], curves.runs[r].name, curveColor(r), false,
+                 [](const FrameFigures& f) { return f.flicker; });
+    fitLinear(plot, 200);
+    return plot;
+}
+
+std::vector<Plot> temporalPlots(const TemporalCurves& curves) {
+    std::vector<Plot> plots;
+    double highest = 0;
+    for (std::size_t r = 0; r < curves.runs.size(); ++r) highest = std::max(highest, temporalVwsPlot(curves, r).y.hi);
+    for (std::size_t r = 0; r < curves.runs.size(); ++r) plots.push_back(temporalVwsPlot(curves, r, highest));
+    plots.push_back(temporalObjectivePlot(curves));
+    plots.push_back(temporalFlickerPlot(curves));
+    for (std::size_t r = 0; r < curves.runs.size(); ++r) {
+        plots.push_back(temporalVisibilityPlot(curves, r));
+        plots.push_back(temporalOpacityPlot(curves, r));
+    }
+    return plots;
+}
+
+std::string csvOf(const TemporalCurves& curves) {
+    std::string csv = "run,frame,time,F,flicker,moves,seconds";
+    for (const std::string& feature : curves.features)
+        for (const char* what : {"VWS ", "target ", "FV ", "opacity "}) csv += "," + csvField(what + feature);
+    csv += ",problem\n";
+    for (const TemporalRun& run : curves.runs)
+        for (const FrameFigures& f : run.frames) {
+            const bool known = f.problem.empty();
+            csv += csvField(run.name) + "," + std::to_string(f.frame) + "," + number(f.time) + "," +
+                   (known ? number(f.objective) : "") + "," + (f.flicker ? number(*f.flicker) : "") + "," +
+                   (f.moves ? std::to_string(*f.moves) : "") + "," + (f.moves ? number(f.seconds) : "");
+            for (std::size_t i = 0; i < curves.features.size(); ++i)
+                for (const std::vector<double>* values : {&f.vws, &f.targets, &f.visibility, &f.opacity})
+                    csv += "," + (i < values->size() ? number((*values)[i]) : "");
+            csv += "," + csvField(f.problem) + "\n";
+        }
+    return csv;
+}
+
+} // namespace pellucid

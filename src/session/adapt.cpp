@@ -1,0 +1,470 @@
+#include "session/adapt.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "base/stopwatch.h"
+#include "engines/engines.h"
+#include "optimize/region_colors.h"
+#include "optimize/tracking.h"
+#include "render/color_difference.h"
+#include "session/scene_data.h"
+#include "session/session_json.h"
+#include "tf/opacity.h"
+#include "tf/shown_tf.h"
+#include "tf/tf_range.h"
+
+namespace pellucid {
+
+namespace {
+
+using Mode = AdaptSettings::Mode;
+
+constexpr int kRegionSize = 512;    ///< pixels of the side of the picture that a favoured region is of
+constexpr int kMetricSize = 96;     ///< likewise, of pictures that tell how much they change
+constexpr double kMetricStep = 0.1; ///< of ln τ
+constexpr double kUnseen = 0.03;    ///< of the mean change, that even a feature counts which is not seen
+constexpr int kMovesAnew = 12;      ///< of the search where a frame is off target
+
+/// FNV-1a, twice with different starts: 128 bits.
+class Hash {
+public:
+    void add(const void* bytes, std::size_t count) {
+        const auto* p = static_cast<const unsigned char*>(bytes);
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::uint64_t& h : m_state) h = (h ^ p[i]) * 0x100000001b3ull;
+    }
+    void add(double value) {
+        value += 0.0; // −0 is 0
+        add(&value, sizeof value);
+    }
+    void add(long long value) { add(&value, sizeof value); }
+    void add(const std::string& text) {
+        add(static_cast<long long>(text.size()));
+        add(text.data(), text.size());
+    }
+    std::string text() const {
+        std::array<char, 40> buffer{};
+        std::snprintf(buffer.data(), buffer.size(), "%016llx%016llx", static_cast<unsigned long long>(m_state[0]),
+                      static_cast<unsigned long long>(m_state[1]));
+        return buffer.data();
+    }
+
+private:
+    std::array<std::uint64_t, 2> m_state{0xcbf29ce484222325ull, 0x6c62272e07bb0142ull};
+};
+
+void addSource(Hash& hash, const VolumeSource& source) {
+    namespace fs = std::filesystem;
+    const auto addFile = [&](const std::string& path) {
+        hash.add(source.isSample() ? path : fs::path(path).filename().string());
+        std::error_code none;
+        hash.add(fs::is_regular_file(path, none) ? static_cast<long long>(fs::file_size(path, none)) : -1LL);
+    };
+    addFile(source.path);
+    for (const std::string& path : source.more) addFile(path);
+    hash.add(static_cast<long long>(source.step));
+    hash.add(source.array);
+    if (source.raw) {
+        const RawLayout& raw = *source.raw;
+        for (const long long v : {static_cast<long long>(raw.dims.x), static_cast<long long>(raw.dims.y),
+                                  static_cast<long long>(raw.dims.z), static_cast<long long>(raw.type),
+                                  static_cast<long long>(raw.bigEndian), static_cast<long long>(raw.skipBytes)})
+            hash.add(v);
+        for (int a = 0; a < 3; ++a) hash.add(raw.spacing[a]);
+    }
+    hash.add(source.missing.value_or(std::nan("")));
+    for (const int v : {source.component, source.sampleSize, static_cast<int>(source.seed), source.downsample})
+        hash.add(static_cast<long long>(v));
+    if (source.region)
+        for (int a = 0; a < 3; ++a) {
+            hash.add(static_cast<long long>(source.region->lo[a]));
+            hash.add(static_cast<long long>(source.region->hi[a]));
+        }
+}
+
+void addTf(Hash& hash, const TransferFunction& tf) {
+    const auto addColor = [&](const Rgb& c) {
+        hash.add(c.r);
+        hash.add(c.g);
+        hash.add(c.b);
+    };
+    hash.add(static_cast<long long>(tf.points.size()));
+    for (const ControlPoint& p : tf.points) {
+        hash.add(p.x);
+        hash.add(p.opacity);
+        addColor(p.color);
+        hash.add(static_cast<long long>(p.fixed));
+    }
+    hash.add(static_cast<long long>(tf.features.size()));
+    for (const Feature& f : tf.features) {
+        hash.add(f.name);
+        hash.add(f.a);
+        hash.add(f.b);
+        addColor(f.color);
+        hash.add(static_cast<long long>(f.hidden));
+        hash.add(static_cast<long long>(f.id));
+    }
+    if (tf.range) {
+        hash.add(tf.range->lo);
+        hash.add(tf.range->hi);
+    }
+}
+
+/// The goals of a frame: targets of the keys where there are some.
+FeatureGoals goalsOf(const Session& session, int frame) {
+    FeatureGoals goals = *session.goals;
+    if (session.targetKeys->empty() || frame == session.frame) return goals;
+    for (const auto& [id, target] : targetsBetween(*session.targetKeys, frame))
+        if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
+    return goals;
+}
+
+/// Fingerprints of one session: what its frames have in common is hashed once.
+class Fingerprints {
+public:
+    Fingerprints(const Session& session, const TimeSeries& series) : m_session(session), m_series(series) {
+        const Mode mode = session.adapt->mode;
+        Session common; // nothing but what counts
+        common.adapt = session.adapt;
+        const bool viewed = mode == Mode::Optimize || (mode == Mode::Refine && session.refine->region);
+        if (mode == Mode::Refine) {
+            common.refine = session.refine;
+            common.refine.edit([](RefineSettings& r) { r.live = false; });
+        }
+        if (viewed) {
+            common.camera = session.camera;
+            common.clipping = session.clipping;
+        }
+        if (mode == Mode::Optimize) {
+            common.measure = session.measure;
+            common.optimize = session.optimize;
+            common.hsb = session.hsb;
+        }
+        m_common.add(jsonFromSession(common, "", DataPaths::Absolute).dump());
+        const std::size_t variables = mode == Mode::Optimize && session.hsb->on ? session.variables->size() : 1;
+        for (std::size_t i = 0; i < variables; ++i) {
+            const Variable& v = (*session.variables)[i];
+            m_common.add(v.derivation ? v.derivation->text() : std::string());
+            if (v.window) {
+                m_common.add(v.window->lo);
+                m_common.add(v.window->hi);
+            }
+            if (i > 0 || v.derivation) { // of the first one, plain, frame by frame
+                m_common.add(v.name);
+                addSource(m_common, v.source);
+            }
+        }
+        // Without a window of its own it is that of all frames; what is derived may be made of several.
+        const bool others = variables > 1 || session.variable().derivation.has_value();
+        if (!session.variable().window || others)
+            for (const SeriesFrame& frame : series.listing().frames) addSource(m_common, frame.source);
+        m_needsKey = mode == Mode::Refine && session.refine->region.has_value();
+    }
+
+    std::string of(int frame, const TransferFunction& previous) const {
+        Hash hash = m_common;
+        addSource(hash, m_series.listing().frames[static_cast<std::size_t>(frame)].source);
+        if (m_session.hsb->on) hash.add(static_cast<long long>(frame));
+        addTf(hash, previous);
+        const TfTrack& track = m_session.variable().track;
+        if (const int key = track.keyBefore(frame); m_needsKey && key >= 0) {
+            addTf(hash, *track.keys.at(key));
+            addSource(hash, m_series.listing().frames[static_cast<std::size_t>(m_series.nearest(key))].source);
+        }
+        if (m_session.adapt->mode == Mode::Optimize) {
+            const FeatureGoals goals = goalsOf(m_session, frame);
+            for (const double t : targetsOf(previous, goals)) hash.add(t);
+            for (const OpacityLimits& limit : limitsOf(previous, goals)) {
+                hash.add(limit.lowest);
+                hash.add(limit.highest);
+                hash.add(static_cast<long long>(limit.locked));
+            }
+        }
+        return hash.text();
+    }
+
+private:
+    const Session& m_session;
+    const TimeSeries& m_series;
+    Hash m_common;
+    bool m_needsKey = false;
+};
+
+/// Calls `visit(task, isFresh)` for the frames that should have an adapted transfer function, in the order of
+/// nextToAdapt(), until it returns false. A frame after a stale one has nothing to start from: its task is empty.
+template <class Visit>
+void visitFrames(const Session& session, const TimeSeries& series, const Visit& visit) {
+    if (session.isEmpty() || session.adapt->mode == Mode::Static) return;
+    const TfTrack& track = session.variable().track;
+    if (track.keys.empty()) return;
+    const Fingerprints fingerprints(session, series);
+    std::vector<int> keys;
+    const int present = track.keyBefore(session.frame);
+    keys.push_back(present);
+    for (const auto& [key, tf] : track.keys)
+        if (key != present) keys.push_back(key);
+    for (const int key : keys) {
+        const auto next = track.keys.upper_bound(key);
+        const int end = next == track.keys.end() ? series.size() : std::min(next->first, series.size());
+        std::shared_ptr<const TransferFunction> previous = track.keys.at(key).shared();
+        for (int frame = key + 1; frame < end; ++frame) {
+            if (!series.summary(frame).problem.empty()) continue;
+            std::optional<AdaptTask> task;
+            bool fresh = false;
+            if (previous) {
+                task = AdaptTask{frame, key, *previous, fingerprints.of(frame, *previous)};
+                const auto there = track.adapted.find(frame);
+                fresh = there != track.adapted.end() && there->second.basis == task->basis;
+                previous = fresh ? there->second.tf.shared() : nullptr;
+            }
+            if (!visit(task, fresh)) return;
+        }
+    }
+}
+
+TransferFunction writtenFor(const TransferFunction& tf, const ValueRange& window) {
+    return window.lo < window.hi && tf.range ? inRange(tf, window) : tf;
+}
+
+/// What pulls an answer back toward where it came from: the minimum of |x − x₁|² + λ|x − x₀|².
+TransferFunction pulledBack(const TransferFunction& before, TransferFunction after, double coherence) {
+    for (std::size_t i = 0; i < after.points.size() && i < before.points.size(); ++i) {
+        double& x = after.points[i].opacity;
+        x = (x + coherence * before.points[i].opacity) / (1 + coherence);
+    }
+    return after;
+}
+
+/// How much pictures change with ln τ of each feature: the mean over the pixels of a small picture of ⟨∂Lab/∂y_i,
+/// ∂Lab/∂y_j⟩, so that a jump is a root mean square ΔE. Empty where the picture shows no change at all.
+std::vector<std::vector<double>> pictureMetric(const Scene& scene, const JobControl& job) {
+    const auto renderer = makeRenderer(scene.session.measure->engine, scene.volume);
+    const PictureInput picture = pictureInput(scene, kMetricSize, kMetricSize);
+    const auto labOf = [&](const TransferFunction& tf) {
+        return labPixels(renderer->render(picture.camera, tf, picture.settings, job));
+    };
+    const std::vector<double> base = labOf(picture.tf), x = featureOpacities(picture.tf);
+    const std::size_t n = x.size();
+    std::vector<std::vector<double>> changes(n);
+    for (std::size_t f = 0; f < n; ++f) {
+        if (picture.tf.features[f].hidden || x[f] <= 0) continue;
+        std::vector<double> moved = x;
+        moved[f] = opacityOfStep(x[f], std::exp(kMetricStep));
+        changes[f] = labOf(withFeatureOpacities(picture.tf, moved));
+        for (std::size_t i = 0; i < base.size(); ++i) changes[f][i] = (changes[f][i] - base[i]) / kMetricStep;
+    }
+    std::vector<std::vector<double>> metric(n, std::vector<double>(n, 0.0));
+    double trace = 0;
+    for (std::size_t f = 0; f < n; ++f)
+        for (std::size_t g = 0; g <= f; ++g) {
+            if (changes[f].empty() || changes[g].empty()) continue;
+            double sum = 0;
+            for (std::size_t i = 0; i < base.size(); ++i) sum += changes[f][i] * changes[g][i];
+            metric[f][g] = metric[g][f] = sum / (static_cast<double>(base.size()) / 3);
+            trace += f == g ? metric[f][g] : 0;
+        }
+    if (!(trace > 0)) return {};
+    // What is not seen should not wander either.
+    for (std::size_t f = 0; f < n; ++f) metric[f][f] += kUnseen * trace / static_cast<double>(n);
+    return metric;
+}
+
+} // namespace
+
+std::string fingerprintOf(const Session& session, const TimeSeries& series, int frame,
+                          const TransferFunction& previous) {
+    return Fingerprints(session, series).of(frame, previous);
+}
+
+std::optional<AdaptTask> nextToAdapt(const Session& session, const TimeSeries& series) {
+    std::optional<AdaptTask> next;
+    visitFrames(session, series, [&](std::optional<AdaptTask>& task, bool fresh) {
+        if (fresh || !task) return true;
+        next = std::move(task);
+        return false;
+    });
+    return next;
+}
+
+int firstStale(const Session& session, const TimeSeries& series) {
+    const auto next = nextToAdapt(session, series);
+    return next ? next->frame : -1;
+}
+
+AdaptProgress adaptProgress(const Session& session, const TimeSeries& series) {
+    AdaptProgress progress;
+    visitFrames(session, series, [&](const std::optional<AdaptTask>&, bool fresh) {
+        ++progress.all;
+        progress.done += fresh ? 1 : 0;
+        return true;
+    });
+    return progress;
+}
+
+Scene sceneAt(const Scene& basis, int frame, const TransferFunction& tf, const JobControl& job) {
+    Session session = basis.session;
+    session.frame = frame;
+    if (basis.series->varies() && frame != basis.session.frame) // with histogram and codes
+        basis.series->show(frame, windowOf(session.variable(), *basis.series, job), job);
+    Scene scene = resolve(std::move(session), basis, {}, job);
+    if (!scene.histogram) scene.histogram = std::make_shared<const Histogram>(makeHistogram(*scene.volume));
+    scene.tf = writtenFor(tf, scene.volume->range());
+    return scene;
+}
+
+RefinePriority FrameAdapter::priorityOf(const Scene& basis, const AdaptTask& task, const JobControl& job) {
+    const RefineSettings& settings = *basis.session.refine;
+    RefinePriority priority;
+    priority.intensity = settings.intensity;
+    if (settings.intensity || !settings.region) return priority;
+    // The colours that somebody has chosen are those of the key frame, whatever lies there later.
+    const auto& key = *basis.session.variable().track.keys.at(task.key);
+    const std::string wanted = fingerprintOf(basis.session, *basis.series, task.key, key);
+    if (m_regionBasis != wanted) {
+        m_regionBasis.clear();
+        const Scene scene = sceneAt(basis, task.key, key, job);
+        const PictureInput picture = plainPictureInput(scene, kRegionSize, kRegionSize);
+        // Always by the cpu renderer: the same answer on every machine.
+        const Image image = makeCpuRenderer(picture.volume)->render(picture.camera, picture.tf, picture.settings, job);
+        m_colors = regionColors(image, *settings.region);
+        m_regionBasis = wanted;
+    }
+    priority.region = m_colors;
+    return priority;
+}
+
+AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Workspace& workspace,
+                                 const JobControl& job) {
+    const Stopwatch watch;
+    const JobControl quiet{job.stop, {}};
+    const AdaptSettings& settings = *basis.session.adapt;
+    AdaptedFrame made;
+    made.frame = task.frame;
+    made.basis = task.basis;
+    made.tf = task.previous;
+    const RefinePriority priority = settings.mode == Mode::Refine ? priorityOf(basis, task, quiet) : RefinePriority{};
+    Scene scene = sceneAt(basis, task.frame, task.previous, quiet);
+    if (settings.mode == Mode::Refine) {
+        RefineOptions options = basis.session.refine->options();
+        options.priority = priority;
+        made.tf = scene.tf;
+        if (!std::isinf(settings.coherence)) {
+            const RefineResult result = refine(*scene.histogram, scene.tf, options, quiet);
+            made.tf = pulledBack(scene.tf, result.tf, settings.coherence);
+            made.energy = result.energyMovableAfter;
+            made.moves = result.iterations;
+        }
+    } else if (settings.mode == Mode::Optimize && !scene.tf.features.empty()) {
+        const MeasureInput input = measureInput(scene);
+        const std::vector<double> targets = scene.targets();
+        const std::vector<OpacityLimits> limits = limitsOf(scene.tf, *scene.session.goals);
+        VisibilityEngine& engine = workspace.engine(input);
+        const EngineVws function(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws);
+        TrackOptions track;
+        track.coherence = settings.coherence;
+        if (settings.coherence > 0 && !std::isinf(settings.coherence)) track.metric = pictureMetric(scene, quiet);
+        Tracked found = pellucid::track(function, targets, limits, track, quiet);
+        // Moves downhill are stuck far from the targets: other starts may not be.
+        const double enough = std::hypot(std::max(basis.session.optimize->tolerance, track.distance()), found.least);
+        if (!std::isinf(settings.coherence) && found.objective > enough) {
+            MeasureInput from = input;
+            from.tf = withFeatureOpacities(input.tf, found.opacity);
+            OptimizeOptions options = *basis.session.optimize;
+            options.method = SearchMethod::Newton;
+            options.coverage.reset();
+            options.maxIterations = kMovesAnew;
+            const OptimizeResult anew = workspace.approach(from, targets, limits, options, false, quiet);
+            if (anew.reason == StopReason::Cancelled) throw Cancelled{};
+            if (const OptimizeState& best = anew.history[anew.best]; best.objective < enough) {
+                found.opacity = best.opacity;
+                found.vws = best.vws;
+                found.objective = best.objective;
+                found.moves += anew.iterations();
+            }
+        }
+        made.tf = std::isinf(settings.coherence) ? scene.tf : withShownOpacities(scene.tf, found.opacity);
+        made.vws = std::move(found.vws);
+        made.objective = found.objective;
+        made.moves = found.moves;
+    }
+    made.seconds = watch.seconds();
+    return made;
+}
+
+Session withAdapted(Session session, int frame, AdaptedTf adapted) {
+    session.variables.edit([&](std::vector<Variable>& all) { all.front().track.adapted[frame] = std::move(adapted); });
+    return session;
+}
+
+FrameFigures figuresOf(const Scene& scene, const TransferFunction* before, Workspace& workspace,
+                       const JobControl& job) {
+    FrameFigures figures;
+    figures.frame = scene.session.frame;
+    figures.time = scene.series->listing().frames[static_cast<std::size_t>(figures.frame)].time;
+    figures.targets = scene.targets();
+    const Measures measures = workspace.measure(measureInput(scene), {job.stop, {}});
+    for (const FeatureMeasures& feature : measures.features) {
+        figures.vws.push_back(feature.vws);
+        figures.visibility.push_back(feature.visibility);
+    }
+    figures.opacity = measures.opacities;
+    if (!figures.vws.empty()) figures.objective = objectiveOf(figures.vws, figures.targets);
+    if (before == nullptr) return figures;
+    figures.flicker = 0;
+    if (*before == scene.tf) return figures;
+    const auto renderer = makeRenderer(scene.session.measure->engine, scene.volume);
+    std::array<Image, 2> pictures;
+    Scene shown = scene;
+    for (std::size_t i = 0; i < 2; ++i) {
+        if (i == 1) shown.tf = *before;
+        const PictureInput picture = pictureInput(shown, kFlickerSize, kFlickerSize);
+        pictures[i] = renderer->render(picture.camera, picture.tf, picture.settings, {job.stop, {}});
+    }
+    figures.flicker = meanDeltaE(pictures[0], pictures[1]);
+    return figures;
+}
+
+FrameFigures brokenFigures(const TimeSeries& series, int frame) {
+    FrameFigures figures;
+    figures.frame = frame;
+    figures.time = series.listing().frames[static_cast<std::size_t>(frame)].time;
+    figures.problem = series.summary(frame).problem;
+    if (figures.problem.empty()) figures.problem = "it cannot be read";
+    return figures;
+}
+
+SequenceFigures summaryOf(const std::vector<FrameFigures>& frames) {
+    SequenceFigures sums;
+    int flickers = 0, made = 0;
+    for (const FrameFigures& f : frames) {
+        if (!f.problem.empty()) {
+            ++sums.broken;
+            continue;
+        }
+        ++sums.frames;
+        sums.rms += f.objective * f.objective;
+        if (f.flicker) {
+            sums.flicker += *f.flicker;
+            ++flickers;
+        }
+        if (f.moves) {
+            sums.moves += *f.moves;
+            sums.seconds += f.seconds;
+            ++made;
+        }
+    }
+    if (sums.frames > 0) sums.rms = std::sqrt(sums.rms / sums.frames);
+    if (flickers > 0) sums.flicker /= flickers;
+    if (made > 0) {
+        sums.moves /= made;
+        sums.seconds /= made;
+    }
+    return sums;
+}
+
+} // namespace pellucid

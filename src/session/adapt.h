@@ -1,0 +1,111 @@
+// Transfer functions that follow the frames of a series (docs/method.md, "Transfer functions over time"): which are to
+// be made anew, how one is made, and what a frame shows under it. For the window and the command line alike.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/workspace.h"
+
+namespace pellucid {
+
+/// What AdaptSettings::coherence should be where nobody says (docs/method.md, "Transfer functions over time").
+inline constexpr double kUsualCoherence = 2;
+
+/// A transfer function that is to be made, from that of the frame before.
+struct AdaptTask {
+    int frame = 0;
+    int key = 0;               ///< the key frame that it goes back to
+    TransferFunction previous; ///< what it starts from: that of the frame before, or of the key
+    std::string basis;         ///< fingerprintOf() of these
+};
+
+/// Text that is the same exactly where a frame's adapted transfer function would be: a hash of the frame's data, their
+/// window, the transfer function it starts from, AdaptSettings, and of what its mode depends on: settings of refinement
+/// (and, where a region is favoured, the view, clipping and the key's transfer function), or targets of this frame,
+/// limits, settings of optimization and measuring, view, clipping and colours of several variables. Files count by
+/// their names and sizes, so that a session can be moved. `session` is any frame's.
+std::string fingerprintOf(const Session& session, const TimeSeries& series, int frame,
+                          const TransferFunction& previous);
+
+/// The next frame whose transfer function is missing or stale: of the frames that go back to the key of the session's
+/// present frame first, then of the other keys; each time the first. Frames that are known to be broken, and those
+/// before the first key, have none. Empty where all are there, and in the mode Static. Reads nothing.
+std::optional<AdaptTask> nextToAdapt(const Session& session, const TimeSeries& series);
+/// The frame of nextToAdapt(); −1: none.
+int firstStale(const Session& session, const TimeSeries& series);
+/// How many frames have a transfer function that is not stale, and how many should.
+struct AdaptProgress {
+    int done = 0, all = 0;
+};
+AdaptProgress adaptProgress(const Session& session, const TimeSeries& series);
+
+/// The scene of another frame under a given transfer function; everything else is that of `basis`. Where `basis` is of
+/// that frame, no data is read. Throws as resolve() does.
+Scene sceneAt(const Scene& basis, int frame, const TransferFunction& tf, const JobControl& job = {});
+
+/// What was made for a frame.
+struct AdaptedFrame {
+    int frame = 0;
+    TransferFunction tf;             ///< written for the scene's window, features with their identities
+    std::string basis;               ///< that of the task
+    std::optional<double> energy;    ///< of a refinement: the movable energy after it
+    std::vector<double> vws;         ///< of an optimization: W, per feature
+    std::optional<double> objective; ///< of an optimization: F
+    int moves = 0;                   ///< of an optimization; iterations of a refinement
+    double seconds = 0;              ///< reading included
+    AdaptedTf forTrack() const { return {Part<TransferFunction>(tf), basis}; }
+};
+
+/// Makes transfer functions frame by frame. Keeps what they share; used by one thread at a time.
+class FrameAdapter {
+public:
+    /// The transfer function of the task's frame, under the settings of basis.session; reads the frame. Throws
+    /// FileError where that is broken (it is known as such then, see nextToAdapt()), Cancelled, and as
+    /// Workspace::measure() does.
+    AdaptedFrame adapt(const Scene& basis, const AdaptTask& task, Workspace& workspace, const JobControl& job = {});
+
+private:
+    RefinePriority priorityOf(const Scene& basis, const AdaptTask& task, const JobControl& job);
+
+    std::string m_regionBasis; ///< what m_colors were taken from
+    std::vector<RegionColor> m_colors;
+};
+
+/// The session with that transfer function in its track.
+Session withAdapted(Session session, int frame, AdaptedTf adapted);
+
+/// What a frame shows under a transfer function.
+struct FrameFigures {
+    int frame = 0;
+    double time = 0;                ///< see SeriesFrame
+    std::string problem;            ///< why it could not be read: the rest is empty then
+    std::vector<double> vws;        ///< W, per feature
+    std::vector<double> visibility; ///< FV
+    std::vector<double> opacity;    ///< of the peaks
+    std::vector<double> targets;    ///< shares
+    double objective = 0;           ///< F
+    std::optional<double> flicker;  ///< mean ΔE to the same frame under the transfer function of the frame before it
+    std::optional<int> moves;       ///< that its transfer function took; empty: none was made for it
+    double seconds = 0;             ///< likewise, reading included
+};
+
+inline constexpr int kFlickerSize = 256; ///< pixels of the side of the pictures that flicker is measured on
+
+/// Figures of the scene's frame. `before`: the transfer function of the frame before, in the window of the scene;
+/// null: no flicker.
+FrameFigures figuresOf(const Scene& scene, const TransferFunction* before, Workspace& workspace,
+                       const JobControl& job = {});
+/// The same without what needs pictures or sweeps: a frame that cannot be read.
+FrameFigures brokenFigures(const TimeSeries& series, int frame);
+
+/// Of several frames: root mean square of F over those that could be read; mean flicker over those that have one; moves
+/// and seconds on average over those that were made.
+struct SequenceFigures {
+    double rms = 0, flicker = 0, moves = 0, seconds = 0;
+    int frames = 0, broken = 0;
+};
+SequenceFigures summaryOf(const std::vector<FrameFigures>& frames);
+
+} // namespace pellucid
