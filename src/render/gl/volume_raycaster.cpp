@@ -333,17 +333,15 @@ struct VolumeRaycaster::Impl {
     void drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile);
 };
 
-/// Colours lie beside the intensities: with the first, and after the last, both go up again.
+/// Colours lie beside the intensities: with the first, and after the last, those go up again.
 void VolumeRaycaster::Impl::fillColors(const RenderSettings& settings) {
     if (!isColored(settings.mode)) return;
     if (settings.colors)
         PELLUCID_CHECK(settings.colors->dims == volume->dims() &&
                        settings.colors->rgba.size() == voxelCount(volume->dims()));
-    if (bricks->hasColors() == (settings.colors != nullptr)) {
-        if (settings.colors) bricks->setColors(settings.colors);
-        return;
-    }
-    bricks = std::make_unique<BrickedVolume>(*volume, longestTexture, settings.colors);
+    const bool colored = settings.colors != nullptr;
+    if (bricks->isColored() != colored) bricks = std::make_unique<BrickedVolume>(*volume, longestTexture, colored);
+    if (colored) bricks->setColors(settings.colors);
 }
 
 /// In one piece for all tiles of a picture, unless it is large or drawn at a lower resolution.
@@ -621,7 +619,9 @@ VolumeRaycaster& VolumeRaycaster::operator=(VolumeRaycaster&&) noexcept = defaul
 
 void VolumeRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longestTexture) {
     auto blocks = std::make_unique<RayBlocks>(*sharedIntensityGrid(*volume));
-    m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture);
+    // The next frame of what had colours has some, too.
+    const bool colored = m_impl->bricks && m_impl->bricks->isColored();
+    m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture, colored);
     m_impl->longestTexture = longestTexture;
     m_impl->blocks = std::move(blocks);
     m_impl->volume = std::move(volume);
