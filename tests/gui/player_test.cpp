@@ -134,13 +134,13 @@ TEST_CASE("frames are stepped, scrubbed and played without a step of the history
     CHECK(w.child<QLabel>("frameLabel").text().contains("t = 0 s"));
     const QImage first = w.picture();
 
-    QTest::keyClick(&w.window, Qt::Key_Period);
+    QTest::keyClick(&w.view(), Qt::Key_Period);
     REQUIRE(waitFor([&] { return w.frame() == 1; }));
     w.settle();
     CHECK(w.child<QLabel>("frameLabel").text().contains("t = 0.5 s"));
     CHECK(w.picture() != first);
     CHECK(w.document().volume()->dataRange() == w.series->load(1)->dataRange());
-    QTest::keyClick(&w.window, Qt::Key_Comma);
+    QTest::keyClick(&w.view(), Qt::Key_Comma);
     REQUIRE(waitFor([&] { return w.frame() == 0; }));
     CHECK(w.picture() == first); // the same frame, the same picture
 
@@ -159,10 +159,10 @@ TEST_CASE("frames are stepped, scrubbed and played without a step of the history
     const auto watch = QObject::connect(&w.bench().store(), &SessionStore::changed,
                                         [&](const Scene&, const Scene& after) { seen.insert(after.session.frame); });
     w.player().setSpeed(30);
-    QTest::keyClick(&w.window, Qt::Key_Space);
+    QTest::keyClick(&w.view(), Qt::Key_Space);
     CHECK(w.player().isPlaying());
     REQUIRE(waitFor([&] { return seen.size() == 6; })); // 5 → 0 among them
-    QTest::keyClick(&w.window, Qt::Key_Space);
+    QTest::keyClick(&w.view(), Qt::Key_Space);
     CHECK_FALSE(w.player().isPlaying());
     QObject::disconnect(watch);
     CHECK(w.child<QLabel>("rateLabel").text().contains("of 30 frames a second"));
@@ -265,13 +265,13 @@ TEST_CASE("a broken frame is told of once and left out", "[player]") {
     options.broken = 2;
     SeriesWindow w(options);
     w.goTo(1);
-    QTest::keyClick(&w.window, Qt::Key_Period);
+    QTest::keyClick(&w.view(), Qt::Key_Period);
     REQUIRE(waitFor([&] { return w.frame() == 3; }));
     w.settle();
     CHECK(w.hasNotice("ball_2.raw"));
     CHECK(w.hasNotice("it ends early"));
     const auto notices = w.bench().notices().all().size();
-    QTest::keyClick(&w.window, Qt::Key_Comma);
+    QTest::keyClick(&w.view(), Qt::Key_Comma);
     REQUIRE(waitFor([&] { return w.frame() == 1; }));
     const QImage strip = w.strip().grab().toImage();
     CHECK(strip.pixelColor((w.strip().rectOf(2).center() * strip.devicePixelRatio()).toPoint()) !=
@@ -327,10 +327,10 @@ TEST_CASE("between keys a transfer function is halfway", "[player]") {
     w.goTo(2);
     CHECK(w.peak() == Approx(0.75 * start)); // halfway from 1 to ½
     CHECK_FALSE(w.child<QToolButton>("tfKey").isChecked());
-    QTest::keyClick(&w.window, Qt::Key_Comma, Qt::ControlModifier);
+    QTest::keyClick(&w.view(), Qt::Key_Comma, Qt::ControlModifier);
     REQUIRE(waitFor([&] { return w.frame() == 0; }));
     CHECK(w.peak() == Approx(start));
-    QTest::keyClick(&w.window, Qt::Key_Period, Qt::ControlModifier);
+    QTest::keyClick(&w.view(), Qt::Key_Period, Qt::ControlModifier);
     REQUIRE(waitFor([&] { return w.frame() == 4; }));
     CHECK(w.picture() == half);
     w.goTo(2);
