@@ -2,6 +2,8 @@
 //   MODE        0 composite, 1 largest intensity, 2 smallest, 3 mean, 4 surfaces
 //   LIGHT       colours are lit or otherwise changed (include/light.glsl)
 //   GRADIENT_OPACITY, OCCLUSION   with LIGHT: these parts of it
+//   VOXEL_COLORS   colours are those of voxels (include/voxel_color.glsl)
+//   GROUND      rays end at the ground
 //   BRICKS      one of several: goes on from what the bricks in front have left in the images
 //   out  u_state   composite, surfaces: premultiplied sRGB and opacity; else: the intensity, for its mean the length of
 //                  the way, 0, 1
@@ -21,6 +23,9 @@ const int kRun = 8;                       // samples between two looks at the bl
 #if MODE == 0 || MODE == 4
 #ifdef LIGHT
 #include "include/light.glsl"
+#endif
+#ifdef VOXEL_COLORS
+#include "include/voxel_color.glsl"
 #endif
 #endif
 
@@ -83,7 +88,11 @@ vec4 traced(PictureRay ray, vec4 sum) {
                 depth *= depthShare(gradient);
 #endif
                 float alpha = opacityOfDepth(depth) * (1.0 - sum.a);
+#ifdef VOXEL_COLORS
+                pending += vec4(colorInBrick(ray.point + 0.5 * (last.place + next.place) * ray.step), 1.0) * alpha;
+#else
                 pending += vec4(mean.rgb * (alpha / mean.a), alpha);
+#endif
                 places += place * alpha;
                 sum.a += alpha;
             }
@@ -184,9 +193,12 @@ vec4 traced(PictureRay ray, vec4 sum, inout uvec4 seen) {
                 float border = way > 0 ? feature.x : feature.y;
                 float part = kind == from.kind ? 0.0 : clamp((border - from.code) / (to.code - from.code), 0.0, 1.0);
                 float alpha = feature.z;
-#ifdef LIGHT
                 float place = mix(from.place, to.place, part);
                 vec3 voxel = ray.point + place * ray.step;
+#ifdef VOXEL_COLORS
+                color = colorInBrick(voxel);
+#endif
+#ifdef LIGHT
                 vec3 gradient = gradientAt(voxel);
 #ifdef GRADIENT_OPACITY
                 alpha = 1.0 - pow(1.0 - alpha, depthShare(gradient));

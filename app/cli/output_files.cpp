@@ -34,6 +34,12 @@ std::vector<std::string> inputFiles(const SceneOptions& options) {
     std::vector<std::string> notices;
     const SceneInputs inputs = inputsOf(options, {}, notices);
     std::vector<std::string> files = filesOf(inputs.session.variable().source);
+    if (const GroundView& ground = *inputs.session.ground; !ground.path.empty()) {
+        VolumeSource source;
+        source.path = ground.path;
+        source.raw = ground.raw;
+        for (const std::string& file : filesOf(source)) files.push_back(file);
+    }
     for (const auto& file : {options.session.file, options.tf.spec, options.camera.file})
         if (file) files.push_back(*file);
     return files;

@@ -68,6 +68,8 @@ void check(const Options& o) {
         throw UsageError("a field has colours of its own", ofData, "use --field-top or --field-colormap");
     if (field && o.scene.picture.mode)
         throw UsageError("a field is drawn by emission and absorption", "--mode", "leave it out");
+    if (o.slice.at && o.scene.ground.path) throw UsageError("a slice has no ground", "--ground", "leave it out");
+    if (field && o.scene.ground.path) throw UsageError("a field is drawn without ground", "--ground", "leave it out");
     if (o.slice.at && o.scene.picture.mode) throw UsageError("a slice has no rays", "--mode", "leave it out");
 }
 
@@ -117,6 +119,7 @@ Answer drawSlice(const Options& o, const Opened& opened, const PictureInput& pic
     const SlicePlane plane = o.slice.planeOf(g, picture.settings.width, picture.settings.height);
     SliceSettings settings = o.slice.settingsOf(opened.scene);
     settings.clipping = picture.settings.clipping;
+    settings.colors = picture.settings.colors;
     if (o.scene.field.isGiven()) {
         settings.tfStrength = 1;
         settings.window = picture.volume->range();
@@ -207,6 +210,7 @@ Command addRender(CLI::App& program) {
         "the picture to write: .png, .tif, .exr or .jpg")
         ->required();
     o->scene.picture.add(*app);
+    o->scene.ground.add(*app);
     o->slice.add(*app);
     o->scene.field.add(*app);
     o->scene.saliency.add(*app);

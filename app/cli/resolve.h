@@ -8,6 +8,7 @@
 #include "options/clip_options.h"
 #include "options/engine_options.h"
 #include "options/field_options.h"
+#include "options/ground_options.h"
 #include "options/picture_options.h"
 #include "options/profile_options.h"
 #include "options/saliency_options.h"
@@ -29,6 +30,7 @@ struct SceneOptions {
     SaliencyInput saliency;
     ProfileOptions profile;
     PictureOptions picture;
+    GroundOptions ground;
     FieldOptions field;
 
     /// All that figures of a view depend on: the groups of `measure`, `fields` and `optimize`.

@@ -55,7 +55,9 @@ void describe(QCommandLineParser& parser) {
         "Shows volumes, measures what catches the eye in them, and finds transfer functions.\n"
         "Without a FILE it opens on the built-in volume sample:shells.");
     parser.addPositionalArgument(
-        "FILE", "volumes or sessions, a window each: NRRD, MetaImage, NIfTI, raw data, *.pellucid.json, or sample:NAME",
+        "FILE",
+        "a volume, or the frames of a series: files, a folder, a pattern (\"f%02d.mhd\", \"f*.mhd\"); sessions and "
+        "samples, a window each: *.pellucid.json, sample:NAME",
         "[FILE…]");
     parser.addOption({"tf",
                       "Transfer function: a *.tf.json or Voreen *.tfi file, auto (what the data propose, the default), "
@@ -63,6 +65,7 @@ void describe(QCommandLineParser& parser) {
                       "ramp:N or preset:NAME.",
                       "SPEC"});
     parser.addOption({"session", "Go on with a saved session, a *.pellucid.json file.", "FILE"});
+    parser.addOption({"windows", "Each FILE in a window of its own, not as frames of one series."});
     parser.addOption({"renderer", "What draws the picture: auto, gl or cpu.", "NAME", "auto"});
     parser.addOption({"theme", "Colours of the window: dark, light or system; without it, as chosen last.", "NAME"});
     parser.addOption({"size", "Size of the window in pixels.", "WxH"});
@@ -70,6 +73,20 @@ void describe(QCommandLineParser& parser) {
         {"screenshot", "Wait until picture and figures are complete, save the window as PNG FILE, and quit.", "FILE"});
     parser.addHelpOption();
     parser.addVersionOption();
+}
+
+/// What each window opens: a session, a sample, or files that are the frames of a series.
+QList<QStringList> documentsOf(const QStringList& names, bool windowEach) {
+    QList<QStringList> documents;
+    QStringList frames;
+    for (const QString& name : names) {
+        if (windowEach || name.startsWith("sample:") || name.endsWith(".pellucid.json", Qt::CaseInsensitive))
+            documents << QStringList{name};
+        else
+            frames << name;
+    }
+    if (!frames.isEmpty()) documents << frames;
+    return documents;
 }
 
 } // namespace
@@ -137,12 +154,13 @@ int main(int argc, char** argv) {
     if (parser.isSet("session")) volumes.prepend(parser.value("session"));
     const bool onSample = volumes.isEmpty();
     if (onSample) volumes << "sample:shells";
-    if (!screenshot.isEmpty() && volumes.size() > 1)
+    const QList<QStringList> documents = documentsOf(volumes, parser.isSet("windows"));
+    if (!screenshot.isEmpty() && documents.size() > 1)
         return complain("--screenshot takes one window, " + volumes.join(" ") + ", give one FILE", kUsage);
 
     try {
         std::vector<std::unique_ptr<MainWindow>> windows;
-        for (const QString& volume : volumes) {
+        for (const QStringList& files : documents) {
             windows.push_back(std::make_unique<MainWindow>(renderer));
             MainWindow& window = *windows.back();
             if (screenshot.isEmpty()) window.restoreLayout();
@@ -173,7 +191,7 @@ int main(int argc, char** argv) {
                 QObject::connect(&opening, &OpenController::failed, &window, fail, Qt::QueuedConnection);
                 QObject::connect(&opening, &OpenController::tfFailed, &window, fail, Qt::QueuedConnection);
             }
-            opening.openAtStart(volume, tf);
+            opening.openAtStart(files, tf);
         }
         return QApplication::exec();
     } catch (const Error& error) {

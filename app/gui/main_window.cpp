@@ -205,12 +205,14 @@ void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
-    const QList<QUrl> urls = event->mimeData()->urls();
-    if (urls.isEmpty() || !urls.front().isLocalFile()) return;
+    QStringList paths;
+    for (const QUrl& url : event->mimeData()->urls())
+        if (url.isLocalFile()) paths << url.toLocalFile();
+    if (paths.isEmpty()) return;
     event->acceptProposedAction();
     // In a later turn: a dialog must not keep the program waiting that the file was dragged from.
     QMetaObject::invokeMethod(
-        this, [this, path = urls.front().toLocalFile()] { m_bench->opening().openPath(path); }, Qt::QueuedConnection);
+        this, [this, paths] { m_bench->opening().openPaths(paths); }, Qt::QueuedConnection);
 }
 
 } // namespace pellucid::gui

@@ -17,6 +17,7 @@
     PANEL(settingsPanel) \
     PANEL(spacePanel) \
     PANEL(playerPanel) \
+    PANEL(variablesPanel) \
     PANEL(temporalPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on

@@ -1,14 +1,19 @@
 #include "raw_dialog.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QDoubleSpinBox>
+#include <QDoubleValidator>
 #include <QFileInfo>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QLineEdit>
+#include <QLocale>
 #include <QPushButton>
 #include <QRegularExpression>
 #include <QSpinBox>
@@ -63,17 +68,31 @@ RawLayout guessRawLayout(const QString& path, qint64 bytes) {
     return layout;
 }
 
-RawDialog::RawDialog(const QString& path, QWidget* parent) : QDialog(parent), m_bytes(QFileInfo(path).size()) {
+RawDialog::RawDialog(const QStringList& paths, QWidget* parent) : QDialog(parent) {
     setObjectName("rawDialog");
     setWindowTitle(tr("Open raw data"));
+    const QString& path = paths.front();
+    std::map<qint64, int> sizes;
+    for (const QString& file : paths) ++sizes[QFileInfo(file).size()];
+    m_bytes = std::max_element(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) {
+                  return a.second < b.second;
+              })->first;
+    for (const QString& file : paths)
+        if (QFileInfo(file).size() != m_bytes) m_odd << QFileInfo(file).fileName();
     const RawLayout guess = guessRawLayout(path, m_bytes);
     auto* form = new QFormLayout(this);
     form->setContentsMargins(18, 16, 18, 12);
     form->setVerticalSpacing(9);
-    auto* what = new QLabel(tr("<b>%1</b><br>%L2 bytes. The file has no header: say how it is laid out.")
-                                .arg(QFileInfo(path).fileName().toHtmlEscaped())
-                                .arg(m_bytes),
-                            this);
+    const QString name = QFileInfo(path).fileName().toHtmlEscaped();
+    auto* what = new QLabel(
+        paths.size() == 1
+            ? tr("<b>%1</b><br>%L2 bytes. The file has no header: say how it is laid out.").arg(name).arg(m_bytes)
+            : tr("<b>%1 … %2</b><br>%L3 files of %L4 bytes, without headers: say how each of them is laid out.")
+                  .arg(name, QFileInfo(paths.back()).fileName().toHtmlEscaped())
+                  .arg(paths.size())
+                  .arg(m_bytes),
+        this);
+    what->setObjectName("rawWhat");
     form->addRow(what);
     auto* dims = new QHBoxLayout;
     auto* spacing = new QHBoxLayout;
@@ -115,6 +134,14 @@ RawDialog::RawDialog(const QString& path, QWidget* parent) : QDialog(parent), m_
     m_skip->setToolTip(tr("Bytes before the first voxel"));
     connect(m_skip, &QDoubleSpinBox::valueChanged, this, &RawDialog::check);
     form->addRow(tr("Skip"), m_skip);
+    m_missing = new QLineEdit(this);
+    m_missing->setObjectName("rawMissing");
+    m_missing->setPlaceholderText(tr("none"));
+    m_missing->setToolTip(tr("This value marks voxels without data, such as 1e35; NaN always does"));
+    auto* number = new QDoubleValidator(m_missing);
+    number->setLocale(QLocale::c());
+    m_missing->setValidator(number);
+    form->addRow(tr("Missing value"), m_missing);
     m_verdict = new QLabel(this);
     m_verdict->setObjectName("rawVerdict");
     m_verdict->setWordWrap(true);
@@ -137,6 +164,12 @@ RawLayout RawDialog::layoutOfFile() const {
     return layout;
 }
 
+std::optional<double> RawDialog::missing() const {
+    bool isNumber = false;
+    const double value = QLocale::c().toDouble(m_missing->text().trimmed(), &isNumber);
+    return isNumber ? std::optional(value) : std::nullopt;
+}
+
 void RawDialog::check() {
     const RawLayout layout = layoutOfFile();
     // In floating point: the product of three such sizes does not fit 64 bits.
@@ -146,7 +179,10 @@ void RawDialog::check() {
     const double difference = wanted - static_cast<double>(m_bytes);
     m_ok->setEnabled(difference == 0);
     m_endian->setEnabled(bytesPerSample(layout.type) > 1);
-    if (difference == 0) {
+    if (difference == 0 && !m_odd.isEmpty()) {
+        m_verdict->setText(tr("This fits the files exactly, but for %1, which will be passed over.")
+                               .arg(m_odd.size() > 3 ? tr("%L1 of them").arg(m_odd.size()) : m_odd.join(", ")));
+    } else if (difference == 0) {
         m_verdict->setText(tr("This fits the file exactly."));
     } else if (difference > 0) {
         m_verdict->setText(tr("This needs %L1 bytes more than the file has.").arg(difference, 0, 'f', 0));

@@ -1,13 +1,17 @@
-// How the bytes of a file without a header are to be read.
+// How the bytes of files without a header are to be read.
 #pragma once
 
+#include <optional>
+
 #include <QDialog>
+#include <QStringList>
 
 #include "volume/loader.h"
 
 class QComboBox;
 class QDoubleSpinBox;
 class QLabel;
+class QLineEdit;
 class QPushButton;
 class QSpinBox;
 
@@ -19,20 +23,25 @@ RawLayout guessRawLayout(const QString& path, qint64 bytes);
 /// Whether a path names a file that has no header we know: .raw, .dat, .bin, .vol
 bool isHeaderless(const QString& path);
 
+/// For one file, or for all of a series, which are laid out alike.
 class RawDialog : public QDialog {
     Q_OBJECT
 public:
-    explicit RawDialog(const QString& path, QWidget* parent = nullptr);
+    /// `paths` are not empty.
+    explicit RawDialog(const QStringList& paths, QWidget* parent = nullptr);
     RawLayout layoutOfFile() const;
+    std::optional<double> missing() const; ///< value of voxels without data
 
 private:
     void check();
 
-    qint64 m_bytes;
+    qint64 m_bytes;    // of a file, as most have it
+    QStringList m_odd; // names of files of another size
     QSpinBox* m_dims[3];
     QDoubleSpinBox* m_spacing[3];
     QComboBox *m_type, *m_endian;
     QDoubleSpinBox* m_skip; // a QSpinBox ends at 2 GiB
+    QLineEdit* m_missing;
     QLabel* m_verdict;
     QPushButton* m_ok;
 };

@@ -149,6 +149,7 @@ void SlicePane::request() {
     next.settings.window = greyWindowOf(scene);
     next.settings.tfStrength = scene.session.slices->tfStrength;
     next.settings.clipping = *scene.session.clipping;
+    next.settings.colors = scene.colors;
     if (next == m_wanted) return;
     m_wanted = next;
     m_complete = false;

@@ -22,6 +22,7 @@
 #include "number_text.h"
 #include "palette_bar.h"
 #include "panel.h"
+#include "panels/channels_box.h"
 #include "store/edits.h"
 #include "tf/shapes.h"
 #include "theme.h"
@@ -67,6 +68,7 @@ PanelInfo transferFunctionPanel() {
                                  [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
                 addGhostLayer(bench, editor->canvas());
                 editor->addRow(new PaletteBar(bench, editor->canvas(), editor));
+                editor->addRow(makeSourceNote(bench, "tfColorSource", colorSourceText, editor));
                 QObject::connect(&editor->canvas(), &TfCanvas::menuOpening, editor,
                                  [&bench](QMenu& menu, double, FeatureId id) { addFeatureMenu(menu, bench, id); });
                 const QString place = QObject::tr("Transfer function");

@@ -14,6 +14,11 @@ layout(location = 10) uniform vec2 u_jitter;     // size of the picture in pixel
 layout(location = 13) uniform vec3 u_brickLo; // voxels that the texture stands for: segments belong to the brick that
 layout(location = 14) uniform vec3 u_brickHi; // holds their middle
 
+#ifdef GROUND
+layout(binding = 6) uniform sampler2D u_groundDepth; // t where rays end; infinite: nowhere
+layout(location = 20) uniform ivec2 u_groundOrigin;  // texel of the fragment (0, 0); its rows go down
+#endif
+
 // Sample n lies at point + u * step, u = n + shift held in [0, count].
 struct PictureRay {
     vec3 point, step; // voxels
@@ -51,6 +56,10 @@ PictureRay rayOfFragment(vec2 fragment) {
         if (rate > 0.0) leave = min(leave, room / rate);
         if (rate == 0.0 && room < 0.0) leave = enter;
     }
+
+#ifdef GROUND
+    leave = min(leave, texelFetch(u_groundDepth, u_groundOrigin + ivec2(fragment) * ivec2(1, -1), 0).r);
+#endif
 
     PictureRay ray;
     vec3 ahead = vec3(-u_tangents * picture.xy, 1.0);

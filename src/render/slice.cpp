@@ -107,6 +107,28 @@ bool mean(const Values& values, bool allValid, std::optional<double> missing, co
     return true;
 }
 
+/// The colour between up to eight voxels, over the valid ones as the value is.
+template <class Values>
+Rgb meanColor(const VoxelColors& colors, const Values& values, bool allValid, std::optional<double> missing,
+              const Between (&b)[3]) {
+    double sum[3]{}, share = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        double w = 1;
+        std::size_t at = 0;
+        for (unsigned a = 0; a < 3; ++a) {
+            const bool high = corner >> a & 1;
+            w *= static_cast<double>(high ? b[a].weight : 1.0f - b[a].weight);
+            at += high ? b[a].high : b[a].low;
+        }
+        if (w == 0) continue;
+        const auto v = static_cast<double>(values[at]);
+        if (!allValid && (!std::isfinite(v) || (missing && v == *missing))) continue;
+        for (unsigned c = 0; c < 3; ++c) sum[c] += w * (colors.rgba[at] >> (8 * c) & 255u) / 255;
+        share += w;
+    }
+    return {sum[0] / share, sum[1] / share, sum[2] / share};
+}
+
 std::array<std::size_t, 3> strides(const Int3& dims) {
     return {1, static_cast<std::size_t>(dims.x), static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y)};
 }
@@ -236,6 +258,8 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
                   const SliceSettings& settings) {
     settings.validate();
     PELLUCID_CHECK(plane.width > 0 && plane.height > 0 && plane.shown.width > 0 && plane.shown.height > 0);
+    PELLUCID_CHECK(!settings.colors || (settings.colors->dims == volume.dims() &&
+                                        settings.colors->rgba.size() == voxelCount(volume.dims())));
     const Geometry& g = volume.geometry();
     const SliceView view = sliceView(g, plane.axis);
     const auto stride = strides(g.dims);
@@ -266,7 +290,13 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
             double value = 0;
             if (!mean(values, allValid, volume.missing(), corners, value)) continue;
             const double grey = greyOf(value), s = intensityOf(value);
-            const Overlay& over = overlay[static_cast<std::size_t>(s * (kTableSize - 1) + 0.5)];
+            Overlay over = overlay[static_cast<std::size_t>(s * (kTableSize - 1) + 0.5)];
+            if (settings.colors && over.weight > 0) {
+                const Rgb color = meanColor(*settings.colors, values, allValid, volume.missing(), corners);
+                over.r = static_cast<float>(color.r);
+                over.g = static_cast<float>(color.g);
+                over.b = static_cast<float>(color.b);
+            }
             const float under = (1 - over.weight) * greyShown * static_cast<float>(grey);
             float* pixel = image.pixel(x, y);
             pixel[0] = under + over.weight * over.r;

@@ -67,6 +67,40 @@ std::shared_ptr<TimeSeries> SeriesFinder::derived(const std::string& name, const
     return derive(std::move(base), derivation);
 }
 
+bool SeriesFinder::isKnown(const Variable& variable) const {
+    const auto& before = *m_basis.session.variables;
+    if (variable.derivation) {
+        const Variable* base = m_scene.session.variableNamed(variable.derivation->of);
+        return base != nullptr && base->derivation == std::nullopt && isKnown(*base) &&
+               knownOf(variable.name) != nullptr;
+    }
+    return std::any_of(before.begin(), before.end(),
+                       [&](const Variable& v) { return sameOrigin(v, variable) && knownOf(v.name) != nullptr; });
+}
+
+void SeriesFinder::keepKnown() {
+    const std::vector<Variable>& all = *m_scene.session.variables;
+    for (std::size_t i = 1; i < all.size(); ++i)
+        if (isKnown(all[i])) find(all[i].name);
+    // What channels name besides, whether they are drawn now or not.
+    const HsbMapping& hsb = *m_scene.session.hsb;
+    for (const std::string& name : {hsb.saturation, hsb.brightness, hsb.hue}) {
+        if (name.empty() || m_scene.session.variableNamed(name) != nullptr || knownOf(name) == nullptr) continue;
+        const Variable* of = m_scene.session.variableNamed(parseDerivation(name)->of);
+        if (of != nullptr && isKnown(*of)) find(name);
+    }
+}
+
+void openNewVariables(Scene& scene, const Scene& basis, const MemoryUse& then, const JobControl& job) {
+    SeriesFinder finder(scene, basis, then, job);
+    for (const Variable& variable : *scene.session.variables) {
+        const Variable* before = basis.session.variableNamed(variable.name);
+        if (before != nullptr && sameOrigin(*before, variable)) continue;
+        const auto series = finder.find(variable.name);
+        static_cast<void>(series->load(series->nearest(scene.session.frame), job));
+    }
+}
+
 std::string SeriesFinder::knownNames() const {
     std::string names;
     for (const Variable& v : *m_scene.session.variables) names += (names.empty() ? "" : ", ") + v.name;
@@ -160,10 +194,19 @@ void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const
 void resolveGround(Scene& scene, const Scene& basis, const JobControl& job) {
     const GroundView& view = *scene.session.ground;
     if (view.path.empty() || !view.shown) return;
-    if (basis.ground && *basis.session.ground == view && basis.series == scene.series)
+    GroundView look = *basis.session.ground; // of the same heights
+    look.colorMap = view.colorMap;
+    look.relief = view.relief;
+    if (basis.ground && look == view && onSameGrid(basis.volume->geometry(), scene.volume->geometry())) {
         scene.ground = basis.ground;
-    else
+        if (view == *basis.session.ground) return;
+        Ground ground = *basis.ground;
+        ground.colorMap = view.colorMap;
+        ground.relief = view.relief;
+        scene.ground = std::make_shared<const Ground>(std::move(ground));
+    } else {
         scene.ground = std::make_shared<const Ground>(readGround(view, scene.volume->geometry(), job));
+    }
 }
 
 } // namespace pellucid

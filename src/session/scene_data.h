@@ -29,8 +29,11 @@ public:
     /// there is none.
     std::shared_ptr<TimeSeries> find(const std::string& name);
     std::shared_ptr<TimeSeries> of(const Variable& variable);
+    /// Keeps the series of all variables of the session that `basis` knows, drawn with or not.
+    void keepKnown();
 
 private:
+    bool isKnown(const Variable& variable) const;
     std::shared_ptr<TimeSeries> knownOf(const std::string& name) const;
     std::shared_ptr<TimeSeries> derived(const std::string& name, const Derivation& derivation);
     std::string knownNames() const;
@@ -41,6 +44,10 @@ private:
     const JobControl& m_job;
     std::vector<std::string> m_path; // of derivations, down to the one that is looked for
 };
+
+/// Opens the variables that are not in `basis` and reads their present frame, so that faults of files are known at
+/// once. Throws as loadVolume() does.
+void openNewVariables(Scene& scene, const Scene& basis, const MemoryUse& then, const JobControl& job);
 
 /// Targets of the present frame: from the keys where frame or keys are others than those of `basis`, else into them.
 void followTargetKeys(Session& session, const Scene& basis);

@@ -1,6 +1,18 @@
 #include "volume/derived.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <set>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "base/check.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/text.h"
 
 namespace pellucid {
@@ -50,10 +62,281 @@ std::optional<Derivation> parseDerivation(const std::string& text) {
     return d;
 }
 
-std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation&) { return base; }
+namespace {
 
-Volume resampledTo(const Volume& volume, const Geometry&, const JobControl&) { return volume; }
+/// Normalised by a range over all frames, [0,1]; NaN where invalid.
+class Normaliser {
+public:
+    explicit Normaliser(const ValueRange& range)
+        : m_lo(range.lo), m_scale(range.lo < range.hi ? 1 / (range.hi - range.lo) : 0) {}
+    double operator()(double value) const { return std::clamp((value - m_lo) * m_scale, 0.0, 1.0); }
+    double scale() const { return m_scale; }
 
-bool onSameGrid(const Geometry& a, const Geometry& b) { return a.dims == b.dims; }
+private:
+    double m_lo, m_scale;
+};
+
+constexpr float kInvalid = std::numeric_limits<float>::quiet_NaN();
+
+/// Floats voxel by voxel: valueOf(values, index) of each valid voxel, k on any thread.
+template <class ValueOf>
+std::vector<float> mapped(const Volume& volume, const JobControl& job, const ValueOf& valueOf) {
+    std::vector<float> out(volume.size());
+    const std::size_t plane = static_cast<std::size_t>(volume.dims().x) * static_cast<std::size_t>(volume.dims().y);
+    const bool allValid = volume.invalidCount() == 0;
+    std::visit(
+        [&](const auto& values) {
+            parallelFor(static_cast<std::size_t>(volume.dims().z), [&](std::size_t k) {
+                job.throwIfStopped();
+                for (std::size_t i = k * plane; i < (k + 1) * plane; ++i)
+                    out[i] = allValid || volume.isValid(i) ? static_cast<float>(valueOf(values, i)) : kInvalid;
+            });
+        },
+        volume.samples());
+    return out;
+}
+
+Volume named(Volume volume, const std::string& title) {
+    volume.title = title;
+    volume.format = "derived";
+    return volume;
+}
+
+// ---- gradient magnitude
+
+Volume gradientOf(const Volume& volume, const ValueRange& range, const JobControl& job) {
+    const Geometry& g = volume.geometry();
+    const Int3 n = g.dims;
+    const Mat3 toWorld = glm::transpose(g.indexFromWorld()); // ∂/∂world of ∂/∂index
+    const double scale = Normaliser(range).scale() * g.d0();
+    const std::array<std::size_t, 3> step{1, static_cast<std::size_t>(n.x),
+                                          static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y)};
+    const bool allValid = volume.invalidCount() == 0;
+    std::vector<float> out = mapped(volume, job, [&](const auto& values, std::size_t i) {
+        const std::array<std::size_t, 3> at{i % step[1], i / step[1] % static_cast<std::size_t>(n.y), i / step[2]};
+        Vec3 slope(0);
+        for (int a = 0; a < 3; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            // Central, one-sided where there is a neighbour on one side only.
+            std::size_t lower = at[axis] > 0 ? i - step[axis] : i;
+            std::size_t upper = at[axis] + 1 < static_cast<std::size_t>(n[a]) ? i + step[axis] : i;
+            if (!allValid) {
+                if (!volume.isValid(lower)) lower = i;
+                if (!volume.isValid(upper)) upper = i;
+            }
+            if (lower == upper) continue;
+            const double distance = upper - lower == 2 * step[axis] ? 2 : 1;
+            slope[a] = (static_cast<double>(values[upper]) - static_cast<double>(values[lower])) / distance;
+        }
+        return glm::length(toWorld * slope) * scale;
+    });
+    return Volume(g, SampleArray<float>(std::move(out)));
+}
+
+// ---- volatility
+
+/// Sums over the latest frames of normalised values in whole units of 2⁻²⁴ (2⁻²⁰ of many frames), so that they are
+/// exact: what was added and taken away again leaves no trace, and every way to a frame gives the same bits.
+class VolatilitySums {
+public:
+    VolatilitySums(std::shared_ptr<TimeSeries> base, int frames)
+        : m_base(std::move(base)), m_frames(frames), m_units(frames <= 128 ? 1 << 24 : 1 << 20) {}
+
+    Volume at(int frame, const JobControl& job) {
+        const std::lock_guard lock(m_mutex);
+        const std::shared_ptr<const Volume> present = m_base->load(frame, job); // that one has to be there
+        const ValueRange range = m_base->range(job);
+        if (!(range == m_range) || m_sums.size() != present->size()) reset(range, present->size());
+        const int first = std::max(0, frame - m_frames + 1);
+        int kept = 0;
+        for (const int f : m_in) kept += f >= first && f <= frame ? 1 : 0;
+        const int leaving = static_cast<int>(m_in.size()) - kept, wanted = frame - first + 1;
+        if (leaving + wanted - kept >= wanted) reset(range, present->size());
+        try {
+            for (const int f : std::set<int>(m_in))
+                if (f < first || f > frame) change(f, -1, job);
+            for (int f = first; f <= frame; ++f)
+                if (!m_in.contains(f)) change(f, +1, job);
+        } catch (const Cancelled&) {
+            reset(range, present->size()); // half of a frame may be in
+            throw;
+        }
+        return Volume(present->geometry(), SampleArray<float>(deviations(present->dims())));
+    }
+
+private:
+    struct Sums {
+        std::int64_t sum = 0, squares = 0;
+    };
+
+    void reset(const ValueRange& range, std::size_t size) {
+        m_range = range;
+        m_in.clear();
+        m_sums.assign(size, {});
+        m_invalid.clear();
+    }
+
+    void change(int frame, int sign, const JobControl& job) {
+        std::shared_ptr<const Volume> volume;
+        try {
+            volume = m_base->load(frame, job);
+        } catch (const Error&) {
+            return; // its maker tells; the deviation is that of the others
+        }
+        const Normaliser normalised(m_range);
+        const bool allValid = volume->invalidCount() == 0;
+        if (!allValid && m_invalid.empty()) m_invalid.assign(volume->size(), 0);
+        constexpr std::size_t kPiece = 1 << 16;
+        std::visit(
+            [&](const auto& values) {
+                parallelFor((values.size() + kPiece - 1) / kPiece, [&](std::size_t piece) {
+                    const std::size_t end = std::min(values.size(), (piece + 1) * kPiece);
+                    for (std::size_t i = piece * kPiece; i < end; ++i) {
+                        if (!allValid && !volume->isValid(i)) {
+                            m_invalid[i] = static_cast<std::uint16_t>(m_invalid[i] + sign);
+                            continue;
+                        }
+                        const auto q =
+                            static_cast<std::int64_t>(normalised(static_cast<double>(values[i])) * m_units + 0.5);
+                        m_sums[i].sum += sign * q;
+                        m_sums[i].squares += sign * q * q;
+                    }
+                });
+            },
+            volume->samples());
+        if (sign > 0)
+            m_in.insert(frame);
+        else
+            m_in.erase(frame);
+    }
+
+    std::vector<float> deviations(const Int3& dims) const {
+        std::vector<float> out(m_sums.size());
+        const auto n = static_cast<std::int64_t>(m_in.size());
+        const double scale = 1.0 / (static_cast<double>(n) * m_units);
+        const std::size_t plane = m_sums.size() / static_cast<std::size_t>(dims.z);
+        parallelFor(static_cast<std::size_t>(dims.z), [&](std::size_t k) {
+            for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
+                const Sums& s = m_sums[i];
+                // n·Σq² and (Σq)² are below n²·2⁴⁸ (n²·2⁴⁰): they fit.
+                out[i] =
+                    !m_invalid.empty() && m_invalid[i] > 0
+                        ? kInvalid
+                        : static_cast<float>(std::sqrt(static_cast<double>(n * s.squares - s.sum * s.sum)) * scale);
+            }
+        });
+        return out;
+    }
+
+    const std::shared_ptr<TimeSeries> m_base;
+    const int m_frames;
+    const int m_units;
+    std::mutex m_mutex;
+    ValueRange m_range{0, 0};
+    std::set<int> m_in; // frames that the sums are of
+    std::vector<Sums> m_sums;
+    std::vector<std::uint16_t> m_invalid; // frames in which a voxel is invalid; empty: none is
+};
+
+constexpr int kMostFrames = 2048; // so that sums of squares fit
+
+} // namespace
+
+std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation& derivation) {
+    SeriesListing listing = base->listing();
+    const std::string title = derivation.text();
+    listing.title = title;
+    listing.declaredRange.reset();
+    listing.notices.clear();
+    switch (derivation.kind) {
+    case Derivation::Kind::Gradient:
+        return std::make_shared<TimeSeries>(std::move(listing), [base, title](int frame, const JobControl& job) {
+            return named(gradientOf(*base->load(frame, job), base->range(job), job), title);
+        });
+    case Derivation::Kind::Volatility: {
+        if (derivation.frames < 1 || derivation.frames > kMostFrames)
+            throw UsageError("volatility of " + std::to_string(derivation.frames) + " frames", "variable " + title,
+                             "give 1 to " + std::to_string(kMostFrames) + " frames");
+        listing.declaredRange = ValueRange{0, 0.5}; // no values of [0,1] deviate more
+        auto sums = std::make_shared<VolatilitySums>(base, derivation.frames);
+        return std::make_shared<TimeSeries>(std::move(listing), [sums, title](int frame, const JobControl& job) {
+            return named(sums->at(frame, job), title);
+        });
+    }
+    case Derivation::Kind::Difference: {
+        const int reference = derivation.reference;
+        if (reference >= base->size())
+            throw UsageError("the series has no frame " + std::to_string(reference), "variable " + title,
+                             "give 0 to " + std::to_string(base->size() - 1));
+        if (base->varies()) { // zero in the middle
+            const ValueRange range = base->range();
+            listing.declaredRange = ValueRange{range.lo - range.hi, range.hi - range.lo};
+        }
+        return std::make_shared<TimeSeries>(std::move(listing), [base, title, reference](int frame,
+                                                                                         const JobControl& job) {
+            const auto from = base->load(reference, job);
+            const auto to = base->load(frame, job);
+            return named(Volume(to->geometry(),
+                                SampleArray<float>(mapped(*to, job,
+                                                          [&](const auto& values, std::size_t i) {
+                                                              return from->isValid(i) ? static_cast<double>(values[i]) -
+                                                                                            from->value(i)
+                                                                                      : static_cast<double>(kInvalid);
+                                                          }))),
+                         title);
+        });
+    }
+    }
+    PELLUCID_CHECK(false);
+}
+
+// ---- grids
+
+bool onSameGrid(const Geometry& a, const Geometry& b) {
+    const auto near = [](const Vec3& p, const Vec3& q, double scale) { return glm::length(p - q) <= 1e-6 * scale; };
+    return a.dims == b.dims && near(a.spacing, b.spacing, a.d0()) && near(a.origin, b.origin, a.radius()) &&
+           near(a.directions[0], b.directions[0], 1) && near(a.directions[1], b.directions[1], 1) &&
+           near(a.directions[2], b.directions[2], 1);
+}
+
+Volume resampledTo(const Volume& volume, const Geometry& grid, const JobControl& job) {
+    const Geometry& from = volume.geometry();
+    const Int3 n = from.dims;
+    const Vec3 lo = from.voxelBoxMin(), hi = from.voxelBoxMax();
+    std::vector<float> out(voxelCount(grid.dims), kInvalid);
+    const bool allValid = volume.invalidCount() == 0;
+    std::visit(
+        [&](const auto& values) {
+            parallelFor(static_cast<std::size_t>(grid.dims.z), [&](std::size_t k) {
+                job.throwIfStopped();
+                std::size_t index = k * static_cast<std::size_t>(grid.dims.x) * static_cast<std::size_t>(grid.dims.y);
+                for (int j = 0; j < grid.dims.y; ++j)
+                    for (int i = 0; i < grid.dims.x; ++i, ++index) {
+                        const Vec3 at = from.voxelFromWorld(grid.worldFromVoxel({i, j, static_cast<int>(k)}));
+                        if (at.x < lo.x || at.y < lo.y || at.z < lo.z || at.x > hi.x || at.y > hi.y || at.z > hi.z)
+                            continue;
+                        double sum = 0, weight = 0;
+                        for (unsigned corner = 0; corner < 8; ++corner) {
+                            double w = 1;
+                            std::size_t voxel = 0, stride = 1;
+                            for (int a = 0; a < 3; ++a) {
+                                const double p = std::clamp(at[a], 0.0, n[a] - 1.0);
+                                const int base = std::min(static_cast<int>(p), std::max(0, n[a] - 2));
+                                const bool upper = (corner >> a) & 1u;
+                                w *= upper ? p - base : 1 - (p - base);
+                                voxel += stride * static_cast<std::size_t>(std::min(base + (upper ? 1 : 0), n[a] - 1));
+                                stride *= static_cast<std::size_t>(n[a]);
+                            }
+                            if (w == 0 || (!allValid && !volume.isValid(voxel))) continue;
+                            sum += w * static_cast<double>(values[voxel]);
+                            weight += w;
+                        }
+                        if (weight > 0) out[index] = static_cast<float>(sum / weight);
+                    }
+            });
+        },
+        volume.samples());
+    return named(Volume(grid, SampleArray<float>(std::move(out))), volume.title);
+}
 
 } // namespace pellucid

@@ -9,6 +9,7 @@
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
 #include "volume/procedural.h"
+#include "volume/series.h"
 
 namespace pellucid {
 
@@ -16,8 +17,9 @@ namespace {
 
 constexpr std::string_view kSamplePrefix = "sample:";
 
-const std::array<const VolumeReader*, 3>& readers() {
-    static const std::array<const VolumeReader*, 3> kReaders{&nrrdReader(), &metaImageReader(), &niftiReader()};
+const std::array<const VolumeReader*, 5>& readers() {
+    static const std::array<const VolumeReader*, 5> kReaders{&nrrdReader(), &metaImageReader(), &niftiReader(), &vtiReader(),
+                                                            &pvdReader()};
     return kReaders;
 }
 
@@ -36,6 +38,14 @@ std::string knownSuffixes() {
     return list;
 }
 
+/// Throws FileError where there is none for this suffix.
+const VolumeReader& readerOf(const std::string& path) {
+    if (const VolumeReader* reader = readerFor(path)) return *reader;
+    const bool named = lowerCase(path).ends_with(".raw");
+    throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format", path,
+                    named ? "say how its bytes lie" : "give one of " + knownSuffixes(), Remedy::GiveRawLayout);
+}
+
 Volume readFile(const VolumeSource& source, const JobControl& job) {
     if (readableFileBytes(source.path) == 0) throw FileError("the file is empty", source.path, "copy it again");
     Volume volume = [&] {
@@ -44,15 +54,9 @@ Volume readFile(const VolumeSource& source, const JobControl& job) {
             read.format = "raw";
             return read;
         }
-        const VolumeReader* reader = readerFor(source.path);
-        if (reader == nullptr) {
-            const bool named = lowerCase(source.path).ends_with(".raw");
-            throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format",
-                            source.path, named ? "say how its bytes lie" : "give one of " + knownSuffixes(),
-                            Remedy::GiveRawLayout);
-        }
-        Volume read = reader->read(source, job);
-        read.format = reader->name();
+        const VolumeReader& reader = readerOf(source.path);
+        Volume read = reader.read(source, job);
+        if (read.format.empty()) read.format = reader.name();
         return read;
     }();
     volume.title = std::filesystem::path(source.path).filename().string();
@@ -136,14 +140,33 @@ Volume loadVolume(const VolumeSource& source, const JobControl& job) {
 
 std::vector<std::string> filesOf(const VolumeSource& source) {
     if (source.isSample()) return {};
-    const VolumeReader* reader = source.raw ? nullptr : readerFor(source.path);
-    if (reader == nullptr) return {source.path};
-    try {
-        return {source.path, reader->dataFile(source.path)};
-    } catch (const Error&) {
-        return {source.path};
+    std::vector<std::string> files;
+    for (const std::string& path : seriesFiles(source)) {
+        files.push_back(path);
+        const VolumeReader* reader = source.raw ? nullptr : readerFor(path);
+        if (reader == nullptr) continue;
+        try {
+            for (std::string& data : reader->dataFiles(path)) files.push_back(std::move(data));
+        } catch (const Error&) {
+            continue; // loadVolume() tells what is wrong with it
+        }
     }
+    return files;
 }
+
+FileContents contentsOf(const VolumeSource& source, const JobControl& job) {
+    if (source.raw) {
+        FileContents contents;
+        contents.dims = source.raw->dims;
+        contents.type = source.raw->type;
+        contents.steps = rawSteps(source);
+        return contents;
+    }
+    if (readableFileBytes(source.path) == 0) throw FileError("the file is empty", source.path, "copy it again");
+    return readerOf(source.path).describe(source, job);
+}
+
+bool hasVolumeSuffix(const std::string& path) { return readerFor(path) != nullptr; }
 
 const std::vector<std::string>& volumeFilePatterns() {
     static const std::vector<std::string> kPatterns = [] {

@@ -40,7 +40,7 @@ struct VolumeSource {
     std::vector<std::string> more;    ///< files of the frames after that of `path`, in their order
     std::optional<FrameRange> frames; ///< only these of all that are there
     int step = 0;                     ///< of a file (or sample) with several time steps, from 0: the one that is read
-    std::string array;                ///< of a file with several named arrays; empty: the first
+    std::string array;                ///< of a file with several named arrays; empty: its active scalars, else the first
     std::optional<RawLayout> raw;     ///< given: the file is headerless
     std::optional<double> missing;    ///< this value is invalid (besides what the file declares)
     std::optional<ValueRange> range;  ///< the user's intensity window
@@ -63,11 +63,12 @@ struct VolumeSource {
 };
 
 /// Reads the volume or throws Error (FileError for files), before any allocation the file's own size does not bear out.
-/// Files: NRRD/NHDR, MetaImage, NIfTI; headerless raw.
+/// Files: NRRD/NHDR, MetaImage, NIfTI, VTK image data (VTI) and collections of files (PVD); headerless raw. Of a file
+/// with several time steps VolumeSource::step is read.
 Volume loadVolume(const VolumeSource& source, const JobControl& job = {});
 
-/// The files that loadVolume() would read: the one named and, where its header names one, that of the data; none for a
-/// sample. A header that cannot be read names none here; loadVolume() tells what is wrong with it.
+/// The files of all frames: those named and, where their headers name others, those of the data; none for a sample. A
+/// header that cannot be read names none here; loadVolume() tells what is wrong with it.
 std::vector<std::string> filesOf(const VolumeSource& source);
 
 /// Writes float32 or the volume's own type as NRRD (gzip), through a temporary file beside `path` that is renamed.

@@ -1,19 +1,39 @@
 #include "volume/series.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
+#include "base/text.h"
+#include "volume/file_contents.h"
+#include "volume/file_names.h"
 #include "volume/procedural.h"
 
 namespace pellucid {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 std::string numberText(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.6g", value);
+    return text.data();
+}
+
+/// "a, b, c and 4 more".
+std::string someOf(const std::vector<std::string>& names) {
+    constexpr std::size_t kShown = 4;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
+        text += (i == 0 ? "" : ", ") + fs::path(names[i]).filename().string();
+    if (names.size() > kShown) text += " and " + std::to_string(names.size() - kShown) + " more";
     return text;
 }
+
+std::string filesText(std::size_t count) { return std::to_string(count) + (count == 1 ? " file" : " files"); }
 
 SeriesListing listSample(const VolumeSource& source) {
     SeriesListing listing;
@@ -35,11 +55,156 @@ void select(SeriesListing& listing, const FrameRange& range) {
     const int last = range.last.value_or(count - 1);
     if (range.first < 0 || range.first >= count || last < range.first || last >= count || range.stride < 1)
         throw UsageError("the series has no such frames", listing.title,
-                         "give frames from 0 to " + std::to_string(count - 1));
+                         count == 1 ? "it has one, number 0" : "give frames from 0 to " + std::to_string(count - 1));
     std::vector<SeriesFrame> chosen;
     for (int f = range.first; f <= last; f += range.stride)
         chosen.push_back(std::move(listing.frames[static_cast<std::size_t>(f)]));
     listing.frames = std::move(chosen);
+}
+
+/// Those of the most frequent suffix that volumes have (any suffix, where data are headerless).
+std::vector<std::string> ofOneSuffix(std::vector<std::string> paths, bool anySuffix,
+                                     std::vector<std::string>& notices) {
+    std::map<std::string, std::vector<std::string>> bySuffix;
+    for (std::string& path : paths)
+        if (anySuffix || hasVolumeSuffix(path)) bySuffix[volumeSuffix(path)].push_back(std::move(path));
+    if (bySuffix.empty()) return {};
+    // A collection names the files beside it, and their times.
+    auto chosen = bySuffix.find(".pvd");
+    if (chosen == bySuffix.end() || chosen->second.size() != 1)
+        chosen = std::max_element(bySuffix.begin(), bySuffix.end(), [](const auto& a, const auto& b) {
+            return a.second.size() < b.second.size();
+        });
+    std::vector<std::string> others;
+    for (const auto& [suffix, files] : bySuffix)
+        if (suffix != chosen->first) others.insert(others.end(), files.begin(), files.end());
+    if (!others.empty() && chosen->first != ".pvd")
+        notices.push_back(filesText(others.size()) + " of another suffix than *" + chosen->first +
+                          (others.size() == 1 ? " was" : " were") + " passed over: " + someOf(others));
+    return chosen->second;
+}
+
+/// What the source names, in order, with the names of missing files between numbered ones.
+struct FileList {
+    std::vector<std::string> paths;
+    std::vector<std::string> notices;
+    std::string title;
+};
+
+/// Puts the names that are missing between numbered ones where they belong.
+void fillGaps(FileList& list, const std::optional<NumberedName>& pattern) {
+    std::optional<NumberedNames> numbered = pattern ? numberedBy(*pattern, list.paths) : numberedNames(list.paths);
+    if (!numbered || numbered->numbers.size() < 3) return;
+    const std::vector<std::int64_t>& numbers = numbered->numbers;
+    std::map<std::int64_t, int> steps;
+    for (std::size_t i = 1; i < numbers.size(); ++i) ++steps[numbers[i] - numbers[i - 1]];
+    const auto usual = std::max_element(steps.begin(), steps.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+    const std::int64_t step = usual->first;
+    if (step < 1 || steps.size() == 1) return;
+    std::uint64_t missing = 0;
+    for (const auto& [difference, count] : steps) {
+        if (difference % step != 0) return; // no even course
+        missing += static_cast<std::uint64_t>(difference / step - 1) * static_cast<std::uint64_t>(count);
+    }
+    if (missing > numbers.size()) {
+        list.notices.push_back("the numbers of the files have gaps: " + std::to_string(missing) + " are not there");
+        return;
+    }
+    std::vector<std::string> paths, gone;
+    std::size_t next = 0;
+    for (std::int64_t number = numbers.front(); number <= numbers.back(); number += step) {
+        if (numbers[next] == number) {
+            paths.push_back(list.paths[next++]);
+        } else {
+            paths.push_back(numbered->name.with(number));
+            gone.push_back(paths.back());
+        }
+    }
+    list.paths = std::move(paths);
+    list.notices.push_back(filesText(gone.size()) + (gone.size() == 1 ? " is" : " are") +
+                           " missing in the series: " + someOf(gone));
+}
+
+FileList listFiles(const VolumeSource& source) {
+    FileList list;
+    const std::string& path = source.path;
+    list.title = fs::path(path).filename().string();
+    if (!source.more.empty()) {
+        list.paths = {path};
+        list.paths.insert(list.paths.end(), source.more.begin(), source.more.end());
+        list.title += " and " + std::to_string(source.more.size()) + " more";
+        return list;
+    }
+    std::error_code ec;
+    const bool isFolder = fs::is_directory(path, ec);
+    if (!isFolder && !isSeriesPattern(path)) {
+        list.paths = {path};
+        return list;
+    }
+    const std::optional<NumberedName> pattern = isFolder ? std::nullopt : numberedName(path);
+    if (isFolder) {
+        if (list.title.empty() || list.title == "." || list.title == "..")
+            list.title = fs::weakly_canonical(path, ec).filename().string();
+        if (list.title.empty()) list.title = fs::weakly_canonical(path, ec).parent_path().filename().string();
+        list.paths = filesIn(path);
+    } else {
+        list.paths = pattern ? filesNumbered(*pattern) : filesMatching(path);
+    }
+    const bool found = !list.paths.empty();
+    if (!pattern) list.paths = ofOneSuffix(std::move(list.paths), source.raw.has_value(), list.notices);
+    if (list.paths.empty()) {
+        if (isFolder)
+            throw FileError(found ? "there is no file of a known volume format in this folder"
+                                  : "there is no file in this folder",
+                            path, "name another folder, or a file", found ? Remedy::GiveRawLayout : Remedy::AsSaid);
+        throw FileError(found ? "no file of this name pattern has the suffix of a known volume format"
+                              : "there is no file of this name pattern",
+                        path, "check folder and name", found ? Remedy::GiveRawLayout : Remedy::AsSaid);
+    }
+    std::sort(list.paths.begin(), list.paths.end(), countsBefore);
+    if (list.paths.size() == 1)
+        list.title = fs::path(list.paths.front()).filename().string();
+    else
+        fillGaps(list, pattern);
+    return list;
+}
+
+/// What a file holds; nothing where it is missing or broken, which loading it will tell.
+std::optional<FileContents> knownContents(const VolumeSource& source, const JobControl& job) {
+    try {
+        return contentsOf(source, job);
+    } catch (const FileError&) {
+        return {};
+    }
+}
+
+/// The frames of one file.
+void addFile(SeriesListing& listing, const VolumeSource& given, const std::string& path, bool alone,
+             const JobControl& job) {
+    SeriesFrame frame;
+    frame.source = given;
+    frame.source.path = path;
+    frame.source.more.clear();
+    frame.source.step = 0;
+    const std::optional<FileContents> contents = knownContents(frame.source, job);
+    const int steps = contents ? contents->steps : 1;
+    frame.source.frames.reset();
+    std::string stem = fs::path(path).filename().string();
+    if (const std::string suffix = volumeSuffix(path); suffix.size() < stem.size())
+        stem.resize(stem.size() - suffix.size());
+    for (int step = 0; step < steps; ++step) {
+        frame.source.step = step;
+        // A headerless file is longer than a layout says: that it may be, the selection alone tells.
+        if (given.raw && steps > 1) frame.source.frames = FrameRange{step, step, 1};
+        frame.time = static_cast<double>(listing.frames.size());
+        const bool isTimed = contents && contents->times.size() == static_cast<std::size_t>(steps);
+        if (isTimed) frame.time = contents->times[static_cast<std::size_t>(step)];
+        listing.hasTimes = listing.hasTimes && isTimed;
+        frame.name = steps == 1 ? stem : (alone ? "" : stem + ", ") + "step " + std::to_string(step);
+        listing.frames.push_back(frame);
+    }
+    if (contents && !contents->timeUnit.empty()) listing.timeUnit = contents->timeUnit;
 }
 
 } // namespace
@@ -51,17 +216,42 @@ std::string SeriesListing::label(int frame) const {
 }
 
 bool isSeriesPattern(const std::string& path) {
-    return !path.starts_with("sample:") && path.find_first_of("%*?[") != std::string::npos &&
-           !std::filesystem::exists(path);
+    std::error_code ec;
+    return !path.starts_with("sample:") && (numberedName(path) || isGlob(path)) && !fs::exists(path, ec);
 }
 
-SeriesListing listSeries(const VolumeSource& source, const JobControl&) {
+std::vector<std::string> seriesFiles(const VolumeSource& source) {
+    if (source.isSample()) return {};
+    try {
+        std::vector<std::string> paths = listFiles(source).paths;
+        std::error_code ec;
+        if (paths.size() > 1) std::erase_if(paths, [&](const std::string& p) { return !fs::exists(p, ec); });
+        return paths;
+    } catch (const Error&) {
+        return {source.path};
+    }
+}
+
+SeriesListing listSeries(const VolumeSource& source, const JobControl& job) {
     SeriesListing listing;
     if (source.isSample()) {
         listing = listSample(source);
+    } else if (source.path.empty()) {
+        throw UsageError("no volume is named", "", "give a file or sample:NAME");
     } else {
-        listing.title = std::filesystem::path(source.path).filename().string();
-        listing.frames.push_back({source, 0, listing.title});
+        FileList list = listFiles(source);
+        listing.title = std::move(list.title);
+        listing.notices = std::move(list.notices);
+        listing.hasTimes = true;
+        for (const std::string& path : list.paths) {
+            job.throwIfStopped();
+            addFile(listing, source, path, list.paths.size() == 1, job);
+        }
+        if (!listing.hasTimes) {
+            listing.timeUnit.clear();
+            for (std::size_t f = 0; f < listing.frames.size(); ++f) listing.frames[f].time = static_cast<double>(f);
+        }
+        if (listing.frames.size() == 1 && !listing.hasTimes) listing.frames.front().name = listing.title;
     }
     if (source.frames) select(listing, *source.frames);
     return listing;

@@ -1,6 +1,8 @@
 #include "volume/time_series.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +14,14 @@ namespace pellucid {
 namespace {
 
 constexpr std::size_t kMostBudget = std::size_t{2} << 30;
+constexpr std::chrono::milliseconds kLookAtStop{50}; // of who waits
+constexpr std::size_t kNoBudget = 0;
+std::atomic<std::size_t> g_defaultBudget = kNoBudget;
+
+std::size_t defaultBudget() {
+    if (const std::size_t set = g_defaultBudget; set != kNoBudget) return set;
+    return static_cast<std::size_t>(std::min<std::uint64_t>(availableMemoryBytes() / 4, kMostBudget));
+}
 
 /// Counts of valid values in equal bins of their range.
 std::vector<std::uint32_t> valueCounts(const Volume& volume) {
@@ -45,14 +55,16 @@ std::string dimsOf(const Int3& d) {
     return std::to_string(d.x) + " x " + std::to_string(d.y) + " x " + std::to_string(d.z);
 }
 
-/// Of the frame's data and codes.
-std::size_t bytesOf(const Volume& volume) { return (volume.isMapped() ? 0 : volume.memoryBytes()) + 2 * volume.size(); }
+/// Of the frame's data, and of its codes of 16 bits with a byte for validity, where not all voxels are valid.
+std::size_t bytesOf(const Volume& volume) {
+    return (volume.isMapped() ? 0 : volume.memoryBytes()) + (volume.invalidCount() > 0 ? 3 : 2) * volume.size();
+}
 
 } // namespace
 
 TimeSeries::TimeSeries(SeriesListing listing, Maker make)
     : m_listing(std::move(listing)), m_make(std::move(make)), m_summaries(m_listing.frames.size()),
-      m_budget(static_cast<std::size_t>(std::min<std::uint64_t>(availableMemoryBytes() / 4, kMostBudget))) {
+      m_budget(defaultBudget()) {
     if (varies()) m_range = m_listing.declaredRange;
 }
 
@@ -62,9 +74,19 @@ std::shared_ptr<TimeSeries> TimeSeries::open(const VolumeSource& source, const M
         frame.source.range.reset();
         frame.source.then = then;
     }
-    auto sources = std::make_shared<std::vector<SeriesFrame>>(listing.frames);
-    return std::make_shared<TimeSeries>(std::move(listing), [sources](int frame, const JobControl& control) {
-        return loadVolume((*sources)[static_cast<std::size_t>(frame)].source, control);
+    struct Shared {
+        std::vector<SeriesFrame> frames;
+        std::atomic<int> factor = 0; // by which the first frame was made coarser for memory: all have one grid
+    };
+    auto shared = std::make_shared<Shared>();
+    shared->frames = listing.frames;
+    return std::make_shared<TimeSeries>(std::move(listing), [shared](int frame, const JobControl& control) {
+        VolumeSource file = shared->frames[static_cast<std::size_t>(frame)].source;
+        if (file.downsample == 0 && !file.isSample()) file.downsample = shared->factor;
+        Volume volume = loadVolume(file, control);
+        int unset = 0;
+        shared->factor.compare_exchange_strong(unset, volume.excerpt ? volume.excerpt->factor : 1);
+        return volume;
     });
 }
 
@@ -73,16 +95,34 @@ void TimeSeries::touch(int frame) {
     m_used.push_front(frame);
 }
 
+std::size_t TimeSeries::held() const {
+    std::size_t sum = m_loading.size() * m_frameBytes;
+    for (const auto& [frame, entry] : m_entries) sum += entry.bytes;
+    return sum;
+}
+
 void TimeSeries::makeRoom(std::size_t bytes) {
-    const auto held = [&] {
-        std::size_t sum = m_loading.size() * m_frameBytes;
-        for (const auto& [frame, entry] : m_entries) sum += entry.bytes;
-        return sum;
+    // Others get hold of a frame under the mutex only: none that is ours alone becomes theirs meanwhile.
+    const auto isOursAlone = [](const Entry& entry) {
+        const long ours = 1 + (entry.shown.data ? 1 : 0) + (entry.shown.volume == entry.data ? 1 : 0);
+        return entry.data.use_count() <= ours;
     };
-    while (!m_used.empty() && held() + bytes > m_budget) {
-        m_entries.erase(m_used.back());
-        m_used.pop_back();
+    std::size_t sum = held();
+    for (auto frame = m_used.end(); frame != m_used.begin() && sum + bytes > m_budget;) {
+        --frame;
+        const auto entry = m_entries.find(*frame);
+        if ((bytes == 0 && m_entries.size() == 1) || !isOursAlone(entry->second)) continue;
+        sum -= entry->second.bytes;
+        m_entries.erase(entry);
+        frame = m_used.erase(frame);
     }
+}
+
+/// Whether somebody else reads this frame, or so many read that there is no room for one more.
+bool TimeSeries::mustWait(int frame) const {
+    if (m_loading.contains(frame)) return true;
+    if (m_loading.empty()) return false;
+    return m_frameBytes == 0 || (m_loading.size() + 1) * m_frameBytes > m_budget;
 }
 
 void TimeSeries::note(int frame, const Volume& volume) {
@@ -112,8 +152,8 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
                 touch(frame);
                 return found->second.data;
             }
-            if (!m_loading.contains(frame)) break;
-            m_loaded.wait(lock);
+            if (!mustWait(frame)) break;
+            m_loaded.wait_for(lock, kLookAtStop);
             job.throwIfStopped();
         }
         makeRoom(m_frameBytes);
@@ -127,8 +167,8 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
             entry.data = volume;
             entry.bytes = bytesOf(*volume);
             m_frameBytes = std::max(m_frameBytes, entry.bytes);
-            if (!m_geometry) m_geometry = volume->geometry();
             touch(frame);
+            makeRoom(0); // it may be larger than those before
         }
         m_loaded.notify_all();
     };
@@ -138,10 +178,12 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
         bool known = false;
         {
             const std::lock_guard lock(m_mutex);
+            if (!m_geometry) m_geometry = volume->geometry();
             grid = m_geometry;
-            known = m_summaries[static_cast<std::size_t>(frame)].isKnown;
+            const FrameSummary& summary = m_summaries[static_cast<std::size_t>(frame)];
+            known = summary.isKnown && summary.problem.empty(); // a file may have come back
         }
-        if (grid && !sameGrid(*grid, volume->geometry()))
+        if (!sameGrid(*grid, volume->geometry()))
             throw FileError("its grid (" + dimsOf(volume->dims()) + ") is not that of the series (" +
                                 dimsOf(grid->dims) + ")",
                             m_listing.frames[static_cast<std::size_t>(frame)].source.path, "leave it out");
@@ -281,10 +323,10 @@ std::size_t TimeSeries::budget() const {
 
 std::size_t TimeSeries::heldBytes() const {
     const std::lock_guard lock(m_mutex);
-    std::size_t sum = m_loading.size() * m_frameBytes;
-    for (const auto& [frame, entry] : m_entries) sum += entry.bytes;
-    return sum;
+    return held();
 }
+
+void TimeSeries::setDefaultBudget(std::optional<std::size_t> bytes) { g_defaultBudget = bytes.value_or(kNoBudget); }
 
 int TimeSeries::roomFor() const {
     const std::lock_guard lock(m_mutex);

@@ -72,9 +72,12 @@ public:
     /// where it is not known.
     std::vector<double> countsIn(int frame, const ValueRange& window, int bins) const;
 
-    /// Bytes that frames may take, codes included; at least one frame is always held. The default is a quarter of the
-    /// memory that is free now, at most 2 GiB.
+    /// Bytes that frames may take, codes and frames that are being read included; at least one frame is always held. The
+    /// default is a quarter of the memory that is free now, at most 2 GiB. Frames that somebody else holds, too, stay and
+    /// count: to forget them would free nothing. Who reads while there is no room waits for others who read to end.
     void setBudget(std::size_t bytes);
+    /// Of series that are opened from now on; empty: as above.
+    static void setDefaultBudget(std::optional<std::size_t> bytes);
     std::size_t budget() const;
     std::size_t heldBytes() const; ///< of frames that are held or being read
     int roomFor() const;           ///< frames that the budget has room for; size() before the first was read
@@ -86,8 +89,10 @@ private:
         ShownFrame shown;                 // its volume is null until it is asked for
         std::size_t bytes = 0;
     };
-    void makeRoom(std::size_t bytes); // m_mutex is held
-    void touch(int frame);            // likewise
+    std::size_t held() const;         // m_mutex is held, here and in the next ones
+    void makeRoom(std::size_t bytes);
+    void touch(int frame);
+    bool mustWait(int frame) const;
     void note(int frame, const Volume& volume);
     void noteProblem(int frame, const std::string& problem);
 

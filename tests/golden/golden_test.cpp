@@ -10,6 +10,7 @@
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "render/gl/gl_engines.h"
+#include "render/ground.h"
 #include "volume/procedural.h"
 
 using namespace pellucid;
@@ -21,6 +22,39 @@ struct Golden {
     std::function<void(RenderSettings&)> change;
     double glLargest = 0.1; ///< of a single pixel: gl lights what it has gathered in other portions
 };
+
+/// Saturated along a spiral, dark to one side: as the mapping of several variables colours voxels.
+std::shared_ptr<const VoxelColors> spirals(Int3 dims) {
+    VoxelColors colors{dims, {}};
+    for (int k = 0; k < dims.z; ++k)
+        for (int j = 0; j < dims.y; ++j)
+            for (int i = 0; i < dims.x; ++i) {
+                const double x = 2.0 * i / (dims.x - 1) - 1, y = 2.0 * j / (dims.y - 1) - 1;
+                const double turn = std::sin(2 * std::atan2(y, x) + 6 * std::hypot(x, y) + 0.1 * k);
+                const Rgb c = rgbFromHsv(20, 0.5 + 0.5 * turn, 1 - 0.6 * j / (dims.y - 1));
+                const auto byte = [](double v) { return static_cast<std::uint8_t>(v * 255 + 0.5); };
+                colors.rgba.push_back(VoxelColors::pack(byte(c.r), byte(c.g), byte(c.b)));
+            }
+    return std::make_shared<const VoxelColors>(std::move(colors));
+}
+
+/// A mountain in the sea under the box of a sample of n³ voxels.
+std::shared_ptr<const Ground> island(int n) {
+    Ground ground;
+    ground.nx = ground.ny = 48;
+    for (int j = 0; j < 48; ++j)
+        for (int i = 0; i < 48; ++i) {
+            const double x = (i - 22) / 20.0, y = (j - 26) / 20.0;
+            const double h = 1 - x * x - y * y + 0.15 * std::sin(5 * x + 1) * std::sin(6 * y);
+            ground.heights.push_back(static_cast<float>(std::max(0.0, h)));
+        }
+    const Geometry g = makeSample("shells", n).geometry();
+    ground.origin = g.corner(0);
+    ground.stepX = (g.corner(1) - g.corner(0)) / 47.0;
+    ground.stepY = (g.corner(2) - g.corner(0)) / 47.0;
+    ground.up = 0.3 * (g.corner(4) - g.corner(0));
+    return std::make_shared<const Ground>(std::move(ground));
+}
 
 const std::vector<Golden>& goldens() {
     static const std::vector<Golden> all{
@@ -56,7 +90,26 @@ const std::vector<Golden>& goldens() {
              s.mode = RenderMode::Surface;
              s.light.on = true;
          },
-         0.4}};
+         0.4},
+        {"voxel_colors_over_a_ground",
+         [](RenderSettings& s) {
+             s.light = Light{.on = true, .depthCue = 0.4};
+             s.background = Rgb{0.85, 0.88, 0.92};
+             s.clipping.lo = {0.5, 0, 0};
+             s.colors = spirals({40, 40, 40});
+             s.ground = island(40);
+         },
+         0.2},
+        {"surface_over_a_ground",
+         [](RenderSettings& s) {
+             s.mode = RenderMode::Surface;
+             s.light.on = true;
+             s.background.reset();
+             s.clipping.hi.z = 0.6;
+             s.colors = spirals({40, 40, 40});
+             s.ground = island(40);
+         },
+         0.6}};
     return all;
 }
 

@@ -179,7 +179,7 @@ TEST_CASE("the raw dialog opens only what fits the file", "[raw]") {
     const QTemporaryDir folder;
     const QString path = folder.filePath("data_8x4x2_uint16.raw");
     std::ofstream(path.toStdString(), std::ios::binary) << std::string(8 * 4 * 2 * 2, 'x');
-    RawDialog dialog(path);
+    RawDialog dialog(QStringList{path});
     auto* open = dialog.findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Open);
     CHECK(open->isEnabled());
     CHECK(dialog.layoutOfFile().dims == Int3(8, 4, 2));

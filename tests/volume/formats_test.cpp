@@ -459,7 +459,7 @@ TEST_CASE("MetaImage and NRRD say where the axes point", "[formats]") {
     CHECK(again.origin == ras.origin);
 }
 
-TEST_CASE("one component of several, the first of several time steps", "[formats]") {
+TEST_CASE("one component of several, one of several time steps", "[formats]") {
     const TempFolder folder;
     VolumeSource source;
     source.path = folder.write("a.mha", "ObjectType = Image\nNDims = 3\nElementNumberOfChannels = 3\nDimSize = 2 1 1\n"
@@ -476,12 +476,21 @@ TEST_CASE("one component of several, the first of several time steps", "[formats
         source.component = none;
         CHECK_THROWS_WITH(loadVolume(source), Contains("no component") && Contains("0 to 2"));
     }
-    const Volume series =
-        load(folder.write("s.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 1 1 3\nencoding: raw\n\nabcdef"));
-    CHECK(series.dims() == Int3(2, 1, 1));
-    CHECK(samplesOf<std::uint8_t>(series) == std::vector<std::uint8_t>{'a', 'b'});
-    REQUIRE(series.notices.size() == 1);
-    CHECK_THAT(series.notices[0], Contains("the first of 3 time steps"));
+    VolumeSource series;
+    series.path =
+        folder.write("s.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 1 1 3\nencoding: raw\n\nabcdef");
+    for (int step = 0; step < 3; ++step) {
+        series.step = step;
+        const Volume volume = loadVolume(series);
+        CHECK(volume.dims() == Int3(2, 1, 1));
+        const auto first = static_cast<std::uint8_t>('a' + 2 * step);
+        CHECK(samplesOf<std::uint8_t>(volume) == std::vector<std::uint8_t>{first, static_cast<std::uint8_t>(first + 1)});
+        CHECK(volume.notices.empty());
+    }
+    for (const int none : {3, -1}) {
+        series.step = none;
+        CHECK_THROWS_WITH(loadVolume(series), Contains("no time step") && Contains("0 to 2"));
+    }
 }
 
 TEST_CASE("a picture and a line open as flat volumes", "[formats]") {
@@ -567,7 +576,8 @@ TEST_CASE("loading stops when it is asked to", "[formats]") {
 }
 
 TEST_CASE("file dialogs get every suffix", "[formats]") {
-    CHECK(volumeFilePatterns() == std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz"});
+    CHECK(volumeFilePatterns() ==
+          std::vector<std::string>{"*.nrrd", "*.nhdr", "*.mhd", "*.mha", "*.nii", "*.nii.gz", "*.vti", "*.pvd"});
 }
 
 TEST_CASE("the files of a volume are the one named and the one with its data", "[volume]") {

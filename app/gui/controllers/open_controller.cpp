@@ -1,6 +1,5 @@
 #include "controllers/open_controller.h"
 
-#include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QMenu>
@@ -13,9 +12,13 @@
 #include "number_text.h"
 #include "raw_dialog.h"
 #include "render/memory_needs.h"
+#include "series_dialog.h"
+#include "series_files.h"
+#include "session/scene_data.h"
 #include "tf/formats/tf_file.h"
 #include "tf/presets.h"
 #include "volume/excerpt.h"
+#include "volume/file_contents.h"
 #include "volume/procedural.h"
 #include "workbench.h"
 
@@ -35,22 +38,17 @@ QString tfPatterns() {
 }
 bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
 
-bool hasKnownSuffix(const QString& path) {
-    const QStringList patterns = [] {
-        QStringList all;
-        for (const std::string& pattern : volumeFilePatterns()) all << QString::fromStdString(pattern);
-        return all;
-    }();
-    return QDir::match(patterns, QFileInfo(path).fileName());
-}
-
 // Recent files that need more than a name to be opened again are kept as a session of nothing but their source.
 QString recentEntry(const VolumeSource& source) {
-    const QString path = QFileInfo(QString::fromStdString(source.path)).absoluteFilePath();
-    if (!source.raw && source.component == 0 && !source.missing && !source.region && source.downsample == 0)
-        return path;
+    const auto absolutePath = [](const std::string& path) {
+        return QFileInfo(QString::fromStdString(path)).absoluteFilePath().toStdString();
+    };
     VolumeSource absolute = source;
-    absolute.path = path.toStdString();
+    absolute.path = absolutePath(source.path);
+    for (std::string& path : absolute.more) path = absolutePath(path);
+    VolumeSource plain;
+    plain.path = absolute.path;
+    if (absolute == plain) return QString::fromStdString(plain.path);
     return QString::fromStdString(jsonFromSession(sessionOf(absolute), "", DataPaths::Absolute).dump());
 }
 
@@ -78,18 +76,18 @@ OpenController::OpenController(Workbench& bench)
           [](const DataChange& change, const JobControl& job) {
               Session session = change.basis.session;
               change.change(session);
-              Scene scene = resolve(std::move(session), change.basis, toView("showing"), job);
+              const MemoryUse then = toView("showing");
+              Scene scene = resolve(std::move(session), change.basis, then, job);
+              if (scene.proposal) { // a variable that has not been drawn yet comes to the front
+                  session = scene.session;
+                  session.setTf(tunedTf(scene, job));
+                  scene = resolve(std::move(session), scene, then, job);
+              }
+              openNewVariables(scene, change.basis, then, job);
               prepareToShow(scene, job);
               return scene;
           },
-          [this](const DataChange& change, Scene& scene) {
-              // Other edits may have come meanwhile: the change is made of what is there now.
-              const bool otherVoxels = scene.data != change.basis.data;
-              const std::vector<std::string> notices = scene.volume->notices;
-              m_bench.store().edit(change.text, {}, change.change, scene);
-              if (otherVoxels) showNotices(notices);
-              if (const auto then = std::exchange(m_afterData, {})) then();
-          }) {
+          [this](const DataChange& change, Scene& scene) { showChanged(change, scene); }) {
     for (JobBase* job : {static_cast<JobBase*>(&m_open), static_cast<JobBase*>(&m_data)}) {
         connect(job, &JobBase::busyChanged, this, &OpenController::busyChanged);
         connect(job, &JobBase::progress, this, &OpenController::progress);
@@ -99,8 +97,10 @@ OpenController::OpenController(Workbench& bench)
         m_bench.showError(tr("Cannot open the file"), error);
         Q_EMIT failed(error);
     });
-    connect(&m_data, &JobBase::failed, this,
-            [this](const Error& error) { m_bench.showError(tr("Cannot change the data"), error); });
+    connect(&m_data, &JobBase::failed, this, [this](const Error& error) {
+        m_bench.showError(tr("Cannot change the data"), error);
+        nextChange();
+    });
 }
 
 OpenController::~OpenController() = default;
@@ -122,6 +122,8 @@ void OpenController::addActions() {
                           tr("Open a volume, a session or a transfer function"), [this] { chooseVolume(); });
     open.inToolBar = true;
     actions.add(open);
+    actions.add(add("openSeriesAction", menu, tr("Open s&eries…"), {QKeySequence("Ctrl+Alt+O")},
+                    tr("Time steps: a folder, files by a pattern, or some of them"), [this] { chooseSeries(); }));
     actions.add(add("openRawAction", menu, tr("Open ra&w data…"), {},
                     tr("A file without a header: you say how its bytes lie"), [this] { chooseRaw(); }));
     ActionSpec clearRecent = add("clearRecentAction", recentMenuName(), tr("&Clear this list"), {}, {}, [this] {
@@ -132,8 +134,9 @@ void OpenController::addActions() {
     for (const SampleInfo& sample : samples()) {
         const QString name = QString::fromStdString(sample.name);
         actions.add(add("sample_" + name, menu + "/" + tr("&Samples"),
-                        QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)), {}, {},
-                        [this, name] {
+                        QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)) +
+                            (sample.frames > 1 ? tr(", %L1 frames").arg(sample.frames) : QString()),
+                        {}, {}, [this, name] {
                             VolumeSource source;
                             source.path = "sample:" + name.toStdString();
                             if (m_bench.saving().maybeSave()) openVolume(source);
@@ -178,7 +181,7 @@ void OpenController::openVolume(const VolumeSource& source, const QString& tfSpe
         request.tfIsOptional = true;
         request.tfPath = tfSpec;
     }
-    m_busyText = tr("Opening %1…").arg(QFileInfo(QString::fromStdString(source.path)).fileName());
+    m_busyText = tr("Opening %1…").arg(titleOf(source));
     m_open.start(std::move(request), QString::fromStdString(source.path));
 }
 
@@ -225,6 +228,8 @@ OpenController::Opened OpenController::load(const Request& request, const JobCon
 }
 
 void OpenController::show(const Request& request, Opened& opened) {
+    m_edits.clear(); // they were of what was open
+    m_data.cancel();
     const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && isTfFile(request.tfPath);
     m_tfPath = tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString();
     std::vector<std::string> notices = opened.scene.volume->notices;
@@ -318,10 +323,61 @@ void OpenController::editData(const QString& text, const SessionStore::Change& c
         if (then) then();
         return;
     }
-    // The picture waits for the data, and shows everything at once.
-    m_busyText = text + QChar(0x2026);
-    m_afterData = then;
-    m_data.start({text, change, store.scene()}, QString::fromStdString(store.scene().volume->title));
+    editInJob(text, change, then);
+}
+
+void OpenController::editInJob(const QString& text, const SessionStore::Change& change,
+                               const std::function<void()>& then) {
+    SessionStore& store = m_bench.store();
+    if (!store.hasVolume() || m_bench.isReadOnly()) return;
+    store.commit();
+    Session next = store.session();
+    change(next);
+    if (next == store.session() && !m_data.isRunning()) return;
+    // A change of the same kind takes the place of one under way, others wait in line.
+    Edit edit{text, change, then};
+    if (!m_data.isRunning() || m_edit.text == text) return start(std::move(edit));
+    if (!m_edits.empty() && m_edits.back().text == text) m_edits.pop_back();
+    m_edits.push_back(std::move(edit));
+}
+
+void OpenController::start(Edit edit) {
+    const Scene& scene = m_bench.scene();
+    m_edit = std::move(edit);
+    m_busyText = m_edit.text + QChar(0x2026);
+    m_data.start({m_edit.text, m_edit.change, scene}, QString::fromStdString(scene.volume->title));
+}
+
+void OpenController::nextChange() {
+    if (m_edits.empty() || !m_bench.store().hasVolume()) return;
+    Edit edit = std::move(m_edits.front());
+    m_edits.pop_front();
+    start(std::move(edit));
+}
+
+// The picture has waited for the data, and shows everything at once.
+void OpenController::showChanged(const DataChange& change, Scene& scene) {
+    SessionStore& store = m_bench.store();
+    const auto andStart = [&](Session& session) {
+        change.change(session);
+        const Variable& made = scene.session.variable();
+        if (!session.isEmpty() && session.variable().name == made.name && session.tf() == nullptr)
+            session.variables.edit([&](std::vector<Variable>& all) {
+                all.front().track = made.track;
+                all.front().window = made.window;
+            });
+    };
+    // Other edits may have come meanwhile: the change is made of what is there now, and anew where that is other data.
+    Session present = store.committed().session;
+    andStart(present);
+    if (needsData(present, scene)) return start(std::move(m_edit));
+    const bool otherVoxels = scene.data != change.basis.data;
+    const std::vector<std::string> notices = scene.volume->notices;
+    const auto then = m_edit.then;
+    store.edit(change.text, {}, andStart, scene);
+    if (otherVoxels) showNotices(notices);
+    if (then) then();
+    if (!m_data.isRunning()) nextChange();
 }
 
 void OpenController::openPath(const QString& path) {
@@ -335,20 +391,63 @@ void OpenController::openPath(const QString& path) {
     if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source);
 }
 
-void OpenController::openAtStart(const QString& path, const QString& tfSpec) {
-    if (isSession(path)) return openSession(path);
-    VolumeSource source;
-    source.path = path.toStdString();
+void OpenController::openPaths(QStringList paths) {
+    if (paths.size() == 1) return openPath(paths.front());
+    try {
+        QString tf;
+        QStringList volumes;
+        for (const QString& path : paths) {
+            if (isSession(path)) throw UsageError("a session is opened alone", path.toStdString(), "choose one file");
+            if (isTf(path)) {
+                if (!tf.isEmpty())
+                    throw UsageError("this is a second transfer function", path.toStdString(), "choose one of them");
+                tf = path;
+            } else if (QFileInfo(path).isDir()) {
+                VolumeSource folder;
+                folder.path = path.toStdString();
+                volumes << filesOfFrames(folder);
+            } else {
+                volumes << path;
+            }
+        }
+        if (volumes.isEmpty()) throw UsageError("there are no volumes here", paths.front().toStdString(), "");
+        VolumeSource source = sourceOf(volumes);
+        if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source, tf);
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot open the files"), error);
+        Q_EMIT failed(error);
+    }
+}
+
+void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec) {
+    if (paths.size() == 1 && isSession(paths.front())) return openSession(paths.front());
+    VolumeSource source = sourceOf(paths);
     if (askRawLayout(source)) openVolume(source, tfSpec);
 }
 
 bool OpenController::askRawLayout(VolumeSource& source) {
-    const QString path = QString::fromStdString(source.path);
-    if (source.isSample() || hasKnownSuffix(path) || !QFileInfo(path).isFile()) return true;
-    RawDialog dialog(path, m_bench.window());
+    if (source.isSample() || source.raw) return true;
+    const QStringList files = filesOfFrames(source);
+    // What is not there, opening tells.
+    if (files.isEmpty() || hasVolumeSuffix(files.front().toStdString()) || !QFileInfo(files.front()).isFile())
+        return true;
+    return askLayout(source, files);
+}
+
+bool OpenController::askLayout(VolumeSource& source, const QStringList& files) {
+    RawDialog dialog(files, m_bench.window());
     if (dialog.exec() != QDialog::Accepted) return false;
     source.raw = dialog.layoutOfFile();
+    source.missing = dialog.missing();
     return true;
+}
+
+std::optional<VolumeSource> OpenController::askSource(const QString& title) {
+    const QStringList paths = askFiles(title, {});
+    if (paths.isEmpty()) return {};
+    VolumeSource source = sourceOf(paths);
+    if (!askRawLayout(source)) return {};
+    return source;
 }
 
 // A window other than that of the data is worth a word, and one click to the other.
@@ -372,32 +471,47 @@ void OpenController::noteWindow(const TransferFunction& tf) {
 
 // ---- dialogs
 
-void OpenController::chooseVolume() {
+QStringList OpenController::askFiles(const QString& title, const QString& others) {
     QStringList patterns;
     for (const std::string& pattern : volumeFilePatterns()) patterns << QString::fromStdString(pattern);
     for (const char* raw : {"*.raw", "*.dat", "*.bin", "*.vol"}) {
         if (!patterns.contains(raw)) patterns << raw;
     }
-    const QString path =
-        QFileDialog::getOpenFileName(m_bench.window(), tr("Open"), QSettings().value("volumeFolder").toString(),
-                                     tr("Volumes, sessions, transfer functions (%1 *.pellucid.json %2);;All files (*)")
-                                         .arg(patterns.join(' '), tfPatterns()));
-    if (path.isEmpty()) return;
-    QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
-    openPath(path);
+    const QString all = patterns.join(' ');
+    const QString filter = others.isEmpty() ? tr("Volumes (%1)").arg(all)
+                                            : tr("Volumes, sessions, transfer functions (%1 %2)").arg(all, others);
+    const QStringList paths =
+        QFileDialog::getOpenFileNames(m_bench.window(), title, QSettings().value("volumeFolder").toString(),
+                                      filter + QStringLiteral(";;") + tr("All files (*)"));
+    if (!paths.isEmpty()) QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
+    return paths;
+}
+
+void OpenController::chooseVolume() {
+    const QStringList paths = askFiles(tr("Open"), QStringLiteral("*.pellucid.json ") + tfPatterns());
+    if (!paths.isEmpty()) openPaths(paths);
+}
+
+std::optional<VolumeSource> OpenController::askSeries() {
+    SeriesDialog dialog(QSettings().value("volumeFolder").toString(), m_bench.window());
+    if (dialog.exec() != QDialog::Accepted) return {};
+    VolumeSource source = dialog.source();
+    QSettings().setValue("volumeFolder", QFileInfo(QString::fromStdString(source.path)).absolutePath());
+    if (!askRawLayout(source)) return {};
+    return source;
+}
+
+void OpenController::chooseSeries() {
+    if (const auto source = askSeries(); source && m_bench.saving().maybeSave()) openVolume(*source);
 }
 
 void OpenController::chooseRaw() {
-    const QString path = QFileDialog::getOpenFileName(
+    const QStringList paths = QFileDialog::getOpenFileNames(
         m_bench.window(), tr("Open raw data"), QSettings().value("volumeFolder").toString(), tr("All files (*)"));
-    if (path.isEmpty()) return;
-    QSettings().setValue("volumeFolder", QFileInfo(path).absolutePath());
-    RawDialog dialog(path, m_bench.window());
-    if (dialog.exec() != QDialog::Accepted || !m_bench.saving().maybeSave()) return;
-    VolumeSource source;
-    source.path = path.toStdString();
-    source.raw = dialog.layoutOfFile();
-    openVolume(source);
+    if (paths.isEmpty()) return;
+    QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
+    VolumeSource source = sourceOf(paths);
+    if (askLayout(source, filesOfFrames(source)) && m_bench.saving().maybeSave()) openVolume(source);
 }
 
 void OpenController::chooseTf() {
@@ -433,13 +547,14 @@ void OpenController::updateRecentFiles() {
     menu->removeAction(clear);
     const QStringList files = QSettings().value(kRecentKey).toStringList();
     for (const QString& entry : files) {
-        QString path = entry;
+        VolumeSource source;
         try {
-            path = QString::fromStdString(recentSource(entry).path);
+            source = recentSource(entry);
         } catch (const Error&) {
             continue; // of another version
         }
-        QAction* action = menu->addAction(QFileInfo(path).fileName(), this, [this, entry] { openRecent(entry); });
+        const QString path = QString::fromStdString(source.path);
+        QAction* action = menu->addAction(titleOf(source), this, [this, entry] { openRecent(entry); });
         action->setToolTip(path);
         action->setStatusTip(path);
     }
@@ -464,6 +579,7 @@ QString OpenController::busyText() const { return m_busyText; }
 
 void OpenController::cancel() {
     m_open.cancel();
+    m_edits.clear();
     m_data.cancel();
 }
 

@@ -1,6 +1,8 @@
 // Opening: volumes, transfer functions and sessions, from every place that names one.
 #pragma once
 
+#include <deque>
+
 #include <QObject>
 #include <QStringList>
 
@@ -34,12 +36,23 @@ public:
     /// A path from the user: a session or a transfer function by its name, else a volume; what no format knows asks for
     /// its layout. Asks about unsaved work.
     void openPath(const QString& path);
+    /// Several at once: one is as openPath(); volumes are the frames of one series, in the order in which people count;
+    /// a transfer function among them is opened with them.
+    void openPaths(QStringList paths);
     /// The same as the first thing of a window, with a transfer function.
-    void openAtStart(const QString& path, const QString& tfSpec);
+    void openAtStart(const QStringList& paths, const QString& tfSpec);
+    /// Asks for the files of a volume or series, and for their layout where they have no header: for those who add it
+    /// to what is open. Empty: the user gave up.
+    std::optional<VolumeSource> askSource(const QString& title);
+    std::optional<VolumeSource> askSeries(); ///< likewise, by a folder or pattern
 
     /// A change of the session that needs other data, or the same through another window: one undo step named `text`
-    /// once the data is there; `then` follows it. A later one takes the place of one under way.
+    /// once the data is there; `then` follows it. A later one of the same name takes the place of one under way, others
+    /// wait for it.
     void editData(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
+    /// The same where no other data is needed, but what follows of it takes time: variables that are read, colours that
+    /// are made of several of them, a ground.
+    void editInJob(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
 
     bool isBusy() const { return m_open.isRunning() || m_data.isRunning(); }
     QString busyText() const; ///< "Opening scan.nrrd…"
@@ -76,14 +89,26 @@ private:
         Scene basis;
     };
 
+    struct Edit {
+        QString text;
+        SessionStore::Change change;
+        std::function<void()> then;
+    };
+
+    void start(Edit edit);
+    void nextChange();
+    void showChanged(const DataChange& change, Scene& scene);
     static Opened load(const Request& request, const JobControl& job);
     void show(const Request& request, Opened& opened);
     void showNotices(const std::vector<std::string>& notices);
     /// What the clipping box leaves of the data, at full resolution; and back.
     void openRegion();
     void openWhole();
-    bool askRawLayout(VolumeSource& source); ///< false: the user gave up
+    bool askRawLayout(VolumeSource& source);                        ///< false: the user gave up
+    bool askLayout(VolumeSource& source, const QStringList& files); ///< likewise
     void chooseVolume();
+    void chooseSeries();
+    QStringList askFiles(const QString& title, const QString& others);
     void chooseRaw();
     void chooseTf();
     void noteWindow(const TransferFunction& tf);
@@ -93,7 +118,8 @@ private:
 
     Workbench& m_bench;
     QString m_tfPath, m_sessionPath, m_busyText;
-    std::function<void()> m_afterData; ///< once the change under way has been made
+    Edit m_edit;              ///< the one under way
+    std::deque<Edit> m_edits; ///< those that wait for it
     Job<Request, Opened> m_open;
     Job<DataChange, Scene> m_data;
 };

@@ -30,6 +30,7 @@
 #include "lock_mark.h"
 #include "opacity_editor.h"
 #include "panel.h"
+#include "panels/channels_box.h"
 #include "theme.h"
 #include "workbench.h"
 
@@ -273,6 +274,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(0, 0, 0, 8);
     column->setSpacing(8);
+    column->addWidget(makeSourceNote(m_bench, "featureSource", featureSourceText, this));
     column->addWidget(m_table);
     column->addWidget(makeShapeRow());
     column->addWidget(makeTargetRow());

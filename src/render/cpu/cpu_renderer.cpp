@@ -15,6 +15,7 @@
 #include "render/cpu/ray_blocks.h"
 #include "render/cpu/ray_packets.h"
 #include "render/cpu/ray_table.h"
+#include "render/ground_raster.h"
 
 namespace pellucid {
 
@@ -95,6 +96,7 @@ private:
         prepare(tf, settings);
         PacketScene scene;
         fillVolume(scene);
+        fillColors(settings, scene);
         fillCamera(camera, settings, scale, scene);
         fillRegion(settings, scene);
         fillMode(tf, settings, scene);
@@ -103,6 +105,11 @@ private:
         scene.height = image.height;
         scene.rgba = image.rgba.data();
         scene.leap = m_options.leap;
+        const GroundPicture ground = groundUnder(camera, settings, scale, image, job);
+        if (!ground.depth.empty()) {
+            scene.groundDepth = ground.depth.data();
+            scene.ground = ground.rgba.data();
+        }
         const PacketKernel kernel = packetKernels()[static_cast<std::size_t>(m_options.kernel)];
         std::mutex mutex;
         std::atomic<std::size_t> count = 0;
@@ -116,6 +123,14 @@ private:
             }
             job.report(static_cast<double>(++count) / static_cast<double>(tiles.size()));
         });
+    }
+
+    /// Empty where the picture has none.
+    GroundPicture groundUnder(const Camera& camera, const RenderSettings& settings, double scale, const Image& image,
+                              const JobControl& job) const {
+        if (!showsGround(settings)) return {};
+        return groundOf(settings, camera, m_volume->geometry(),
+                        {settings.width * scale, settings.height * scale, 0, 0, image.width, image.height}, job);
     }
 
     /// Tables and blocks of the transfer function, where it is not the last one.
@@ -179,6 +194,13 @@ private:
         s.integral = m_table->integral();
         s.colors = m_table->colors();
         s.depthUnit = m_table->depthUnit();
+    }
+
+    void fillColors(const RenderSettings& settings, PacketScene& s) const {
+        if (!settings.colors) return;
+        PELLUCID_CHECK(settings.colors->dims == m_volume->dims() &&
+                       settings.colors->rgba.size() == voxelCount(m_volume->dims()));
+        s.voxelColors = settings.colors->rgba.data();
     }
 
     void fillCamera(const Camera& camera, const RenderSettings& settings, double scale, PacketScene& s) const {

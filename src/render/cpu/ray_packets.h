@@ -61,7 +61,7 @@ struct PacketScene {
 
     const std::uint16_t* codes = nullptr;      ///< a few more may be read behind the last, see CodeGrid::kPadding
     const std::uint8_t* narrowCodes = nullptr; ///< in place of `codes` where these are null; all voxels are valid then
-    const std::uint8_t* valid = nullptr;  ///< null: all are
+    const std::uint8_t* valid = nullptr;       ///< null: all are
     int dims[3]{};
     std::int64_t middleVoxel = 0; ///< index of what `codes` + it points to, so that 32 bits reach all
     int middleSlice = 0;
@@ -84,6 +84,8 @@ struct PacketScene {
         nullptr;                          ///< [cells + 1]: 2·(running integral in `depthUnit`) + (this cell is opaque)
     const std::int32_t* colors = nullptr; ///< [cells + 1] × 4: the same of τ·rgb, in the same units, without the bit
     float depthUnit = 0;                  ///< optical depth of one unit on a path of d0
+    /// A colour per voxel (VoxelColors) in place of `colors` and of those of features; null: none. Of the voxel 0.
+    const std::uint32_t* voxelColors = nullptr;
 
     // Mode Surface: the features that can be hit, in codes.
     struct Feature {
@@ -93,6 +95,9 @@ struct PacketScene {
     const Feature* features = nullptr;
     int featureCount = 0;
     float lowestShown = 0, highestShown = 65536; ///< codes that count in Mip, MinIp, Average: [low, high)
+
+    const float* groundDepth = nullptr;    ///< width × height: where rays end; infinity: nowhere. Null: no ground
+    const std::uint32_t* ground = nullptr; ///< its colours (VoxelColors::pack())
 
     bool hasBackground = false;
     float background[3]{}, backgroundTop[3]{}; ///< bottom and top of the picture

@@ -16,11 +16,11 @@ constexpr float kLitAtOnce = 1.0f / 512;
 
 /// Emission and absorption along eight rays. Between two samples the intensity goes linearly, and what it meets there
 /// comes from running integrals over the transfer function, so that thin tents and steps count in full.
-template <bool kLight, bool kInvalid>
+template <bool kLight, bool kInvalid, bool kVoxelColors>
 class Compositing {
 public:
     Compositing(const PacketScene& s, const Samples& samples, const Rays& rays)
-        : m_s(s), m_samples(samples), m_lighting(s, samples), m_rays(rays) {}
+        : m_s(s), m_samples(samples), m_lighting(s, samples), m_voxelColors(s, samples), m_rays(rays) {}
 
     Gathered run() {
         float end = endOf(m_rays);
@@ -114,7 +114,8 @@ private:
         if (none(some)) return false;
 
         Vec8 gradient[3], position[3];
-        // Where it is lit: about the middle of what is absorbed, were the opacity linear.
+        // Where it is lit, and where colours of voxels are taken: about the middle of what is absorbed, were the
+        // opacity linear.
         const Vec8 ends = last.opacity + next.opacity;
         const Vec8 part = ends > 0 ? (last.opacity + 2.0f * next.opacity) / (3.0f * ends) : all(0.5f);
         const Vec8 place = last.u + part * (next.u - last.u);
@@ -130,22 +131,32 @@ private:
         const Vec8 left = m_clear * expMinus(depth), weight = m_clear - left;
         m_clear = left;
 
-        // Colours: the running integral of τ·rgb, of one ray after the other.
-        Int8 from = last.cell;
-        Vec8 fromFraction = last.fraction, toFraction = next.fraction;
-        met = resting ? next.opacity : met;
-        from = resting ? next.cell : from;
-        fromFraction = resting ? Vec8{} : fromFraction;
-        toFraction = resting ? all(1) : toFraction;
-        const Vec8 per = weight / met;
-        unsigned bits = bitsOf(weight > 0);
-        for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
-            const int n = __builtin_ctz(lanes);
-            const std::int32_t *a = m_s.colors + 4 * static_cast<std::int64_t>(from[n]),
-                               *b = m_s.colors + 4 * static_cast<std::int64_t>(next.cell[n]);
-            const Int4 a0 = colorAt(a), a1 = colorAt(a + 4), b0 = colorAt(b), b1 = colorAt(b + 4);
-            const Vec4 rgb = floats(b0 - a0) + toFraction[n] * floats(b1 - b0) - fromFraction[n] * floats(a1 - a0);
-            unlit()[n] += per[n] * rgb;
+        const unsigned bits = bitsOf(weight > 0);
+        if constexpr (kVoxelColors) {
+            Vec4 rgb[kWide];
+            positionAt(m_rays, place, position);
+            m_voxelColors.at(position, bits, rgb);
+            for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
+                const int n = __builtin_ctz(lanes);
+                unlit()[n] += weight[n] * rgb[n];
+            }
+        } else {
+            // The running integral of τ·rgb, of one ray after the other.
+            Int8 from = last.cell;
+            Vec8 fromFraction = last.fraction, toFraction = next.fraction;
+            met = resting ? next.opacity : met;
+            from = resting ? next.cell : from;
+            fromFraction = resting ? Vec8{} : fromFraction;
+            toFraction = resting ? all(1) : toFraction;
+            const Vec8 per = weight / met;
+            for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
+                const int n = __builtin_ctz(lanes);
+                const std::int32_t *a = m_s.colors + 4 * static_cast<std::int64_t>(from[n]),
+                                   *b = m_s.colors + 4 * static_cast<std::int64_t>(next.cell[n]);
+                const Int4 a0 = colorAt(a), a1 = colorAt(a + 4), b0 = colorAt(b), b1 = colorAt(b + 4);
+                const Vec4 rgb = floats(b0 - a0) + toFraction[n] * floats(b1 - b0) - fromFraction[n] * floats(a1 - a0);
+                unlit()[n] += per[n] * rgb;
+            }
         }
         if constexpr (kLight) {
             m_pending += weight;
@@ -202,6 +213,7 @@ private:
     const PacketScene& m_s;
     const Samples& m_samples;
     Lighting m_lighting;
+    VoxelColorSamples m_voxelColors;
     Rays m_rays;
     Vec8 m_clear = all(1); ///< transmittance
     Colors m_color{};
@@ -214,11 +226,15 @@ void store(const PacketScene& s, const PacketTile& tile, int x, int y, const Gat
     for (int n = 0; n < kWide; ++n) {
         const int px = x + (n & 3), py = y + (n >> 2);
         if (px >= tile.x1 || py >= tile.y1) continue;
-        float* pixel = s.rgba + 4 * (static_cast<std::int64_t>(py) * s.width + px);
         const float clear = g.clear[n];
         Vec4 rgb = g.color.rgb[n];
         float alpha = 1 - clear;
-        if (s.hasBackground) {
+        const std::int64_t at = static_cast<std::int64_t>(py) * s.width + px;
+        if (s.groundDepth && s.groundDepth[at] < kNever) {
+            for (int c = 0; c < 3; ++c)
+                rgb[c] += clear * (static_cast<float>(s.ground[at] >> (8 * c) & 255u) * (1 / 255.0f));
+            alpha = 1;
+        } else if (s.hasBackground) {
             const float up = 1 - (static_cast<float>(py) + 0.5f) / static_cast<float>(s.height);
             for (int c = 0; c < 3; ++c)
                 rgb[c] += clear * (s.background[c] + up * (s.backgroundTop[c] - s.background[c]));
@@ -226,6 +242,7 @@ void store(const PacketScene& s, const PacketTile& tile, int x, int y, const Gat
         } else if (alpha > 0) {
             rgb /= alpha;
         }
+        float* pixel = s.rgba + 4 * at;
         for (int c = 0; c < 3; ++c) pixel[c] = rgb[c];
         pixel[3] = alpha;
     }
@@ -241,8 +258,12 @@ Gathered gather(const PacketScene& s, const Samples& samples, const Rays& rays) 
     default:
         return Grey<kInvalid>(s, samples, rays).run();
     }
-    if (s.light.any) return Compositing<true, kInvalid>(s, samples, rays).run();
-    return Compositing<false, kInvalid>(s, samples, rays).run();
+    if (s.voxelColors) {
+        if (s.light.any) return Compositing<true, kInvalid, true>(s, samples, rays).run();
+        return Compositing<false, kInvalid, true>(s, samples, rays).run();
+    }
+    if (s.light.any) return Compositing<true, kInvalid, false>(s, samples, rays).run();
+    return Compositing<false, kInvalid, false>(s, samples, rays).run();
 }
 
 void renderTile(const PacketScene& s, const PacketTile& tile) {

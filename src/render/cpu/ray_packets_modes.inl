@@ -99,7 +99,7 @@ template <bool kInvalid>
 class FirstHits {
 public:
     FirstHits(const PacketScene& s, const Samples& samples, const Rays& rays)
-        : m_s(s), m_samples(samples), m_lighting(s, samples), m_rays(rays) {}
+        : m_s(s), m_samples(samples), m_lighting(s, samples), m_voxelColors(s, samples), m_rays(rays) {}
 
     Gathered run() {
         const float end = endOf(m_rays);
@@ -189,11 +189,17 @@ private:
         const PacketScene::Feature& feature = m_s.features[nearest];
         Vec4 rgb{feature.rgb[0], feature.rgb[1], feature.rgb[2], 0};
         float alpha = feature.opacity;
+        const unsigned bit = 1u << n;
+        const Vec8 place = all(from + at * (to - from));
+        Vec8 position[3];
+        positionAt(m_rays, place, position);
+        if (m_s.voxelColors) {
+            Vec4 colors[kWide];
+            m_voxelColors.at(position, bit, colors);
+            rgb = colors[n];
+        }
         if (m_s.light.any) {
-            const unsigned bit = 1u << n;
-            const Vec8 place = all(from + at * (to - from));
-            Vec8 position[3], gradient[3] = {Vec8{}, Vec8{}, Vec8{}}, inCamera[3];
-            positionAt(m_rays, place, position);
+            Vec8 gradient[3] = {Vec8{}, Vec8{}, Vec8{}}, inCamera[3];
             m_lighting.gradientsAt(position, bit, gradient);
             m_lighting.toCamera(gradient, inCamera);
             if (m_s.light.gradientOpacity > 0) {
@@ -212,6 +218,7 @@ private:
     const PacketScene& m_s;
     const Samples& m_samples;
     Lighting m_lighting;
+    VoxelColorSamples m_voxelColors;
     const Rays& m_rays;
     Colors m_color{};
     Vec8 m_clear = all(1);

@@ -124,6 +124,13 @@ inline Rays raysOf(const PacketScene& s, Int8 x, Int8 y) {
         exit = (away == 0) & (room < 0) ? all(-kNever) : exit;
     }
     const Int8 inPicture = (x < s.width) & (y < s.height);
+    if (s.groundDepth) {
+        for (int n = 0; n < kWide; ++n) {
+            if (!inPicture[n]) continue;
+            const float ground = s.groundDepth[static_cast<std::int64_t>(y[n]) * s.width + x[n]];
+            exit[n] = exit[n] < ground ? exit[n] : ground;
+        }
+    }
     r.depthPerStep = s.step / r.length;
     r.count = (enter < exit) & inPicture ? (exit - enter) / r.depthPerStep : Vec8{};
     enter = r.count > 0 ? enter : Vec8{};
@@ -153,7 +160,8 @@ class Samples {
 public:
     explicit Samples(const PacketScene& s)
         : m_s(s), m_codes(s.codes ? s.codes + s.middleVoxel : nullptr),
-          m_narrow(s.codes ? nullptr : s.narrowCodes + s.middleVoxel), m_valid(s.valid ? s.valid + s.middleVoxel : nullptr) {
+          m_narrow(s.codes ? nullptr : s.narrowCodes + s.middleVoxel),
+          m_valid(s.valid ? s.valid + s.middleVoxel : nullptr) {
         for (int a = 0; a < 3; ++a) {
             // A hair below the last centre, so that the cell is never one too many.
             const float last = static_cast<float>(s.dims[a] - 1);
@@ -266,6 +274,68 @@ private:
     const std::uint8_t* m_valid;
     float m_last[3];
     std::int64_t m_alongY, m_alongZ;
+};
+
+/// Colours of voxels, where they do not come from the transfer function.
+class VoxelColorSamples {
+public:
+    VoxelColorSamples(const PacketScene& s, const Samples& samples)
+        : m_colors(s.voxelColors ? s.voxelColors + s.middleVoxel : nullptr),
+          m_valid(s.valid ? s.valid + s.middleVoxel : nullptr),
+          m_samples(samples), m_along{s.dims[0] > 1 ? 1 : 0, samples.alongY(), samples.alongZ()} {}
+
+    /// Straight colours of the lanes in `bits`, interpolated over the valid voxels.
+    void at(const Vec8 (&position)[3], unsigned bits, Vec4 (&rgb)[kWide]) const {
+        const Cells c = m_samples.cellsAt(position);
+        const Int8 index = m_samples.indexOf(c);
+        for (; bits != 0; bits &= bits - 1) {
+            const int n = __builtin_ctz(bits);
+            const float f[3] = {c.fraction[0][n], c.fraction[1][n], c.fraction[2][n]};
+            rgb[n] = m_valid ? amongValid(index[n], f) : among(index[n], f);
+        }
+    }
+
+private:
+    Vec4 voxel(std::int64_t i) const {
+        const std::uint32_t v = m_colors[i];
+        const Int4 channels{static_cast<int>(v & 255u), static_cast<int>(v >> 8 & 255u),
+                            static_cast<int>(v >> 16 & 255u), 0};
+        return __builtin_convertvector(channels, Vec4) * (1 / 255.0f);
+    }
+    Vec4 among(std::int64_t i, const float (&f)[3]) const {
+        const auto alongX = [&](std::int64_t p) {
+            const Vec4 low = voxel(p);
+            return low + f[0] * (voxel(p + m_along[0]) - low);
+        };
+        const auto alongY = [&](std::int64_t p) {
+            const Vec4 low = alongX(p);
+            return low + f[1] * (alongX(p + m_along[1]) - low);
+        };
+        const Vec4 low = alongY(i);
+        return low + f[2] * (alongY(i + m_along[2]) - low);
+    }
+    Vec4 amongValid(std::int64_t index, const float (&f)[3]) const {
+        Vec4 sum{};
+        float share = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            std::int64_t i = index;
+            float w = 1;
+            for (int a = 0; a < 3; ++a) {
+                const bool high = corner >> a & 1;
+                i += high ? m_along[a] : 0;
+                w *= high ? f[a] : 1 - f[a];
+            }
+            if (!m_valid[i]) continue;
+            sum += w * voxel(i);
+            share += w;
+        }
+        return share > 0 ? sum / share : sum;
+    }
+
+    const std::uint32_t* m_colors; ///< of the middle voxel
+    const std::uint8_t* m_valid;
+    const Samples& m_samples;
+    std::int64_t m_along[3];
 };
 
 /// How many whole steps rays at `position`, in the cells `c`, can go before any leaves what may be passed over around

@@ -17,14 +17,14 @@ constexpr int kShortest = 2 * kMargin + 8; ///< texture, voxels: shorter ones wo
 
 } // namespace
 
-BrickedVolume::BrickedVolume(const Volume& volume, int longest)
-    : m_geometry(volume.geometry()), m_grid(sharedIntensityGrid(volume)), m_hasInvalid(!m_grid->valid.empty()),
-      m_maxCode(textureMaxCode(*m_grid)) {
+BrickedVolume::BrickedVolume(const Volume& volume, int longest, std::shared_ptr<const VoxelColors> colors)
+    : m_geometry(volume.geometry()), m_grid(sharedIntensityGrid(volume)), m_colors(std::move(colors)),
+      m_hasInvalid(!m_grid->valid.empty()), m_maxCode(textureMaxCode(*m_grid)) {
     longest = std::min(longest, glInteger(GL_MAX_3D_TEXTURE_SIZE));
     PELLUCID_CHECK(longest >= kShortest);
     cut(Int3(longest));
     if (uploadAll()) {
-        m_grid.reset(); // the device has it now
+        if (!m_colors) m_grid.reset(); // the device has it now
         return;
     }
     // One brick at a time, half as long until it fits.
@@ -33,11 +33,12 @@ BrickedVolume::BrickedVolume(const Volume& volume, int longest)
         const bool smallest = size[axis] <= kShortest;
         size[axis] = std::max(kShortest, size[axis] / 2);
         cut(size);
+        m_textures.clear();
+        m_colorTextures.clear();
         try {
             Int3 most(0);
             for (const VolumeBrick& brick : m_bricks) most = glm::max(most, brick.size);
-            m_textures.clear();
-            m_textures.push_back(makeTexture3d(most, codeFormat(*m_grid), GL_LINEAR, "a brick of the volume"));
+            makeTextures(most, "a brick of the volume");
             return;
         } catch (const OutOfMemory&) {
             if (smallest) throw;
@@ -70,17 +71,39 @@ void BrickedVolume::cut(const Int3& longest) {
             }
 }
 
+/// One more.
+void BrickedVolume::makeTextures(const Int3& size, const std::string& what) {
+    m_textures.push_back(makeTexture3d(size, codeFormat(*m_grid), GL_LINEAR, what));
+    if (m_colors) m_colorTextures.push_back(makeTexture3d(size, GL_RGBA8, GL_LINEAR, "the colours of " + what));
+}
+
+void BrickedVolume::upload(std::size_t brick, std::size_t texture) {
+    const VolumeBrick& b = m_bricks[brick];
+    uploadCodes(m_textures[texture], *m_grid, b.first, b.size, Int3(0));
+    if (m_colors) uploadColors(m_colorTextures[texture], *m_colors, *m_grid, b.first, b.size);
+}
+
 bool BrickedVolume::uploadAll() {
     try {
-        for (const VolumeBrick& brick : m_bricks) {
-            m_textures.push_back(makeTexture3d(brick.size, codeFormat(*m_grid), GL_LINEAR, "the volume"));
-            uploadCodes(m_textures.back(), *m_grid, brick.first, brick.size, Int3(0));
+        for (std::size_t i = 0; i < m_bricks.size(); ++i) {
+            makeTextures(m_bricks[i].size, "the volume");
+            upload(i, i);
         }
         return true;
     } catch (const OutOfMemory&) {
         m_textures.clear();
+        m_colorTextures.clear();
         return false;
     }
+}
+
+void BrickedVolume::setColors(std::shared_ptr<const VoxelColors> colors) {
+    PELLUCID_CHECK(m_colors && colors);
+    if (colors == m_colors) return;
+    m_colors = std::move(colors);
+    if (m_textures.size() < m_bricks.size()) return; // they go up with each brick
+    for (std::size_t i = 0; i < m_bricks.size(); ++i)
+        uploadColors(m_colorTextures[i], *m_colors, *m_grid, m_bricks[i].first, m_bricks[i].size);
 }
 
 std::vector<std::size_t> BrickedVolume::frontToBack(const Camera& camera) const {
@@ -104,12 +127,14 @@ std::vector<std::size_t> BrickedVolume::frontToBack(const Camera& camera) const 
 const VolumeBrick& BrickedVolume::use(std::size_t index) {
     VolumeBrick& brick = m_bricks[index];
     const bool shared = m_textures.size() < m_bricks.size();
-    Texture3d& texture = m_textures[shared ? 0 : index];
-    if (shared) uploadCodes(texture, *m_grid, brick.first, brick.size, Int3(0));
+    const std::size_t at = shared ? 0 : index;
+    if (shared) upload(index, at);
+    const Texture3d& texture = m_textures[at];
     const Vec3 size(texture.size);
     brick.textureFromVoxel = 1.0 / size;
     brick.textureOffset = (0.5 - Vec3(brick.first)) / size;
     brick.textureEnd = (Vec3(brick.size) - 0.5) / size;
+    if (m_colors) bindTexture(5, GL_TEXTURE_3D, m_colorTextures[at].name);
     bindTexture(0, GL_TEXTURE_3D, texture.name);
     return brick;
 }

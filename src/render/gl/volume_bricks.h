@@ -23,28 +23,37 @@ struct VolumeBrick {
 
 class BrickedVolume {
 public:
-    /// Throws Error, OutOfMemory. `longest`: of textures, along any axis, voxels; the device's if less.
-    BrickedVolume(const Volume& volume, int longest);
+    /// Throws Error, OutOfMemory. `longest`: of textures, along any axis, voxels; the device's if less. `colors`: of
+    /// the volume's voxels, kept beside its intensities; null: none.
+    BrickedVolume(const Volume& volume, int longest, std::shared_ptr<const VoxelColors> colors = nullptr);
 
     std::size_t count() const noexcept { return m_bricks.size(); }
     bool hasInvalid() const noexcept { return m_hasInvalid; }
     int maxCode() const noexcept { return m_maxCode; } ///< textureMaxCode()
+    bool hasColors() const noexcept { return m_colors != nullptr; }
+    /// Other colours in place of those there are: nothing happens where they are the same. hasColors() is true.
+    void setColors(std::shared_ptr<const VoxelColors> colors);
     /// Indices of bricks such that none hides an earlier one.
     std::vector<std::size_t> frontToBack(const Camera& camera) const;
-    /// Binds the brick's texture to unit 0, uploading it first where not all have room.
+    /// Binds the brick's texture to unit 0, and that of its colours to unit 5; uploads them first where not all have
+    /// room.
     const VolumeBrick& use(std::size_t brick);
 
 private:
     void cut(const Int3& longest);
     bool uploadAll();
+    void upload(std::size_t brick, std::size_t texture);
+    void makeTextures(const Int3& size, const std::string& what);
 
     Geometry m_geometry;
-    std::shared_ptr<const IntensityGrid> m_grid; ///< kept only where bricks are uploaded time and again
+    std::shared_ptr<const IntensityGrid> m_grid; ///< kept only where something is uploaded again
+    std::shared_ptr<const VoxelColors> m_colors; ///< null: none
     bool m_hasInvalid;
     int m_maxCode;
     std::vector<VolumeBrick> m_bricks;
     Int3 m_counts{1, 1, 1}, m_cells{1, 1, 1}; ///< bricks along each axis; voxels that each stands for
     std::vector<Texture3d> m_textures;        ///< one per brick, or one alone that they share in turn
+    std::vector<Texture3d> m_colorTextures;   ///< likewise, of the same sizes; empty: none
 };
 
 } // namespace pellucid::gl

@@ -23,6 +23,7 @@
 #include "render/gl/shader_program.h"
 #include "render/gl/volume_bricks.h"
 #include "render/gl/volume_texture.h"
+#include "render/ground_raster.h"
 #include "tf/tf_table.h"
 
 namespace pellucid::gl {
@@ -35,6 +36,7 @@ constexpr int kTableSize = 16384;
 constexpr double kSamplesAtOnce = 8e6;
 constexpr double kMostSteps = 1e6; ///< along one ray
 constexpr std::size_t kMostSurfaces = 128;
+constexpr double kMostGroundAtOnce = 4096 * 4096; ///< pixels: the ground of larger pictures is drawn tile by tile
 
 using glm::value_ptr;
 
@@ -101,6 +103,7 @@ public:
         setVector(28, textureFromVoxel);
         setVector(29, offset);
     }
+    void setGroundOrigin(const glm::ivec2& texel) const { glProgramUniform2iv(m_id, 20, 1, value_ptr(texel)); }
     void setDepthCue(const Rgb& color, double perDepth, double offset) const {
         setVector(26, {color.r, color.g, color.b});
         glProgramUniform2f(m_id, 27, static_cast<float>(perDepth), static_cast<float>(offset));
@@ -149,6 +152,8 @@ public:
     void setTextureFromFragment(const glm::vec4& v) const { glProgramUniform4fv(m_id, 1, 1, value_ptr(v)); }
     void setHeightFromFragment(const glm::vec2& v) const { glProgramUniform2fv(m_id, 4, 1, value_ptr(v)); }
     void setIsGrey(bool grey) const { glProgramUniform1i(m_id, 2, grey ? 1 : 0); }
+    void setHasGround(bool has) const { glProgramUniform1i(m_id, 5, has ? 1 : 0); }
+    void setGroundFromFragment(const glm::vec4& v) const { glProgramUniform4fv(m_id, 6, 1, value_ptr(v)); }
 
 private:
     ProgramName m_program;
@@ -185,6 +190,56 @@ CodeInterval codesOf(const Feature& feature, int maxCode) {
     const auto code = [&](double s) { return (s * maxCode - kHair) / 65535; };
     return {code(feature.a), feature.b >= 1 ? 2.0 : code(feature.b)};
 }
+
+/// The ground of a picture, or of a tile of it, kept as long as the same is drawn.
+class GroundTextures {
+public:
+    /// `window`: the whole picture or a part of it.
+    void prepare(const RenderSettings& settings, const Camera& camera, const Geometry& geometry,
+                 const GroundWindow& window, const JobControl& job) {
+        Drawn wanted{settings.ground, camera, settings.light.depthCue, settings.background, window};
+        if (m_drawn == wanted) return;
+        m_drawn.reset();
+        const GroundPicture picture = groundOf(settings, camera, geometry, window, job);
+        const glm::ivec2 size(picture.width, picture.height);
+        if (m_color.size != size) {
+            m_color = makeTexture2d(size, GL_RGBA8, GL_LINEAR, "the ground");
+            m_depth = makeTexture2d(size, GL_R32F, GL_NEAREST, "the depth of the ground");
+        }
+        upload(m_color, GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, picture.rgba.data());
+        upload(m_depth, GL_RED, GL_FLOAT, picture.depth.data());
+        m_drawn = std::move(wanted);
+    }
+    /// Where a point of the picture lies in it, both in pixels from the top left corner.
+    glm::dvec2 at(const glm::dvec2& inPicture, const RenderSettings& settings) const {
+        const GroundWindow& w = m_drawn->window;
+        const glm::dvec2 scale =
+            glm::dvec2(w.pictureWidth, w.pictureHeight) / glm::dvec2(settings.width, settings.height);
+        return inPicture * scale - glm::dvec2(w.left, w.top);
+    }
+    glm::dvec2 size() const { return m_color.size; }
+    const TextureName& color() const { return m_color.name; }
+    const TextureName& depth() const { return m_depth.name; }
+    void clear() { *this = {}; }
+
+private:
+    static void upload(const Texture2d& texture, GLenum format, GLenum type, const void* pixels) {
+        glBindTexture(GL_TEXTURE_2D, texture.name.id());
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, texture.size.x, texture.size.y, format, type, pixels);
+        glBindTexture(GL_TEXTURE_2D, 0);
+        throwOnGlError("uploading the ground");
+    }
+    struct Drawn {
+        std::shared_ptr<const Ground> ground;
+        Camera camera;
+        double depthCue = 0;
+        std::optional<Rgb> background;
+        GroundWindow window;
+        bool operator==(const Drawn&) const = default;
+    };
+    std::optional<Drawn> m_drawn;
+    Texture2d m_color, m_depth;
+};
 
 /// In d0, so that the ends of a step lie in the texture of the brick that holds its middle.
 double longestStepInBricks(const Geometry& g) {
@@ -225,7 +280,9 @@ struct VolumeRaycaster::Impl {
     Texture2d seen;          ///< u_seen; of the same size, made only for surfaces in bricks
 
     std::shared_ptr<const Volume> volume;
+    int longestTexture = 1 << 30; ///< as setVolume() was told
     std::unique_ptr<BrickedVolume> bricks;
+    GroundTextures ground;
     std::unique_ptr<RayBlocks> blocks;
     Texture3d distances;                     ///< of the blocks, to the next that is drawn
     std::optional<bool> distancesToSurfaces; ///< what they were made for: surfaces or opacity; empty: out of date
@@ -243,6 +300,8 @@ struct VolumeRaycaster::Impl {
                                          "BLOCK_SHIFT " + std::to_string(kRayBlockShift)};
         if (bricks->hasInvalid()) defines.emplace_back("HAS_INVALID");
         if (bricks->count() > 1) defines.emplace_back("BRICKS");
+        if (showsGround(settings)) defines.emplace_back("GROUND");
+        if (isColored(settings.mode) && settings.colors) defines.emplace_back("VOXEL_COLORS");
         if (isColored(settings.mode) && changesColors(settings.light)) {
             defines.emplace_back("LIGHT");
             if (settings.light.gradientOpacity > 0) defines.emplace_back("GRADIENT_OPACITY");
@@ -253,6 +312,9 @@ struct VolumeRaycaster::Impl {
                                        : programs.emplace(defines, RaycastProgram(defines)).first->second;
     }
 
+    void fillColors(const RenderSettings& settings);
+    void fillGround(const Camera& camera, const RenderSettings& settings, const Tile& tile, double scale,
+                    const JobControl& job);
     void fillTables(const RenderSettings& settings);
     void fillTable(const RenderSettings& settings);
     void fillSurfaces(const Feature* only);
@@ -263,6 +325,34 @@ struct VolumeRaycaster::Impl {
     void cast(const Camera& camera, const RenderSettings& settings, const Tile& tile, const JobControl& job);
     void drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile);
 };
+
+/// Colours lie beside the intensities: with the first, and after the last, both go up again.
+void VolumeRaycaster::Impl::fillColors(const RenderSettings& settings) {
+    if (!isColored(settings.mode)) return;
+    if (settings.colors)
+        PELLUCID_CHECK(settings.colors->dims == volume->dims() &&
+                       settings.colors->rgba.size() == voxelCount(volume->dims()));
+    if (bricks->hasColors() == (settings.colors != nullptr)) {
+        if (settings.colors) bricks->setColors(settings.colors);
+        return;
+    }
+    bricks = std::make_unique<BrickedVolume>(*volume, longestTexture, settings.colors);
+}
+
+/// In one piece for all tiles of a picture, unless it is large or drawn at a lower resolution.
+void VolumeRaycaster::Impl::fillGround(const Camera& camera, const RenderSettings& settings, const Tile& tile,
+                                       double scale, const JobControl& job) {
+    if (!settings.ground) ground.clear();
+    if (!showsGround(settings)) return;
+    const double width = settings.width, height = settings.height;
+    GroundWindow window{width, height, 0, 0, settings.width, settings.height};
+    if (scale != 1 || width * height > kMostGroundAtOnce) {
+        const glm::dvec2 size(accumulated.color.size), perPixel = size / glm::dvec2(tile.width, tile.height);
+        window = {width * perPixel.x,       height * perPixel.y,      tile.x * perPixel.x,    tile.y * perPixel.y,
+                  accumulated.color.size.x, accumulated.color.size.y, perPixel.y / perPixel.x};
+    }
+    ground.prepare(settings, camera, volume->geometry(), window, job);
+}
 
 void VolumeRaycaster::Impl::fillTables(const RenderSettings& settings) {
     if (tableFeature != settings.onlyFeature) fillTable(settings);
@@ -369,7 +459,7 @@ void VolumeRaycaster::Impl::resize(glm::ivec2 size) {
 }
 
 void VolumeRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& camera, const RenderSettings& settings,
-                                       const Tile& tile) {
+                                        const Tile& tile) {
     const Geometry& g = volume->geometry();
     const glm::vec2 size(accumulated.color.size), picture(settings.width, settings.height);
     // The tile in picture coordinates: [−1,1]² over the whole picture, y up.
@@ -416,7 +506,7 @@ void VolumeRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& c
 }
 
 void VolumeRaycaster::Impl::cast(const Camera& camera, const RenderSettings& settings, const Tile& tile,
-                                const JobControl& job) {
+                                 const JobControl& job) {
     const bool bricked = bricks->count() > 1, surface = settings.mode == RenderMode::Surface;
     if (surface && drawn.size() > kMostSurfaces)
         throw Error("surfaces of " + std::to_string(drawn.size()) + " features are too many", "transfer function",
@@ -424,6 +514,10 @@ void VolumeRaycaster::Impl::cast(const Camera& camera, const RenderSettings& set
     const glm::ivec2 size = accumulated.color.size;
     const RaycastProgram& p = program(settings);
     setUniforms(p, camera, settings, tile);
+    if (showsGround(settings)) {
+        const glm::dvec2 bottomLeft = ground.at({tile.x, tile.y + tile.height}, settings);
+        p.setGroundOrigin(glm::ivec2(glm::round(bottomLeft)) - glm::ivec2(0, 1));
+    }
 
     glBindFramebuffer(GL_FRAMEBUFFER, accumulated.framebuffer.id());
     glViewport(0, 0, size.x, size.y);
@@ -459,6 +553,7 @@ void VolumeRaycaster::Impl::cast(const Camera& camera, const RenderSettings& set
         for (std::size_t i = 0; i < order.size(); ++i) {
             const JobControl part = job.part(i, order.size());
             p.setBrick(bricks->use(order[i]), bricked);
+            if (showsGround(settings)) bindTexture(6, GL_TEXTURE_2D, ground.depth());
             bindTexture(4, GL_TEXTURE_2D, surfaces.name());
             if (openness.name) bindTexture(3, GL_TEXTURE_3D, openness.name);
             bindTexture(2, GL_TEXTURE_3D, distances.name);
@@ -494,6 +589,15 @@ void VolumeRaycaster::Impl::drawComposite(const RenderSettings& settings, const 
     composite.setTextureFromFragment({scale, -glm::vec2(target.x, target.y) * scale});
     const float rowsBelow = static_cast<float>(settings.height - tile.y - tile.height - target.y);
     composite.setHeightFromFragment(glm::vec2(1, rowsBelow) / static_cast<float>(settings.height));
+    composite.setHasGround(showsGround(settings));
+    if (showsGround(settings)) {
+        // Fragments go up, the ground's rows down.
+        const glm::dvec2 corner(tile.x - target.x, tile.y + tile.height + target.y);
+        const glm::dvec2 from = ground.at(corner, settings) / ground.size(),
+                         next = ground.at(corner + glm::dvec2(1, -1), settings) / ground.size();
+        composite.setGroundFromFragment({next - from, from});
+        bindTexture(1, GL_TEXTURE_2D, ground.color());
+    }
     bindTexture(0, GL_TEXTURE_2D, accumulated.color.name);
     glBindVertexArray(emptyArray.id());
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -511,6 +615,7 @@ VolumeRaycaster& VolumeRaycaster::operator=(VolumeRaycaster&&) noexcept = defaul
 void VolumeRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longestTexture) {
     auto blocks = std::make_unique<RayBlocks>(*sharedIntensityGrid(*volume));
     m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture);
+    m_impl->longestTexture = longestTexture;
     m_impl->blocks = std::move(blocks);
     m_impl->volume = std::move(volume);
     m_impl->tableFeature.reset(); // in the former volume's codes
@@ -523,13 +628,14 @@ void VolumeRaycaster::setTransferFunction(const TransferFunction& tf) {
 }
 
 void VolumeRaycaster::draw(const Camera& camera, const RenderSettings& settings, const DrawTarget& target,
-                          const JobControl& job) {
+                           const JobControl& job) {
     PELLUCID_CHECK(m_impl->volume && m_impl->tf);
     PELLUCID_CHECK(target.resolutionScale > 0 && target.resolutionScale <= 1);
     settings.validate();
     camera.validate(m_impl->volume->geometry(), "camera");
     const Tile tile = tileOf(settings, target);
     throwOnGlError("preparing to draw");
+    m_impl->fillColors(settings);
     m_impl->fillTables(settings);
 
     const auto scaled = [&](int pixels) {
@@ -537,6 +643,7 @@ void VolumeRaycaster::draw(const Camera& camera, const RenderSettings& settings,
     };
     const glm::ivec2 size(scaled(tile.width), scaled(tile.height));
     m_impl->resize(size);
+    m_impl->fillGround(camera, settings, tile, target.resolutionScale, job);
 
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_SCISSOR_TEST);
@@ -550,7 +657,7 @@ void VolumeRaycaster::draw(const Camera& camera, const RenderSettings& settings,
         glBindVertexArray(0);
         glUseProgram(0);
         for (const GLuint unit : {0u, 1u}) glBindImageTexture(unit, 0, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
-        for (const GLenum unit : {4u, 3u, 2u, 1u, 0u}) {
+        for (const GLenum unit : {6u, 5u, 4u, 3u, 2u, 1u, 0u}) {
             glActiveTexture(GL_TEXTURE0 + unit);
             glBindTexture(GL_TEXTURE_2D, 0);
             glBindTexture(GL_TEXTURE_3D, 0);

@@ -97,6 +97,28 @@ void uploadWeights(const Texture3d& texture, const WeightFields& weights, const 
     throwOnGlError("uploading the saliency");
 }
 
+void uploadColors(const Texture3d& texture, const VoxelColors& colors, const IntensityGrid& grid, const Int3& first,
+                  const Int3& size) {
+    glBindTexture(GL_TEXTURE_3D, texture.name.id());
+    if (grid.valid.empty()) {
+        copyBox(colors.rgba.data(), colors.dims, first, size, Int3(0), GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, 1);
+    } else {
+        const Int3 layer(size.x, size.y, 1);
+        std::vector<std::uint32_t> shown(voxelCount(layer));
+        for (int k = 0; k < size.z; ++k) {
+            auto next = shown.begin();
+            for (int j = 0; j < size.y; ++j)
+                for (int i = 0; i < size.x; ++i) {
+                    const std::size_t voxel = grid.codes.index(first.x + i, first.y + j, first.z + k);
+                    *next++ = grid.valid[voxel] != 0 ? colors.rgba[voxel] : 0u;
+                }
+            copyBox(shown.data(), layer, Int3(0), layer, Int3(0, 0, k), GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, 1);
+        }
+    }
+    glBindTexture(GL_TEXTURE_3D, 0);
+    throwOnGlError("uploading the colours of voxels");
+}
+
 void TableTexture::fill(std::span<const float> values, int channels) {
     PELLUCID_CHECK((channels == 1 || channels == 4) && !values.empty());
     constexpr int kRow = 256;

@@ -7,6 +7,7 @@
 #include "render/gl/gl_resources.h"
 #include "saliency/weight_fields.h"
 #include "volume/intensity_grid.h"
+#include "volume/voxel_colors.h"
 
 namespace pellucid::gl {
 
@@ -22,6 +23,10 @@ void uploadCodes(const Texture3d& texture, const IntensityGrid& grid, const Int3
                  const Int3& to);
 void uploadWeights(const Texture3d& texture, const WeightFields& weights, const Int3& first, const Int3& size,
                    const Int3& to);
+
+/// Likewise colours into RGBA8: 0 where a voxel is invalid.
+void uploadColors(const Texture3d& texture, const VoxelColors& colors, const IntensityGrid& grid, const Int3& first,
+                  const Int3& size);
 
 /// A table for tfTexel() of include/tf_segment.glsl: rows of 256 entries, unfiltered. Refilled in place while its size
 /// stays.

@@ -64,9 +64,28 @@ bool FileBytes::skip(std::uint64_t count) {
 }
 
 InflatedBytes::InflatedBytes(const std::string& path, std::uint64_t start, bool zlib, const JobControl& job)
-    : m_in(path, std::ios::binary), m_zlib(zlib), m_job(job), m_packed(kPiece) {
+    : m_in(path, std::ios::binary), m_zlib(zlib), m_job(job), m_packed(kPiece), m_filePosition(start) {
     m_in.seekg(static_cast<std::streamoff>(start));
     PELLUCID_CHECK(inflateInit2(&m_stream, zlib ? MAX_WBITS + 32 : MAX_WBITS + 16) == Z_OK);
+}
+
+InflatedBytes::InflatedBytes(const std::string& path, const Place& place, bool zlib, const JobControl& job)
+    : m_in(path, std::ios::binary), m_zlib(zlib), m_job(job), m_packed(kPiece), m_memberEnded(place.memberEnded),
+      m_decoded(place.decoded), m_filePosition(place.packed) {
+    m_in.seekg(static_cast<std::streamoff>(place.packed));
+    PELLUCID_CHECK(inflateCopy(&m_stream, place.state.get()) == Z_OK);
+    m_stream.avail_in = 0;
+}
+
+InflatedBytes::Place InflatedBytes::place() const {
+    Place place{m_decoded, m_filePosition - m_stream.avail_in, m_memberEnded,
+                {new z_stream{}, [](z_stream* state) {
+                     inflateEnd(state);
+                     delete state;
+                 }}};
+    // zlib copies from a state that it does not call const, and leaves it alone.
+    PELLUCID_CHECK(inflateCopy(place.state.get(), const_cast<z_stream*>(&m_stream)) == Z_OK);
+    return place;
 }
 
 InflatedBytes::~InflatedBytes() { inflateEnd(&m_stream); }
@@ -79,6 +98,7 @@ std::size_t InflatedBytes::read(char* to, std::size_t count) {
             m_in.read(reinterpret_cast<char*>(m_packed.data()), static_cast<std::streamsize>(m_packed.size()));
             m_stream.next_in = m_packed.data();
             m_stream.avail_in = static_cast<uInt>(m_in.gcount());
+            m_filePosition += m_stream.avail_in;
             if (m_stream.avail_in == 0) {
                 m_end = m_memberEnded ? End::Whole : End::CutOff;
                 break;
@@ -97,6 +117,7 @@ std::size_t InflatedBytes::read(char* to, std::size_t count) {
         m_stream.avail_out = static_cast<uInt>(piece);
         const int status = inflate(&m_stream, Z_NO_FLUSH);
         done += piece - m_stream.avail_out;
+        m_decoded += piece - m_stream.avail_out;
         m_memberEnded = status == Z_STREAM_END;
         if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) m_end = End::Damaged;
     }
@@ -129,7 +150,9 @@ bool TextWords::next(std::string& word) {
     constexpr std::size_t kMostCharacters = 400;
     word.clear();
     while (m_at < m_piece.size() || refill(m_text, m_piece, m_at)) {
-        const char c = m_piece[m_at++];
+        const char c = m_piece[m_at];
+        if (c == '<') break; // it stays: so does the end
+        ++m_at;
         const bool separates = c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0;
         if (separates && !word.empty()) return true;
         if (!separates && word.size() <= kMostCharacters) word += c;

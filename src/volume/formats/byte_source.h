@@ -46,6 +46,18 @@ public:
     InflatedBytes(const InflatedBytes&) = delete;
     InflatedBytes& operator=(const InflatedBytes&) = delete;
     std::size_t read(char* to, std::size_t count) override;
+    /// A place in the stream where reading can go on.
+    struct Place {
+        std::uint64_t decoded = 0; ///< bytes that have come out
+        std::uint64_t packed = 0;  ///< byte of the file that is next
+        bool memberEnded = false;
+        std::unique_ptr<z_stream, void (*)(z_stream*)> state; ///< about 40 kB
+    };
+    /// Goes on at `place` of the stream of this file.
+    InflatedBytes(const std::string& path, const Place& place, bool zlib, const JobControl& job);
+    Place place() const;
+    std::uint64_t decoded() const { return m_decoded; } ///< bytes that have come out
+
     /// How the stream ended; None before read() has returned fewer bytes than it was asked for.
     End end() const { return m_end; }
 
@@ -56,6 +68,7 @@ private:
     z_stream m_stream{};
     std::vector<unsigned char> m_packed;
     bool m_memberEnded = false;
+    std::uint64_t m_decoded = 0, m_filePosition = 0; // of m_in, from the beginning of the file
     End m_end = End::None;
 };
 
@@ -71,7 +84,7 @@ private:
     std::size_t m_at = 0;
 };
 
-/// The words of a text, between blanks, line ends or commas.
+/// The words of a text, between blanks, line ends or commas, up to its end or a "<": there markup begins.
 class TextWords {
 public:
     TextWords(const std::string& path, std::uint64_t start, const JobControl& job);

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "volume/formats/byte_source.h"
 
 namespace pellucid {
 
@@ -127,8 +126,14 @@ std::uint64_t requireInflates(const std::string& path, std::uint64_t start, bool
     // Beyond what is wanted nothing matters, so that a stream which never ends cannot hold us up.
     while ((yield <= wanted || toTheEnd) && bytes.end() == End::None)
         yield += bytes.read(unpacked.data(), unpacked.size());
-    if ((yield > wanted && !toTheEnd) || (yield >= wanted && bytes.end() == End::Whole)) return yield;
-    const bool damaged = bytes.end() == End::Damaged;
+    if (yield <= wanted || toTheEnd) requireYield(path, yield, wanted, bytes.end());
+    return yield;
+}
+
+void requireYield(const std::string& path, std::uint64_t yield, std::uint64_t wanted, InflatedBytes::End end) {
+    using End = InflatedBytes::End;
+    if (yield >= wanted && end == End::Whole) return;
+    const bool damaged = end == End::Damaged;
     if (yield >= wanted && damaged)
         throw FileError("the checksum of the compressed data is wrong", path, "copy or write the file again");
     if (yield >= wanted) throw FileError("the compressed data is cut off at its end", path, "copy the file again");

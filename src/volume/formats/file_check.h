@@ -9,6 +9,7 @@
 
 #include "base/job.h"
 #include "base/text.h"
+#include "volume/formats/byte_source.h"
 
 namespace pellucid {
 
@@ -37,6 +38,9 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
 /// Returns how many there are: all where `toTheEnd`, otherwise those it had to look at.
 std::uint64_t requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
                               const JobControl& job, bool toTheEnd = false);
+
+/// Throws FileError unless a stream that was unpacked to its `end` has ended well, with `wanted` bytes or more.
+void requireYield(const std::string& path, std::uint64_t yield, std::uint64_t wanted, InflatedBytes::End end);
 
 /// Throws FileError unless the text that begins at byte `start` of a file holds `wanted` numbers, between blanks or
 /// commas.

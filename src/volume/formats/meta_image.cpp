@@ -200,7 +200,23 @@ std::string dataPathIn(const MetaHeader& header, const std::string& path) {
     return (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
 }
 
-FileLayout checkedLayout(const std::string& path, const JobControl& job) {
+/// When the steps along the fourth axis are, in no unit that the header names. None where it says nothing but 0, 1, 2.
+std::optional<StepTimes> timesIn(const MetaHeader& header, const std::vector<std::int64_t>& sizes,
+                                 const std::string& path) {
+    if (sizes.size() != 4 || sizes[3] < 2) return {};
+    StepTimes times;
+    if (const auto origin = numbersIn(header, {"Origin", "Offset", "Position"}, 4, path); !origin.empty())
+        times.first = origin[3];
+    std::vector<std::string> words = splitWords(header.get("ElementSpacing"));
+    if (words.empty()) words = splitWords(header.get("ElementSize"));
+    if (words.size() == 4 && (!parseNumber(words[3], times.width) || !(times.width > 0) || !std::isfinite(times.width)))
+        return {};
+    if (times.first == 0 && times.width == 1) return {};
+    return times;
+}
+
+/// `step`: the one to be read, for which everything is checked; empty: nothing but the header is looked at.
+FileLayout checkedLayout(const std::string& path, std::optional<int> step, const JobControl& job) {
     const MetaHeader header = parseHeader(path);
     const std::vector<std::int64_t> sizes = sizesIn(header, path);
     FileLayout layout;
@@ -222,6 +238,9 @@ FileLayout checkedLayout(const std::string& path, const JobControl& job) {
 
     const bool local = lowerCase(header.get("ElementDataFile")) == "local";
     layout.dataPath = dataPathIn(header, path);
+    layout.times = timesIn(header, sizes, path);
+    if (!step) return layout;
+    const std::uint64_t wanted = valuesUpTo(layout, *step);
     const std::uint64_t fileBytes = readableFileBytes(layout.dataPath);
     const char* toDo = "check DimSize and ElementType in the header, or copy the file again";
     // HeaderSize counts from the beginning of the file that holds the data, even where that is this one.
@@ -245,10 +264,10 @@ FileLayout checkedLayout(const std::string& path, const JobControl& job) {
         stored = last;
     }
     requireStored(layout.dataPath, Encoding::Raw, static_cast<std::uint64_t>(packed), 1, stored, toDo);
-    requireStored(layout.dataPath, layout.encoding, values, bytesPerValue(layout.type), stored, toDo);
+    requireStored(layout.dataPath, layout.encoding, wanted, bytesPerValue(layout.type), stored, toDo);
     // The stream itself tells where it ends, so that CompressedDataSize may be absent or wrong.
-    if (layout.encoding == Encoding::Deflate) requireInflates(layout.dataPath, layout.start, true, bytes, job);
-    if (layout.encoding == Encoding::Text) requireNumbers(layout.dataPath, layout.start, values, job);
+    if (layout.encoding == Encoding::Deflate) requireInflated(layout, wanted * bytesPerValue(layout.type), job);
+    if (layout.encoding == Encoding::Text) requireNumbers(layout.dataPath, layout.start, wanted, job);
     if (layout.encoding == Encoding::Raw && stored > bytes)
         layout.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
     return layout;
@@ -261,9 +280,14 @@ public:
         static const std::vector<std::string> kSuffixes{".mhd", ".mha"};
         return kSuffixes;
     }
-    std::string dataFile(const std::string& path) const override { return dataPathIn(parseHeader(path), path); }
+    std::vector<std::string> dataFiles(const std::string& path) const override {
+        return {dataPathIn(parseHeader(path), path)};
+    }
+    FileContents describe(const VolumeSource& source, const JobControl& job) const override {
+        return contentsOf(checkedLayout(source.path, std::nullopt, job));
+    }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        return readSamples(source, checkedLayout(source.path, job), job);
+        return readSamples(source, checkedLayout(source.path, source.step, job), job);
     }
 };
 

@@ -69,6 +69,8 @@ public:
     float intercept() const { return at<float>(116); }
     int intent() const { return at<std::int16_t>(68); }
     int spaceUnit() const { return m_bytes[123] & 7; }
+    int timeUnit() const { return m_bytes[123] & 0x38; }
+    float timeOffset() const { return at<float>(136); }
     int qformCode() const { return at<std::int16_t>(252); }
     int sformCode() const { return at<std::int16_t>(254); }
     /// b, c, d of the quaternion, then the offsets.
@@ -240,7 +242,21 @@ void placeGrid(FileLayout& layout, const NiftiHeader& header, const std::string&
     for (int a = 0; a < axes; ++a) layout.spacing[a] *= millimetres;
 }
 
-FileLayout checkedLayout(const std::string& path, const JobControl& job) {
+/// When the steps along the fourth axis were; none where that axis is no time, or the header does not tell.
+std::optional<StepTimes> timesIn(const NiftiHeader& header) {
+    for (int a = 5; a <= header.dim(0); ++a)
+        if (header.dim(a) > 1) return {}; // steps of steps
+    const double width = header.pixdim(4), first = header.timeOffset();
+    if (header.dim(0) < 4 || header.dim(4) < 2 || !(width > 0) || !std::isfinite(width)) return {};
+    static const std::map<int, const char*> kUnits{{8, "s"}, {16, "ms"}, {24, "µs"}};
+    const auto unit = kUnits.find(header.timeUnit());
+    if (unit != kUnits.end()) return StepTimes{std::isfinite(first) ? first : 0, width, unit->second};
+    if (header.timeUnit() != 0 || width == 1) return {}; // hertz and the like; or nobody has set anything
+    return StepTimes{std::isfinite(first) ? first : 0, width, ""};
+}
+
+/// `step`: the one to be read, for which everything is checked; empty: nothing but the header is looked at.
+FileLayout checkedLayout(const std::string& path, std::optional<int> step, const JobControl& job) {
     const std::uint64_t fileBytes = readableFileBytes(path);
     const NiftiHeader header(path);
     const NiftiType type = typeOf(header.datatype(), path);
@@ -261,14 +277,17 @@ FileLayout checkedLayout(const std::string& path, const JobControl& job) {
     const float offset = header.voxOffset();
     if (!(offset >= 0) || offset > 1e9f)
         throw FileError("the header gives a wrong place of the data", path, "correct vox_offset in the header");
+    layout.times = timesIn(header);
+    if (!step) return layout;
+    const std::uint64_t wanted = valuesUpTo(layout, *step);
     const std::uint64_t start = std::max<std::uint64_t>(static_cast<std::uint64_t>(offset), kHeaderBytes);
     const bool compressed = fileHead(path, 2) == "\x1f\x8b";
     layout.encoding = compressed ? Encoding::Deflate : Encoding::Raw;
     (compressed ? layout.skip : layout.start) = start;
     const std::uint64_t stored = compressed ? fileBytes : fileBytes - std::min(start, fileBytes);
-    requireStored(path, layout.encoding, values, bytesPerValue(layout.type), stored,
+    requireStored(path, layout.encoding, wanted, bytesPerValue(layout.type), stored,
                   "check dim and datatype in the header, or copy the file again");
-    if (compressed) requireInflates(path, 0, false, start + bytes, job);
+    if (compressed) requireInflated(layout, start + wanted * bytesPerValue(layout.type), job);
     if (!compressed && stored > bytes)
         layout.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
     return layout;
@@ -281,8 +300,11 @@ public:
         static const std::vector<std::string> kSuffixes{".nii", ".nii.gz"};
         return kSuffixes;
     }
+    FileContents describe(const VolumeSource& source, const JobControl& job) const override {
+        return contentsOf(checkedLayout(source.path, std::nullopt, job));
+    }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        return readSamples(source, checkedLayout(source.path, job), job);
+        return readSamples(source, checkedLayout(source.path, source.step, job), job);
     }
 };
 

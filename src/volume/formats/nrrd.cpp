@@ -153,7 +153,7 @@ std::vector<std::string> wordsPerAxis(const NrrdHeader& header, const std::strin
 bool isNone(const std::string& word) { return word == "none" || word == "???"; }
 
 /// Which axis has the components of a voxel, by its kind or, without one, because it has no direction in space; the
-/// number of axes where there is none.
+/// number of axes where there is none. A list, or an axis without kind, behind three axes in space has time steps.
 std::size_t componentAxis(const NrrdHeader& header, const std::vector<std::int64_t>& sizes, const std::string& path) {
     // Sizes that a kind prescribes; 0: any.
     static const std::map<std::string, int> kKinds{{"stub", 1},
@@ -186,12 +186,20 @@ std::size_t componentAxis(const NrrdHeader& header, const std::vector<std::int64
                                                    {"normal", 0}};
     const std::vector<std::string> kinds = wordsPerAxis(header, "kinds", sizes.size(), path);
     const std::vector<std::string> directions = wordsPerAxis(header, "spacedirections", sizes.size(), path);
-    std::size_t found = sizes.size();
+    std::size_t found = sizes.size(), inSpace = 0;
     for (std::size_t a = 0; a < sizes.size(); ++a) {
         const std::string kind = kinds.empty() ? "none" : lowerCase(kinds[a]);
-        if (kind == "domain" || kind == "space" || kind == "time") continue;
+        if (kind == "time") continue;
+        if (kind == "domain" || kind == "space") {
+            ++inSpace;
+            continue;
+        }
+        if (inSpace >= 3 && (isNone(kind) || kind == "list")) continue;
         if (isNone(kind)) {
-            if (directions.empty() || !isNone(directions[a])) continue;
+            if (directions.empty() || !isNone(directions[a])) {
+                ++inSpace;
+                continue;
+            }
         } else {
             const auto it = kKinds.find(kind);
             if (it == kKinds.end())
@@ -206,7 +214,7 @@ std::size_t componentAxis(const NrrdHeader& header, const std::vector<std::int64
             throw FileError("more than one axis has components of a voxel", path, "write one file for each component");
         found = a;
     }
-    if (sizes.size() == 1 && found == 0) throw FileError("no axis lies in space", path, "correct the header");
+    if (inSpace == 0) throw FileError("no axis lies in space", path, "correct the header");
     return found;
 }
 
@@ -286,7 +294,7 @@ void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& 
     const double unit = patient ? millimetresIn(header) : 1;
     std::vector<std::size_t> inSpace;
     for (std::size_t a = 0; a < axes && inSpace.size() < 3; ++a)
-        if (!layout.axes[a].components) inSpace.push_back(a);
+        if (!layout.axes[a].components && !layout.axes[a].time) inSpace.push_back(a);
     for (std::size_t i = 0; i < inSpace.size(); ++i) {
         const std::size_t a = inSpace[i];
         std::string text = "1";
@@ -320,6 +328,50 @@ void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& 
     const std::vector<double> place = vectorIn(origin.front(), path);
     for (std::size_t c = 0; c < std::min(place.size(), inSpace.size()); ++c)
         layout.origin[static_cast<int>(c)] = flip[static_cast<int>(c)] * place[c] * unit;
+}
+
+/// The n-th of the texts in quotes of a field.
+std::string quotedWord(const std::string& text, std::size_t n) {
+    std::size_t begin = text.find('"');
+    for (; n > 0 && begin != std::string::npos; --n) {
+        begin = text.find('"', begin + 1);
+        if (begin != std::string::npos) begin = text.find('"', begin + 1);
+    }
+    if (begin == std::string::npos) return {};
+    const std::size_t end = text.find('"', begin + 1);
+    return end == std::string::npos ? std::string() : trimmed(text.substr(begin + 1, end - begin - 1)).substr(0, 40);
+}
+
+/// When the steps are, where they lie along one axis whose width the header gives.
+std::optional<StepTimes> timesIn(const FileLayout& layout, const NrrdHeader& header, const std::string& path) {
+    const std::size_t axes = layout.axes.size();
+    std::size_t inSpace = 0, time = axes;
+    for (std::size_t a = 0; a < axes; ++a) {
+        if (layout.axes[a].components || (!layout.axes[a].time && ++inSpace <= 3)) continue;
+        if (time < axes) return {}; // steps of steps
+        time = a;
+    }
+    if (time == axes) return {};
+    const auto directions = wordsPerAxis(header, "spacedirections", axes, path);
+    StepTimes times;
+    times.width = numberOfAxis(wordsPerAxis(header, "spacings", axes, path), time);
+    if (const double min = numberOfAxis(wordsPerAxis(header, "axismins", axes, path), time); std::isfinite(min))
+        times.first = min;
+    if (!directions.empty() && !isNone(directions[time])) { // of a space with time as its last axis
+        const std::vector<double> vector = vectorIn(directions[time], path);
+        const std::vector<std::string> origin = splitVectors(header.get("spaceorigin"));
+        if (vector.size() == 4) {
+            times.width = vector[3];
+            times.unit = quotedWord(header.get("spaceunits"), 3);
+            if (!origin.empty() && !isNone(origin.front()))
+                if (const std::vector<double> place = vectorIn(origin.front(), path); place.size() == 4)
+                    times.first = place[3];
+        }
+    }
+    if (times.unit.empty()) times.unit = quotedWord(header.get("units"), time);
+    if (times.unit == "???" || times.unit == "none") times.unit.clear();
+    if (!(times.width > 0) || !std::isfinite(times.width)) return {};
+    return times;
 }
 
 /// Bytes of `lines` lines from byte `start` of a file; more than any file has where there are fewer lines.
@@ -371,7 +423,8 @@ std::string dataPathIn(const NrrdHeader& header, const std::string& path) {
     return (data.is_absolute() ? data : fs::path(path).parent_path() / data).string();
 }
 
-FileLayout checkedLayout(const std::string& path, const JobControl& job) {
+/// `step`: the one to be read, for which everything is checked; empty: nothing but the header is looked at.
+FileLayout checkedLayout(const std::string& path, std::optional<int> step, const JobControl& job) {
     const NrrdHeader header = parseHeader(path);
     const std::vector<std::int64_t> sizes = sizesIn(header, path);
     FileLayout layout;
@@ -382,11 +435,16 @@ FileLayout checkedLayout(const std::string& path, const JobControl& job) {
     const std::uint64_t bytes = values * bytesPer;
     const std::size_t components = componentAxis(header, sizes, path);
     if (components < sizes.size()) layout.axes[components].components = true;
+    const std::vector<std::string> kinds = wordsPerAxis(header, "kinds", sizes.size(), path);
+    for (std::size_t a = 0; a < kinds.size(); ++a) layout.axes[a].time = lowerCase(kinds[a]) == "time";
     placeGrid(layout, header, path);
     layout.encoding = encodingIn(header, path);
     layout.bigEndian = isBigEndian(header, bytesPer, layout.encoding, path);
 
     layout.dataPath = dataPathIn(header, path);
+    layout.times = timesIn(layout, header, path);
+    if (!step) return layout;
+    const std::uint64_t wanted = valuesUpTo(layout, *step);
     const bool detached = !header.get("datafile").empty();
     const std::uint64_t fileBytes = readableFileBytes(layout.dataPath);
     const std::int64_t lineSkip = wholeNumber(header, "lineskip", 0, path);
@@ -402,11 +460,10 @@ FileLayout checkedLayout(const std::string& path, const JobControl& job) {
         (layout.encoding == Encoding::Deflate ? layout.skip : layout.start) += static_cast<std::uint64_t>(byteSkip);
     const std::uint64_t stored = fileBytes - std::min(layout.start, fileBytes);
 
-    requireStored(layout.dataPath, layout.encoding, values, bytesPer, stored,
+    requireStored(layout.dataPath, layout.encoding, fromEnd ? values : wanted, bytesPer, stored,
                   "check sizes and type in the header, or copy the file again");
-    if (layout.encoding == Encoding::Text) requireNumbers(layout.dataPath, layout.start, values, job);
-    if (layout.encoding == Encoding::Deflate && !fromEnd)
-        requireInflates(layout.dataPath, layout.start, false, layout.skip + bytes, job);
+    if (layout.encoding == Encoding::Text) requireNumbers(layout.dataPath, layout.start, wanted, job);
+    if (layout.encoding == Encoding::Deflate && !fromEnd) requireInflated(layout, layout.skip + wanted * bytesPer, job);
     if (layout.encoding == Encoding::Deflate && fromEnd)
         layout.skip = requireInflates(layout.dataPath, layout.start, false, bytes, job, true) - bytes;
     if (layout.encoding == Encoding::Raw && fromEnd) layout.start = fileBytes - bytes;
@@ -422,9 +479,14 @@ public:
         static const std::vector<std::string> kSuffixes{".nrrd", ".nhdr"};
         return kSuffixes;
     }
-    std::string dataFile(const std::string& path) const override { return dataPathIn(parseHeader(path), path); }
+    std::vector<std::string> dataFiles(const std::string& path) const override {
+        return {dataPathIn(parseHeader(path), path)};
+    }
+    FileContents describe(const VolumeSource& source, const JobControl& job) const override {
+        return contentsOf(checkedLayout(source.path, std::nullopt, job));
+    }
     Volume read(const VolumeSource& source, const JobControl& job) const override {
-        return readSamples(source, checkedLayout(source.path, job), job);
+        return readSamples(source, checkedLayout(source.path, source.step, job), job);
     }
 };
 

@@ -1,5 +1,7 @@
 // Headerless data: the layout comes from the command line or the import dialog.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
@@ -31,9 +33,8 @@ ValueType valueType(SampleType type) {
     PELLUCID_CHECK(false);
 }
 
-} // namespace
-
-Volume readRaw(const VolumeSource& source, const JobControl& job) {
+/// Bytes of one step, by a layout that makes sense. Throws UsageError, FileError.
+std::uint64_t stepBytes(const VolumeSource& source) {
     const std::string& path = source.path;
     const RawLayout& layout = *source.raw;
     if (layout.dims.x < 1 || layout.dims.y < 1 || layout.dims.z < 1)
@@ -42,14 +43,31 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     for (int a = 0; a < 3; ++a)
         if (!(layout.spacing[a] > 0) || !std::isfinite(layout.spacing[a]))
             throw UsageError("the spacing must be positive and finite", path, "correct it", Remedy::GiveSpacing);
+    const std::int64_t sizes[] = {layout.dims.x, layout.dims.y, layout.dims.z};
+    const std::uint64_t bytesPer = bytesPerSample(layout.type);
+    return valueCount(path, sizes, bytesPer) * bytesPer;
+}
+
+} // namespace
+
+int rawSteps(const VolumeSource& source) {
+    const std::uint64_t bytes = stepBytes(source), skip = source.raw->skipBytes;
+    if (!source.frames) return 1;
+    const std::uint64_t fileBytes = readableFileBytes(source.path);
+    if (skip >= fileBytes || (fileBytes - skip) % bytes != 0) return 1;
+    return static_cast<int>(std::min<std::uint64_t>((fileBytes - skip) / bytes, std::numeric_limits<int>::max()));
+}
+
+Volume readRaw(const VolumeSource& source, const JobControl& job) {
+    const std::string& path = source.path;
+    const RawLayout& layout = *source.raw;
+    const std::uint64_t bytes = stepBytes(source);
     if (source.component != 0)
         throw UsageError("headerless data has one component, number 0", path, "ask for none", Remedy::NoComponent);
     const std::uint64_t fileBytes = readableFileBytes(path);
-    const std::uint64_t bytesPer = bytesPerSample(layout.type);
     const std::int64_t sizes[] = {layout.dims.x, layout.dims.y, layout.dims.z};
-    const std::uint64_t values = valueCount(path, sizes, bytesPer);
-    const std::uint64_t bytes = values * bytesPer;
-    if (layout.skipBytes > fileBytes || fileBytes - layout.skipBytes != bytes) {
+    const int steps = rawSteps(source);
+    if (steps == 1 && (layout.skipBytes > fileBytes || fileBytes - layout.skipBytes != bytes)) {
         std::string claim = std::to_string(sizes[0]) + " x " + std::to_string(sizes[1]) + " x " +
                             std::to_string(sizes[2]) + " of " + name(layout.type) + " are " + std::to_string(bytes);
         if (layout.skipBytes > 0) claim += " after " + std::to_string(layout.skipBytes) + " skipped";
@@ -61,7 +79,8 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     file.start = layout.skipBytes;
     file.type = valueType(layout.type);
     file.bigEndian = layout.bigEndian;
-    for (const std::int64_t size : sizes) file.axes.push_back({size, false});
+    for (const std::int64_t size : sizes) file.axes.push_back({size});
+    if (steps > 1) file.axes.push_back({steps});
     file.spacing = layout.spacing;
     return readSamples(source, file, job);
 }

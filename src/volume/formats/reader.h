@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "volume/file_contents.h"
 #include "volume/loader.h"
 
 namespace pellucid {
@@ -17,17 +18,24 @@ public:
     virtual const char* name() const = 0;
     /// Lower case, with the dot: ".nrrd".
     virtual const std::vector<std::string>& suffixes() const = 0;
-    /// The file that holds the samples: `path`, or the one that its header names. Throws FileError.
-    virtual std::string dataFile(const std::string& path) const { return path; }
-    /// Reads source.path (an existing file that is not empty): samples, geometry, source.missing and
-    /// source.component. The window, title and format are left to the caller.
+    /// The files that hold the samples: `path`, or those that its header names. Throws FileError.
+    virtual std::vector<std::string> dataFiles(const std::string& path) const { return {path}; }
+    /// What source.path holds, by its header alone. Throws FileError.
+    virtual FileContents describe(const VolumeSource& source, const JobControl& job) const = 0;
+    /// Reads source.path (an existing file that is not empty): samples of source.step and source.array, geometry,
+    /// source.missing and source.component. The window, title and format are left to the caller. Of a file with several
+    /// steps, nothing behind the one that is read need be there.
     virtual Volume read(const VolumeSource& source, const JobControl& job) const = 0;
 };
 
 const VolumeReader& nrrdReader();
 const VolumeReader& metaImageReader();
 const VolumeReader& niftiReader();
+const VolumeReader& vtiReader(); ///< vtk_image.cpp
+const VolumeReader& pvdReader();
 
+/// Time steps of source.path as *source.raw says, see contentsOf(). Throws FileError.
+int rawSteps(const VolumeSource& source);
 /// Headerless data, laid out as *source.raw says.
 Volume readRaw(const VolumeSource& source, const JobControl& job);
 

@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "volume/excerpt.h"
 #include "volume/formats/byte_source.h"
+#include "volume/formats/inflate_index.h"
 
 namespace pellucid {
 
@@ -69,11 +70,13 @@ struct Selection {
     std::array<std::uint64_t, 3> stride{1, 1, 1};
     std::uint64_t first = 0;
     std::uint64_t components = 1, steps = 1;
+    bool stepsAreApart = true; ///< each step lies behind the whole of the one before
 };
 
-Selection selectionOf(const FileLayout& layout, int component) {
+Selection selectionOf(const FileLayout& layout, int component, int step) {
     Selection selection;
     std::uint64_t stride = 1;
+    auto ofSteps = static_cast<std::uint64_t>(std::max(step, 0)); // what is left of it for slower axes
     std::size_t spatial = 0;
     for (const FileAxis& axis : layout.axes) {
         const auto size = static_cast<std::uint64_t>(axis.size);
@@ -81,12 +84,16 @@ Selection selectionOf(const FileLayout& layout, int component) {
             selection.components = size;
             const auto named = static_cast<std::size_t>(std::max(component, 0));
             const bool ordered = named < layout.componentOrder.size();
-            selection.first = stride * (ordered ? static_cast<std::uint64_t>(layout.componentOrder[named]) : named);
-        } else if (spatial < 3) {
+            selection.first += stride * (ordered ? static_cast<std::uint64_t>(layout.componentOrder[named]) : named);
+            selection.stepsAreApart = selection.stepsAreApart && selection.steps == 1;
+        } else if (spatial < 3 && !axis.time) {
+            selection.stepsAreApart = selection.stepsAreApart && selection.steps == 1;
             selection.dims[static_cast<int>(spatial)] = static_cast<int>(axis.size);
             selection.stride[spatial++] = stride;
         } else {
             selection.steps *= size;
+            selection.first += stride * (ofSteps % size);
+            ofSteps /= size;
         }
         stride *= size;
     }
@@ -117,7 +124,11 @@ public:
     BinaryValues(const FileLayout& layout, const JobControl& job)
         : m_path(layout.dataPath),
           m_swap(sizeof(T) > 1 && layout.bigEndian != (std::endian::native == std::endian::big)) {
-        if (layout.encoding == Encoding::Deflate)
+        if (layout.open)
+            m_bytes = layout.open(job);
+        else if (layout.encoding == Encoding::Deflate && layout.index)
+            m_bytes = layout.index->bytes(job);
+        else if (layout.encoding == Encoding::Deflate)
             m_bytes = std::make_unique<InflatedBytes>(m_path, layout.start, layout.zlib, job);
         else if (layout.encoding == Encoding::Hex)
             m_bytes = std::make_unique<HexBytes>(m_path, layout.start, job);
@@ -308,7 +319,7 @@ bool isAsInMemory(const FileLayout& layout, const Selection& selection) {
     const auto bytes = bytesPerValue(layout.type);
     const bool native = bytes == 1 || layout.bigEndian == (std::endian::native == std::endian::big);
     const auto nx = static_cast<std::uint64_t>(selection.dims.x), ny = static_cast<std::uint64_t>(selection.dims.y);
-    return layout.encoding == Encoding::Raw && native && !layout.scaling && selection.stride[0] == 1 &&
+    return layout.encoding == Encoding::Raw && !layout.open && native && !layout.scaling && selection.stride[0] == 1 &&
            selection.stride[1] == nx && selection.stride[2] == nx * ny &&
            (layout.start + selection.first * bytes) % bytes == 0;
 }
@@ -369,6 +380,42 @@ std::uint64_t valuesIn(const FileLayout& layout, const std::string& path) {
     return valueCount(path, sizes, sizeof(double));
 }
 
+std::uint64_t valuesUpTo(const FileLayout& layout, int step) {
+    const Selection selection = selectionOf(layout, 0, 0);
+    std::uint64_t all = 1;
+    for (const FileAxis& axis : layout.axes) all *= static_cast<std::uint64_t>(axis.size);
+    if (!selection.stepsAreApart) return all;
+    return all / selection.steps * std::min<std::uint64_t>(static_cast<std::uint64_t>(std::max(step, 0)) + 1, selection.steps);
+}
+
+void requireInflated(FileLayout& layout, std::uint64_t wanted, const JobControl& job) {
+    if (selectionOf(layout, 0, 0).steps == 1) {
+        requireInflates(layout.dataPath, layout.start, layout.zlib, wanted, job);
+        return;
+    }
+    layout.index = InflateIndex::of(layout.dataPath, layout.start, layout.zlib);
+    layout.index->require(wanted, job);
+}
+
+FileContents contentsOf(const FileLayout& layout) {
+    constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
+    const Selection selection = selectionOf(layout, 0, 0);
+    FileContents contents;
+    contents.dims = selection.dims;
+    withType(layout.type, [&](auto zero) {
+        using T = decltype(zero);
+        contents.type = layout.scaling ? sampleTypeOf<ScaledType<T>>() : sampleTypeOf<KeptType<T>>();
+    });
+    contents.components = static_cast<int>(std::min(selection.components, kMost));
+    contents.steps = static_cast<int>(std::min(selection.steps, kMost));
+    if (!layout.times) return contents;
+    contents.timeUnit = layout.times->unit;
+    constexpr int kMostTimes = 1'000'000; // a damaged header may claim any number
+    for (int step = 0; step < contents.steps && contents.steps <= kMostTimes; ++step)
+        contents.times.push_back(layout.times->first + step * layout.times->width);
+    return contents;
+}
+
 Vec3 cleanDirection(const Vec3& direction) {
     const double length = glm::length(direction);
     if (!(length > 0) || !std::isfinite(length)) return Vec3(0);
@@ -383,7 +430,7 @@ Vec3 cleanDirection(const Vec3& direction) {
 
 Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job) {
     const std::string& path = source.path;
-    const Selection selection = selectionOf(layout, source.component);
+    const Selection selection = selectionOf(layout, source.component, source.step);
     const Geometry geometry{selection.dims, layout.spacing, layout.origin, layout.directions, layout.frame};
     for (int a = 0; a < 3; ++a)
         if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
@@ -395,12 +442,16 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
                          selection.components == 1 ? "the file has one component, number 0"
                                                    : "give 0 to " + std::to_string(selection.components - 1));
 
+    if (source.step < 0 || static_cast<std::uint64_t>(source.step) >= selection.steps)
+        throw UsageError("there is no time step " + std::to_string(source.step), path,
+                         selection.steps == 1 ? "the file has one" : "give 0 to " + std::to_string(selection.steps - 1));
+    if (!source.array.empty() && layout.array != source.array)
+        throw UsageError("there is no array " + inQuotes(source.array), path, "the file's data has no name: give none");
+
     std::vector<std::string> notices = layout.notices;
     if (selection.components > 1)
         notices.push_back("component " + std::to_string(source.component) + " of " +
                           std::to_string(selection.components) + " is shown");
-    if (selection.steps > 1)
-        notices.push_back("the first of " + std::to_string(selection.steps) + " time steps is shown");
 
     job.report(0.1);
     job.throwIfStopped();

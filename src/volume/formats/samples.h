@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "volume/file_contents.h"
 #include "volume/formats/file_check.h"
 #include "volume/loader.h"
 
@@ -20,12 +23,21 @@ std::uint64_t bytesPerValue(ValueType type);
 struct FileAxis {
     std::int64_t size = 1;
     bool components = false; ///< along it lie the components of a voxel, not places or times; one axis at most
+    bool time = false;       ///< along it lie time steps, as along every axis behind the third in space
 };
 
 /// value = slope · stored + intercept, both finite.
 struct ValueScaling {
     double slope = 1, intercept = 0;
 };
+
+/// When the steps of a file are: first, first + width, …
+struct StepTimes {
+    double first = 0, width = 1;
+    std::string unit; ///< "s", "ms", …; empty: not known
+};
+
+class InflateIndex;
 
 /// What a header says.
 struct FileLayout {
@@ -42,6 +54,11 @@ struct FileLayout {
     Mat3 directions{1}; ///< unit columns: where the axes of the grid point
     Frame frame = Frame::File;
     std::optional<ValueScaling> scaling;
+    std::optional<StepTimes> times; ///< of steps along one axis
+    /// Where given: the bytes of the values, in place of `encoding`, `start` and `skip` (raw to those who ask).
+    std::function<std::unique_ptr<ByteSource>(const JobControl&)> open;
+    std::shared_ptr<InflateIndex> index; ///< of Deflate with several steps: where to read on
+    std::string array; ///< name of the array that this is, where the file names its arrays
     std::vector<std::string> notices;
 };
 
@@ -52,12 +69,24 @@ Vec3 cleanDirection(const Vec3& direction);
 /// Number of values along all axes together, which fits into 2^63 bytes. Throws FileError at `path`.
 std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
 
+/// Number of values from the first one that reading `step` has to go through: those of all steps up to it where steps lie
+/// one behind the other, otherwise all.
+std::uint64_t valuesUpTo(const FileLayout& layout, int step);
+
+/// requireInflates() of the layout's stream. Where the file has several steps, layout.index is made, and no byte is looked
+/// at twice as long as the file stays the same.
+void requireInflated(FileLayout& layout, std::uint64_t wanted, const JobControl& job);
+
+/// What the layout says that can be chosen of.
+FileContents contentsOf(const FileLayout& layout);
+
 /// Samples of so many bytes and more are not read but mapped (MappedFile), where the file has them as memory would:
 /// raw, in this machine's byte order, unscaled. Smaller files are read, so that they may change while they are in use.
 inline constexpr std::uint64_t kMapBytes = 16u << 20;
 
-/// Reads the first time step, component source.component. The caller has seen to it that the data are long enough
-/// (file_check.h); whatever is wrong nonetheless is a FileError. Throws UsageError for a component that is not there.
+/// Reads time step source.step, component source.component. The caller has seen to it that the data are long enough
+/// (file_check.h); whatever is wrong nonetheless is a FileError. Throws UsageError for a component or a step that is
+/// not there, or a named array.
 Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job);
 
 } // namespace pellucid

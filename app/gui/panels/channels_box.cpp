@@ -1,0 +1,376 @@
+#include "panels/channels_box.h"
+
+#include <cmath>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QSlider>
+#include <QSpinBox>
+#include <QStandardItemModel>
+#include <QToolButton>
+
+#include "controllers/open_controller.h"
+#include "number_box.h"
+#include "panels/variables_panel.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr double kLeastScale = 0.1, kMostScale = 1000; ///< of sliders
+constexpr int kScaleSteps = 400, kMostFrames = 999;
+/// Voxels of which colours are made while the hand moves: some 40 ms.
+constexpr std::size_t kFastVoxels = std::size_t{4} << 20;
+constexpr Channel kChannels[] = {Channel::Opacity, Channel::Saturation, Channel::Brightness, Channel::Hue};
+
+std::size_t indexOf(Channel channel) { return static_cast<std::size_t>(channel); }
+
+int positionOf(double scale) {
+    const double part = std::log(std::max(scale, kLeastScale) / kLeastScale) / std::log(kMostScale / kLeastScale);
+    return static_cast<int>(std::lround(part * kScaleSteps));
+}
+double scaleAt(int position) {
+    return kLeastScale * std::pow(kMostScale / kLeastScale, static_cast<double>(position) / kScaleSteps);
+}
+
+QString channelTitle(Channel channel) {
+    switch (channel) {
+    case Channel::Opacity:
+        return QObject::tr("Opacity");
+    case Channel::Saturation:
+        return QObject::tr("Saturation");
+    case Channel::Brightness:
+        return QObject::tr("Brightness");
+    case Channel::Hue:
+        return QObject::tr("Hue");
+    }
+    return {};
+}
+
+} // namespace
+
+ChannelsBox::ChannelsBox(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_on(new QCheckBox(tr("&Colours from variables"), this)),
+      m_frames(new QSpinBox(this)), m_swap(new QPushButton(tr("S&wap opacity and brightness"), this)),
+      m_hueSlider(new QSlider(Qt::Horizontal, this)), m_hueFrom(new QDoubleSpinBox(this)),
+      m_hueTo(new QDoubleSpinBox(this)), m_hueSwatch(new QLabel(this)), m_note(new QLabel(this)) {
+    setObjectName("channelsBox");
+    m_on->setObjectName("hsbCheck");
+    m_on->setToolTip(tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
+                        "function. Figures are measured with these colours."));
+    auto* form = new QFormLayout(this);
+    form->setContentsMargins(0, 0, 0, 0);
+    form->setVerticalSpacing(6);
+    form->addRow(m_on);
+    addChannel(*form, Channel::Opacity, "hsbOpacity", tr("Opacity ←"),
+               tr("Alpha = transfer function of X: the variable whose features, curve and histogram are shown"));
+    addChannel(*form, Channel::Saturation, "hsbSaturation", tr("Saturation ←"),
+               tr("Saturation = clip(a · std): what changes over time is colourful, what rests is grey"));
+    m_frames->setObjectName("hsbFrames");
+    m_frames->setRange(1, kMostFrames);
+    m_frames->setKeyboardTracking(false);
+    m_frames->setPrefix(tr("n = "));
+    m_frames->setSuffix(tr(" frames"));
+    m_frames->setToolTip(tr("Volatility is the standard deviation of a voxel over the latest n frames"));
+    form->addRow(QString(), m_frames);
+    addScale(*form, 0, "hsbA", tr("a"),
+             tr("Factor of saturation: values of 1/a and more are fully saturated. Automatic: 99 % of those above 0 "
+                "are not clipped"));
+    addChannel(*form, Channel::Brightness, "hsbBrightness", tr("Brightness ←"),
+               tr("Brightness = 1 − clip(b · Y): the more of it, the darker"));
+    addScale(*form, 1, "hsbB", tr("b"),
+             tr("Factor of darkness: values of 1/b and more are black. Automatic: 99 % of those above 0 are not "
+                "clipped"));
+    m_swap->setObjectName("hsbSwap");
+    m_swap->setToolTip(tr("The variable of brightness drives opacity, with its own transfer function, and the other "
+                          "way round; again, and all is as before"));
+    form->addRow(QString(), m_swap);
+    addChannel(*form, Channel::Hue, "hsbHue", tr("Hue ←"), tr("One hue for all, or one for each value of a variable"));
+    addHue(*form);
+    m_note->setObjectName("hsbNote");
+    m_note->setWordWrap(true);
+    form->addRow(m_note);
+
+    connect(m_on, &QCheckBox::clicked, this, &ChannelsBox::setOn);
+    connect(m_frames, &QSpinBox::valueChanged, this, [this](int frames) {
+        if (m_showing) return;
+        m_bench.opening().editInJob(tr("Frames of volatility"),
+                                    [frames](Session& session) { setVolatilityFrames(session, frames); });
+    });
+    connect(m_swap, &QPushButton::clicked, this, [this] {
+        m_bench.opening().editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); });
+    });
+    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.volume != after.volume || before.colors != after.colors ||
+            !before.session.variables.isSame(after.session.variables) || !before.session.hsb.isSame(after.session.hsb))
+            follow();
+    });
+    connect(&m_bench, &Workbench::readOnlyChanged, this, &ChannelsBox::follow);
+    follow();
+}
+
+void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* name, const QString& label,
+                             const QString& tip) {
+    auto* combo = new QComboBox(this);
+    combo->setObjectName(name);
+    combo->setToolTip(tip);
+    combo->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    combo->setMinimumContentsLength(14);
+    m_channels[indexOf(channel)] = combo;
+    form.addRow(label, combo);
+    connect(combo, &QComboBox::activated, this, [this, combo, channel] {
+        const std::string driver = combo->currentData().toString().toStdString();
+        if (m_showing || driver == channelOf(m_bench.store().session(), channel)) return;
+        m_bench.opening().editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
+                                    [channel, driver](Session& s) { setChannel(s, channel, driver); });
+    });
+}
+
+void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* name, const QString& label,
+                           const QString& tip) {
+    Scale& scale = m_scales[index];
+    scale = {index == 0 ? &HsbMapping::a : &HsbMapping::b,
+             index == 0 ? &Scene::hsbA : &Scene::hsbB,
+             new QSlider(Qt::Horizontal, this),
+             new QDoubleSpinBox(this),
+             new QToolButton(this),
+             index == 0 ? tr("Scale of saturation") : tr("Scale of darkness")};
+    scale.slider->setObjectName(QString::fromLatin1(name) + "Slider");
+    scale.slider->setRange(0, kScaleSteps);
+    scale.slider->setPageStep(kScaleSteps / 20);
+    scale.slider->setMinimumWidth(60);
+    scale.slider->setToolTip(tip);
+    scale.box->setObjectName(name);
+    scale.box->setRange(0, kLargestScale);
+    scale.box->setDecimals(3);
+    scale.box->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+    scale.box->setKeyboardTracking(false);
+    scale.box->setMaximumWidth(90);
+    scale.box->setToolTip(tip);
+    scale.automatic->setObjectName(QString::fromLatin1(name) + "Automatic");
+    scale.automatic->setText(tr("auto"));
+    scale.automatic->setCheckable(true);
+    scale.automatic->setToolTip(tr("From the values of the variable, when colours begin to come from it"));
+    auto* row = new QHBoxLayout;
+    row->addWidget(scale.slider, 1);
+    row->addWidget(scale.box);
+    row->addWidget(scale.automatic);
+    form.addRow(label, row);
+    connect(scale.slider, &QSlider::valueChanged, this, [this, index](int position) {
+        const Scale& s = m_scales[index];
+        slide(*s.slider, s.name, [&s, value = scaleAt(position)](HsbMapping& h) { h.*s.value = value; });
+    });
+    connect(scale.slider, &QSlider::sliderReleased, this, [this, index] {
+        const Scale& s = m_scales[index];
+        if (isFast()) return m_bench.store().commit();
+        edit(s.name, {}, [&s, value = scaleAt(s.slider->value())](HsbMapping& h) { h.*s.value = value; });
+    });
+    connect(scale.box, &QDoubleSpinBox::valueChanged, this, [this, index](double value) {
+        const Scale& s = m_scales[index];
+        edit(s.name, s.box->objectName(), [&s, value](HsbMapping& h) { h.*s.value = value; });
+    });
+    connect(scale.automatic, &QToolButton::clicked, this, [this, index](bool automatic) {
+        const Scale& s = m_scales[index];
+        const double present = m_bench.scene().*s.present;
+        m_bench.opening().editInJob(s.name, [&s, automatic, present](Session& session) {
+            session.hsb.edit([&](HsbMapping& h) { h.*s.value = automatic ? std::nullopt : std::optional(present); });
+        });
+    });
+}
+
+void ChannelsBox::addHue(QFormLayout& form) {
+    m_hueSlider->setObjectName("hsbHueSlider");
+    m_hueSlider->setRange(0, 359);
+    m_hueSlider->setMinimumWidth(60);
+    m_hueSlider->setToolTip(tr("The hue, degrees: 0 red, 120 green, 240 blue"));
+    m_hueSwatch->setObjectName("hsbHueSwatch");
+    const std::tuple<QDoubleSpinBox*, const char*, QString> boxes[] = {
+        {m_hueFrom, "hsbHueFrom", tr("Hue, degrees; with a variable, that of its least value")},
+        {m_hueTo, "hsbHueTo", tr("Hue of the variable's largest value, degrees")}};
+    for (const auto& [box, name, tip] : boxes) {
+        box->setObjectName(name);
+        box->setRange(-360, 720);
+        box->setDecimals(0);
+        box->setSuffix(tr("°"));
+        box->setSingleStep(10);
+        box->setKeyboardTracking(false);
+        box->setToolTip(tip);
+        connect(box, &QDoubleSpinBox::valueChanged, this, [this, box = box](double value) {
+            edit(tr("Hue"), box->objectName(),
+                 [to = box == m_hueTo, value](HsbMapping& h) { (to ? h.hueTo : h.hueFrom) = value; });
+        });
+    }
+    m_hueTo->setPrefix(tr("to "));
+    auto* row = new QHBoxLayout;
+    row->addWidget(m_hueSwatch);
+    row->addWidget(m_hueSlider, 1);
+    row->addWidget(m_hueFrom);
+    row->addWidget(m_hueTo);
+    form.addRow(QString(), row);
+    connect(m_hueSlider, &QSlider::valueChanged, this,
+            [this](int hue) { slide(*m_hueSlider, tr("Hue"), [hue](HsbMapping& h) { h.hueFrom = hue; }); });
+    connect(m_hueSlider, &QSlider::sliderReleased, this, [this] {
+        if (isFast()) return m_bench.store().commit();
+        edit(tr("Hue"), {}, [hue = m_hueSlider->value()](HsbMapping& h) { h.hueFrom = hue; });
+    });
+}
+
+void ChannelsBox::toggle() { setOn(!m_bench.store().session().hsb->on); }
+
+void ChannelsBox::setOn(bool on) {
+    const bool varies = m_bench.scene().series && m_bench.scene().series->varies();
+    const auto change = [on, varies](Session& session) {
+        if (on) startMapping(session, varies);
+        session.hsb.edit([on](HsbMapping& h) { h.on = on; });
+    };
+    m_bench.opening().editInJob(on ? tr("Colours from variables") : tr("Colours of the transfer function"), change);
+    m_on->setChecked(m_bench.store().session().hsb->on); // until it has been done
+}
+
+bool ChannelsBox::isFast() const {
+    const Scene& scene = m_bench.scene();
+    return !scene.session.hsb->on || (scene.volume && scene.volume->size() <= kFastVoxels);
+}
+
+void ChannelsBox::edit(const QString& text, const QString& mergeKey, const Change& change) {
+    if (m_showing) return;
+    const auto all = [change](Session& session) { session.hsb.edit(change); };
+    if (!isFast()) return m_bench.opening().editInJob(text, all);
+    try {
+        m_bench.store().edit(text, mergeKey, all);
+    } catch (const Error& error) { // a frame that has gone since
+        m_bench.showError(tr("Cannot make the colours"), error);
+    }
+}
+
+void ChannelsBox::slide(const QSlider& slider, const QString& text, const Change& change) {
+    if (m_showing) return;
+    if (!slider.isSliderDown()) return edit(text, slider.objectName(), change); // by keys
+    if (!isFast()) return;                                                      // when it is released
+    try {
+        m_bench.store().preview(text, [&](Session& session) { session.hsb.edit(change); });
+    } catch (const Error& error) {
+        m_bench.store().cancel();
+        m_bench.showError(tr("Cannot make the colours"), error);
+    }
+}
+
+void ChannelsBox::followChannel(Channel channel) {
+    const Scene& scene = m_bench.scene();
+    const Session& session = scene.session;
+    QComboBox& combo = *m_channels[indexOf(channel)];
+    combo.clear();
+    const auto add = [&](const std::string& name) {
+        if (const QString data = QString::fromStdString(name); combo.findData(data) < 0)
+            combo.addItem(driverText(session, name), data);
+    };
+    if (channel != Channel::Opacity)
+        combo.addItem(channel == Channel::Hue ? tr("the same everywhere") : tr("full everywhere"), QString());
+    for (const Variable& v : *session.variables) add(v.name);
+    combo.insertSeparator(combo.count());
+    for (const Variable& v : *session.variables) {
+        if (v.derivation) continue;
+        Derivation derivation;
+        derivation.of = v.name;
+        if (scene.series && scene.series->varies()) {
+            derivation.kind = Derivation::Kind::Volatility;
+            derivation.frames = volatilityFrames(session).value_or(derivation.frames);
+            add(derivation.text());
+        }
+        derivation.kind = Derivation::Kind::Gradient;
+        add(derivation.text());
+    }
+    const std::string present = channelOf(session, channel);
+    if (!present.empty()) add(present);
+    combo.setCurrentIndex(combo.findData(QString::fromStdString(present)));
+}
+
+void ChannelsBox::follow() {
+    const Scene& scene = m_bench.scene();
+    setEnabled(m_bench.store().hasVolume() && !m_bench.isReadOnly());
+    if (!m_bench.store().hasVolume()) return;
+    const HsbMapping& hsb = *scene.session.hsb;
+    m_showing = true;
+    m_on->setChecked(hsb.on);
+    for (const Channel channel : kChannels) followChannel(channel);
+    const auto frames = volatilityFrames(scene.session);
+    m_frames->setEnabled(hsb.on && frames.has_value());
+    if (frames) m_frames->setValue(*frames);
+    for (const Scale& scale : m_scales) {
+        const double value = (hsb.*scale.value).value_or(scene.*scale.present);
+        if (!scale.slider->isSliderDown()) scale.slider->setValue(positionOf(value));
+        showNumber(*scale.box, value);
+        scale.automatic->setChecked(!(hsb.*scale.value));
+        const bool driven = !(&scale == &m_scales[0] ? hsb.saturation : hsb.brightness).empty();
+        for (QWidget* widget : std::initializer_list<QWidget*>{scale.slider, scale.box, scale.automatic})
+            widget->setEnabled(hsb.on && driven);
+    }
+    const bool constant = hsb.hue.empty();
+    const double turned = hsb.hueFrom - 360 * std::floor(hsb.hueFrom / 360);
+    if (!m_hueSlider->isSliderDown()) m_hueSlider->setValue(static_cast<int>(std::lround(turned)) % 360);
+    showNumber(*m_hueFrom, hsb.hueFrom);
+    showNumber(*m_hueTo, hsb.hueTo);
+    QPixmap swatch(16, 16);
+    swatch.fill(QColor::fromHsvF(static_cast<float>(turned / 360), 1, 1));
+    m_hueSwatch->setPixmap(swatch);
+    m_hueSlider->setVisible(constant);
+    m_hueSwatch->setVisible(constant);
+    m_hueFrom->setPrefix(constant ? QString() : tr("from "));
+    m_hueTo->setVisible(!constant);
+    for (const Channel channel : {Channel::Saturation, Channel::Brightness, Channel::Hue})
+        m_channels[indexOf(channel)]->setEnabled(hsb.on);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_hueSlider, m_hueFrom, m_hueTo}) widget->setEnabled(hsb.on);
+    m_swap->setEnabled(!hsb.brightness.empty() && hsb.brightness != scene.session.variable().name);
+    m_note->setText(frames && scene.series && !scene.series->varies()
+                        ? tr("There is one frame: its volatility is 0, and all is grey.")
+                        : QString());
+    m_note->setVisible(!m_note->text().isEmpty());
+    m_showing = false;
+}
+
+QString colorSourceText(const Session& session) {
+    if (session.isEmpty()) return {};
+    const HsbMapping& hsb = *session.hsb;
+    const QString front = QString::fromStdString(session.variable().name);
+    if (!hsb.on) return session.variables->size() > 1 ? QObject::tr("The curve is that of %1.").arg(front) : QString();
+    QStringList channels;
+    const std::pair<QString, const std::string&> driven[] = {{QObject::tr("saturation"), hsb.saturation},
+                                                             {QObject::tr("brightness"), hsb.brightness},
+                                                             {QObject::tr("hue"), hsb.hue}};
+    for (const auto& [channel, name] : driven)
+        if (!name.empty()) channels << QStringLiteral("%1 ← %2").arg(channel, driverText(session, name));
+    return QObject::tr("The curve is the opacity of %1; colours come from variables (%2), in pictures and in figures.")
+        .arg(front, channels.isEmpty() ? QObject::tr("one hue") : channels.join(", "));
+}
+
+QString featureSourceText(const Session& session) {
+    if (session.isEmpty() || (session.variables->size() < 2 && !session.hsb->on)) return {};
+    const QString front = QString::fromStdString(session.variable().name);
+    return session.hsb->on ? QObject::tr("Features of %1, measured with the colours of the variables").arg(front)
+                           : QObject::tr("Features of %1").arg(front);
+}
+
+QLabel* makeSourceNote(Workbench& bench, const char* name, QString (*text)(const Session&), QWidget* parent) {
+    auto* note = new QLabel(parent);
+    note->setObjectName(name);
+    note->setWordWrap(true);
+    note->setTextFormat(Qt::PlainText);
+    note->setContentsMargins(10, 0, 10, 0);
+    const auto follow = [&bench, note, text] {
+        note->setText(text(bench.store().session()));
+        note->setVisible(!note->text().isEmpty());
+    };
+    QObject::connect(&bench.store(), &SessionStore::changed, note, [follow](const Scene& before, const Scene& after) {
+        if (!before.session.variables.isSame(after.session.variables) || !before.session.hsb.isSame(after.session.hsb))
+            follow();
+    });
+    follow();
+    return note;
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,75 @@
+// Which variable drives opacity, saturation, brightness and hue (thesis eq. 6.1).
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <QWidget>
+
+#include "session/variable_edits.h"
+#include "store/session_store.h"
+
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QFormLayout;
+class QLabel;
+class QPushButton;
+class QSlider;
+class QSpinBox;
+class QToolButton;
+
+namespace pellucid::gui {
+
+class Workbench;
+
+class ChannelsBox : public QWidget {
+    Q_OBJECT
+public:
+    explicit ChannelsBox(Workbench& bench, QWidget* parent = nullptr);
+    /// Colours of variables or of the transfer function, the one or the other.
+    void toggle();
+
+private:
+    using Change = std::function<void(HsbMapping&)>;
+    /// The scale of saturation or of darkness.
+    struct Scale {
+        std::optional<double> HsbMapping::*value;
+        double Scene::*present;
+        QSlider* slider;
+        QDoubleSpinBox* box;
+        QToolButton* automatic;
+        QString name;
+    };
+    void addChannel(QFormLayout& form, Channel channel, const char* name, const QString& label, const QString& tip);
+    void addScale(QFormLayout& form, std::size_t index, const char* name, const QString& label, const QString& tip);
+    void addHue(QFormLayout& form);
+    void follow();
+    void followChannel(Channel channel);
+    void setOn(bool on);
+    void edit(const QString& text, const QString& mergeKey, const Change& change);
+    /// While the hand moves the picture follows, where making colours is fast enough for that.
+    void slide(const QSlider& slider, const QString& text, const Change& change);
+    bool isFast() const;
+
+    Workbench& m_bench;
+    QCheckBox* m_on;
+    std::array<QComboBox*, 4> m_channels{}; ///< by Channel
+    std::array<Scale, 2> m_scales{};
+    QSpinBox* m_frames;
+    QPushButton* m_swap;
+    QSlider* m_hueSlider;
+    QDoubleSpinBox *m_hueFrom, *m_hueTo;
+    QLabel *m_hueSwatch, *m_note;
+    bool m_showing = false; ///< the controls show, they do not edit
+};
+
+/// In words, whose opacity the curve says and where colours come from; empty where the transfer function says all.
+QString colorSourceText(const Session& session);
+/// In words, whose features those of the list are, and by which colours they are measured; likewise.
+QString featureSourceText(const Session& session);
+
+/// A line of one of these; hidden while there is nothing to say.
+QLabel* makeSourceNote(Workbench& bench, const char* name, QString (*text)(const Session&), QWidget* parent);
+
+} // namespace pellucid::gui

@@ -1,0 +1,44 @@
+// The height field under the volume: its file, scale, relief and colours.
+#pragma once
+
+#include <QWidget>
+
+#include "session/session.h"
+
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QPushButton;
+class QSlider;
+class QToolButton;
+
+namespace pellucid::gui {
+
+class Workbench;
+
+class GroundBox : public QWidget {
+    Q_OBJECT
+public:
+    explicit GroundBox(Workbench& bench, QWidget* parent = nullptr);
+
+private:
+    using Change = std::function<void(GroundView&)>;
+    void follow();
+    void chooseFile();
+    void lay(const VolumeSource& source);
+    void edit(const QString& text, const QString& mergeKey, const Change& change);
+
+    Workbench& m_bench;
+    QLabel* m_file;
+    QToolButton* m_choose;
+    QPushButton* m_remove;
+    QCheckBox* m_shown;
+    QComboBox* m_colorMap;
+    QDoubleSpinBox *m_scale, *m_relief;
+    QToolButton* m_usualScale;
+    QSlider* m_reliefSlider;
+    bool m_showing = false; ///< the controls show, they do not edit
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,51 @@
+// What people do to the list of variables and to the channels that they drive.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/session.h"
+
+namespace pellucid {
+
+/// What a variable can drive (thesis eq. 6.1). Opacity is driven by the first variable of the session.
+enum class Channel { Opacity, Saturation, Brightness, Hue };
+
+/// A name that no variable has yet: `wish`, else with a number behind it. Colons, which derivations are written with,
+/// become blanks.
+std::string freeVariableName(const Session& session, const std::string& wish);
+/// After the file or sample, without its suffix and the number of its frame.
+std::string nameOfSource(const VolumeSource& source);
+
+/// Variables of the session that are made of `name`, directly or not.
+std::vector<std::string> madeOf(const Session& session, const std::string& name);
+
+/// At the end, under a free name, which it returns.
+std::string addVariable(Session& session, Variable variable);
+/// Channels and derived variables know it by the new name. Throws UsageError where that is empty, has a colon, or is
+/// that of another one.
+void renameVariable(Session& session, const std::string& from, const std::string& to);
+/// Channels that it drives, or something made of it, are constant then. Throws UsageError where it is the only one, or
+/// variables are made of it.
+void removeVariable(Session& session, const std::string& name);
+
+/// What drives the channel: a variable, plain or derived ("volatility:x:10"); empty: nothing.
+std::string channelOf(const Session& session, Channel channel);
+/// Of opacity: the variable and the first one change places in the list and in all channels, so that volatility is that
+/// of the variable that is drawn; doing it again undoes it. One that is derived there becomes a variable of the
+/// session.
+void setChannel(Session& session, Channel channel, const std::string& name);
+/// The same with the variable that drives brightness (thesis fig. 6.5); nothing without one.
+void swapOpacityAndBrightness(Session& session);
+
+/// Latest frames of the volatility that drives a channel; empty where none does.
+std::optional<int> volatilityFrames(const Session& session);
+void setVolatilityFrames(Session& session, int frames);
+
+/// Where no channel but opacity is driven: volatility of the first variable drives saturation where `varies`, the
+/// second variable brightness.
+void startMapping(Session& session, bool varies);
+
+} // namespace pellucid

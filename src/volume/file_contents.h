@@ -1,0 +1,30 @@
+// What a volume file holds, told by its header.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "volume/loader.h"
+
+namespace pellucid {
+
+/// What can be chosen of a file, and how large it is.
+struct FileContents {
+    Int3 dims{0, 0, 0};
+    SampleType type = SampleType::U8; ///< as loadVolume() keeps it
+    int components = 1;               ///< of each voxel
+    int steps = 1;                    ///< time steps
+    std::vector<double> times;        ///< of the steps, in timeUnit; empty: not known
+    std::string timeUnit;             ///< "s", "ms", …; empty: not known
+    std::vector<std::string> arrays;  ///< by name, in their order; empty: there is one, without a name
+};
+
+/// Reads the header of source.path, which is one file; of VTK files with inline data it has to pass over those, too.
+/// A headerless file (source.raw) holds one step, or where source.frames asks for some, as many as its size is a
+/// multiple of. Throws FileError for a header that cannot be read, UsageError for source.array that is not there.
+FileContents contentsOf(const VolumeSource& source, const JobControl& job = {});
+
+/// Whether a reader takes files of this name, whatever is in them.
+bool hasVolumeSuffix(const std::string& path);
+
+} // namespace pellucid

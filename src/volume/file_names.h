@@ -1,0 +1,48 @@
+// Files that are named together: by numbers, by wildcards, or by the folder they are in.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pellucid {
+
+/// A path with a number in it.
+struct NumberedName {
+    std::string before, after;
+    int width = 0;     ///< digits at least
+    bool zeros = true; ///< filled with zeros up to `width`, else with blanks
+    std::string with(std::int64_t number) const;
+};
+
+/// "f%03d.raw": one conversion d, i or u, with a width or none; "%%" is a percent sign. Empty for everything else.
+std::optional<NumberedName> numberedName(const std::string& path);
+
+/// Whether there is a wildcard in a path: * (any characters), ? (one), [abc], [a-z], [!a-z] (one of these, or none).
+bool isGlob(const std::string& path);
+bool matchesGlob(const std::string& pattern, const std::string& name);
+
+/// The files, in no order, that are there. Hidden ones only where the pattern begins with a dot. Empty where a folder
+/// cannot be read.
+std::vector<std::string> filesNumbered(const NumberedName& pattern);
+std::vector<std::string> filesMatching(const std::string& glob);
+std::vector<std::string> filesIn(const std::string& folder);
+
+/// Paths that differ in one number, ascending.
+struct NumberedNames {
+    NumberedName name;
+    std::vector<std::int64_t> numbers;
+};
+/// Of sorted paths; empty where they differ in more than one number.
+std::optional<NumberedNames> numberedNames(const std::vector<std::string>& paths);
+/// Of sorted paths that `name` has made.
+std::optional<NumberedNames> numberedBy(const NumberedName& name, const std::vector<std::string>& paths);
+
+/// ".nii.gz", ".raw": in lower case, with the dot; empty where there is none.
+std::string volumeSuffix(const std::string& path);
+
+/// Whether `a` comes before `b`, numbers in them counting as numbers: "f9" before "f10".
+bool countsBefore(const std::string& a, const std::string& b);
+
+} // namespace pellucid

@@ -1,0 +1,238 @@
+#include "volume/formats/vtk_bytes.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+#include "base/check.h"
+#include "volume/formats/file_check.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::size_t kPiece = 1u << 18;
+
+int base64Digit(char c) {
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    if (c == '+') return 62;
+    if (c == '/') return 63;
+    return -1;
+}
+
+/// What the header says.
+struct Header {
+    std::uint64_t bytes = 0;               ///< of the data, unpacked
+    std::vector<ZlibBlocks::Block> blocks; ///< of compressed data
+};
+
+/// Reads it from `from`, whose next byte is then the first of the data. `stored`: bytes of the file from there on.
+Header readHeader(ByteSource& from, const VtkData& data, std::uint64_t stored) {
+    const auto fail = [&](const std::string& what) {
+        return FileError(what, data.path, "copy or write the file again");
+    };
+    const auto number = [&] {
+        std::array<unsigned char, 8> bytes{};
+        const auto count = static_cast<std::size_t>(data.headerBytes);
+        if (from.read(reinterpret_cast<char*>(bytes.data()), count) < count)
+            throw fail("the data of the array end within their header");
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < count; ++i) value = value << 8 | bytes[data.bigEndian ? i : count - 1 - i];
+        return value;
+    };
+    Header header;
+    if (!data.compressed) {
+        header.bytes = number();
+        return header;
+    }
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 62;
+    const std::uint64_t count = number(), size = number(), last = number();
+    if (count > stored / static_cast<std::uint64_t>(data.headerBytes) || (count > 0 && size > kMost / count) ||
+        last > size)
+        throw fail("the header of the compressed array makes no sense");
+    std::uint64_t packed = 0;
+    header.blocks.reserve(static_cast<std::size_t>(count));
+    for (std::uint64_t i = 0; i < count; ++i) {
+        header.blocks.push_back({number(), i + 1 == count && last > 0 ? last : size});
+        if (header.blocks.back().packed > stored || (packed += header.blocks.back().packed) > stored)
+            throw fail("the compressed blocks of the array are longer than the file");
+        header.bytes += header.blocks.back().unpacked;
+    }
+    return header;
+}
+
+std::unique_ptr<ByteSource> encodedBytes(const VtkData& data, const JobControl& job) {
+    if (data.base64) return std::make_unique<Base64Bytes>(data.path, data.start, job);
+    return std::make_unique<FileBytes>(data.path, data.start, job);
+}
+
+std::uint64_t storedFrom(const VtkData& data) {
+    const std::uint64_t file = readableFileBytes(data.path);
+    return file - std::min(file, data.start);
+}
+
+} // namespace
+
+Base64Bytes::Base64Bytes(const std::string& path, std::uint64_t start, const JobControl& job)
+    : m_digits(path, start, job) {}
+
+bool Base64Bytes::decodeFour() {
+    std::uint32_t bits = 0;
+    int digits = 0, padding = 0;
+    while (digits + padding < 4) {
+        if (m_at == m_piece.size()) {
+            m_piece.resize(kPiece);
+            m_piece.resize(m_digits.read(m_piece.data(), m_piece.size()));
+            m_at = 0;
+            if (m_piece.empty()) return false;
+        }
+        const char c = m_piece[m_at];
+        if (const int digit = base64Digit(c); digit >= 0 && padding == 0) {
+            bits = bits << 6 | static_cast<std::uint32_t>(digit);
+            ++digits;
+        } else if (c == '=' && digits >= 2) {
+            bits <<= 6;
+            ++padding;
+        } else if (std::isspace(static_cast<unsigned char>(c)) == 0) {
+            return false;
+        }
+        ++m_at;
+    }
+    for (int i = 0; i < 3 - padding; ++i) m_ready += static_cast<char>(bits >> (16 - 8 * i) & 0xff);
+    return true;
+}
+
+std::size_t Base64Bytes::read(char* to, std::size_t count) {
+    std::size_t done = 0;
+    while (done < count) {
+        if (m_readyAt == m_ready.size()) {
+            m_ready.clear();
+            m_readyAt = 0;
+            while (m_ready.size() < 4096 && decodeFour()) continue;
+            if (m_ready.empty()) break;
+        }
+        const std::size_t piece = std::min(count - done, m_ready.size() - m_readyAt);
+        std::copy_n(m_ready.data() + m_readyAt, piece, to + done);
+        m_readyAt += piece;
+        done += piece;
+    }
+    return done;
+}
+
+ZlibBlocks::ZlibBlocks(std::unique_ptr<ByteSource> from, std::vector<Block> blocks)
+    : m_from(std::move(from)), m_blocks(std::move(blocks)), m_packed(kPiece) {
+    PELLUCID_CHECK(inflateInit(&m_stream) == Z_OK);
+    if (!m_blocks.empty()) {
+        m_packedLeft = m_blocks[0].packed;
+        m_unpackedLeft = m_blocks[0].unpacked;
+        m_streamEnded = false;
+    }
+}
+
+ZlibBlocks::~ZlibBlocks() { inflateEnd(&m_stream); }
+
+/// More of the packed block; false where there is none.
+bool ZlibBlocks::fill() {
+    const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(m_packedLeft, m_packed.size()));
+    const std::size_t read = m_from->read(reinterpret_cast<char*>(m_packed.data()), piece);
+    m_packedLeft -= read;
+    m_stream.next_in = m_packed.data();
+    m_stream.avail_in = static_cast<uInt>(read);
+    return read > 0;
+}
+
+/// All of the block has come out: what is left of it is its checksum, which has to be right. Begins the next one.
+bool ZlibBlocks::endBlock() {
+    while (!m_streamEnded) {
+        if (m_stream.avail_in == 0 && !fill()) return false;
+        unsigned char more = 0;
+        m_stream.next_out = &more;
+        m_stream.avail_out = 1;
+        const int status = inflate(&m_stream, Z_NO_FLUSH);
+        if ((status != Z_OK && status != Z_STREAM_END) || m_stream.avail_out == 0) return false;
+        m_streamEnded = status == Z_STREAM_END;
+    }
+    if (!m_from->skip(m_packedLeft) || ++m_block == m_blocks.size()) return false;
+    m_packedLeft = m_blocks[m_block].packed;
+    m_unpackedLeft = m_blocks[m_block].unpacked;
+    m_stream.avail_in = 0;
+    m_streamEnded = false;
+    return inflateReset(&m_stream) == Z_OK;
+}
+
+std::size_t ZlibBlocks::read(char* to, std::size_t count) {
+    std::size_t done = 0;
+    while (done < count && !m_failed && m_block < m_blocks.size()) {
+        if (m_unpackedLeft == 0) {
+            m_failed = !endBlock();
+            continue;
+        }
+        if (m_streamEnded || (m_stream.avail_in == 0 && !fill())) {
+            m_failed = true;
+            break;
+        }
+        const auto piece =
+            static_cast<std::size_t>(std::min<std::uint64_t>({count - done, m_unpackedLeft, std::uint64_t{1} << 30}));
+        m_stream.next_out = reinterpret_cast<Bytef*>(to + done);
+        m_stream.avail_out = static_cast<uInt>(piece);
+        const int status = inflate(&m_stream, Z_NO_FLUSH);
+        m_failed = status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR;
+        m_streamEnded = status == Z_STREAM_END;
+        done += piece - m_stream.avail_out;
+        m_unpackedLeft -= piece - m_stream.avail_out;
+    }
+    // The last block's checksum is looked at with its last byte.
+    if (!m_failed && m_unpackedLeft == 0 && m_block + 1 == m_blocks.size() && !endBlock() &&
+        m_block < m_blocks.size()) {
+        m_failed = true;
+        return done == 0 ? 0 : done - 1;
+    }
+    return done;
+}
+
+std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job) {
+    const std::uint64_t stored = storedFrom(data);
+    const char* toDo = "check the extent and the type of the array, or copy the file again";
+    auto from = encodedBytes(data, job);
+    const Header header = readHeader(*from, data, stored);
+    if (header.bytes != bytes)
+        throw FileError("the array has " + std::to_string(header.bytes) + " bytes where its extent and type make " +
+                            std::to_string(bytes),
+                        data.path, toDo);
+    if (!data.base64 && !data.compressed) {
+        const auto before = static_cast<std::uint64_t>(data.headerBytes);
+        requireStored(data.path, Encoding::Raw, bytes, 1, stored - before, toDo);
+        return data.start + before;
+    }
+    if (data.compressed)
+        requireStored(data.path, Encoding::Deflate, bytes, 1, stored, toDo);
+    else
+        requireStored(data.path, Encoding::Raw, bytes, 1, stored / 4 * 3 + 3, toDo);
+    // Unpacked once without keeping it: nothing is allocated for what is not there.
+    const auto unpacked = openVtkData(data, job);
+    std::vector<char> piece(1u << 18);
+    std::uint64_t yield = 0;
+    while (yield < bytes) {
+        const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), bytes - yield));
+        const std::size_t read = unpacked->read(piece.data(), wanted);
+        yield += read;
+        if (read < wanted) break;
+    }
+    if (yield < bytes)
+        throw FileError("the data of the array end or are damaged after " + std::to_string(yield) + " of " +
+                            std::to_string(bytes) + " bytes",
+                        data.path, "copy or write the file again");
+    return data.start;
+}
+
+std::unique_ptr<ByteSource> openVtkData(const VtkData& data, const JobControl& job) {
+    auto from = encodedBytes(data, job);
+    Header header = readHeader(*from, data, storedFrom(data));
+    if (!data.compressed) return from;
+    return std::make_unique<ZlibBlocks>(std::move(from), std::move(header.blocks));
+}
+
+} // namespace pellucid

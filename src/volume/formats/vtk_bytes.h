@@ -1,0 +1,68 @@
+// The data of arrays as VTK's XML files hold them: after a header of their own, as they are or in base64, packed in blocks
+// or not.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volume/formats/byte_source.h"
+
+namespace pellucid {
+
+/// The bytes that base64 digits stand for, blanks left out; what is padded may go on behind its padding. Anything else
+/// ends the data.
+class Base64Bytes final : public ByteSource {
+public:
+    Base64Bytes(const std::string& path, std::uint64_t start, const JobControl& job);
+    std::size_t read(char* to, std::size_t count) override;
+
+private:
+    bool decodeFour();
+    FileBytes m_digits;
+    std::string m_piece, m_ready;
+    std::size_t m_at = 0, m_readyAt = 0;
+};
+
+/// Zlib streams one after the other, each of a known size packed and unpacked.
+class ZlibBlocks final : public ByteSource {
+public:
+    struct Block {
+        std::uint64_t packed, unpacked; ///< bytes
+    };
+    ZlibBlocks(std::unique_ptr<ByteSource> from, std::vector<Block> blocks);
+    ~ZlibBlocks() override;
+    ZlibBlocks(const ZlibBlocks&) = delete;
+    ZlibBlocks& operator=(const ZlibBlocks&) = delete;
+    /// Fewer bytes where a block is damaged or yields another number of bytes than it should.
+    std::size_t read(char* to, std::size_t count) override;
+
+private:
+    bool endBlock();
+    bool fill();
+    std::unique_ptr<ByteSource> m_from;
+    std::vector<Block> m_blocks;
+    std::size_t m_block = 0; // that is being unpacked
+    std::uint64_t m_packedLeft = 0, m_unpackedLeft = 0;
+    z_stream m_stream{};
+    std::vector<unsigned char> m_packed;
+    bool m_streamEnded = true, m_failed = false;
+};
+
+/// Where the data of one array begin, with their header, and how they are stored.
+struct VtkData {
+    std::string path;
+    std::uint64_t start = 0; ///< byte of the file
+    bool base64 = false, compressed = false, bigEndian = false;
+    int headerBytes = 4; ///< of a number in the header: 4 or 8
+};
+
+/// Throws FileError unless the header says that there are `bytes` bytes, and the file can hold them. Returns the place of
+/// the data of VtkData that are neither base64 nor compressed.
+std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job);
+
+/// The bytes behind the header. The caller has looked at it by requireVtkBytes(). `job` must outlive it.
+std::unique_ptr<ByteSource> openVtkData(const VtkData& data, const JobControl& job);
+
+} // namespace pellucid

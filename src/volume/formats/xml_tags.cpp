@@ -1,0 +1,156 @@
+#include "volume/formats/xml_tags.h"
+
+#include <charconv>
+#include <cctype>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::size_t kPiece = 1u << 18;
+constexpr std::size_t kMostTagBytes = 1u << 16;
+
+bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
+
+/// &amp; and the like; what is no entity stays as it is.
+std::string withoutEntities(const std::string& text) {
+    static const std::map<std::string, char> kNamed{{"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
+    std::string plain;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const std::size_t end = text[i] == '&' ? text.find(';', i) : std::string::npos;
+        const std::string entity = end == std::string::npos ? "" : text.substr(i + 1, end - i - 1);
+        if (const auto named = kNamed.find(entity); named != kNamed.end()) {
+            plain += named->second;
+            i = end;
+            continue;
+        }
+        int code = 0; // of a plain character
+        if (entity.size() > 1 && entity[0] == '#' &&
+            std::from_chars(entity.data() + 1, entity.data() + entity.size(), code).ec == std::errc() && code > 31 &&
+            code < 127) {
+            plain += static_cast<char>(code);
+            i = end;
+            continue;
+        }
+        plain += text[i];
+    }
+    return plain;
+}
+
+} // namespace
+
+std::string XmlTag::get(const std::string& attribute) const {
+    const auto it = attributes.find(attribute);
+    return it == attributes.end() ? std::string() : it->second;
+}
+
+XmlTags::XmlTags(const std::string& path, const JobControl& job) : m_path(path), m_bytes(path, 0, job) {}
+
+void XmlTags::fail(const std::string& what) const {
+    throw FileError("this is not valid XML: " + what + " near byte " + std::to_string(m_before + m_at), m_path,
+                    "copy or write the file again");
+}
+
+int XmlTags::character() {
+    if (m_at == m_piece.size()) {
+        m_before += m_piece.size();
+        m_piece.resize(kPiece);
+        m_piece.resize(m_bytes.read(m_piece.data(), m_piece.size()));
+        m_at = 0;
+        if (m_piece.empty()) return -1;
+    }
+    return static_cast<unsigned char>(m_piece[m_at++]);
+}
+
+bool XmlTags::passOver(const std::string& end) {
+    std::string last;
+    for (int c = character(); c >= 0; c = character()) {
+        last += static_cast<char>(c);
+        if (last.size() > end.size()) last.erase(0, 1);
+        if (last == end) return true;
+    }
+    return false;
+}
+
+bool XmlTags::next(XmlTag& tag) {
+    while (true) {
+        while (true) { // to the next "<"
+            const void* found = m_at < m_piece.size() ? std::memchr(m_piece.data() + m_at, '<', m_piece.size() - m_at)
+                                                      : nullptr;
+            if (found != nullptr) {
+                m_at = static_cast<std::size_t>(static_cast<const char*>(found) - m_piece.data()) + 1;
+                break;
+            }
+            m_at = m_piece.size();
+            if (character() < 0) return false;
+            --m_at;
+        }
+        std::string text;
+        char quote = 0;
+        bool passed = false;
+        for (int c = character();; c = character()) {
+            if (c < 0) fail("a tag does not end");
+            const char letter = static_cast<char>(c);
+            if (quote == 0 && letter == '>') break;
+            if (quote == 0 && letter == '<') fail("a tag begins within another");
+            if (letter == quote)
+                quote = 0;
+            else if (quote == 0 && (letter == '"' || letter == '\''))
+                quote = letter;
+            text += letter;
+            if (text.size() > kMostTagBytes) fail("a tag is too long");
+            const bool comment = text == "!--", data = text == "![CDATA[", instruction = text == "?";
+            if (!comment && !data && !instruction) continue;
+            if (!passOver(comment ? "-->" : data ? "]]>" : "?>")) fail("a comment does not end");
+            passed = true;
+            break;
+        }
+        if (passed || text.starts_with('!')) continue;
+        tag = parsed(text);
+        tag.end = m_before + m_at;
+        return true;
+    }
+}
+
+XmlTag XmlTags::parsed(const std::string& text) const {
+    XmlTag tag;
+    std::size_t at = 0, end = text.size();
+    if (text.starts_with('/')) {
+        tag.opens = false;
+        tag.closes = true;
+        at = 1;
+    } else if (text.ends_with('/')) {
+        tag.closes = true;
+        --end;
+    }
+    const auto word = [&](const char* until) {
+        const std::size_t begin = at;
+        while (at < end && !isBlank(text[at]) && std::strchr(until, text[at]) == nullptr) ++at;
+        return text.substr(begin, at - begin);
+    };
+    const auto blanks = [&] {
+        while (at < end && isBlank(text[at])) ++at;
+    };
+    tag.name = word("");
+    if (tag.name.empty()) fail("a tag has no name");
+    for (blanks(); at < end; blanks()) {
+        const std::string name = word("=");
+        blanks();
+        if (name.empty() || at >= end || text[at] != '=') fail("an attribute has no value");
+        ++at;
+        blanks();
+        const char quote = at < end ? text[at] : '\0';
+        const std::size_t close = quote == '"' || quote == '\'' ? text.find(quote, at + 1) : std::string::npos;
+        if (close == std::string::npos || close >= end) fail("an attribute has no value");
+        if (!tag.attributes.insert({name, withoutEntities(text.substr(at + 1, close - at - 1))}).second)
+            fail("the attribute " + inQuotes(name) + " is given twice");
+        at = close + 1;
+    }
+    return tag;
+}
+
+} // namespace pellucid

@@ -1,0 +1,43 @@
+// The tags of an XML file, one after the other, without keeping what stands between them: that may be gigabytes of data.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "volume/formats/byte_source.h"
+
+namespace pellucid {
+
+/// One tag.
+struct XmlTag {
+    std::string name;
+    std::map<std::string, std::string> attributes; ///< entities replaced
+    bool opens = true, closes = false;             ///< both: "<a/>"
+    std::uint64_t end = 0;                         ///< the byte of the file behind its ">"
+
+    /// Empty where there is none.
+    std::string get(const std::string& attribute) const;
+};
+
+/// Comments, instructions and what stands between tags are passed over. A tag is shorter than 64 KiB.
+class XmlTags {
+public:
+    XmlTags(const std::string& path, const JobControl& job);
+    /// The next tag; false at the end of the file. Throws FileError where a tag cannot be read.
+    bool next(XmlTag& tag);
+
+private:
+    int character(); // the next one, −1 at the end
+    bool passOver(const std::string& end);
+    [[noreturn]] void fail(const std::string& what) const;
+    XmlTag parsed(const std::string& text) const;
+
+    std::string m_path;
+    FileBytes m_bytes;
+    std::string m_piece;
+    std::size_t m_at = 0;
+    std::uint64_t m_before = 0; // bytes of the file before m_piece
+};
+
+} // namespace pellucid

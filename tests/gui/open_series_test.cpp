@@ -1,0 +1,239 @@
+// Several files at once: chosen, dropped, by a pattern, without headers, again from the list of recent files.
+#include "gui_support.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <QAction>
+#include <QComboBox>
+#include <QDialog>
+#include <QDir>
+#include <QDragEnterEvent>
+#include <QDropEvent>
+#include <QFileDialog>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMenu>
+#include <QMimeData>
+#include <QPushButton>
+#include <QSettings>
+#include <QSpinBox>
+#include <QTemporaryDir>
+#include <QTimer>
+#include <QUrl>
+
+#include "raw_dialog.h"
+#include "series_files.h"
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+namespace {
+
+constexpr int kSide = 12;
+
+/// A ball that moves along x with the frame.
+std::vector<float> ballOf(int frame) {
+    std::vector<float> values;
+    for (int z = 0; z < kSide; ++z)
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const double dx = x - 3 - 2 * frame, dy = y - 5.5, dz = z - 5.5;
+                values.push_back(static_cast<float>(std::max(0.0, 4 - std::sqrt(dx * dx + dy * dy + dz * dz))));
+            }
+    return values;
+}
+
+/// Frames f1.nrrd, f2.nrrd, f10.nrrd: as text they come in another order.
+QStringList writeFrames(const QTemporaryDir& folder) {
+    QStringList paths;
+    int frame = 0;
+    for (const char* name : {"f1.nrrd", "f2.nrrd", "f10.nrrd"}) {
+        Geometry geometry;
+        geometry.dims = {kSide, kSide, kSide};
+        Grid<float> grid(geometry.dims);
+        const std::vector<float> values = ballOf(frame++);
+        std::copy(values.begin(), values.end(), grid.begin());
+        paths << folder.filePath(name);
+        writeNrrd(geometry, grid, paths.back().toStdString());
+    }
+    return paths;
+}
+
+/// Big-endian floats, 1e35 where there is no data.
+QStringList writeBricks(const QTemporaryDir& folder) {
+    QStringList paths;
+    for (int frame = 0; frame < 3; ++frame) {
+        std::vector<float> values = ballOf(frame);
+        values[0] = 1e35f;
+        paths << folder.filePath(QStringLiteral("CLOUDf%1.raw").arg(frame + 9, 2, 10, QChar('0')));
+        std::ofstream out(paths.back().toStdString(), std::ios::binary);
+        for (const float value : values) {
+            char bytes[4];
+            std::memcpy(bytes, &value, 4);
+            std::reverse(bytes, bytes + 4);
+            out.write(bytes, 4);
+        }
+    }
+    return paths;
+}
+
+void drop(QWidget& widget, const QStringList& paths) {
+    QMimeData data;
+    QList<QUrl> urls;
+    for (const QString& path : paths) urls << QUrl::fromLocalFile(path);
+    data.setUrls(urls);
+    QDragEnterEvent enter(QPoint(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(&widget, &enter);
+    QDropEvent event(QPointF(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(&widget, &event);
+    CHECK(event.isAccepted());
+}
+
+/// Answers the modal dialog of this name, once it is there.
+void answer(const char* name, const std::function<void(QDialog&)>& with) {
+    auto* timer = new QTimer(qApp);
+    timer->setInterval(20);
+    QObject::connect(timer, &QTimer::timeout, timer, [timer, name = QString(name), with] {
+        auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
+        if (dialog == nullptr || dialog->objectName() != name) return;
+        timer->deleteLater();
+        timer->stop();
+        with(*dialog);
+    });
+    timer->start();
+}
+
+const TimeSeries& seriesOf(OpenWindow& w) { return *w.bench().scene().series; }
+
+void waitForSeries(OpenWindow& w, int frames) {
+    REQUIRE(waitFor([&] { return seriesOf(w).size() == frames; }));
+    w.settle();
+}
+
+} // namespace
+
+TEST_CASE("names are ordered as people count", "[series]") {
+    const VolumeSource source = sourceOf({"run/f10.raw", "run/f9.raw"});
+    CHECK(source.path == "run/f9.raw");
+    CHECK(source.more == std::vector<std::string>{"run/f10.raw"});
+    CHECK(titleOf(source) == "f9.raw … f10.raw (2 files)");
+}
+
+TEST_CASE("files that are dropped together are the frames of a series", "[series]") {
+    QSettings().remove("recentFiles");
+    const QTemporaryDir folder;
+    QStringList paths = writeFrames(folder);
+    OpenWindow w;
+    const QImage before = w.picture();
+    std::reverse(paths.begin(), paths.end());
+    drop(w.window, paths);
+    waitForSeries(w, 3);
+    CHECK(w.bench().store().session().variable().source.path == folder.filePath("f1.nrrd").toStdString());
+    CHECK(w.bench().store().session().variable().source.more.back() == folder.filePath("f10.nrrd").toStdString());
+    const QImage first = w.picture();
+    CHECK(first != before);
+    // Its last frame is that of the last file: the ball has moved by 4 voxels, to x = 7.
+    const auto last = w.bench().scene().series->load(2);
+    CHECK(last->at({7, 5, 5}) > last->at({3, 5, 5}));
+
+    // The list of recent files keeps them all.
+    VolumeSource other;
+    other.path = "sample:disks";
+    other.sampleSize = 16;
+    w.open(other);
+    w.settle();
+    QAction* recent = nullptr;
+    for (QAction* action : w.window.findChildren<QAction*>())
+        if (action->text() == "f1.nrrd … f10.nrrd (3 files)") recent = action;
+    REQUIRE(recent != nullptr);
+    recent->trigger();
+    waitForSeries(w, 3);
+    CHECK(w.picture() == first);
+}
+
+TEST_CASE("files are chosen together in the dialog", "[series]") {
+    const QTemporaryDir folder;
+    const QStringList paths = writeFrames(folder);
+    OpenWindow w;
+    w.opening().openPaths({paths[2], paths[0], paths[1]}); // as the dialog hands them over
+    waitForSeries(w, 3);
+    const QImage picture = w.picture();
+    w.opening().openPaths({paths[0]});
+    waitForSeries(w, 1);
+    CHECK(w.picture() == picture); // the same frame, and the same automatic start
+}
+
+TEST_CASE("headerless files get one layout: byte order and missing value too", "[series]") {
+    const QTemporaryDir folder;
+    const QStringList paths = writeBricks(folder);
+    OpenWindow w;
+    const QImage before = w.picture();
+    QString what;
+    answer("rawDialog", [&](QDialog& dialog) {
+        what = dialog.findChild<QLabel*>("rawWhat")->text();
+        auto& type = *dialog.findChild<QComboBox*>("rawType");
+        type.setCurrentIndex(type.findData(static_cast<int>(SampleType::F32)));
+        for (const char* axis : {"rawDimx", "rawDimy", "rawDimz"}) dialog.findChild<QSpinBox*>(axis)->setValue(kSide);
+        dialog.findChild<QComboBox*>("rawEndian")->setCurrentIndex(1);
+        QTest::keyClicks(dialog.findChild<QLineEdit*>("rawMissing"), "1e35");
+        dialog.accept();
+    });
+    drop(w.window, paths);
+    waitForSeries(w, 3);
+    CHECK(what.contains("3 files"));
+    const Volume& data = *w.bench().scene().data;
+    CHECK(data.invalidCount() == 1);
+    CHECK_FALSE(data.isValid(0));
+    // The largest value is that of the voxel nearest to the middle of the ball, (3, 5.5, 5.5): 4 − √½.
+    CHECK(data.dataRange().hi == Approx(4 - std::sqrt(0.5)));
+    CHECK(w.picture() != before);
+}
+
+TEST_CASE("a series by a pattern, some of its frames", "[series]") {
+    const QTemporaryDir folder;
+    writeFrames(folder);
+    OpenWindow w;
+    const QImage before = w.picture();
+    answer("seriesDialog", [&](QDialog& dialog) {
+        auto& path = *dialog.findChild<QLineEdit*>("seriesPath");
+        auto& open = *dialog.findChild<QPushButton*>("seriesOpen");
+        auto& found = *dialog.findChild<QLabel*>("seriesFound");
+        CHECK_FALSE(open.isEnabled());
+        QTest::keyClicks(&path, folder.filePath("g*.nrrd"));
+        CHECK(waitFor([&] { return !found.text().isEmpty() && found.text() != "Looking…"; }));
+        CHECK_FALSE(open.isEnabled()); // and it says why
+        path.selectAll();
+        QTest::keyClicks(&path, folder.filePath("f*.nrrd"));
+        CHECK(waitFor([&] { return open.isEnabled(); }));
+        CHECK(found.text().startsWith("3 frames"));
+        dialog.findChild<QSpinBox*>("seriesFirst")->setValue(1);
+        QTest::mouseClick(&open, Qt::LeftButton);
+    });
+    w.child<QAction>("openSeriesAction").trigger();
+    waitForSeries(w, 2);
+    const auto& frames = w.bench().store().session().variable().source.frames;
+    REQUIRE(frames);
+    CHECK(*frames == FrameRange{1, 2, 1});
+    CHECK(w.picture() != before);
+}
+
+TEST_CASE("what cannot be opened together is told", "[series]") {
+    const QTemporaryDir folder;
+    const QStringList paths = writeFrames(folder);
+    OpenWindow w;
+    const QImage before = w.picture();
+    const Session session = w.bench().store().session();
+    QString said;
+    answer("errorDialog", [&](QDialog& dialog) {
+        for (const QLabel* label : dialog.findChildren<QLabel*>()) said += label->text();
+        dialog.reject();
+    });
+    QSignalSpy failed(&w.opening(), &OpenController::failed);
+    drop(w.window, {paths[0], folder.filePath("work.pellucid.json")});
+    CHECK(waitFor([&] { return failed.count() == 1; }));
+    CHECK(waitFor([&] { return !said.isEmpty(); }));
+    CHECK(said.contains("session is opened alone"));
+    CHECK(w.bench().store().session() == session);
+    CHECK(w.picture() == before);
+}

@@ -1,0 +1,449 @@
+// Several variables: added, renamed, removed; which drives which channel; the ground. Each time state and picture.
+#include "gui_support.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <QAction>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMenu>
+#include <QPushButton>
+#include <QSlider>
+#include <QSpinBox>
+#include <QTemporaryDir>
+#include <QToolButton>
+#include <QTreeWidget>
+
+#include "panels/channels_box.h"
+#include "panels/variables_panel.h"
+#include "series_files.h"
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+namespace {
+
+constexpr int kSide = 20, kFrames = 4;
+
+void writeGrid(const QString& path, const Int3& dims, double spacing, const std::function<double(const Vec3&)>& value) {
+    Geometry geometry;
+    geometry.dims = dims;
+    geometry.spacing = Vec3(spacing);
+    Grid<float> grid(dims);
+    std::size_t i = 0;
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x)
+                grid[i++] = static_cast<float>(value(geometry.worldFromVoxel(Vec3(x, y, z))));
+    writeNrrd(geometry, grid, path.toStdString());
+}
+
+double ball(const Vec3& p, const Vec3& middle, double radius) {
+    const Vec3 d = p - middle;
+    return std::max(0.0, 1 - std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z) / radius);
+}
+
+/// cloud0.nrrd …: a ball that rests and one that moves. rain.nrrd: a ball over the resting one, on half as many voxels.
+/// ground.nrrd: a slope, one layer.
+struct Weather {
+    QTemporaryDir folder;
+    Weather() {
+        for (int f = 0; f < kFrames; ++f)
+            writeGrid(folder.filePath(QStringLiteral("cloud%1.nrrd").arg(f)), {kSide, kSide, kSide}, 1,
+                      [f](const Vec3& p) {
+                          return std::max(ball(p, {5, 5, 10}, 5), ball(p, {8.0 + 2 * f, 14, 10}, 5));
+                      });
+        writeGrid(folder.filePath("rain.nrrd"), {kSide / 2, kSide / 2, kSide / 2}, 2, [](const Vec3& p) {
+            return ball(p, {5, 5, 10}, 6);
+        });
+        writeGrid(folder.filePath("ground.nrrd"), {kSide, kSide, 1}, 1,
+                  [](const Vec3& p) { return 4 * std::sin(p.x / 4); });
+    }
+    VolumeSource cloud() const {
+        QStringList paths;
+        for (int f = 0; f < kFrames; ++f) paths << folder.filePath(QStringLiteral("cloud%1.nrrd").arg(f));
+        return sourceOf(paths);
+    }
+    VolumeSource file(const char* name) const {
+        VolumeSource source;
+        source.path = folder.filePath(name).toStdString();
+        return source;
+    }
+};
+
+const Session& sessionOfWindow(OpenWindow& w) { return w.bench().store().session(); }
+const HsbMapping& hsbOf(OpenWindow& w) { return *sessionOfWindow(w).hsb; }
+
+/// The cloud at its last frame, with the panel in front, so that the view has its size for good.
+void openCloud(OpenWindow& w, const Weather& weather) {
+    w.open(weather.cloud());
+    w.settle();
+    w.child<QAction>("variablesAction").trigger();
+    w.settle();
+    w.opening().editData("Last frame", [](Session& s) { s.frame = kFrames - 1; });
+    w.settle();
+    QTest::qWait(100); // docks arrange themselves
+    w.settle();
+    REQUIRE(sessionOfWindow(w).frame == kFrames - 1);
+}
+
+/// As the menu of the panel does once a file has been chosen.
+void addRain(OpenWindow& w, const Weather& weather) {
+    Variable rain;
+    rain.name = "rain";
+    rain.source = weather.file("rain.nrrd");
+    w.opening().editInJob("Add rain", [rain](Session& s) { addVariable(s, rain); });
+    w.settle();
+    REQUIRE(sessionOfWindow(w).variables->size() == 2);
+}
+
+void turnOn(OpenWindow& w) {
+    w.child<QCheckBox>("hsbCheck").click();
+    w.settle();
+    REQUIRE(hsbOf(w).on);
+    REQUIRE(w.bench().scene().colors);
+}
+
+void undo(OpenWindow& w) {
+    w.child<QAction>("undoAction").trigger();
+    w.settle();
+}
+
+QTreeWidgetItem& rowOf(OpenWindow& w, const QString& name) {
+    const auto found = w.child<QTreeWidget>("variablesList").findItems(name, Qt::MatchExactly);
+    REQUIRE(found.size() == 1);
+    return *found.front();
+}
+
+/// Chooses by name, as with the mouse.
+void choose(OpenWindow& w, const char* combo, const std::string& driver) {
+    auto& box = w.child<QComboBox>(combo);
+    const int index = box.findData(QString::fromStdString(driver));
+    REQUIRE(index >= 0);
+    box.setCurrentIndex(index);
+    Q_EMIT box.activated(index);
+    w.settle();
+}
+
+/// Mean of max − min and of max over the pixels that differ from the background: how colourful, how bright.
+struct Look {
+    double saturation = 0, brightness = 0;
+};
+Look lookOf(const QImage& image) {
+    Look look;
+    int count = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            const QColor c = image.pixelColor(x, y);
+            if (c.value() < 8) continue;
+            look.saturation += c.saturationF();
+            look.brightness += c.valueF();
+            ++count;
+        }
+    REQUIRE(count > 100);
+    look.saturation /= count;
+    look.brightness /= count;
+    return look;
+}
+
+} // namespace
+
+TEST_CASE("volatility colours what moves, and undo brings the colours of the curve back", "[variables]") {
+    const Weather weather;
+    OpenWindow w;
+    openCloud(w, weather);
+    const QImage before = w.picture();
+    CHECK_FALSE(w.child<QLabel>("tfColorSource").isVisible());
+    turnOn(w);
+    CHECK(hsbOf(w).saturation == "volatility:cloud:10"); // startMapping()
+    CHECK(w.child<QSpinBox>("hsbFrames").value() == 10);
+    CHECK(w.child<QLabel>("tfColorSource").isVisible());
+    const QImage mapped = w.picture();
+    CHECK(mapped != before);
+    // The resting ball is grey, the moving one has colour: voxels (5,5,10) and (14,14,10) of frame 3.
+    const VoxelColors& colors = *w.bench().scene().colors;
+    const auto colorAt = [&](int x, int y, int z) {
+        const std::uint32_t c = colors.rgba[static_cast<std::size_t>(x + kSide * (y + kSide * z))];
+        return QColor(static_cast<int>(c & 255), static_cast<int>(c >> 8 & 255), static_cast<int>(c >> 16 & 255));
+    };
+    CHECK(colorAt(5, 5, 10).saturation() == 0);
+    CHECK(colorAt(14, 14, 10).saturation() > 128);
+    undo(w);
+    CHECK_FALSE(hsbOf(w).on);
+    CHECK(w.picture() == before);
+    w.child<QAction>("redoAction").trigger();
+    CHECK(w.picture() == mapped);
+    // The key does the same.
+    w.child<QAction>("hsbAction").trigger();
+    w.settle();
+    CHECK_FALSE(hsbOf(w).on);
+    CHECK(w.picture() == before);
+}
+
+TEST_CASE("frames of volatility, scales and hue change the picture", "[variables]") {
+    const Weather weather;
+    OpenWindow w;
+    openCloud(w, weather);
+    turnOn(w);
+    const QImage ten = w.picture();
+    auto& frames = w.child<QSpinBox>("hsbFrames");
+    frames.setValue(1);
+    w.settle();
+    CHECK(hsbOf(w).saturation == "volatility:cloud:1");
+    const QImage one = w.picture(); // of one frame it is 0
+    CHECK(lookOf(one).saturation < 0.02);
+    CHECK(lookOf(ten).saturation > lookOf(one).saturation + 0.05);
+    undo(w);
+    CHECK(frames.value() == 10);
+    CHECK(w.picture() == ten);
+
+    // The slider of a: the picture follows while it is held, and it is one step.
+    auto& slider = w.child<QSlider>("hsbASlider");
+    const int steps = w.document().stepCount();
+    const double automatic = w.bench().scene().hsbA;
+    CHECK_FALSE(hsbOf(w).a);
+    CHECK(w.child<QToolButton>("hsbAAutomatic").isChecked());
+    CHECK(w.child<QDoubleSpinBox>("hsbA").value() == Approx(automatic).margin(0.001));
+    slider.setSliderDown(true);
+    slider.setValue(slider.value() - 100);
+    CHECK(w.document().isPreviewing());
+    slider.setValue(0);
+    REQUIRE(hsbOf(w).a);
+    CHECK(*hsbOf(w).a == Approx(0.1)); // the least
+    slider.setSliderDown(false);
+    CHECK_FALSE(w.document().isPreviewing());
+    CHECK(w.document().stepCount() == steps + 1);
+    CHECK_FALSE(w.child<QToolButton>("hsbAAutomatic").isChecked());
+    const QImage pale = w.picture();
+    CHECK(lookOf(pale).saturation < lookOf(ten).saturation);
+    w.child<QToolButton>("hsbAAutomatic").click();
+    w.settle();
+    CHECK_FALSE(hsbOf(w).a);
+    CHECK(w.bench().scene().hsbA == automatic);
+    CHECK(w.picture() == ten);
+
+    // Another hue.
+    w.child<QDoubleSpinBox>("hsbHueFrom").setValue(180);
+    CHECK(hsbOf(w).hueFrom == 180);
+    CHECK(w.picture() != ten);
+    undo(w);
+    CHECK(w.picture() == ten);
+    choose(w, "hsbHue", "cloud");
+    CHECK(hsbOf(w).hue == "cloud");
+    CHECK(w.picture() != ten);
+    CHECK(w.child<QDoubleSpinBox>("hsbHueTo").isVisible());
+    undo(w);
+    CHECK(w.picture() == ten);
+}
+
+TEST_CASE("a second variable darkens; swapping it and back gives the same picture", "[variables]") {
+    const Weather weather;
+    OpenWindow w;
+    openCloud(w, weather);
+    addRain(w, weather);
+    REQUIRE(waitFor([&] { return rowOf(w, "rain").text(3).contains("10×10×10"); }));
+    // It lies on another grid, and the panel says so.
+    CHECK(w.child<QLabel>("variablesNotice").text().contains("rain"));
+    turnOn(w);
+    CHECK(hsbOf(w).brightness == "rain");
+    CHECK(rowOf(w, "rain").text(1) == "brightness");
+    const QImage mapped = w.picture();
+    const TransferFunction tf = w.document().tf();
+    choose(w, "hsbBrightness", "");
+    const QImage bright = w.picture();
+    CHECK(lookOf(bright).brightness > lookOf(mapped).brightness);
+    undo(w);
+    CHECK(w.picture() == mapped);
+    auto& b = w.child<QDoubleSpinBox>("hsbB");
+    b.setValue(b.value() / 8);
+    w.settle();
+    CHECK(lookOf(w.picture()).brightness > lookOf(mapped).brightness);
+    undo(w);
+    CHECK(w.picture() == mapped);
+
+    const Session session = sessionOfWindow(w);
+    QTest::mouseClick(&w.child<QPushButton>("hsbSwap"), Qt::LeftButton);
+    w.settle();
+    CHECK(sessionOfWindow(w).variable().name == "rain");
+    CHECK(hsbOf(w).brightness == "cloud");
+    CHECK(hsbOf(w).saturation == "volatility:rain:10");
+    REQUIRE(sessionOfWindow(w).tf() != nullptr); // an automatic one of its own
+    CHECK_FALSE(sessionOfWindow(w).variable().track == session.variable().track);
+    CHECK(w.child<QLabel>("featureSource").text().contains("rain"));
+    const QImage swapped = w.picture();
+    CHECK(swapped != mapped);
+    w.child<QAction>("swapVariablesAction").trigger();
+    w.settle();
+    CHECK(sessionOfWindow(w).variable().name == "cloud");
+    CHECK(*sessionOfWindow(w).hsb == *session.hsb);
+    CHECK(w.document().tf() == tf);
+    CHECK(w.picture() == mapped);
+    undo(w);
+    CHECK(w.picture() == swapped);
+    undo(w);
+    CHECK(w.picture() == mapped);
+}
+
+TEST_CASE("variables are added, renamed, given a range and removed", "[variables]") {
+    const Weather weather;
+    OpenWindow w;
+    openCloud(w, weather);
+    addRain(w, weather);
+    turnOn(w);
+    const QImage mapped = w.picture();
+
+    // Made of another one, by the menu.
+    auto& menu = w.child<QMenu>("variableAddMenu");
+    Q_EMIT menu.aboutToShow();
+    QAction* gradient = w.window.findChild<QAction*>("addGradient_cloud");
+    REQUIRE(gradient != nullptr);
+    gradient->trigger();
+    w.settle();
+    REQUIRE(sessionOfWindow(w).variableNamed("gradient of cloud") != nullptr);
+    CHECK(w.picture() == mapped); // it drives nothing yet
+    CHECK(rowOf(w, "gradient of cloud").text(2) == "gradient of cloud");
+    choose(w, "hsbBrightness", "gradient of cloud");
+    const QImage edges = w.picture();
+    CHECK(edges != mapped);
+
+    // Another name goes everywhere, and is no other picture.
+    auto& list = w.child<QTreeWidget>("variablesList");
+    rowOf(w, "gradient of cloud").setText(0, "edges");
+    w.settle();
+    CHECK(hsbOf(w).brightness == "edges");
+    CHECK(w.picture() == edges);
+    // A name that is taken is refused.
+    rowOf(w, "edges").setText(0, "rain");
+    QDialog* error = nullptr;
+    REQUIRE(waitFor([&] { return (error = w.window.findChild<QDialog*>("errorDialog")) != nullptr; }));
+    error->reject();
+    CHECK(sessionOfWindow(w).variableNamed("edges") != nullptr);
+    CHECK(list.topLevelItemCount() == 3);
+
+    // A range of its own.
+    choose(w, "hsbBrightness", "rain");
+    CHECK(w.picture() == mapped);
+    list.setCurrentItem(&rowOf(w, "rain"));
+    auto& hi = w.child<QLineEdit>("variableHi");
+    REQUIRE(waitFor([&] { return hi.isEnabled(); }));
+    const auto type = [&](QLineEdit& edit, const QString& text) {
+        edit.selectAll();
+        QTest::keyClicks(&edit, text);
+        QTest::keyClick(&edit, Qt::Key_Return);
+        w.settle();
+    };
+    w.child<QToolButton>("hsbBAutomatic").click(); // b stays what it is
+    w.settle();
+    type(hi, "4");
+    REQUIRE(sessionOfWindow(w).variableNamed("rain")->window);
+    CHECK(sessionOfWindow(w).variableNamed("rain")->window->hi == 4);
+    CHECK(lookOf(w.picture()).brightness > lookOf(mapped).brightness); // less of it
+    w.child<QPushButton>("variableWholeRange").click();
+    w.settle();
+    CHECK_FALSE(sessionOfWindow(w).variableNamed("rain")->window);
+    CHECK(w.picture() == mapped);
+
+    // cloud cannot go while edges are made of it; rain can.
+    list.setCurrentItem(&rowOf(w, "cloud"));
+    CHECK_FALSE(w.child<QPushButton>("variableRemove").isEnabled());
+    list.setCurrentItem(&rowOf(w, "rain"));
+    QTest::mouseClick(&w.child<QPushButton>("variableRemove"), Qt::LeftButton);
+    w.settle();
+    CHECK(sessionOfWindow(w).variableNamed("rain") == nullptr);
+    CHECK(hsbOf(w).brightness.empty());
+    CHECK(w.picture() != mapped);
+    undo(w);
+    CHECK(hsbOf(w).brightness == "rain");
+    CHECK(w.picture() == mapped);
+}
+
+TEST_CASE("a variable that cannot be read is not added", "[variables]") {
+    const Weather weather;
+    OpenWindow w;
+    openCloud(w, weather);
+    const QImage before = w.picture();
+    Variable missing;
+    missing.name = "missing";
+    missing.source = weather.file("missing.nrrd");
+    w.opening().editInJob("Add", [missing](Session& s) { addVariable(s, missing); });
+    QDialog* error = nullptr;
+    REQUIRE(waitFor([&] { return (error = w.window.findChild<QDialog*>("errorDialog")) != nullptr; }));
+    error->reject();
+    w.settle();
+    CHECK(sessionOfWindow(w).variables->size() == 1);
+    CHECK(w.picture() == before);
+}
+
+TEST_CASE("a ground is laid under the volume, changed and taken away", "[variables]") {
+    const Weather weather;
+    OpenWindow w;
+    openCloud(w, weather);
+    const QImage before = w.picture();
+    w.opening().editInJob("Ground", [path = weather.file("ground.nrrd").path](Session& s) {
+        s.ground.edit([&](GroundView& g) { g.path = path; });
+    });
+    w.settle();
+    CHECK(w.child<QCheckBox>("groundShown").isChecked());
+    CHECK(w.child<QLabel>("groundFile").text() == "ground.nrrd");
+    const QImage ground = w.picture();
+    CHECK(ground != before);
+    w.child<QDoubleSpinBox>("groundRelief").setValue(0);
+    CHECK(sessionOfWindow(w).ground->relief == 0);
+    CHECK(w.picture() != ground);
+    undo(w);
+    CHECK(w.picture() == ground);
+    auto& maps = w.child<QComboBox>("groundColorMap");
+    maps.setCurrentIndex(maps.currentIndex() == 0 ? 1 : 0);
+    Q_EMIT maps.activated(maps.currentIndex());
+    CHECK(sessionOfWindow(w).ground->colorMap == maps.currentData().toString().toStdString());
+    CHECK(w.picture() != ground);
+    undo(w);
+    w.child<QCheckBox>("groundShown").click();
+    w.settle();
+    CHECK_FALSE(sessionOfWindow(w).ground->shown);
+    CHECK(w.picture() == before);
+    undo(w);
+    CHECK(w.picture() == ground);
+    QTest::mouseClick(&w.child<QPushButton>("groundRemove"), Qt::LeftButton);
+    CHECK(sessionOfWindow(w).ground->path.empty());
+    CHECK(w.picture() == before);
+}
+
+TEST_CASE("a session with several variables and a ground is saved and opened", "[variables]") {
+    const Weather weather;
+    const QString path = weather.folder.filePath("work.pellucid.json");
+    QImage saved;
+    Session session;
+    {
+        OpenWindow w;
+        openCloud(w, weather);
+        addRain(w, weather);
+        turnOn(w);
+        w.opening().editInJob("Ground", [file = weather.file("ground.nrrd").path](Session& s) {
+            s.ground.edit([&](GroundView& g) { g.path = file; });
+        });
+        w.settle();
+        saved = w.picture();
+        session = sessionOfWindow(w);
+        w.saving().saveSession(path);
+        w.settle();
+        CHECK(w.bench().store().isClean());
+    }
+    OpenWindow w;
+    w.child<QAction>("variablesAction").trigger();
+    w.settle();
+    w.opening().openPath(path);
+    REQUIRE(waitFor([&] { return sessionOfWindow(w).variables->size() == 2; }));
+    w.settle();
+    CHECK(*sessionOfWindow(w).hsb == *session.hsb);
+    CHECK(*sessionOfWindow(w).variables == *session.variables);
+    CHECK(*sessionOfWindow(w).ground == *session.ground);
+    CHECK(sessionOfWindow(w).frame == kFrames - 1);
+    QTest::qWait(100); // docks arrange themselves
+    CHECK(w.picture() == saved);
+    REQUIRE(waitFor([&] { return rowOf(w, "rain").text(3).contains("10×10×10"); }));
+}

@@ -1,0 +1,165 @@
+// What people do to variables and channels.
+#include <catch2/catch.hpp>
+
+#include "base/error.h"
+#include "session/variable_edits.h"
+
+using namespace pellucid;
+
+namespace {
+
+Variable plain(const std::string& name) {
+    Variable v;
+    v.name = name;
+    v.source.path = name + ".nrrd";
+    return v;
+}
+
+Variable derived(const std::string& name, const std::string& text) {
+    Variable v;
+    v.name = name;
+    v.derivation = parseDerivation(text);
+    return v;
+}
+
+Session cloudAndRain() {
+    Session s;
+    s.variables = std::vector<Variable>{plain("cloud"), plain("rain")};
+    s.hsb.edit([](HsbMapping& h) {
+        h.on = true;
+        h.saturation = "volatility:cloud:10";
+        h.brightness = "rain";
+        h.hue = "cloud";
+    });
+    return s;
+}
+
+std::vector<std::string> namesOf(const Session& s) {
+    std::vector<std::string> names;
+    for (const Variable& v : *s.variables) names.push_back(v.name);
+    return names;
+}
+
+using Names = std::vector<std::string>;
+
+} // namespace
+
+TEST_CASE("swapping opacity and brightness swaps all channels, and back", "[variables]") {
+    Session s = cloudAndRain();
+    swapOpacityAndBrightness(s);
+    CHECK(namesOf(s) == Names{"rain", "cloud"});
+    CHECK(s.hsb->saturation == "volatility:rain:10"); // of what is drawn, as in fig. 6.5
+    CHECK(s.hsb->brightness == "cloud");
+    CHECK(s.hsb->hue == "rain");
+    swapOpacityAndBrightness(s);
+    CHECK(s == cloudAndRain());
+}
+
+TEST_CASE("a derived variable becomes one of the session when it drives opacity", "[variables]") {
+    Session s = cloudAndRain();
+    setChannel(s, Channel::Brightness, "gradient:cloud");
+    swapOpacityAndBrightness(s);
+    CHECK(namesOf(s) == Names{"gradient of cloud", "rain", "cloud"});
+    CHECK(s.variable().derivation == parseDerivation("gradient:cloud"));
+    CHECK(s.hsb->brightness == "cloud");
+    CHECK(s.hsb->saturation == "volatility:gradient of cloud:10");
+    swapOpacityAndBrightness(s);
+    CHECK(s.variable().name == "cloud");
+    CHECK(s.hsb->brightness == "gradient of cloud");
+    CHECK(s.hsb->saturation == "volatility:cloud:10");
+}
+
+TEST_CASE("any variable drives any channel", "[variables]") {
+    Session s = cloudAndRain();
+    setChannel(s, Channel::Saturation, "rain");
+    setChannel(s, Channel::Hue, "gradient:rain");
+    setChannel(s, Channel::Brightness, "");
+    CHECK(channelOf(s, Channel::Opacity) == "cloud");
+    CHECK(channelOf(s, Channel::Saturation) == "rain");
+    CHECK(channelOf(s, Channel::Hue) == "gradient:rain");
+    CHECK(channelOf(s, Channel::Brightness).empty());
+    const Session before = s;
+    swapOpacityAndBrightness(s); // nothing drives it
+    CHECK(s == before);
+}
+
+TEST_CASE("volatility has the frames that it is given, named or not", "[variables]") {
+    Session s = cloudAndRain();
+    CHECK(volatilityFrames(s) == 10);
+    setVolatilityFrames(s, 4);
+    CHECK(s.hsb->saturation == "volatility:cloud:4");
+    addVariable(s, derived("motion", "volatility:cloud:7"));
+    setChannel(s, Channel::Saturation, "motion");
+    CHECK(volatilityFrames(s) == 7);
+    setVolatilityFrames(s, 3);
+    CHECK(s.variableNamed("motion")->derivation->frames == 3);
+    CHECK(s.hsb->saturation == "motion");
+    setChannel(s, Channel::Saturation, "rain");
+    CHECK_FALSE(volatilityFrames(s));
+}
+
+TEST_CASE("a new name goes wherever the old one stood", "[variables]") {
+    Session s = cloudAndRain();
+    addVariable(s, derived("edge", "gradient:cloud"));
+    renameVariable(s, "cloud", "qc");
+    CHECK(namesOf(s) == Names{"qc", "rain", "edge"});
+    CHECK(s.hsb->saturation == "volatility:qc:10");
+    CHECK(s.hsb->hue == "qc");
+    CHECK(s.variableNamed("edge")->derivation->of == "qc");
+    CHECK_THROWS_AS(renameVariable(s, "qc", "rain"), UsageError);
+    CHECK_THROWS_AS(renameVariable(s, "qc", ""), UsageError);
+    CHECK_THROWS_AS(renameVariable(s, "qc", "a:b"), UsageError);
+    CHECK(addVariable(s, plain("rain")) == "rain 2");
+    CHECK(addVariable(s, plain("rain")) == "rain 3");
+}
+
+TEST_CASE("what a removed variable drove is constant; what others are made of stays", "[variables]") {
+    Session s = cloudAndRain();
+    addVariable(s, derived("edge", "gradient:rain"));
+    CHECK(madeOf(s, "rain") == Names{"edge"});
+    CHECK_THROWS_AS(removeVariable(s, "rain"), UsageError);
+    removeVariable(s, "edge");
+    removeVariable(s, "cloud");
+    CHECK(namesOf(s) == Names{"rain"});
+    CHECK(s.hsb->saturation.empty()); // it was the volatility of cloud
+    CHECK(s.hsb->hue.empty());
+    CHECK(s.hsb->brightness == "rain");
+    CHECK_THROWS_AS(removeVariable(s, "rain"), UsageError);
+}
+
+TEST_CASE("variables that are made of themselves are searched to an end", "[variables]") {
+    Session s;
+    s.variables = std::vector<Variable>{derived("a", "gradient:b"), derived("b", "gradient:a")};
+    CHECK(madeOf(s, "x").empty());
+}
+
+TEST_CASE("a mapping begins with what there is", "[variables]") {
+    Session s;
+    s.variables = std::vector<Variable>{plain("smoke")};
+    startMapping(s, false);
+    CHECK(s.hsb->saturation.empty());
+    startMapping(s, true);
+    CHECK(s.hsb->saturation == "volatility:smoke:10");
+    CHECK(s.hsb->brightness.empty());
+    setChannel(s, Channel::Saturation, "");
+    addVariable(s, plain("heat"));
+    startMapping(s, false);
+    CHECK(s.hsb->brightness == "heat");
+    const Session before = s;
+    startMapping(s, true); // a channel is driven already
+    CHECK(s == before);
+}
+
+TEST_CASE("variables are named after their files", "[variables]") {
+    const auto nameOf = [](const std::string& path) {
+        VolumeSource source;
+        source.path = path;
+        return nameOfSource(source);
+    };
+    CHECK(nameOf("run/CLOUDf01.bin") == "CLOUDf");
+    CHECK(nameOf("run/p_%03d.mhd") == "p");
+    CHECK(nameOf("run/rain*.raw") == "rain");
+    CHECK(nameOf("scan.nii.gz") == "scan");
+    CHECK(nameOf("007.raw") == "007");
+    CHECK(nameOf("sample:vortex") == "vortex");
+}
