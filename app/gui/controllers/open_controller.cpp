@@ -368,7 +368,7 @@ void OpenController::showChanged(const DataChange& change, Scene& scene) {
             });
     };
     // Other edits may have come meanwhile: the change is made of what is there now, and anew where that is other data.
-    Session present = store.committed().session;
+    Session present = store.session();
     andStart(present);
     if (needsData(present, scene)) return start(std::move(m_edit));
     const bool otherVoxels = scene.data != change.basis.data;
