@@ -1,6 +1,9 @@
 // `info`: what a volume file holds.
+#include <algorithm>
+
 #include "commands.h"
 #include "resolve.h"
+#include "volume/file_contents.h"
 #include "volume/orientation.h"
 
 namespace pellucid::cli {
@@ -64,6 +67,76 @@ Json jsonOf(const Volume& v) {
             {"notices", v.notices}};
 }
 
+/// What the header of the frame's file says beside; empty for samples.
+FileContents contentsOfFrame(const Scene& scene) {
+    const VolumeSource& source = scene.series->listing().frames[static_cast<std::size_t>(scene.session.frame)].source;
+    return source.isSample() || scene.session.variable().derivation ? FileContents{} : contentsOf(source);
+}
+
+/// Frames that could not be read.
+std::vector<int> brokenFrames(const TimeSeries& series) {
+    std::vector<int> broken;
+    for (int f = 0; f < series.size(); ++f)
+        if (!series.summary(f).problem.empty()) broken.push_back(f);
+    return broken;
+}
+
+/// Of the values of all frames, as far as it is known without reading.
+std::optional<ValueRange> rangeOfAll(const TimeSeries& series) {
+    if (series.listing().declaredRange) return series.listing().declaredRange;
+    std::optional<ValueRange> range;
+    for (int f = 0; f < series.size(); ++f) {
+        const FrameSummary s = series.summary(f);
+        if (!s.isKnown || !s.problem.empty() || s.validCount == 0) continue;
+        range = range ? ValueRange{std::min(range->lo, s.range.lo), std::max(range->hi, s.range.hi)} : s.range;
+    }
+    return range;
+}
+
+std::string framesText(const Scene& scene) {
+    const TimeSeries& series = *scene.series;
+    const SeriesListing& listed = series.listing();
+    std::vector<std::pair<std::string, std::string>> lines{
+        {"frames", std::to_string(series.size()) + ", " + listed.label(0) + " .. " + listed.label(series.size() - 1)},
+        {"this frame", std::to_string(scene.session.frame) + ", " + listed.label(scene.session.frame)},
+    };
+    if (listed.hasTimes) lines.emplace_back("time unit", listed.timeUnit.empty() ? "not known" : listed.timeUnit);
+    if (const auto range = rangeOfAll(series)) lines.emplace_back("all frames", rangeText(range->lo, range->hi));
+    for (const int f : brokenFrames(series))
+        lines.emplace_back("passed over", std::to_string(f) + ", " + listed.frames[static_cast<std::size_t>(f)].name + ": " + series.summary(f).problem);
+    for (const std::string& notice : listed.notices) lines.emplace_back("notice", notice);
+    return listing(lines);
+}
+
+/// Each frame by name, with its time and what is known of it.
+Json framesJson(const Scene& scene) {
+    const TimeSeries& series = *scene.series;
+    const SeriesListing& listed = series.listing();
+    Json json{{"count", series.size()},
+              {"frame", scene.session.frame},
+              {"first", listed.label(0)},
+              {"last", listed.label(series.size() - 1)}};
+    if (listed.hasTimes && !listed.timeUnit.empty()) json["time_unit"] = listed.timeUnit;
+    if (const auto range = rangeOfAll(series)) json["range"] = jsonFromRange(*range);
+    json["broken"] = brokenFrames(series);
+    Json list = Json::array();
+    for (int f = 0; f < series.size(); ++f) {
+        const FrameSummary summary = series.summary(f);
+        Json frame{{"name", listed.frames[static_cast<std::size_t>(f)].name}};
+        if (listed.hasTimes) frame["time"] = listed.frames[static_cast<std::size_t>(f)].time;
+        if (!summary.problem.empty()) {
+            frame["problem"] = summary.problem;
+        } else if (summary.isKnown) {
+            frame["valid"] = summary.validCount;
+            frame["range"] = jsonFromRange(summary.range);
+        }
+        list.push_back(std::move(frame));
+    }
+    json["list"] = std::move(list);
+    json["notices"] = listed.notices;
+    return json;
+}
+
 } // namespace
 
 Command addInfo(CLI::App& program) {
@@ -73,8 +146,22 @@ Command addInfo(CLI::App& program) {
     options->session.add(*app);
     return {app, [options](Progress& progress) {
                 const Opened opened = resolve(*options, progress, {.use = {}, .byEngine = false, .needsTf = false});
+                TimeSeries& series = *opened.scene.series;
+                if (series.varies() && !series.listing().declaredRange) series.survey(progress.phase("reading frames"));
                 const Volume& volume = *opened.scene.volume;
-                return Answer{textOf(volume), jsonOf(volume), opened.sessionNotices, {}};
+                const FileContents contents = contentsOfFrame(opened.scene);
+                Answer answer{textOf(volume), jsonOf(volume), opened.sessionNotices, {}};
+                if (!contents.arrays.empty()) {
+                    answer.json["arrays"] = contents.arrays;
+                    std::string arrays;
+                    for (const std::string& name : contents.arrays) arrays += (arrays.empty() ? "" : ", ") + name;
+                    answer.text += listing({{"arrays", arrays}});
+                }
+                if (series.varies()) {
+                    answer.text += framesText(opened.scene);
+                    answer.json["frames"] = framesJson(opened.scene);
+                }
+                return answer;
             }};
 }
 

@@ -40,12 +40,23 @@ _pellucid_cli() {
         --scale) choices="linear log log:" ;;
         --paths) choices="newton parallel line fixed runs" ;;
         --show) choices="F" ;;
+        --ground-map) choices="terrain hue spiral ember sand grey blue-orange blue-red" ;;
+        --ground)
+            choices=$("$program" samples 2>/dev/null | sed -n 's/^\(sample:[^ ]*\) .*/\1/p')
+            COMPREPLY=($(compgen -W "$choices none" -- "$current") $(compgen -f -- "$current"))
+            choices=
+            compopt -o filenames 2>/dev/null
+            ;;
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
             choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton refine refine-500 refine-direct render"
             ;;
-        --mode) choices="composite mip minip average surface" ;;
+        --mode)
+            choices="composite mip minip average surface"
+            [[ $command == sequence ]] && choices="static refine optimize"
+            ;;
+        --coherence) choices="inf" ;;
         --slice) choices="x: y: z:" ;;
         --light-preset) choices="default soft matte metal contrast" ;;
         --background) choices="transparent" ;;
@@ -62,17 +73,17 @@ _pellucid_cli() {
             choices=
             compopt -o filenames -o nospace 2>/dev/null
             ;;
-        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv | --report | --curves)
+        --camera | --session | --out | --out-tf | --out-camera | --map | --save | --csv | --report | --curves | --mp4)
             COMPREPLY=($(compgen -f -- "$current"))
             compopt -o filenames 2>/dev/null
             return
             ;;
-        --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
+        --frames | --frame | --array | --cache | --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
             --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
             --image-size | --report-size | --fix | --tolerance | --coverage | --window | --tf-strength | \
-            --features | --samples | --space-view)
+            --features | --samples | --space-view | --from | --fps | --ground-raw | --ground-scale | --ground-relief)
             return
             ;;
     esac
@@ -85,7 +96,7 @@ _pellucid_cli() {
     elif [[ $command == generate ]]; then
         choices=$("$program" samples 2>/dev/null | sed -n 's/^sample:\([^ ]*\) .*/\1/p')
         COMPREPLY=($(compgen -W "$choices" -- "$current"))
-    elif [[ $command != samples && $command != presets && $previous != --tf ]]; then
+    elif [[ $command != samples && $command != presets && $previous != --tf && $previous != --ground ]]; then
         choices=$("$program" samples 2>/dev/null | sed -n 's/^\(sample:[^ ]*\) .*/\1/p')
         COMPREPLY=($(compgen -W "$choices" -- "$current") $(compgen -f -- "$current"))
         compopt -o filenames 2>/dev/null

@@ -69,8 +69,7 @@ void check(const Options& o) {
     if (field && o.scene.picture.mode)
         throw UsageError("a field is drawn by emission and absorption", "--mode", "leave it out");
     if (o.slice.at && o.scene.ground.path) throw UsageError("a slice has no ground", "--ground", "leave it out");
-    if (field && o.scene.ground.path)
-        throw UsageError("a field is drawn without ground", "--ground", "leave it out");
+    if (field && o.scene.ground.path) throw UsageError("a field is drawn without ground", "--ground", "leave it out");
     if (o.slice.at && o.scene.picture.mode) throw UsageError("a slice has no rays", "--mode", "leave it out");
 }
 

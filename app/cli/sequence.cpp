@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <future>
 #include <limits>
+#include <map>
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
@@ -42,7 +43,7 @@ struct Options {
     std::optional<TargetInput> targets;
     std::optional<double> tolerance;
     std::optional<int> from;
-    bool compare = false, requireConverged = false, noPictures = false;
+    bool bothWays = false, compare = false, requireConverged = false, noPictures = false;
     std::string out;
     std::optional<double> framesPerSecond;
     std::optional<std::string> movie;
@@ -80,7 +81,7 @@ public:
     ~ReadAhead() { m_stop.request_stop(); } // the future waits
 
     void begin(int frame) {
-        if (frame >= m_series->size() || m_series->roomFor() < 2) return;
+        if (frame < 0 || frame >= m_series->size() || m_series->roomFor() < 2) return;
         if (m_reading.valid()) m_reading.wait();
         m_reading =
             std::async(std::launch::async, [series = m_series, window = m_window, stop = m_stop.get_token(), frame] {
@@ -117,6 +118,8 @@ public:
 
 private:
     void prepareKey();
+    void planBothWays(ReadAhead& ahead);
+    std::optional<AdaptedFrame> adapted(int number, int key, const TransferFunction& previous);
     std::optional<Frame> next(int number);
     void finish(std::vector<Frame>& batch);
     TemporalCurves curves() const;
@@ -134,9 +137,10 @@ private:
     std::vector<Workspace> m_sideBySide;
     FrameAdapter m_adapter;
     std::optional<TransferFunction> m_before, m_chain; ///< of the frame before; what the next one starts from
+    std::map<int, AdaptedFrame> m_planned;             ///< of planBothWays()
     std::vector<FrameFigures> m_figures, m_static;
     std::vector<Json> m_frames;
-    std::vector<std::string> m_pictures, m_notices;
+    std::vector<std::string> m_pictures;
 };
 
 /// The start frame's transfer function becomes a key; with targets it is optimized first.
@@ -172,6 +176,54 @@ void Sequence::prepareKey() {
     m_keySeconds = watch.seconds();
 }
 
+/// Empty where the frame is broken.
+std::optional<AdaptedFrame> Sequence::adapted(int number, int key, const TransferFunction& previous) {
+    try {
+        return m_adapter.adapt(m_scene, {number, key, previous, {}}, m_workspace, {interruptToken(), {}});
+    } catch (const Error&) {
+        if (m_scene.series->summary(number).problem.empty()) throw; // not of the frame
+        return {};
+    }
+}
+
+/// Forward, then from the last frame back: what must change later begins to change as early as the distance that is
+/// allowed for lets it, and the first frame, which no hand has made, gives way too.
+void Sequence::planBothWays(ReadAhead& ahead) {
+    const TfTrack track = m_scene.session.variable().track;
+    const int end = m_scene.series->size();
+    const auto isKey = [&](int frame) { return track.keys.contains(frame) && (frame != m_start || !m_o.targets); };
+    JobControl job = m_progress.phase("there and back");
+    std::optional<TransferFunction> chain = m_scene.tf;
+    for (int f = m_start + 1; f < end; ++f) {
+        job.throwIfStopped();
+        ahead.begin(f + 1);
+        if (isKey(f))
+            chain = *track.keys.at(f);
+        else if (auto made = adapted(f, track.keyBefore(f), *chain)) {
+            chain = made->tf;
+            m_planned[f] = std::move(*made);
+        }
+        job.report(0.5 * (f - m_start) / (end - m_start));
+    }
+    for (int f = end - 1; f >= m_start; --f) {
+        job.throwIfStopped();
+        if (f > m_start) ahead.begin(f - 1);
+        if (isKey(f)) {
+            chain = *track.keys.at(f);
+        } else if (f == m_start || m_planned.contains(f)) {
+            auto made = adapted(f, track.keyBefore(f), *chain);
+            if (!made) continue;
+            chain = made->tf;
+            if (f > m_start) {
+                made->moves += m_planned[f].moves;
+                made->seconds += m_planned[f].seconds;
+            }
+            m_planned[f] = std::move(*made);
+        }
+        job.report(0.5 + 0.5 * (end - f) / (end - m_start));
+    }
+}
+
 /// The frame with its transfer function, ready to be drawn and measured; empty where it is broken.
 std::optional<Frame> Sequence::next(int number) {
     const JobControl job{interruptToken(), {}};
@@ -180,7 +232,10 @@ std::optional<Frame> Sequence::next(int number) {
     try {
         TransferFunction tf;
         const TfTrack& track = m_scene.session.variable().track;
-        if (settings().mode == Mode::Static) {
+        if (const auto planned = m_planned.find(number); planned != m_planned.end()) {
+            frame.made = planned->second;
+            tf = frame.made->tf;
+        } else if (settings().mode == Mode::Static) {
             tf = *m_scene.session.tfAt(number);
         } else if (track.keys.contains(number) || !m_chain) {
             tf = *track.keys.at(track.keyBefore(number));
@@ -205,10 +260,9 @@ std::optional<Frame> Sequence::next(int number) {
         throw;
     } catch (const Cancelled&) {
         throw;
-    } catch (const Error& error) {
+    } catch (const Error&) {
         if (m_scene.series->summary(number).problem.empty()) throw; // not of the frame
-        m_notices.push_back(m_scene.series->listing().label(number) + " is left out: " + error.what());
-        return {};
+        return {}; // Opened::notices() tells
     }
 }
 
@@ -322,9 +376,15 @@ Answer Sequence::run(const Opened& opened) {
     prepareKey();
     std::error_code ignored;
     fs::create_directories(m_o.out, ignored);
-    const JobControl job = m_progress.phase("frames");
     const TimeSeries& series = *m_scene.series;
-    ReadAhead ahead(m_scene.series, windowOf(m_scene.session.variable(), *m_scene.series, {job.stop, {}}));
+    ReadAhead ahead(m_scene.series, windowOf(m_scene.session.variable(), *m_scene.series, {interruptToken(), {}}));
+    if (m_o.bothWays) {
+        if (settings().mode != Mode::Optimize)
+            throw UsageError("transfer functions are optimized both ways, or not", "--both-ways",
+                             "give --mode optimize too, or leave it out");
+        planBothWays(ahead);
+    }
+    const JobControl job = m_progress.phase("frames");
     // Contexts of GL are not shared by threads; threads share a CPU well.
     const bool cpu = makeRenderer(m_scene.session.measure->engine, m_scene.volume)->name() == "cpu" &&
                      m_workspace.engine(measureInput(m_scene)).name() != "gl";
@@ -363,7 +423,6 @@ Answer Sequence::run(const Opened& opened) {
     if (m_o.compare) asStatic = summaryOf(m_static);
     Answer answer{text(dynamic, asStatic), json(dynamic, asStatic), opened.notices(), {}};
     answer.json["seconds"] = {{"key", m_keySeconds}, {"total", total.seconds()}};
-    answer.notices.insert(answer.notices.end(), m_notices.begin(), m_notices.end());
     if (m_o.requireConverged) {
         const double tolerance = m_scene.session.optimize->tolerance;
         int missed = 0;
@@ -428,7 +487,10 @@ Command addSequence(CLI::App& program) {
             o->coherence = text == "inf" ? std::numeric_limits<double>::infinity() : parseReal(text, option, 0, 1e6);
         },
         "how much jumps of the transfer function are held back: 0 not at all, inf: as static; with optimize opacities "
-        "stay as near to those of the frame before as a distance of L/100 from the targets allows (default 1)");
+        "stay as near to those of the frame before as a distance of L/100 from the targets allows (default 2)");
+    app->add_flag("--both-ways", o->bothWays,
+                  "with optimize: go forward, then from the last frame back, so that frames give way to what comes "
+                  "later, the first one too: least flicker, twice the time");
     addValue(
         *app, "--tolerance", "F",
         [o](const std::string& text, const std::string& option) { o->tolerance = parseRealAbove(text, option, 0, 1); },

@@ -18,6 +18,7 @@
     PANEL(spacePanel) \
     PANEL(playerPanel) \
     PANEL(variablesPanel) \
+    PANEL(temporalPanel) \
     /* the end, so that a new line changes no other */
 // clang-format on
 

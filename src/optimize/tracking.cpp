@@ -38,10 +38,16 @@ public:
         : m_function(function), m_targets(targets), m_limits(std::move(limits)), m_options(options), m_job(job),
           m_features(movable(targets, m_limits)) {
         m_start = inside(featureOpacities(function.base()));
+        for (const std::size_t f : m_features) {
+            Point& row = m_metric.emplace_back();
+            for (const std::size_t g : m_features)
+                row.push_back(!options.metric.empty() ? options.metric[f][g]
+                              : f == g                ? 1.0 / static_cast<double>(m_features.size())
+                                                      : 0.0);
+        }
     }
 
     Tracked run() {
-        const double goal = m_options.distance();
         Tracked at;
         at.opacity = m_start;
         if (std::isinf(m_options.coherence) || m_options.maxMoves == 0 || m_features.empty()) {
@@ -60,9 +66,11 @@ public:
                 at.vws = std::move(linear.vws);
                 at.objective = objectiveOf(at.vws, m_targets);
                 derivative = std::move(linear.derivative);
+                at.least = leastOf(at.vws, derivative);
+                m_goal = std::hypot(m_options.distance(), at.least);
                 known = true;
             }
-            if (at.objective <= goal || at.moves >= m_options.maxMoves) break;
+            if (at.objective <= m_goal || at.moves >= m_options.maxMoves) break;
             const std::vector<Point> candidates = candidatesFrom(at, derivative, caution);
             if (candidates.empty()) break;
             const auto vws = m_function.evaluate(candidates, m_job);
@@ -76,13 +84,13 @@ public:
                 caution /= 8;
                 continue;
             }
-            const bool slow = reached > goal && reached > kSlow * at.objective;
+            const bool slow = reached > m_goal && reached > kSlow * at.objective;
             at.opacity = candidates[best];
             at.vws = vws[best];
             at.objective = reached;
             ++at.moves;
             known = false;
-            if (reached <= goal || slow) break;
+            if (reached <= m_goal || slow) break;
         }
         at.evaluations = m_evaluations;
         return at;
@@ -115,18 +123,43 @@ private:
         return x;
     }
 
-    double jump(const Point& x) const { return opacityJump(m_start, x, m_targets, m_limits); }
+    /// F where features that nothing can raise have 0, and the others divide what is left as well as it goes.
+    double leastOf(const Point& vws, const Rows& derivative) const {
+        double lost = 0, square = 0;
+        int others = 0;
+        for (std::size_t i = 0; i < vws.size(); ++i) {
+            const bool absent = vws[i] < 1e-9 && std::all_of(derivative[i].begin(), derivative[i].end(),
+                                                             [](double d) { return std::abs(d) < 1e-9; });
+            if (!absent) {
+                ++others;
+                continue;
+            }
+            lost += m_targets[i];
+            square += m_targets[i] * m_targets[i];
+        }
+        if (others > 0) square += lost * lost / others;
+        return std::sqrt(square / static_cast<double>(vws.size()));
+    }
+
+    /// The square of a jump.
+    double jump(const Point& x) const {
+        Point v;
+        for (const std::size_t f : m_features) v.push_back(logDepth(x[f]) - logDepth(m_start[f]));
+        double square = 0;
+        for (std::size_t p = 0; p < v.size(); ++p)
+            for (std::size_t q = 0; q < v.size(); ++q) square += v[p] * m_metric[p][q] * v[q];
+        return square;
+    }
 
     /// Within the wanted distance the nearer one, else the one of smaller F. NaN never wins.
     bool better(const std::vector<double>& vws, const Point& x, const std::vector<double>& otherVws,
                 const Point& other) const {
-        const double goal = m_options.distance();
         const double f = objectiveOf(vws, m_targets), g = objectiveOf(otherVws, m_targets);
-        if (f <= goal && g <= goal) return jump(x) < jump(other);
+        if (f <= m_goal && g <= m_goal) return jump(x) < jump(other);
         return f < g || (std::isnan(g) && !std::isnan(f));
     }
 
-    /// The step d with |d_j| ≤ reach and within limits that minimises |r + J d|²/n + μ·|y − y₀ + d|²/m.
+    /// The step d with |d_j| ≤ reach and within limits that minimises |r + J d|²/n + μ·jump(y + d)².
     Point step(const Rows& j, const Point& r, const Point& v, double mu, double reach, const Point& y) const {
         const std::size_t m = m_features.size();
         const double n = static_cast<double>(r.size());
@@ -140,8 +173,11 @@ private:
         double most = 0;
         for (std::size_t p = 0; p < m; ++p) most = std::max(most, a[p][p]);
         for (std::size_t p = 0; p < m; ++p) {
-            a[p][p] += std::max(mu / static_cast<double>(m), std::max(1e-9 * most, 1e-200));
-            g[p] += mu / static_cast<double>(m) * v[p];
+            for (std::size_t q = 0; q < m; ++q) {
+                a[p][q] += mu * m_metric[p][q];
+                g[p] += mu * m_metric[p][q] * v[q];
+            }
+            a[p][p] += std::max(1e-9 * most, 1e-200);
             const OpacityLimits& limit = m_limits[m_features[p]];
             lowest[p] = std::clamp(logDepth(limit.lowest) - y[p], -reach, 0.0);
             highest[p] = std::clamp(logDepth(limit.highest) - y[p], 0.0, reach);
@@ -181,12 +217,12 @@ private:
             }
             if (x != at.opacity && std::find(points.begin(), points.end(), x) == points.end()) points.push_back(x);
         };
-        const double wanted = kSafety * m_options.distance();
+        const double wanted = std::hypot(kSafety * m_options.distance(), at.least);
         for (const double length : {3.0, 1.0, 0.3, 0.1}) {
             const double reach = length * caution;
             const Point most = step(j, r, v, 0, reach, y); // the smallest F of the model
             if (foretold(most) < wanted) {                 // of those that are near enough the one nearest to the start
-                double lo = -12, hi = 4;                   // log10 μ: F of the model grows with it
+                double lo = -16, hi = 6;                   // log10 μ: F of the model grows with it
                 for (int i = 0; i < 40; ++i) {
                     const double middle = (lo + hi) / 2;
                     (foretold(step(j, r, v, std::pow(10, middle), reach, y)) < wanted ? lo : hi) = middle;
@@ -205,20 +241,14 @@ private:
     const JobControl& m_job;
     const std::vector<std::size_t> m_features;
     Point m_start;
+    Matrix m_metric;   // of the movable features
+    double m_goal = 0; // F that is good enough
     int m_evaluations = 0;
 };
 
 } // namespace
 
 double TrackOptions::distance() const { return std::max(kTrackGoal, coherence * kCoherentDistance); }
-
-double opacityJump(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& targets,
-                   const std::vector<OpacityLimits>& limits) {
-    const std::vector<std::size_t> features = movable(targets, limits);
-    double square = 0;
-    for (const std::size_t f : features) square += std::pow(logDepth(to[f]) - logDepth(from[f]), 2);
-    return features.empty() ? 0 : std::sqrt(square / static_cast<double>(features.size()));
-}
 
 Tracked track(const VwsFunction& function, const std::vector<double>& targets, const std::vector<OpacityLimits>& given,
               const TrackOptions& options, const JobControl& job) {

@@ -15,6 +15,9 @@ inline constexpr double kCoherentDistance = 0.01;
 struct TrackOptions {
     double coherence = 0; ///< ≥ 0; infinity: nothing moves
     int maxMoves = 8;     ///< each is a sweep with derivatives and one of up to eight candidates
+    /// What a jump is: its square is Σ v_i·metric[i][j]·v_j, v the changes of ln τ of all features, τ = −ln(1 − x) the
+    /// optical depth of a peak. Symmetric, positive; empty: the mean of v².
+    std::vector<std::vector<double>> metric = {};
     /// F that is good enough: the larger of kTrackGoal and coherence·kCoherentDistance.
     double distance() const;
     bool operator==(const TrackOptions&) const = default;
@@ -24,17 +27,14 @@ struct Tracked {
     std::vector<double> opacity; ///< per feature
     std::vector<double> vws;     ///< W there
     double objective = 0;        ///< F there
+    /// The smallest F that there can be: 0, but where wanted features have no voxel in sight.
+    double least = 0;
     int moves = 0;
     int evaluations = 0; ///< of W, derivatives included
 };
 
-/// How far opacities have moved: the root mean square of the changes of ln τ, τ = −ln(1 − x) the optical depth of a
-/// peak (no unit), over the features with target > 0 and without lock.
-double opacityJump(const std::vector<double>& from, const std::vector<double>& to, const std::vector<double>& targets,
-                   const std::vector<OpacityLimits>& limits);
-
-/// The opacities nearest (opacityJump()) to those of function.base() whose distance F from `targets` is at most
-/// options.distance(); where there are none, those of the smallest F that moves downhill find. `limits`: one per
+/// The opacities with the smallest jump from those of function.base() whose distance F from `targets` is at most
+/// √(options.distance()² + least²); where there are none, those of the smallest F that moves downhill find. `limits`: one per
 /// feature, or empty. Throws UsageError as normalizedTargets() does, Cancelled.
 Tracked track(const VwsFunction& function, const std::vector<double>& targets, const std::vector<OpacityLimits>& limits,
               const TrackOptions& options, const JobControl& job = {});

@@ -1,5 +1,6 @@
 #include "render/color_difference.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -74,6 +75,22 @@ double meanDeltaE(const Image& a, const Image& b) {
     double sum = 0;
     for (const double row : rows) sum += row;
     return sum / (static_cast<double>(a.width) * a.height);
+}
+
+std::vector<double> labPixels(const Image& image) {
+    std::vector<double> out(image.rgba.size() / 4 * 3);
+    const std::size_t width = static_cast<std::size_t>(image.width);
+    parallelFor(static_cast<std::size_t>(image.height), [&](std::size_t row) {
+        for (std::size_t pixel = row * width; pixel < (row + 1) * width; ++pixel) {
+            const float* p = &image.rgba[4 * pixel];
+            const auto light = [&](int c) {
+                return linearFromSrgb(static_cast<double>(p[c]) * static_cast<double>(p[3]));
+            };
+            const Lab lab = labOfLinear(light(0), light(1), light(2));
+            std::copy(lab.begin(), lab.end(), &out[3 * pixel]);
+        }
+    });
+    return out;
 }
 
 } // namespace pellucid

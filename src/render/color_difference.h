@@ -1,6 +1,8 @@
 // How different the colours of two pictures look: ΔE of CIELAB.
 #pragma once
 
+#include <vector>
+
 #include "render/image.h"
 #include "tf/color.h"
 
@@ -14,5 +16,8 @@ double deltaE(const Rgb& a, const Rgb& b);
 /// transparent. Components are rounded to 8 bits, as screens show them. The same bits for any thread count. Throws
 /// Error for pictures of different sizes.
 double meanDeltaE(const Image& a, const Image& b);
+
+/// CIELAB of what is seen of each pixel over black: L*, a*, b* one after the other, not rounded.
+std::vector<double> labPixels(const Image& image);
 
 } // namespace pellucid

@@ -23,7 +23,7 @@ constexpr int kBand = 24;          ///< rows of the picture that are drawn by on
 constexpr int kBlock = 8;          ///< cells along each side of a block that is looked at, or not, as one
 constexpr double kSharpest = 0.75; ///< pixels: cells are not drawn smaller than this
 constexpr double kHair = 1e-6;     ///< of a triangle: what neighbours may overlap, so that no pixel is missed
-constexpr float kInTheShade = 0.25f, kUnderside = 0.45f;
+constexpr float kInTheShade = 0.4f, kUnderside = 0.45f;
 
 /// A vertex on the screen. `near` grows toward the eye and goes linearly over the screen: the inverse of the depth in
 /// perspective, the negative depth otherwise.
@@ -123,8 +123,8 @@ private:
     int sampleX(int i) const { return std::min(i * m_stride, m_ground.nx - 1); }
     int sampleY(int j) const { return std::min(j * m_stride, m_ground.ny - 1); }
     float heightAt(int x, int y) const {
-        return m_ground.heights[static_cast<std::size_t>(y) * static_cast<std::size_t>(m_ground.nx) +
-                                static_cast<std::size_t>(x)];
+        return m_ground
+            .heights[static_cast<std::size_t>(y) * static_cast<std::size_t>(m_ground.nx) + static_cast<std::size_t>(x)];
     }
 
     /// Every so many samples are drawn, where their cells would be less than a pixel wide.
@@ -278,15 +278,20 @@ private:
         // Rows of the picture go down: what runs against the clock on the map does so on the screen from above.
         const float side = (area < 0) == m_rightHanded ? 1.0f : -1.0f;
         const double perArea = 1 / area;
-        for (int y = y0; y < y1; ++y)
+        // What a vertex has of a pixel, and what a pixel to the right changes.
+        const double moreOfA = (static_cast<double>(b.y) - c.y) * perArea,
+                     moreOfB = (static_cast<double>(c.y) - a.y) * perArea;
+        for (int y = y0; y < y1; ++y) {
+            const double firstOfA = edge(b, c, x0 + 0.5, y + 0.5) * perArea,
+                         firstOfB = edge(c, a, x0 + 0.5, y + 0.5) * perArea;
             for (int x = x0; x < x1; ++x) {
-                const double px = x + 0.5, py = y + 0.5;
-                const double ofA = edge(b, c, px, py) * perArea, ofB = edge(c, a, px, py) * perArea;
+                const double ofA = firstOfA + (x - x0) * moreOfA, ofB = firstOfB + (x - x0) * moreOfB;
                 const double ofC = 1 - ofA - ofB;
                 if (ofA < -kHair || ofB < -kHair || ofC < -kHair) continue;
                 const double near = ofA * a.near + ofB * b.near + ofC * c.near;
-                const std::size_t at = static_cast<std::size_t>(y - band.y0) * static_cast<std::size_t>(m_window.width) +
-                                       static_cast<std::size_t>(x);
+                const std::size_t at =
+                    static_cast<std::size_t>(y - band.y0) * static_cast<std::size_t>(m_window.width) +
+                    static_cast<std::size_t>(x);
                 if (!(near > band.near[at])) continue;
                 band.near[at] = near;
                 double wa = ofA, wb = ofB, wc = ofC;
@@ -295,23 +300,24 @@ private:
                     wb *= b.near / near;
                     wc *= c.near / near;
                 }
-                band.height[at] = static_cast<float>(wa * static_cast<double>(a.height) +
-                                                     wb * static_cast<double>(b.height) +
-                                                     wc * static_cast<double>(c.height));
+                band.height[at] =
+                    static_cast<float>(wa * static_cast<double>(a.height) + wb * static_cast<double>(b.height) +
+                                       wc * static_cast<double>(c.height));
                 band.shade[at] =
                     side * static_cast<float>(wa * static_cast<double>(a.shade) + wb * static_cast<double>(b.shade) +
                                               wc * static_cast<double>(c.shade));
             }
+        }
     }
 
     const Ground& m_ground;
     const GroundWindow& m_window;
     bool m_perspective, m_rightHanded = true;
-    double m_perPixel = 1, m_perColumn = 1;  ///< world units down and across, at depth 1 in perspective
-    Vec3 m_origin, m_stepX, m_stepY, m_up;   ///< right, up and ahead of the camera
-    Vec3 m_toSun;                            ///< world
+    double m_perPixel = 1, m_perColumn = 1;     ///< world units down and across, at depth 1 in perspective
+    Vec3 m_origin, m_stepX, m_stepY, m_up;      ///< right, up and ahead of the camera
+    Vec3 m_toSun;                               ///< world
     double m_flatBrightness = 1, m_nearest = 0; ///< depth from which on vertices are seen
-    int m_stride = 1, m_nx = 0, m_ny = 0;    ///< samples per vertex, vertices
+    int m_stride = 1, m_nx = 0, m_ny = 0;       ///< samples per vertex, vertices
     int m_blocksX = 0, m_blocksY = 0;
     std::vector<Vertex> m_vertices;
     std::vector<Kind> m_kinds;
@@ -342,8 +348,7 @@ std::uint32_t packed(const Rgb& color, double shade, double depth, const DepthFa
 GroundPicture rasterizeGround(const Ground& ground, const Camera& camera, double depthOfZero,
                               const GroundWindow& window, const DepthFade& fade, const JobControl& job) {
     PELLUCID_CHECK(ground.nx >= 2 && ground.ny >= 2 && window.width > 0 && window.height > 0 &&
-                   ground.heights.size() ==
-                       static_cast<std::size_t>(ground.nx) * static_cast<std::size_t>(ground.ny) &&
+                   ground.heights.size() == static_cast<std::size_t>(ground.nx) * static_cast<std::size_t>(ground.ny) &&
                    ground.lo < ground.hi);
     const std::vector<Rgb> colors = tableOf(groundColors(ground.colorMap));
     GroundPicture picture;

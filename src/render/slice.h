@@ -1,4 +1,5 @@
-// A plane of the grid as a picture: the colours of the transfer function, or of voxels, over grey (docs/method.md, "Slices").
+// A plane of the grid as a picture: the colours of the transfer function, or of voxels, over grey (docs/method.md,
+// "Slices").
 #pragma once
 
 #include <memory>
@@ -77,10 +78,10 @@ inline double slicePosition(const Geometry& geometry, int axis, double fraction)
 std::optional<double> valueAt(const Volume& volume, const Vec3& voxel, bool linear = true);
 
 struct SliceSettings {
-    ValueRange window;       ///< of grey: black and white, data units, lo ≤ hi
-    double tfStrength = 0.5; ///< 0: grey alone … 1: colours of the transfer function alone
-    bool linear = true;      ///< false: each pixel has the value of the nearest voxel
-    Clipping clipping;       ///< what is cut away is transparent
+    ValueRange window;                         ///< of grey: black and white, data units, lo ≤ hi
+    double tfStrength = 0.5;                   ///< 0: grey alone … 1: colours of the transfer function alone
+    bool linear = true;                        ///< false: each pixel has the value of the nearest voxel
+    Clipping clipping;                         ///< what is cut away is transparent
     std::shared_ptr<const VoxelColors> colors; ///< in place of those of the transfer function; null: none
     bool operator==(const SliceSettings&) const = default;
     void validate() const; ///< throws UsageError

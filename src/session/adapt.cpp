@@ -14,6 +14,7 @@
 #include "render/color_difference.h"
 #include "session/scene_data.h"
 #include "session/session_json.h"
+#include "tf/opacity.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 
@@ -23,8 +24,11 @@ namespace {
 
 using Mode = AdaptSettings::Mode;
 
-constexpr int kRegionSize = 512; ///< pixels of the side of the picture that a favoured region is of
-constexpr int kMovesAnew = 12;   ///< of the search where a frame is off target
+constexpr int kRegionSize = 512;    ///< pixels of the side of the picture that a favoured region is of
+constexpr int kMetricSize = 96;     ///< likewise, of pictures that tell how much they change
+constexpr double kMetricStep = 0.1; ///< of ln τ
+constexpr double kUnseen = 0.03;    ///< of the mean change, that even a feature counts which is not seen
+constexpr int kMovesAnew = 12;      ///< of the search where a frame is off target
 
 /// FNV-1a, twice with different starts: 128 bits.
 class Hash {
@@ -236,6 +240,40 @@ TransferFunction pulledBack(const TransferFunction& before, TransferFunction aft
     return after;
 }
 
+/// How much pictures change with ln τ of each feature: the mean over the pixels of a small picture of ⟨∂Lab/∂y_i,
+/// ∂Lab/∂y_j⟩, so that a jump is a root mean square ΔE. Empty where the picture shows no change at all.
+std::vector<std::vector<double>> pictureMetric(const Scene& scene, const JobControl& job) {
+    const auto renderer = makeRenderer(scene.session.measure->engine, scene.volume);
+    const PictureInput picture = pictureInput(scene, kMetricSize, kMetricSize);
+    const auto labOf = [&](const TransferFunction& tf) {
+        return labPixels(renderer->render(picture.camera, tf, picture.settings, job));
+    };
+    const std::vector<double> base = labOf(picture.tf), x = featureOpacities(picture.tf);
+    const std::size_t n = x.size();
+    std::vector<std::vector<double>> changes(n);
+    for (std::size_t f = 0; f < n; ++f) {
+        if (picture.tf.features[f].hidden || x[f] <= 0) continue;
+        std::vector<double> moved = x;
+        moved[f] = opacityOfStep(x[f], std::exp(kMetricStep));
+        changes[f] = labOf(withFeatureOpacities(picture.tf, moved));
+        for (std::size_t i = 0; i < base.size(); ++i) changes[f][i] = (changes[f][i] - base[i]) / kMetricStep;
+    }
+    std::vector<std::vector<double>> metric(n, std::vector<double>(n, 0.0));
+    double trace = 0;
+    for (std::size_t f = 0; f < n; ++f)
+        for (std::size_t g = 0; g <= f; ++g) {
+            if (changes[f].empty() || changes[g].empty()) continue;
+            double sum = 0;
+            for (std::size_t i = 0; i < base.size(); ++i) sum += changes[f][i] * changes[g][i];
+            metric[f][g] = metric[g][f] = sum / (static_cast<double>(base.size()) / 3);
+            trace += f == g ? metric[f][g] : 0;
+        }
+    if (!(trace > 0)) return {};
+    // What is not seen should not wander either.
+    for (std::size_t f = 0; f < n; ++f) metric[f][f] += kUnseen * trace / static_cast<double>(n);
+    return metric;
+}
+
 } // namespace
 
 std::string fingerprintOf(const Session& session, const TimeSeries& series, int frame,
@@ -329,9 +367,10 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         const EngineVws function(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws);
         TrackOptions track;
         track.coherence = settings.coherence;
+        if (settings.coherence > 0 && !std::isinf(settings.coherence)) track.metric = pictureMetric(scene, quiet);
         Tracked found = pellucid::track(function, targets, limits, track, quiet);
         // Moves downhill are stuck far from the targets: other starts may not be.
-        const double enough = std::max(basis.session.optimize->tolerance, track.distance());
+        const double enough = std::hypot(std::max(basis.session.optimize->tolerance, track.distance()), found.least);
         if (!std::isinf(settings.coherence) && found.objective > enough) {
             MeasureInput from = input;
             from.tf = withFeatureOpacities(input.tf, found.opacity);

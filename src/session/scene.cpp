@@ -108,6 +108,30 @@ void placeAsPublished(const Session& session, const Volume& data, TransferFuncti
         tf.range = ValueRange{0, 255};
 }
 
+namespace {
+
+/// The frame, or where it cannot be read the next that can, from the beginning again after the last: data that are opened show
+/// something as long as one frame is sound. Throws what is wrong with the frame where none is.
+int soundFrame(TimeSeries& series, int frame, const JobControl& job) {
+    try {
+        series.load(frame, job);
+        return frame;
+    } catch (const FileError&) {
+        for (int n = 1; n < series.size(); ++n) {
+            const int other = (frame + n) % series.size();
+            try {
+                series.load(other, job);
+                return other;
+            } catch (const FileError&) {
+                continue;
+            }
+        }
+        throw;
+    }
+}
+
+} // namespace
+
 Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const JobControl& job) {
     Scene scene;
     scene.session = std::move(session);
@@ -115,8 +139,10 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     SeriesFinder finder(scene, basis, then, job);
     scene.series = finder.of(scene.session.variable());
     scene.session.frame = scene.series->nearest(scene.session.frame);
-    const int frame = scene.session.frame;
     const bool sameSeries = scene.series == basis.series;
+    if (!sameSeries && scene.series->varies())
+        scene.session.frame = soundFrame(*scene.series, scene.session.frame, job);
+    const int frame = scene.session.frame;
     const bool sameData = sameSeries && basis.session.frame == frame;
     scene.data = sameData ? basis.data : scene.series->load(frame, job);
     const ValueRange window = windowOf(scene.session.variable(), *scene.series, job);
@@ -206,6 +232,8 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (tf) session.setTf(*tf);
     const bool windowIsOpen = !session.variable().window;
     Scene scene = resolve(std::move(session), {}, inputs.then, job);
+    if (inputs.frame && *inputs.frame != scene.session.frame && *inputs.frame < scene.series->size())
+        scene.series->load(*inputs.frame, job); // tells why not
     if (inputs.frame && *inputs.frame != scene.session.frame)
         throw UsageError("there is no frame " + std::to_string(*inputs.frame), scene.series->listing().title,
                          "give 0 to " + std::to_string(scene.series->size() - 1));

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/json_file.h"
 #include "tf/formats/tf_json.h"
+#include "volume/series.h"
 
 namespace pellucid {
 
@@ -76,10 +77,16 @@ std::optional<Fingerprint> fingerprintOf(const std::string& path) {
     return fingerprint;
 }
 
-/// Of all files that the data is in, one after the other: a header and what it names.
+/// Of all files that the data is in, one after the other: a header and what it names. Of a series those of the first
+/// frame: to read them all would take as long as to open them.
 std::optional<Fingerprint> fingerprintOf(const VolumeSource& source) {
+    VolumeSource first = source;
+    if (const std::vector<std::string> files = seriesFiles(source); !files.empty()) first.path = files.front();
+    first.more.clear();
+    std::vector<std::string> files = filesOf(first);
+    if (first.path.ends_with(".pvd")) files.resize(1); // what it names are the frames
     std::optional<Fingerprint> all;
-    for (const std::string& path : filesOf(source)) {
+    for (const std::string& path : files) {
         const auto one = fingerprintOf(path);
         if (!one) return {};
         if (!all) {

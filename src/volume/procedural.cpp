@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "volume/formats/file_check.h"
 #include "volume/noise.h"
+#include "volume/samples/time_samples.h"
 
 namespace pellucid {
 
@@ -222,7 +223,31 @@ const std::vector<Sample>& table() {
         {{"shells", "a lobed, noisy core inside two shells, u8", {96, 96, 96}}, {1, 1, 1}, makeShells},
         {{"knee", "a CT-like phantom of a knee in Hounsfield units and mm, i16", {379, 229, 305}},
          {0.5, 0.5, 0.7},
-         makeKnee}};
+         makeKnee},
+        {{"vortex",
+          "the vorticity of a turbulent flow that decays, 100 frames, u8",
+          {128, 128, 128},
+          kVortexFrames,
+          kVortexRange},
+         {1, 1, 1},
+         makeVortex},
+        {{"smoke", "rising smoke, 120 frames, f32", {72, 72, 144}, kSmokeFrames, kSmokeRange}, {1, 1, 1}, makeSmoke},
+        {{"hurricane",
+          "cloud water of a hurricane that reaches land, 48 frames, f32",
+          {160, 160, 32},
+          kHurricaneFrames,
+          kCloudRange},
+         {1, 1, 1},
+         makeCloud},
+        {{"hurricane/precipitation", "its rain and snow", {160, 160, 32}, kHurricaneFrames, kPrecipitationRange},
+         {1, 1, 1},
+         makePrecipitation},
+        {{"hurricane/wind", "its wind speed in m/s", {160, 160, 32}, kHurricaneFrames, kWindRange},
+         {1, 1, 1},
+         makeWind},
+        {{"hurricane/ground", "heights of the land under it in m, one layer", {160, 160, 1}},
+         {1, 1, 1},
+         makeHurricaneGround}};
     return kTable;
 }
 

@@ -109,7 +109,7 @@ const std::vector<Golden>& goldens() {
              s.colors = spirals({40, 40, 40});
              s.ground = island(40);
          },
-         0.4}};
+         0.6}};
     return all;
 }
 

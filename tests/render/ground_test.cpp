@@ -37,8 +37,8 @@ Camera above(double height) {
 }
 
 float depthAt(const GroundImage& image, int x, int y) {
-    return image.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.color.width) +
-                       static_cast<std::size_t>(x)];
+    return image
+        .depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.color.width) + static_cast<std::size_t>(x)];
 }
 
 void checkColor(const float* pixel, const Rgb& expected, double brightness = 1) {
@@ -187,14 +187,14 @@ TEST_CASE("where heights are missing there is a hole", "[ground]") {
 
 TEST_CASE("slopes toward the upper left are brighter, by their angle to the sun", "[ground]") {
     // z = s·x has the normal (−s, 0, 1)/√(1 + s²); the sun stands at (−½, ½, 1/√2). What is flat has the cosine 1/√2
-    // and the brightness 1, what is turned away ¼: ¼ + ¾·√2·cos.
+    // and the brightness 1, what is turned away 0.4: 0.4 + 0.6·√2·cos.
     for (const double s : {1.0, 0.4, -0.5}) {
         Ground ground = groundOf(3, 3, [s](int i, int) { return s * i; });
         ground.lo = -1000; // about the same colour everywhere: that of 1/2
         ground.hi = 1000;
         ground.relief = 1;
         const double cosine = (s / 2 + std::sqrt(0.5)) / std::sqrt(1 + s * s);
-        const double brightness = 0.25 + 0.75 * std::sqrt(2.0) * cosine;
+        const double brightness = 0.4 + 0.6 * std::sqrt(2.0) * cosine;
         checkColor(drawGround(ground, above(4), 40, 40).color.pixel(20, 20), groundColors("spiral")(0.5), brightness);
         ground.relief = 0.5;
         checkColor(drawGround(ground, above(4), 40, 40).color.pixel(20, 20), groundColors("spiral")(0.5),
@@ -313,8 +313,7 @@ TEST_CASE("the ground fades into the background as what is at its depth does", "
     block.settings.background = Rgb{0, 0, 1};
     block.settings.light.depthCue = 0.6;
     const Rgb color = groundColors("spiral")(0.5);
-    checkColor(block.drawn(homogeneous(0)).pixel(10, 10),
-               {0.7 * color.r, 0.7 * color.g, 0.7 * color.b + 0.3});
+    checkColor(block.drawn(homogeneous(0)).pixel(10, 10), {0.7 * color.r, 0.7 * color.g, 0.7 * color.b + 0.3});
 }
 
 TEST_CASE("previews and pictures that grow have the ground, too", "[ground]") {

@@ -101,7 +101,8 @@ TEST_CASE("colours of voxels go linearly from one to the next", "[voxelcolors]")
     const Image image = makeCpuRenderer(volume)->render(camera, homogeneous(0.1), settings);
     for (int x = 0; x < 60; x += 3)
         for (int y = 0; y < 60; y += 7) {
-            const double i = std::clamp((x + 0.5) / 10 - 0.5, 0.0, 5.0), k = std::clamp((59.5 - y) / 10 - 0.5, 0.0, 5.0);
+            const double i = std::clamp((x + 0.5) / 10 - 0.5, 0.0, 5.0),
+                         k = std::clamp((59.5 - y) / 10 - 0.5, 0.0, 5.0);
             const float* pixel = image.pixel(x, y);
             CHECK(pixel[0] == Approx(0.2 * i).margin(1e-3));
             CHECK(pixel[1] == Approx(0.4).margin(1e-3));

@@ -10,6 +10,7 @@ Needs Python 3.8 and nothing beside it.
 """
 
 import argparse
+import base64
 import gzip
 import json
 import math
@@ -57,6 +58,13 @@ META_LINES = [b"HeaderSize = -1", b"HeaderSize = 99999999999", b"HeaderSize = 3"
               b"Origin = 1", b"ElementSize = -1 1 1", b"ElementToIntensityFunctionSlope = nan", b"NDims = 11",
               b"ElementDataFile = LIST", b"Comment = " + b"c" * 9000, b"N" * 9000 + b" = 1", b"Modality = MET_MOD_CT",
               b"SequenceID = 1", b"CenterOfRotation = 0 0 0", b"HeaderSizePerSlice = 8", b"", b"\0"]
+
+XML_LINES = [b"<!-- ", b"-->", b"<![CDATA[", b"]]>", b"<?x", b"<a>", b"</a>", b"<a/>", b"<", b">", b"<a b=\"", b"<a b='\"'/>",
+             b"<Piece>", b"</Piece>", b"<PointData>", b"</PointData>", b"<AppendedData encoding=\"raw\">_",
+             b"<AppendedData encoding=\"base64\">_AAAA", b"</VTKFile>", b"<DataArray type=\"UInt8\" format=\"ascii\">1 2",
+             b"<DataArray type=\"Float32\" Name=\"TimeValue\" format=\"appended\" offset=\"9223372036854775807\"/>",
+             b"<DataSet timestep=\"nan\" file=\"step.vti\"/>", b"<DataSet timestep=\"7\" file=\"../none.vti\"/>",
+             b"<DataSet file=\"pipe\"/>", b"<DataSet timestep=\"8\" file=\"data.raw\"/>", b"&amp;&#0;&#99999;&x", b"\0"]
 
 
 class Seed:
@@ -173,6 +181,44 @@ def packed_nifti_seeds():
     return seeds
 
 
+def vti(attributes, array, data=b"", tail=b"</DataArray>", appended=b"", binary=b""):
+    text = (b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" %s>\n"
+            b"<ImageData WholeExtent=\"0 1 0 2 0 3\" Origin=\"5 6 7\" Spacing=\"1 2 3\" Direction=\"1 0 0 0 1 0 0 0 1\">\n"
+            b"<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" format=\"ascii\">2.5</DataArray>\n</FieldData>\n"
+            b"<Piece Extent=\"0 1 0 2 0 3\">\n<PointData Scalars=\"density\">\n<DataArray %s>%s%s\n</PointData>\n"
+            b"<CellData>\n</CellData>\n</Piece>\n</ImageData>\n%s" % (attributes, array, data, tail, appended))
+    return Seed(text, binary + b"\n</VTKFile>\n")
+
+
+def vtk_blocks(data, layout):
+    blocks = [data[i:i + 10] for i in range(0, len(data), 10)]
+    packed = [zlib.compress(block) for block in blocks]
+    head = [len(blocks), 10, len(data) % 10] + [len(block) for block in packed]
+    return struct.pack("%s%d%s" % (layout[0], len(head), layout[1]), *head), b"".join(packed)
+
+
+def vti_seeds():
+    array = b"type=\"%s\" Name=\"density\" NumberOfComponents=\"1\" format=\"%s\"%s"
+    zipped = b"compressor=\"vtkZLibDataCompressor\" header_type=\"UInt64\" byte_order=\"BigEndian\""
+    head, packed = vtk_blocks(short_data(">"), ">Q")
+    inline = base64.b64encode(struct.pack("<I", 96) + float_data("<"))
+    return [
+        vti(b"byte_order=\"LittleEndian\"", array % (b"Int32", b"ascii", b""), text_data(24)),
+        vti(b"byte_order=\"LittleEndian\"", array % (b"Float32", b"binary", b""), inline),
+        vti(zipped, array % (b"Int16", b"binary", b""), base64.b64encode(head) + base64.b64encode(packed)),
+        vti(b"header_type=\"UInt32\"", array % (b"UInt8", b"appended", b" offset=\"0\""), tail=b"</DataArray>",
+            appended=b"<AppendedData encoding=\"raw\">\n_", binary=struct.pack("<I", 24) + VALUES),
+        vti(zipped, array % (b"Int16", b"appended", b" offset=\"0\""), appended=b"<AppendedData encoding=\"raw\">\n_",
+            binary=head + packed),
+    ]
+
+
+def pvd_seeds():
+    return [Seed(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\">\n<Collection>\n"
+                 b"<DataSet timestep=\"0\" part=\"0\" file=\"step.vti\"/>\n<DataSet timestep=\"0.5\" file=\"step.vti\"/>\n"
+                 b"</Collection>\n</VTKFile>\n")]
+
+
 # suffix: seeds, lines to insert (None: a binary header)
 FORMATS = {
     "nrrd": (".nrrd", nrrd_seeds, NRRD_LINES),
@@ -181,6 +227,8 @@ FORMATS = {
     "mhd": (".mhd", mhd_seeds, META_LINES),
     "nii": (".nii", nifti_seeds, None),
     "nii.gz": (".nii.gz", packed_nifti_seeds, None),
+    "vti": (".vti", vti_seeds, XML_LINES),
+    "pvd": (".pvd", pvd_seeds, XML_LINES),
 }
 
 
@@ -386,7 +434,8 @@ def try_one(case):
 def write_companions(folder):
     """What the detached headers name, and what they come to name."""
     for name, content in (("data.raw", b"head" + VALUES), ("data.gz", gzip.compress(b"head" + VALUES, mtime=0)),
-                          ("data.z", zlib.compress(VALUES)), ("data.txt", b"a line\n" + text_data(24))):
+                          ("data.z", zlib.compress(VALUES)), ("data.txt", b"a line\n" + text_data(24)),
+                          ("step.vti", vti_seeds()[0].header + vti_seeds()[0].data)):
         with open(os.path.join(folder, name), "wb") as file:
             file.write(content)
     os.mkdir(os.path.join(folder, "folder"))

@@ -1,0 +1,360 @@
+// VTK's XML image data and collections: good files in each encoding, and each way to break them.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+
+#include "support/temp_folder.h"
+#include "volume/file_contents.h"
+#include "volume/series.h"
+#include "volume_files.h"
+
+using namespace pellucid;
+using namespace pellucid::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+std::string base64(const std::string& bytes) {
+    const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t bits = 0;
+        for (std::size_t b = 0; b < 3; ++b)
+            bits = bits << 8 | (i + b < bytes.size() ? static_cast<unsigned char>(bytes[i + b]) : 0u);
+        for (std::size_t d = 0; d < 4; ++d)
+            text += i + d > bytes.size() ? '=' : digits[bits >> (18 - 6 * d) & 63];
+    }
+    return text;
+}
+
+/// How a file is written.
+struct Style {
+    enum class Place { Ascii, Inline, Raw, Base64 } place = Place::Ascii;
+    bool compressed = false, bigEndian = false, wide = false; ///< wide: UInt64 headers
+};
+
+/// A number of a header, as the style has it.
+std::string number(const Style& style, std::uint64_t value) {
+    std::string bytes;
+    const int count = style.wide ? 8 : 4;
+    for (int i = 0; i < count; ++i) bytes += static_cast<char>(value >> (8 * (style.bigEndian ? count - 1 - i : i)) & 255);
+    return bytes;
+}
+
+std::string swapped(std::string bytes, std::size_t each, const Style& style) {
+    if (style.bigEndian != (std::endian::native == std::endian::big))
+        for (std::size_t i = 0; i < bytes.size(); i += each)
+            std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(i + each));
+    return bytes;
+}
+
+/// Header and data of an array; compressed in blocks of 10 bytes, the last one shorter.
+std::string stored(const Style& style, const std::string& data) {
+    const bool text = style.place == Style::Place::Inline || style.place == Style::Place::Base64;
+    const auto encoded = [&](const std::string& bytes) { return text ? base64(bytes) : bytes; };
+    if (!style.compressed) return encoded(number(style, data.size()) + data);
+    constexpr std::size_t kBlock = 10;
+    std::string packed, sizes;
+    std::uint64_t blocks = 0;
+    for (std::size_t i = 0; i < data.size(); i += kBlock, ++blocks) {
+        const std::string block = zlibbed(data.substr(i, kBlock));
+        packed += block;
+        sizes += number(style, block.size());
+    }
+    return encoded(number(style, blocks) + number(style, kBlock) + number(style, data.size() % kBlock) + sizes) +
+           encoded(packed);
+}
+
+struct Array {
+    std::string attributes; ///< name, type, components
+    std::string ascii, data;
+};
+
+/// A file of these arrays.
+std::string vti(const Style& style, const std::vector<Array>& arrays, const std::string& pointData = "",
+                const std::string& image = "WholeExtent=\"0 1 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"1 1 1\"",
+                const std::string& extent = "0 1 0 2 0 0") {
+    std::string text = "<?xml version=\"1.0\"?>\n<!-- <VTKFile type=\"Other\"> -->\n<VTKFile type=\"ImageData\" version=\"1.0\"";
+    text += std::string(" byte_order=\"") + (style.bigEndian ? "BigEndian" : "LittleEndian") + "\"";
+    if (style.wide) text += " header_type=\"UInt64\"";
+    if (style.compressed) text += " compressor=\"vtkZLibDataCompressor\"";
+    text += ">\n <ImageData " + image + ">\n  <Piece Extent=\"" + extent + "\">\n   <PointData" + pointData + ">\n";
+    std::string appended;
+    for (const Array& array : arrays) {
+        text += "    <DataArray " + array.attributes;
+        switch (style.place) {
+        case Style::Place::Ascii:
+            text += " format=\"ascii\">" + array.ascii + "</DataArray>\n";
+            break;
+        case Style::Place::Inline:
+            text += " format=\"binary\">\n  " + stored(style, array.data) + "\n</DataArray>\n";
+            break;
+        default:
+            text += " format=\"appended\" offset=\"" + std::to_string(appended.size()) + "\"/>\n";
+            appended += stored(style, array.data);
+        }
+    }
+    text += "   </PointData>\n   <CellData></CellData>\n  </Piece>\n </ImageData>\n";
+    if (!appended.empty())
+        text += std::string(" <AppendedData encoding=\"") + (style.place == Style::Place::Raw ? "raw" : "base64") +
+                "\">\n  _" + appended + "\n </AppendedData>\n";
+    return text + "</VTKFile>\n";
+}
+
+const std::vector<float> kDensity{1, -2, 3.5, 1e-20f, 5, 6};
+const std::vector<std::int16_t> kFlow{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, -12};
+
+std::vector<Array> twoArrays(const Style& style) {
+    return {{"type=\"Float32\" Name=\"a &amp; b\"", "1 -2 3.5 1e-20\n5 6", swapped(bytesOf(kDensity), 4, style)},
+            {"type=\"Int16\" Name=\"flow\" NumberOfComponents=\"2\"", "1 2 3 4 5 6 7 8 9 10 11 -12",
+             swapped(bytesOf(kFlow), 2, style)}};
+}
+
+VolumeSource sourceOf(const std::string& path, const std::string& array = "") {
+    VolumeSource source;
+    source.path = path;
+    source.array = array;
+    return source;
+}
+
+template <class T>
+std::vector<T> samplesOf(const Volume& volume) {
+    const auto& samples = std::get<SampleArray<T>>(volume.samples());
+    return {samples.begin(), samples.end()};
+}
+
+std::string errorOf(const VolumeSource& source) {
+    try {
+        loadVolume(source);
+    } catch (const FileError& e) {
+        CHECK(!e.where().empty());
+        CHECK(std::string(e.what()).find('\n') == std::string::npos);
+        return e.what();
+    }
+    return "no error";
+}
+
+} // namespace
+
+TEST_CASE("image data of VTK reads in every encoding", "[vtk]") {
+    const TempFolder folder;
+    using Place = Style::Place;
+    for (const Place place : {Place::Ascii, Place::Inline, Place::Raw, Place::Base64})
+        for (int bits = 0; bits < 8; ++bits) {
+            const Style style{place, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+            CAPTURE(static_cast<int>(place), style.compressed, style.bigEndian, style.wide);
+            const std::string path = folder.write("a.vti", vti(style, twoArrays(style)));
+            const Volume density = loadVolume(sourceOf(path));
+            CHECK(samplesOf<float>(density) == kDensity);
+            CHECK(density.dims() == Int3(2, 3, 1));
+            CHECK(density.format == "VTK image data");
+            REQUIRE(density.notices.size() == 1);
+            CHECK_THAT(density.notices[0], Contains("a & b") && Contains("of 2"));
+            VolumeSource flow = sourceOf(path, "flow");
+            CHECK(samplesOf<std::int16_t>(loadVolume(flow)) == std::vector<std::int16_t>{1, 3, 5, 7, 9, 11});
+            flow.component = 1;
+            CHECK(samplesOf<std::int16_t>(loadVolume(flow)) == std::vector<std::int16_t>{2, 4, 6, 8, 10, -12});
+            const FileContents contents = contentsOf(sourceOf(path, "flow"));
+            CHECK(contents.arrays == Names{"a & b", "flow"});
+            CHECK(contents.components == 2);
+            CHECK(contents.type == SampleType::I16);
+            CHECK(contents.dims == Int3(2, 3, 1));
+            CHECK(contents.times.empty());
+        }
+}
+
+TEST_CASE("a header that is in base64 apart from its data reads, too", "[vtk]") {
+    const TempFolder folder;
+    const Style style{Style::Place::Inline, false, false, false};
+    std::string text = vti(style, {{"type=\"UInt8\" Name=\"a\"", "", "abcdef"}});
+    const std::string whole = base64(number(style, 6) + "abcdef");
+    text.replace(text.find(whole), whole.size(), base64(number(style, 6)) + base64("abcdef"));
+    CHECK(samplesOf<std::uint8_t>(loadVolume(sourceOf(folder.write("a.vti", text)))) ==
+          std::vector<std::uint8_t>{'a', 'b', 'c', 'd', 'e', 'f'});
+}
+
+TEST_CASE("the active scalars of a VTK file come first", "[vtk]") {
+    const TempFolder folder;
+    const Style style;
+    const std::string path = folder.write("a.vti", vti(style, twoArrays(style), " Scalars=\"flow\""));
+    CHECK(loadVolume(sourceOf(path)).sampleType() == SampleType::I16);
+    CHECK(loadVolume(sourceOf(path, "a & b")).sampleType() == SampleType::F32);
+    CHECK_THROWS_WITH(loadVolume(sourceOf(path, "none")), Contains("no array 'none'") && Contains("a & b, flow"));
+    CHECK_THROWS_WITH(loadVolume(sourceOf(folder.write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\n"
+                                                                 "encoding: raw\n\nx"),
+                                          "flow")),
+                      Contains("no array 'flow'"));
+}
+
+TEST_CASE("place and directions of a VTK image", "[vtk]") {
+    // Axis i points along +y, j along −x (the columns of Direction). The extent begins at voxel (1, −2, 0): its centre is
+    // origin + 1·2·(0,1,0) − 2·3·(−1,0,0) = (10 + 6, 20 + 2, 30).
+    const TempFolder folder;
+    const Volume volume = loadVolume(sourceOf(folder.write(
+        "a.vti", vti({}, {{"type=\"UInt8\" Name=\"a\"", "1 2 3 4 5 6", ""}}, "",
+                     "WholeExtent=\"1 2 -2 0 0 0\" Origin=\"10 20 30\" Spacing=\"2 3 4\" Direction=\"0 -1 0 1 0 0 0 0 1\"",
+                     "1 2 -2 0 0 0"))));
+    CHECK(volume.geometry().spacing == Vec3(2, 3, 4));
+    CHECK(volume.geometry().origin == Vec3(16, 22, 30));
+    CHECK(volume.geometry().directions[0] == Vec3(0, 1, 0));
+    CHECK(volume.geometry().directions[1] == Vec3(-1, 0, 0));
+    CHECK(volume.geometry().directions[2] == Vec3(0, 0, 1));
+}
+
+TEST_CASE("VTK files that are something else are refused in words", "[vtk][bad-input]") {
+    const TempFolder folder;
+    const std::vector<Array> one{{"type=\"UInt8\" Name=\"a\"", "1 2 3 4 5 6", "abcdef"}};
+    const std::string good = vti({}, one);
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        REQUIRE(text.find(from) != std::string::npos);
+        for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+            text.replace(at, from.size(), to);
+        return errorOf(sourceOf(folder.write("a.vti", text)));
+    };
+    CHECK(changed("UInt8", "UInt8") == "no error");
+    CHECK_THAT(changed("type=\"ImageData\"", "type=\"UnstructuredGrid\""), Contains("UnstructuredGrid"));
+    CHECK_THAT(changed("PointData", "CellDatum"), Contains("no values of points"));
+    CHECK_THAT(errorOf(sourceOf(folder.write(
+                   "c.vti", "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece><CellData>"
+                            "<DataArray type=\"UInt8\" format=\"ascii\">1</DataArray></CellData></Piece></ImageData></VTKFile>"))),
+               Contains("of cells, not of points"));
+    CHECK_THAT(changed("LittleEndian", "MiddleEndian"), Contains("MiddleEndian"));
+    CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" header_type=\"UInt16\""), Contains("UInt16"));
+    CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" compressor=\"vtkLZ4DataCompressor\""), Contains("vtkLZ4"));
+    CHECK_THAT(changed("UInt8", "String"), Contains("String"));
+    CHECK_THAT(changed("\"ascii\"", "\"verse\""), Contains("verse"));
+    CHECK_THAT(changed("format=\"ascii\"", "format=\"appended\" offset=\"0\""), Contains("no appended data"));
+    CHECK_THAT(changed("format=\"ascii\"", "format=\"appended\" offset=\"-1\""), Contains("negative"));
+    CHECK_THAT(changed("<Piece Extent=\"0 1 0 2 0 0\">", "<Piece Extent=\"0 1 0 1 0 0\">"), Contains("not the whole"));
+    CHECK_THAT(changed("  <Piece", "<Piece/>  <Piece"), Contains("several pieces"));
+    CHECK_THAT(changed("0 1 0 2 0 0", "0 1 0 2 0"), Contains("six whole numbers"));
+    CHECK_THAT(changed("Spacing=\"1 1 1\"", "Spacing=\"1 0 1\""), Contains("spacing must be positive"));
+    CHECK_THAT(changed("Spacing=\"1 1 1\"", "Spacing=\"1 nan 1\""), Contains("Spacing"));
+    CHECK_THAT(changed("Spacing=\"1 1 1\"", "Spacing=\"1 1\""), Contains("2 numbers, not 3"));
+    CHECK_THAT(changed("Origin=\"0 0 0\"", "Direction=\"1 0 0 1 0 0 0 0 1\""), Contains("in one plane"));
+    CHECK_THAT(changed(" Name=\"a\"", " Name=\"a\" NumberOfComponents=\"0\""), Contains("at least 1"));
+    CHECK_THAT(changed("0 1 0 2 0 0", "0 9999 0 9999 0 9999"), Contains("cannot hold"));
+    CHECK_THAT(changed("0 1 0 2 0 0", "0 2147483646 0 2147483646 0 2147483646"), Contains("more than any memory"));
+    CHECK_THAT(changed("0 1 0 2 0 0", "1 0 0 2 0 0"), Contains("at least 1"));
+    // Text and tags.
+    CHECK_THAT(changed("1 2 3 4 5 6", "1 2 3 4 5"), Contains("5 of 6 values"));
+    CHECK_THAT(changed("1 2 3 4 5 6", "1 2 three 4 5 6"), Contains("three"));
+    CHECK_THAT(changed("1 2 3 4 5 6", "1 2 3 4 5 256"), Contains("does not fit"));
+    CHECK_THAT(changed("</Piece>", "</Place>"), Contains("ends what has not begun"));
+    CHECK_THAT(changed("</VTKFile>", ""), Contains("ends within"));
+    CHECK_THAT(changed(" Name=\"a\"", " Name=a"), Contains("has no value"));
+    CHECK_THAT(changed(" Name=\"a\"", " Name=\"a"), Contains("not valid XML"));
+    CHECK_THAT(changed(" Name=\"a\"", " Name=\"" + std::string(70'000, 'a') + "\""), Contains("too long"));
+    CHECK_THAT(changed("<PointData>", "<!-- <PointData>"), Contains("comment does not end"));
+    CHECK_THAT(changed("?xml version=\"1.0\"?", ""), Contains("has no name"));
+    CHECK_THAT(errorOf(sourceOf(folder.write("e.vti", ""))), Contains("is empty"));
+    CHECK_THAT(errorOf(sourceOf(folder.write("p.vti", "\x89PNG..."))), Contains("a PNG image"));
+    CHECK_THAT(errorOf(sourceOf(folder.write("h.vti", "<html></html>"))), Contains("html"));
+}
+
+TEST_CASE("VTK data that are cut off or damaged are refused before anything is allocated", "[vtk][bad-input]") {
+    const TempFolder folder;
+    using Place = Style::Place;
+    const std::string values(6000, 'x');
+    const std::string image = "WholeExtent=\"0 9 0 19 0 29\"", extent = "0 9 0 19 0 29"; // 10·20·30
+    const auto file = [&](const Style& style, const std::string& data) {
+        return vti(style, {{"type=\"UInt8\" Name=\"a\"", "", data}}, "", image, extent);
+    };
+    for (const Place place : {Place::Inline, Place::Raw, Place::Base64})
+        for (const bool compressed : {false, true}) {
+            const Style style{place, compressed, false, true};
+            CAPTURE(static_cast<int>(place), compressed);
+            const std::string good = file(style, values);
+            CHECK(errorOf(sourceOf(folder.write("a.vti", good))) == "no error");
+            CHECK_THAT(errorOf(sourceOf(folder.write("a.vti", file(style, values.substr(1))))),
+                       Contains("5999 bytes where its extent and type make 6000"));
+            // Cut off in the middle of the data: of inline data the element does not end.
+            std::string cut = good.substr(0, good.size() / 2);
+            CHECK(errorOf(sourceOf(folder.write("a.vti", cut))) != "no error");
+            const std::string begin = place == Place::Inline ? "\"binary\">" : "_";
+            CHECK(errorOf(sourceOf(folder.write("a.vti", good.substr(0, good.rfind(begin) + begin.size() + 3)))) !=
+                  "no error");
+            if (place == Place::Inline) {
+                cut += "</DataArray></PointData></Piece></ImageData></VTKFile>";
+                CHECK_THAT(errorOf(sourceOf(folder.write("a.vti", cut))),
+                           Contains(compressed ? "after" : "of 6000 bytes"));
+            }
+            if (!compressed) continue;
+            // One byte in the middle of a block, digit or not.
+            std::string damaged = good;
+            damaged[good.size() * 3 / 4] ^= place == Place::Raw ? 0x55 : 3;
+            CHECK(errorOf(sourceOf(folder.write("a.vti", damaged))) != "no error");
+        }
+    // Headers that claim what no file holds: 2^62 blocks, blocks of 2^62 bytes, a last block that is longer.
+    const Style raw{Place::Raw, true, false, true};
+    const std::string good = file(raw, values);
+    const std::size_t header = good.rfind("_" + number(raw, 600)) + 1;
+    for (const auto& [at, claim] : {std::pair{0, std::uint64_t{1} << 62}, {8, std::uint64_t{1} << 62}, {16, 11u},
+                                    {24, std::uint64_t{1} << 62}, {0, 0u}}) {
+        std::string claims = good;
+        claims.replace(header + static_cast<std::size_t>(at), 8, number(raw, claim));
+        CAPTURE(at, claim);
+        CHECK(errorOf(sourceOf(folder.write("a.vti", claims))) != "no error");
+    }
+}
+
+TEST_CASE("time of a VTK image", "[vtk]") {
+    const TempFolder folder;
+    const auto at = [&](const std::string& name, const std::string& time) {
+        std::string text = vti({}, {{"type=\"UInt8\" Name=\"a\"", "1 2 3 4 5 6", ""}});
+        text.insert(text.find("  <Piece"), "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+                                           "format=\"ascii\">" + time + "</DataArray></FieldData>");
+        return folder.write(name, text);
+    };
+    at("f1.vti", "0.5");
+    at("f2.vti", "0.75");
+    const SeriesListing listing = listSeries(sourceOf(folder.path("f*.vti")));
+    REQUIRE(listing.frames.size() == 2);
+    CHECK(listing.hasTimes);
+    CHECK(listing.label(1) == "t = 0.75");
+    at("f2.vti", "soon"); // no time: no times
+    CHECK_FALSE(listSeries(sourceOf(folder.path("f*.vti"))).hasTimes);
+}
+
+TEST_CASE("a collection lists its files by time", "[vtk]") {
+    const TempFolder folder;
+    for (const char letter : {'a', 'b', 'c'})
+        folder.write(std::string("f_") + letter + ".vti",
+                     vti({}, {{"type=\"UInt8\" Name=\"v\"", std::to_string(int(letter)) + " 2 3 4 5 6", ""}}));
+    const auto collection = [](const std::string& sets) {
+        return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n" + sets +
+               "</Collection>\n</VTKFile>\n";
+    };
+    const std::string path = folder.write(
+        "all.pvd", collection("<DataSet timestep=\"10\" group=\"\" part=\"0\" file=\"f_b.vti\"/>\n"
+                              "<DataSet timestep=\"2.5\" group=\"\" part=\"0\" file=\"f_a.vti\"/>\n"
+                              "<DataSet timestep=\"11\" file='gone.vti'/><DataSet timestep=\"12\" file=\"./f_c.vti\"/>"));
+    const SeriesListing listing = listSeries(sourceOf(path));
+    REQUIRE(listing.frames.size() == 4);
+    CHECK(listing.title == "all.pvd");
+    CHECK(listing.label(0) == "t = 2.5");
+    CHECK(loadVolume(listing.frames[0].source).value(0) == 'a');
+    CHECK(loadVolume(listing.frames[1].source).value(0) == 'b');
+    CHECK(loadVolume(listing.frames[3].source).value(0) == 'c');
+    CHECK_THROWS_WITH(loadVolume(listing.frames[2].source), Contains("no such file") && Contains("gone.vti"));
+    CHECK(contentsOf(sourceOf(path)).arrays == Names{"v"});
+    CHECK(filesOf(sourceOf(path)).size() == 5); // itself and the four
+    CHECK(listSeries(sourceOf(folder.path("."))).title == "all.pvd"); // it knows the times of the files beside it
+
+    const auto refused = [&](const std::string& text) { return errorOf(sourceOf(folder.write("b.pvd", text))); };
+    CHECK_THAT(refused(collection("")), Contains("names no files"));
+    CHECK_THAT(refused(collection("<DataSet timestep=\"1\"/>")), Contains("names no file"));
+    CHECK_THAT(refused(collection("<DataSet timestep=\"x\" file=\"f_a.vti\"/>")), Contains("is not a number"));
+    CHECK_THAT(refused(collection("<DataSet file=\"b.pvd\"/>")), Contains("another collection"));
+    CHECK_THAT(refused(collection("<DataSet timestep=\"1\" part=\"0\" file=\"f_a.vti\"/>"
+                                  "<DataSet timestep=\"1\" part=\"1\" file=\"f_b.vti\"/>")),
+               Contains("one time step"));
+    CHECK_THAT(refused("<VTKFile type=\"Collection\"><Collection><DataSet file=\"f_a.vti\"/>"), Contains("ends within"));
+    CHECK_THAT(refused(vti({}, twoArrays({}))), Contains("not Collection"));
+}

@@ -1,5 +1,6 @@
 #include "options/volume_options.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "base/text.h"
@@ -44,14 +45,50 @@ VoxelRegion parseRegion(const std::string& text, const std::string& option) {
     return region;
 }
 
+/// "A:B[:STEP]", both ends included; A or B may be left out.
+FrameRange parseFrames(const std::string& text, const std::string& option) {
+    const std::vector<std::string> parts = split(text, ':');
+    if (parts.size() < 2 || parts.size() > 3)
+        throw UsageError("'" + text + "' is no range of frames", option,
+                         "give A:B or A:B:STEP, the first frame and the last, counted from 0");
+    constexpr long long kMost = std::numeric_limits<int>::max();
+    FrameRange range;
+    if (!parts[0].empty()) range.first = static_cast<int>(parseInteger(parts[0], option, 0, kMost));
+    if (!parts[1].empty()) range.last = static_cast<int>(parseInteger(parts[1], option, 0, kMost));
+    if (parts.size() == 3) range.stride = static_cast<int>(parseInteger(parts[2], option, 1, kMost));
+    if (range.last && *range.last < range.first)
+        throw UsageError("the frames " + text + " end before they begin", option, "give the smaller number first");
+    return range;
+}
+
 } // namespace
 
 void VolumeOptions::add(CLI::App& app, SizeIs size) {
     m_command = "pellucid-cli " + app.get_name();
     app.add_option_function<std::string>(
            "VOLUME", [this](const std::string& text) { path = text; },
-           "a NRRD, MetaImage, NIfTI or (with --raw) headerless file, or sample:NAME; not needed with --session")
+           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVD) or (with --raw) headerless file, or sample:NAME; a series: a "
+           "file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with --session")
         ->type_name("");
+    addValue(
+        app, "--frames", "A:B[:STEP]",
+        [this](const std::string& text, const std::string& option) { frames = parseFrames(text, option); },
+        "only these frames of a series, from 0, B included; A or B may be left out", kGroup);
+    addValue(
+        app, "--frame", "N",
+        [this](const std::string& text, const std::string& option) {
+            frame = static_cast<int>(parseInteger(text, option, 0, std::numeric_limits<int>::max()));
+        },
+        "the frame to work on, from 0, of those that --frames selects (default: the session's, else 0)", kGroup);
+    addValue(
+        app, "--array", "NAME", [this](const std::string& text, const std::string&) { array = text; },
+        "array of a file with several (default: its active scalars, else the first)", kGroup);
+    addValue(
+        app, "--cache", "MIB",
+        [this](const std::string& text, const std::string& option) {
+            cacheBytes = std::max<std::size_t>(1, static_cast<std::size_t>(parseRealAbove(text, option, 0, 1e9) * 1048576));
+        },
+        "memory for frames of a series, in MiB (default: a quarter of what is free, at most 2048)", kGroup);
     addValue(
         app, "--raw", "NX,NY,NZ,TYPE[,ENDIAN]",
         [this](const std::string& text, const std::string& option) {
@@ -117,7 +154,7 @@ void VolumeOptions::takeRegion(const std::string& text, const std::string& optio
 }
 
 bool VolumeOptions::anyDetail() const {
-    return raw || spacing || skipBytes || missing || range || component || sampleSize || seed || downsample || region;
+    return frames || frame || array || raw || spacing || skipBytes || missing || range || component || sampleSize || seed || downsample || region;
 }
 
 void VolumeOptions::applyTo(SceneInputs& inputs) const {
@@ -142,6 +179,9 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
     if (skipBytes) source.raw->skipBytes = *skipBytes;
     if (missing) source.missing = missing;
     if (component) source.component = *component;
+    if (frames) source.frames = frames;
+    if (array) source.array = *array;
+    if (cacheBytes) TimeSeries::setDefaultBudget(*cacheBytes);
     if (sampleSize) source.sampleSize = *sampleSize;
     if (seed) source.seed = *seed;
     if (downsample) source.downsample = *downsample;
@@ -152,6 +192,7 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
         all.front().source = source;
     });
     inputs.range = range;
+    inputs.frame = frame;
 }
 
 } // namespace pellucid::cli

@@ -1,5 +1,5 @@
-// VOLUME, --raw, --spacing, --skip, --missing, --range, --component, --sample-size, --seed,
-// --downsample, --region: what is opened.
+// VOLUME, --frames, --frame, --array, --cache, --raw, --spacing, --skip, --missing, --range, --component,
+// --sample-size, --seed, --downsample, --region: what is opened.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,10 @@ struct VolumeOptions {
     std::optional<double> missing;
     std::optional<ValueRange> range;
     std::optional<int> component;
+    std::optional<FrameRange> frames;
+    std::optional<int> frame;
+    std::optional<std::string> array;
+    std::optional<std::size_t> cacheBytes;
     std::optional<int> sampleSize;
     std::optional<int> downsample;
     std::optional<VoxelRegion> region;

@@ -61,7 +61,7 @@ struct PacketScene {
 
     const std::uint16_t* codes = nullptr;      ///< a few more may be read behind the last, see CodeGrid::kPadding
     const std::uint8_t* narrowCodes = nullptr; ///< in place of `codes` where these are null; all voxels are valid then
-    const std::uint8_t* valid = nullptr;  ///< null: all are
+    const std::uint8_t* valid = nullptr;       ///< null: all are
     int dims[3]{};
     std::int64_t middleVoxel = 0; ///< index of what `codes` + it points to, so that 32 bits reach all
     int middleSlice = 0;
@@ -96,7 +96,7 @@ struct PacketScene {
     int featureCount = 0;
     float lowestShown = 0, highestShown = 65536; ///< codes that count in Mip, MinIp, Average: [low, high)
 
-    const float* groundDepth = nullptr;   ///< width × height: where rays end; infinity: nowhere. Null: no ground
+    const float* groundDepth = nullptr;    ///< width × height: where rays end; infinity: nowhere. Null: no ground
     const std::uint32_t* ground = nullptr; ///< its colours (VoxelColors::pack())
 
     bool hasBackground = false;

@@ -114,7 +114,8 @@ private:
         if (none(some)) return false;
 
         Vec8 gradient[3], position[3];
-        // Where it is lit, and where colours of voxels are taken: about the middle of what is absorbed, were the opacity linear.
+        // Where it is lit, and where colours of voxels are taken: about the middle of what is absorbed, were the
+        // opacity linear.
         const Vec8 ends = last.opacity + next.opacity;
         const Vec8 part = ends > 0 ? (last.opacity + 2.0f * next.opacity) / (3.0f * ends) : all(0.5f);
         const Vec8 place = last.u + part * (next.u - last.u);

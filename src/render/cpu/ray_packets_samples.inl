@@ -160,7 +160,8 @@ class Samples {
 public:
     explicit Samples(const PacketScene& s)
         : m_s(s), m_codes(s.codes ? s.codes + s.middleVoxel : nullptr),
-          m_narrow(s.codes ? nullptr : s.narrowCodes + s.middleVoxel), m_valid(s.valid ? s.valid + s.middleVoxel : nullptr) {
+          m_narrow(s.codes ? nullptr : s.narrowCodes + s.middleVoxel),
+          m_valid(s.valid ? s.valid + s.middleVoxel : nullptr) {
         for (int a = 0; a < 3; ++a) {
             // A hair below the last centre, so that the cell is never one too many.
             const float last = static_cast<float>(s.dims[a] - 1);
@@ -279,7 +280,8 @@ private:
 class VoxelColorSamples {
 public:
     VoxelColorSamples(const PacketScene& s, const Samples& samples)
-        : m_colors(s.voxelColors ? s.voxelColors + s.middleVoxel : nullptr), m_valid(s.valid ? s.valid + s.middleVoxel : nullptr),
+        : m_colors(s.voxelColors ? s.voxelColors + s.middleVoxel : nullptr),
+          m_valid(s.valid ? s.valid + s.middleVoxel : nullptr),
           m_samples(samples), m_along{s.dims[0] > 1 ? 1 : 0, samples.alongY(), samples.alongZ()} {}
 
     /// Straight colours of the lanes in `bits`, interpolated over the valid voxels.

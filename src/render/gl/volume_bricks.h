@@ -23,8 +23,8 @@ struct VolumeBrick {
 
 class BrickedVolume {
 public:
-    /// Throws Error, OutOfMemory. `longest`: of textures, along any axis, voxels; the device's if less. `colors`: of the
-    /// volume's voxels, kept beside its intensities; null: none.
+    /// Throws Error, OutOfMemory. `longest`: of textures, along any axis, voxels; the device's if less. `colors`: of
+    /// the volume's voxels, kept beside its intensities; null: none.
     BrickedVolume(const Volume& volume, int longest, std::shared_ptr<const VoxelColors> colors = nullptr);
 
     std::size_t count() const noexcept { return m_bricks.size(); }

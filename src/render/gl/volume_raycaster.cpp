@@ -348,13 +348,8 @@ void VolumeRaycaster::Impl::fillGround(const Camera& camera, const RenderSetting
     GroundWindow window{width, height, 0, 0, settings.width, settings.height};
     if (scale != 1 || width * height > kMostGroundAtOnce) {
         const glm::dvec2 size(accumulated.color.size), perPixel = size / glm::dvec2(tile.width, tile.height);
-        window = {width * perPixel.x,
-                  height * perPixel.y,
-                  tile.x * perPixel.x,
-                  tile.y * perPixel.y,
-                  accumulated.color.size.x,
-                  accumulated.color.size.y,
-                  perPixel.y / perPixel.x};
+        window = {width * perPixel.x,       height * perPixel.y,      tile.x * perPixel.x,    tile.y * perPixel.y,
+                  accumulated.color.size.x, accumulated.color.size.y, perPixel.y / perPixel.x};
     }
     ground.prepare(settings, camera, volume->geometry(), window, job);
 }
@@ -464,7 +459,7 @@ void VolumeRaycaster::Impl::resize(glm::ivec2 size) {
 }
 
 void VolumeRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& camera, const RenderSettings& settings,
-                                       const Tile& tile) {
+                                        const Tile& tile) {
     const Geometry& g = volume->geometry();
     const glm::vec2 size(accumulated.color.size), picture(settings.width, settings.height);
     // The tile in picture coordinates: [−1,1]² over the whole picture, y up.
@@ -511,7 +506,7 @@ void VolumeRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& c
 }
 
 void VolumeRaycaster::Impl::cast(const Camera& camera, const RenderSettings& settings, const Tile& tile,
-                                const JobControl& job) {
+                                 const JobControl& job) {
     const bool bricked = bricks->count() > 1, surface = settings.mode == RenderMode::Surface;
     if (surface && drawn.size() > kMostSurfaces)
         throw Error("surfaces of " + std::to_string(drawn.size()) + " features are too many", "transfer function",
@@ -633,7 +628,7 @@ void VolumeRaycaster::setTransferFunction(const TransferFunction& tf) {
 }
 
 void VolumeRaycaster::draw(const Camera& camera, const RenderSettings& settings, const DrawTarget& target,
-                          const JobControl& job) {
+                           const JobControl& job) {
     PELLUCID_CHECK(m_impl->volume && m_impl->tf);
     PELLUCID_CHECK(target.resolutionScale > 0 && target.resolutionScale <= 1);
     settings.validate();

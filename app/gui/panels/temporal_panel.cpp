@@ -1,0 +1,366 @@
+#include "panels/temporal_panel.h"
+
+#include <algorithm>
+
+#include <QBuffer>
+#include <QComboBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QGridLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QSettings>
+#include <QToolButton>
+
+#include "base/atomic_file.h"
+#include "controllers/adapt_controller.h"
+#include "controllers/player_controller.h"
+#include "panel.h"
+#include "plot_view.h"
+#include "report/svg_plot.h"
+#include "tf/tf_range.h"
+#include "theme.h"
+#include "workbench.h"
+
+namespace pellucid::gui {
+namespace {
+
+enum Shown { kVws, kVisibility, kOpacity };
+
+bool same(const std::shared_ptr<const TransferFunction>& a, const std::shared_ptr<const TransferFunction>& b) {
+    return a == b || (a != nullptr && b != nullptr && *a == *b);
+}
+
+QString shortNumber(double value) { return QString::number(value, 'g', 3); }
+
+} // namespace
+
+PanelInfo temporalPanel() {
+    return {.id = "temporal",
+            .title = QObject::tr("Curves over time"),
+            .area = Qt::BottomDockWidgetArea,
+            .visible = false,
+            .tabOf = "tf",
+            .keys = QKeySequence("Ctrl+4"),
+            .tip = QObject::tr("VWS, visibility, distance and flicker of all frames, with and without transfer "
+                               "functions that follow them"),
+            .make = [](Workbench& bench, QWidget* parent) { return new TemporalPanel(bench, parent); }};
+}
+
+TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_shown(new QComboBox(this)), m_words(new QLabel(this)),
+      m_readOut(new QLabel(this)), m_measure(new QToolButton(this)), m_export(new QToolButton(this)),
+      m_progress(new QProgressBar(this)),
+      m_job(
+          [this](const Task& task, const JobControl& job) {
+              Known known = task.known;
+              const JobControl quiet{job.stop, {}};
+              try {
+                  Scene scene = sceneAt(task.basis, task.frame, *known.tf, quiet);
+                  const ValueRange window = scene.volume->range();
+                  const auto written = [&](const TransferFunction& tf) {
+                      return tf.range && window.lo < window.hi ? inRange(tf, window) : tf;
+                  };
+                  const auto measured = [&](const std::shared_ptr<const TransferFunction>& tf,
+                                            const std::shared_ptr<const TransferFunction>& before) {
+                      scene.tf = written(*tf);
+                      const auto was = before ? std::optional(written(*before)) : std::nullopt;
+                      return figuresOf(scene, was ? &*was : nullptr, m_workspace, quiet);
+                  };
+                  known.dynamic = measured(known.tf, known.before);
+                  known.fixed = same(known.tf, known.fixedTf) && same(known.before, known.fixedBefore)
+                                    ? known.dynamic
+                                    : measured(known.fixedTf, known.fixedBefore);
+              } catch (const FileError&) {
+                  known.dynamic = known.fixed = brokenFigures(*task.basis.series, task.frame);
+              }
+              return known;
+          },
+          [this](const Task& task, Known& known) {
+              if (m_bench.scene().series == task.basis.series) m_known[task.frame] = std::move(known);
+              refresh();
+              next();
+          },
+          WhenBusy::StopOld, &m_lane) {
+    static const char* const names[] = {"temporalDynamic", "temporalStatic", "temporalObjective", "temporalFlicker"};
+    const QString tips[] = {
+        tr("Under the transfer functions that follow the frames: the share of each feature of what catches the eye,\n"
+           "0 to 1 (VWS; dashed: the targets), its visibility (FV), or the opacity of its peak. Double-click: export."),
+        tr("The same under the keys alone, as in the mode static"),
+        tr("F, the root mean square distance of the features' VWS from their targets"),
+        tr("Flicker: mean colour difference ΔE (CIELAB) per pixel between a frame under its transfer function and the\n"
+           "same frame under that of the frame before")};
+    auto* grid = new QGridLayout(this);
+    grid->setContentsMargins(4, 4, 4, 2);
+    grid->setSpacing(2);
+    for (std::size_t i = 0; i < m_plots.size(); ++i) {
+        PlotView* const plot = m_plots[i] = new PlotView(this);
+        plot->setObjectName(names[i]);
+        plot->setToolTip(tips[i]);
+        connect(plot, &PlotView::readOut, m_readOut, &QLabel::setText);
+        connect(plot, &PlotView::exportWanted, this, &TemporalPanel::chooseFile);
+        grid->addWidget(plot, 0, static_cast<int>(i));
+        grid->setColumnStretch(static_cast<int>(i), 1);
+    }
+    grid->setRowStretch(0, 1);
+    m_shown->setObjectName("temporalShown");
+    m_shown->addItems({tr("VWS"), tr("FV"), tr("Opacity")});
+    m_shown->setToolTip(tr("What the first two plots show of each feature: share of saliency (VWS), visibility (FV),\n"
+                           "or the opacity of its peak, of a path of one reference length d0"));
+    connect(m_shown, &QComboBox::activated, this, &TemporalPanel::refresh);
+    m_measure->setObjectName("temporalMeasure");
+    connect(m_measure, &QToolButton::clicked, this, [this] { m_asked ? cancel() : measure(); });
+    m_export->setObjectName("temporalExport");
+    m_export->setText(tr("Export…"));
+    m_export->setToolTip(tr("The curves as a table (CSV), the plots as a picture (PNG) or drawing (SVG)"));
+    connect(m_export, &QToolButton::clicked, this, &TemporalPanel::chooseFile);
+    m_progress->setObjectName("temporalProgress");
+    m_progress->setMaximumSize(120, 12);
+    m_progress->setTextVisible(false);
+    m_words->setObjectName("temporalWords");
+    m_words->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    m_words->setToolTip(tr("Root mean square of F, and mean flicker, over the frames that are known"));
+    m_readOut->setObjectName("temporalReadOut");
+    m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    m_readOut->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    makeFaint(*m_readOut);
+    auto* row = new QHBoxLayout;
+    row->addWidget(m_shown);
+    row->addWidget(m_measure);
+    row->addWidget(m_progress);
+    row->addWidget(m_words, 3);
+    row->addWidget(m_readOut, 2);
+    row->addWidget(m_export);
+    grid->addLayout(row, 1, 0, 1, 4);
+
+    connect(&bench.store(), &SessionStore::changed, this, &TemporalPanel::follow);
+    connect(&bench.player().adapting(), &AdaptController::changed, this, &TemporalPanel::next);
+    connect(&bench, &Workbench::readOnlyChanged, this, [this] {
+        if (m_bench.isReadOnly()) m_job.cancel();
+        next();
+    });
+    connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
+        m_asked = false;
+        m_bench.showError(tr("The frames cannot be measured"), error);
+        refresh();
+    });
+    refresh();
+}
+
+TemporalPanel::~TemporalPanel() = default;
+
+TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
+    const Scene& scene = m_bench.store().committed();
+    const Session& session = scene.session;
+    const TfTrack& track = session.variable().track;
+    Task task{scene, frame, {}};
+    Known& known = task.known;
+    known.measure = *session.measure;
+    known.camera = scene.camera;
+    known.clipping = *session.clipping;
+    known.hsb = *session.hsb;
+    known.display = *session.display;
+    known.window = scene.volume->range();
+    Session there = session;
+    there.frame = frame;
+    FeatureGoals goals = *session.goals;
+    if (!session.targetKeys->empty())
+        for (const auto& [id, target] : targetsBetween(*session.targetKeys, frame))
+            if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
+    known.tf = session.tfAt(frame);
+    known.fixedTf = track.at(frame);
+    if (frame > 0) {
+        known.before = session.tfAt(frame - 1);
+        known.fixedBefore = track.at(frame - 1);
+    }
+    if (known.tf) known.targets = targetsOf(*known.tf, goals);
+    return task;
+}
+
+bool TemporalPanel::isCurrent(const Known& known, const Known& wanted) {
+    return known.measure == wanted.measure && known.camera == wanted.camera && known.clipping == wanted.clipping &&
+           known.hsb == wanted.hsb && known.display == wanted.display && known.window == wanted.window &&
+           known.targets == wanted.targets && same(known.tf, wanted.tf) && same(known.before, wanted.before) &&
+           same(known.fixedTf, wanted.fixedTf) && same(known.fixedBefore, wanted.fixedBefore);
+}
+
+bool TemporalPanel::isKnown(int frame) const {
+    const auto found = m_known.find(frame);
+    return found != m_known.end() && found->second.camera == m_bench.scene().camera && // most often told by that alone
+           isCurrent(found->second, taskOf(frame).known);
+}
+
+int TemporalPanel::knownCount() const {
+    int known = 0;
+    for (const auto& [frame, figures] : m_known) known += isKnown(frame) ? 1 : 0;
+    return known;
+}
+
+TemporalCurves TemporalPanel::curves() const {
+    TemporalCurves curves;
+    if (!m_bench.player().hasSeries()) return curves;
+    const Scene& scene = m_bench.scene();
+    for (const Feature& f : scene.tf.features) {
+        curves.features.push_back(f.name);
+        curves.colors.push_back(f.color);
+    }
+    const AdaptSettings::Mode mode = scene.session.adapt->mode;
+    if (mode != AdaptSettings::Mode::Static) curves.runs.push_back({name(mode), {}});
+    curves.runs.push_back({name(AdaptSettings::Mode::Static), {}});
+    for (const auto& [frame, known] : m_known) {
+        if (!isKnown(frame)) continue;
+        curves.runs.front().frames.push_back(known.dynamic);
+        if (curves.runs.size() > 1) curves.runs.back().frames.push_back(known.fixed);
+    }
+    curves.present = scene.session.frame;
+    return curves;
+}
+
+void TemporalPanel::measure() {
+    if (!m_bench.player().hasSeries()) return;
+    m_asked = true;
+    next();
+    refresh();
+}
+
+void TemporalPanel::cancel() {
+    m_asked = false;
+    m_job.cancel();
+    refresh();
+}
+
+void TemporalPanel::next() {
+    if (!m_asked || m_job.isRunning() || !m_bench.player().hasSeries() || m_bench.isReadOnly()) return;
+    PlayerController& player = m_bench.player();
+    bool waits = false;
+    for (int f = 0; f < player.frameCount(); ++f) {
+        if (isKnown(f)) continue;
+        // Its transfer function is on its way.
+        if (player.adapting().isBusy() && player.adapting().isStale(f)) {
+            waits = true;
+            continue;
+        }
+        if (Task task = taskOf(f); task.known.tf && task.known.fixedTf) {
+            m_job.start(std::move(task), player.label(f));
+            return;
+        }
+    }
+    if (waits) return;
+    m_asked = false;
+    refresh();
+}
+
+void TemporalPanel::follow(const Scene& before, const Scene& after) {
+    if (before.series != after.series) {
+        m_job.cancel();
+        m_known.clear();
+        m_asked = false;
+    }
+    if (isVisible() || m_asked) refresh();
+    next();
+}
+
+void TemporalPanel::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    refresh();
+}
+
+std::vector<Plot> TemporalPanel::plots() const {
+    const TemporalCurves now = curves();
+    if (now.runs.empty()) return {};
+    const auto plotOf = [&](std::size_t run) {
+        switch (m_shown->currentIndex()) {
+        case kVisibility:
+            return temporalVisibilityPlot(now, run);
+        case kOpacity:
+            return temporalOpacityPlot(now, run);
+        default:
+            double highest = 0;
+            for (std::size_t r = 0; r < now.runs.size(); ++r)
+                highest = std::max(highest, temporalVwsPlot(now, r).y.hi);
+            return temporalVwsPlot(now, run, highest);
+        }
+    };
+    std::vector<Plot> all{plotOf(0)};
+    if (now.runs.size() > 1) all.push_back(plotOf(1));
+    all.push_back(temporalObjectivePlot(now));
+    all.push_back(temporalFlickerPlot(now));
+    return all;
+}
+
+void TemporalPanel::refresh() {
+    const bool series = m_bench.player().hasSeries();
+    const int count = m_bench.player().frameCount(), known = series ? knownCount() : 0;
+    m_measure->setEnabled(series && (m_asked || known < count));
+    m_measure->setText(m_asked ? tr("Stop") : tr("Measure all frames"));
+    m_measure->setToolTip(m_asked ? tr("What is known so far stays")
+                                  : tr("VWS, visibility and flicker of every frame that is not known as it is now,\n"
+                                       "from the present camera"));
+    m_progress->setVisible(m_asked);
+    m_progress->setRange(0, std::max(1, count));
+    m_progress->setValue(known);
+    m_export->setEnabled(known > 0);
+    if (!series) {
+        m_words->setText(tr("Open a series, and its curves are drawn here."));
+    } else if (known == 0) {
+        m_words->setText(m_asked ? tr("Measuring…") : tr("Measure the frames, and their curves are drawn here."));
+    } else {
+        QStringList words;
+        for (const TemporalRun& run : curves().runs) {
+            const SequenceFigures sum = summaryOf(run.frames);
+            words << tr("%1: F %2, flicker %3")
+                         .arg(QString::fromStdString(run.name), shortNumber(sum.rms), shortNumber(sum.flicker));
+        }
+        if (known < count) words << tr("%L1 of %L2 frames").arg(known).arg(count);
+        m_words->setText(words.join(QStringLiteral("; ")));
+    }
+    if (!isVisible()) return;
+    std::vector<Plot> all = plots();
+    const bool two = all.size() == m_plots.size();
+    m_plots[1]->setVisible(two);
+    std::size_t i = 0;
+    for (std::size_t p = 0; p < m_plots.size(); ++p) {
+        if (p == 1 && !two) continue;
+        m_plots[p]->setPlot(i < all.size() && known > 0 ? std::move(all[i]) : Plot());
+        ++i;
+    }
+}
+
+void TemporalPanel::chooseFile() {
+    if (!m_bench.player().hasSeries() || knownCount() == 0) return;
+    const QString folder = QSettings().value("curvesFolder", QDir::homePath()).toString();
+    QString path = QFileDialog::getSaveFileName(
+        m_bench.window(), tr("Export the curves over time"), QDir(folder).filePath("curves_over_time.csv"),
+        QStringList{tr("Table (*.csv)"), tr("Picture (*.png)"), tr("Drawing (*.svg)")}.join(";;"));
+    if (path.isEmpty()) return;
+    if (QFileInfo(path).suffix().isEmpty()) path += ".csv";
+    QSettings().setValue("curvesFolder", QFileInfo(path).absolutePath());
+    exportTo(path);
+}
+
+void TemporalPanel::exportTo(const QString& path) {
+    constexpr int kWidth = 640, kHeight = 400;
+    const std::string file = path.toStdString();
+    const QString suffix = QFileInfo(path).suffix().toLower();
+    try {
+        if (suffix == "csv") {
+            writeTextAtomically(file, csvOf(curves()));
+        } else if (suffix == "svg") {
+            writeTextAtomically(file, svgOf(temporalPlots(curves()), {.width = kWidth, .height = kHeight}));
+        } else if (suffix == "png") {
+            QByteArray bytes;
+            QBuffer buffer(&bytes);
+            buffer.open(QIODevice::WriteOnly);
+            imageOf(std::span<const Plot>(temporalPlots(curves())), QSize(kWidth, kHeight), 2).save(&buffer, "PNG");
+            writeTextAtomically(file, {bytes.constData(), static_cast<std::size_t>(bytes.size())});
+        } else {
+            throw UsageError("curves are written as .csv, .png or .svg", file, "give one of these suffixes");
+        }
+        Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+    } catch (const Error& error) {
+        m_bench.showError(tr("Cannot export the curves"), error);
+    }
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,86 @@
+// What the frames of a series show: VWS and FV of the features, distance and flicker over time, under the transfer
+// functions that follow the frames and under the static one.
+#pragma once
+
+#include <array>
+#include <map>
+
+#include <QWidget>
+
+#include "jobs/job.h"
+#include "report/temporal_curves.h"
+
+class QComboBox;
+class QGridLayout;
+class QLabel;
+class QProgressBar;
+class QToolButton;
+
+namespace pellucid::gui {
+
+class PlotView;
+class Workbench;
+
+/// Measures where asked to, frame by frame on a thread of its own, and draws what is known so far. What was measured
+/// stays true until camera, settings or the frame's transfer function are others; then it is measured anew when asked.
+class TemporalPanel : public QWidget {
+    Q_OBJECT
+public:
+    TemporalPanel(Workbench& bench, QWidget* parent);
+    ~TemporalPanel() override;
+
+    void measure(); ///< all frames that are not known as they are now
+    void cancel();
+    bool isMeasuring() const { return m_job.isRunning(); }
+    /// Of all frames that are known as they are now.
+    TemporalCurves curves() const;
+    int knownCount() const; ///< frames that curves() has
+
+    /// Writes what is known, by the suffix: .csv, .png or .svg. Errors are shown.
+    void exportTo(const QString& path);
+
+protected:
+    void showEvent(QShowEvent* event) override;
+
+private:
+    /// The figures of a frame, and what they are of.
+    struct Known {
+        MeasureSettings measure;
+        Camera camera;
+        Clipping clipping;
+        HsbMapping hsb;
+        DisplaySettings display;
+        ValueRange window;
+        std::vector<double> targets;
+        std::shared_ptr<const TransferFunction> tf, before; ///< of the frame, and of the one before it; null: none
+        std::shared_ptr<const TransferFunction> fixedTf, fixedBefore; ///< likewise, by the keys alone
+        FrameFigures dynamic, fixed;
+    };
+    struct Task {
+        Scene basis;
+        int frame = 0;
+        Known known;
+    };
+    Task taskOf(int frame) const;
+    static bool isCurrent(const Known& known, const Known& wanted);
+    bool isKnown(int frame) const;
+    void next();
+    void follow(const Scene& before, const Scene& after);
+    void refresh();
+    std::vector<Plot> plots() const;
+    void chooseFile();
+
+    Workbench& m_bench;
+    std::array<PlotView*, 4> m_plots{};
+    QComboBox* m_shown;
+    QLabel *m_words, *m_readOut;
+    QToolButton *m_measure, *m_export;
+    QProgressBar* m_progress;
+    std::map<int, Known> m_known;
+    bool m_asked = false; ///< frames that are not known are measured
+    Workspace m_workspace; // used in m_job alone
+    Lane m_lane;
+    Job<Task, Known> m_job; // last: it ends before the rest goes
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,210 @@
+// `sequence`: the frames of a series, each under its transfer function.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include <catch2/catch.hpp>
+
+#include "cli_runner.h"
+#include "image_io/image_file.h"
+#include "tf/formats/tf_json.h"
+
+using nlohmann::json;
+using pellucid::readImage;
+using pellucid::readTf;
+using pellucid::test::operator+;
+using pellucid::test::Outcome;
+using pellucid::test::Words;
+using pellucid::test::Workshop;
+
+namespace {
+
+constexpr int kSize = 14, kFrames = 5;
+
+/// Three layers whose borders move from frame to frame.
+std::string layers(int frame) {
+    std::string bytes;
+    for (int k = 0; k < kSize; ++k)
+        for (int j = 0; j < kSize; ++j)
+            for (int i = 0; i < kSize; ++i) {
+                const bool inside = std::min({i, j, k}) > 0 && std::max({i, j, k}) < kSize - 1;
+                const int value = !inside ? 0 : i < 4 + frame ? 42 : i < 9 ? 128 : 212;
+                bytes += static_cast<char>(i == 0 && j == 0 && k == 0 ? 255 : value);
+            }
+    return bytes;
+}
+
+std::string frameName(int frame) { return "f0" + std::to_string(frame) + ".raw"; }
+
+/// A folder with the frames f00.raw … f04.raw.
+struct Series : Workshop {
+    Series() {
+        for (int f = 0; f < kFrames; ++f) write(frameName(f), layers(f));
+    }
+};
+
+const Words kSeries{"sequence", "f%02d.raw",   "--raw",  "14,14,14,u8", "--range",  "0,255",
+                    "--tf",     "tents:3:0.2", "--size", "32x24",       "--engine", "cpu"};
+const Words kOptimize = kSeries + Words{"--mode", "optimize", "--target", "1,1,1"};
+
+/// The environment's PATH, changed for as long as this lives.
+struct PathOf {
+    explicit PathOf(const std::string& path) : before(std::getenv("PATH")) { setenv("PATH", path.c_str(), 1); }
+    ~PathOf() { setenv("PATH", before.c_str(), 1); }
+    std::string before;
+};
+
+} // namespace
+
+TEST_CASE("sequence optimizes every frame and compares with the static transfer function", "[cli][sequence]") {
+    const Series w;
+    const json j = w.json(kOptimize + Words{"--coherence", "0", "--compare", "--out", "o"});
+    CHECK(j["command"] == "sequence");
+    CHECK(j["mode"] == "optimize");
+    CHECK(j["coherence"] == 0);
+    REQUIRE(j["frames"].size() == kFrames);
+    double most = 0;
+    for (int f = 0; f < kFrames; ++f) {
+        const json& one = j["frames"][static_cast<std::size_t>(f)];
+        CHECK(one["frame"] == f);
+        CHECK(one["objective"] <= 1e-3); // what tracking goes below; the first one is optimized
+        CHECK(one.contains("moves") == (f > 0));
+        CHECK(one.contains("flicker") == (f > 0));
+        most = std::max(most, one["static"]["objective"].get<double>());
+        const std::string stem = "o/frame_000" + std::to_string(f);
+        const pellucid::Image image = readImage(w.path(stem + ".png").string());
+        CHECK(image.width == 32);
+        CHECK(image.height == 24);
+        CHECK(w.has(stem + "_static.png"));
+        // The file of the transfer function is the one that was told.
+        CHECK(pellucid::featureOpacities(readTf(w.path(stem + ".tf.json").string())) ==
+              one["opacity"].get<std::vector<double>>());
+    }
+    CHECK(most > 0.05); // the first layer grows to twice its size
+    CHECK(j["static"]["rms"] > 10 * j["mean"]["rms"].get<double>());
+    const std::string csv = w.read("o/curves.csv");
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 2 * kFrames);
+    CHECK(w.read("o/curves.svg").find("static") != std::string::npos);
+    CHECK(readImage(w.path("o/curves.png").string()).width > 0);
+}
+
+TEST_CASE("both ways the frames flicker less and stay as near", "[cli][sequence]") {
+    const Series w;
+    const Words held = kOptimize + Words{"--coherence", "2", "--no-pictures"};
+    const json forward = w.json(held + Words{"--out", "forward"});
+    const json both = w.json(held + Words{"--both-ways", "--out", "both"});
+    for (const json& f : both["frames"]) CHECK(f["objective"] <= 0.02); // 2/100
+    CHECK(both["mean"]["flicker"] < 0.9 * forward["mean"]["flicker"].get<double>());
+    // The first frame gives way to what comes: it lies at the edge of what is allowed.
+    CHECK(forward["frames"][0]["objective"] < 1e-3);
+    CHECK(both["frames"][0]["objective"] > 0.01);
+    const Outcome refine = w.run(kSeries + Words{"--mode", "refine", "--both-ways", "--out", "o"});
+    CHECK(refine.status == 2);
+}
+
+TEST_CASE("infinite coherence draws what a static transfer function draws", "[cli][sequence]") {
+    const Series w;
+    const json held = w.json(kOptimize + Words{"--coherence", "inf", "--out", "held"});
+    const json fixed = w.json(kSeries + Words{"--mode", "static", "--target", "1,1,1", "--out", "fixed"});
+    CHECK(held["coherence"] == "infinite");
+    for (std::size_t f = 0; f < kFrames; ++f) {
+        CHECK(held["frames"][f]["opacity"] == fixed["frames"][0]["opacity"]);
+        const std::string picture = "/frame_000" + std::to_string(f) + ".png";
+        CHECK(w.read("held" + picture) == w.read("fixed" + picture));
+    }
+    CHECK(held["mean"]["flicker"] == 0);
+    CHECK(fixed["frames"][1]["flicker"] == 0);
+}
+
+TEST_CASE("sequence begins with the frame that is asked for", "[cli][sequence]") {
+    const Series w;
+    const json j = w.json(kSeries + Words{"--mode", "refine", "--from", "3", "--no-pictures", "--out", "o"});
+    REQUIRE(j["frames"].size() == 2);
+    CHECK(j["from"] == 3);
+    CHECK(j["frames"][0]["frame"] == 3);
+    CHECK(j["frames"][1]["moves"] > 0); // iterations of the refinement
+    CHECK_FALSE(w.has("o/frame_0003.png"));
+    CHECK(w.has("o/frame_0003.tf.json"));
+    const Outcome beyond = w.run(kSeries + Words{"--from", "9", "--out", "o"});
+    CHECK(beyond.status == 2);
+    CHECK(beyond.err.find("there is no frame 9") != std::string::npos);
+}
+
+TEST_CASE("a broken frame is reported and left out", "[cli][sequence]") {
+    const Series w;
+    w.write(frameName(2), "too short");
+    const Outcome r = w.run(kOptimize + Words{"--json", "--out", "o"});
+    REQUIRE(r.status == 0);
+    const json j = json::parse(r.out);
+    REQUIRE(j["frames"].size() == kFrames - 1);
+    CHECK(j["frames"][2]["frame"] == 3);
+    REQUIRE(j["broken"].size() == 1);
+    CHECK(j["broken"][0]["frame"] == 2);
+    CHECK(r.err.find("is passed over") != std::string::npos);
+    CHECK_FALSE(w.has("o/frame_0002.png"));
+    CHECK(w.read("o/curves.csv").find("\noptimize,2,") != std::string::npos);
+}
+
+TEST_CASE("sequence writes the same on one thread and on two", "[cli][sequence]") {
+    const Series w;
+    for (const char* threads : {"1", "2"}) {
+        const Outcome r = w.run(kOptimize + Words{"--threads", threads, "--out", threads});
+        REQUIRE(r.status == 0);
+    }
+    for (int f = 0; f < kFrames; ++f)
+        for (const char* suffix : {".png", ".tf.json"}) {
+            const std::string name = "/frame_000" + std::to_string(f) + suffix;
+            CHECK(w.read("1" + name) == w.read("2" + name));
+        }
+}
+
+TEST_CASE("sequence says what it cannot do", "[cli][sequence]") {
+    const Series w;
+    const auto fails = [&](const Words& words, int status, const std::string& what) {
+        const Outcome r = w.run(words);
+        CHECK(r.status == status);
+        CHECK(r.out.empty());
+        CHECK(r.err.find(what) != std::string::npos);
+    };
+    fails(kSeries + Words{"--mode", "optimize", "--out", "o"}, 2, "--target is required");
+    fails(kSeries + Words{"--mode", "slow", "--out", "o"}, 2, "static, refine or optimize");
+    fails(kSeries + Words{"--background", "transparent", "--out", "o"}, 2, "give a colour");
+    fails(kSeries + Words{"--fps", "5", "--out", "o"}, 2, "--mp4");
+    fails(kSeries + Words{"--mp4", "film.avi", "--out", "o"}, 2, ".mp4");
+    fails(kSeries + Words{"--mp4", "film.mp4", "--no-pictures", "--out", "o"}, 2, "pictures");
+    CHECK_FALSE(w.has("o"));
+    // The answer is written, but does not reach what was demanded.
+    const Outcome missed = w.run(
+        kSeries + Words{"--mode", "static", "--target", "1,1,1", "--require-converged", "--no-pictures", "--out", "o"});
+    CHECK(missed.status == 1);
+    CHECK(missed.err.find("the targets were not reached") != std::string::npos);
+    CHECK(w.has("o/curves.csv"));
+}
+
+TEST_CASE("a film is made where ffmpeg is installed", "[cli][sequence]") {
+    const Series w;
+    const Words film = kSeries + Words{"--mp4", "film.mp4", "--fps", "5", "--out", "o"};
+    {
+        const PathOf none(w.path("nowhere").string());
+        const Outcome r = w.run(film);
+        CHECK(r.status == 1);
+        CHECK(r.err.find("ffmpeg is not installed") != std::string::npos);
+        CHECK_FALSE(w.has("o")); // told before any work
+    }
+    // In its place a program whose film is the list of pictures that it was given.
+    std::filesystem::create_directory(w.path("bin"));
+    w.write("bin/ffmpeg", "#!/bin/sh\nwhile [ $# -gt 1 ]; do [ \"$1\" = -i ] && list=$2; shift; done\n"
+                          "cp \"$list\" \"$1\"\n");
+    std::filesystem::permissions(w.path("bin/ffmpeg"), std::filesystem::perms::owner_all);
+    const PathOf with(w.path("bin").string() + ":/usr/bin:/bin");
+    REQUIRE(w.run(film).status == 0);
+    const std::string list = w.read("film.mp4");
+    CHECK(list.find("frame_0000.png") < list.find("frame_0004.png"));
+    CHECK(list.find("duration 0.2") != std::string::npos);
+    CHECK_FALSE(w.has("film.mp4.list"));
+    w.write("bin/ffmpeg", "#!/bin/sh\necho no such codec >&2\nexit 3\n");
+    const Outcome failed = w.run(film);
+    CHECK(failed.status == 1);
+    CHECK(failed.err.find("no such codec") != std::string::npos);
+    CHECK(w.read("film.mp4") == list); // whole or as it was
+}

@@ -1,0 +1,462 @@
+// Frames of a series in the window: play, step, scrub; undo across frames; keys; transfer functions that follow.
+#include "gui_support.h"
+
+#include <atomic>
+#include <thread>
+
+#include <QAction>
+#include <QApplication>
+#include <QComboBox>
+#include <QDockWidget>
+#include <QLabel>
+#include <QSlider>
+#include <QTemporaryDir>
+#include <QToolButton>
+
+#include "controllers/adapt_controller.h"
+#include "controllers/player_controller.h"
+#include "input_habits.h"
+#include "palette_bar.h"
+#include "panels/temporal_panel.h"
+#include "session/session_json.h"
+#include "time_strip.h"
+
+using namespace pellucid;
+using namespace pellucid::gui;
+
+namespace {
+
+constexpr int kSide = 20;
+
+/// Frame f of a ball that grows: 1 in its centre, falling evenly to 0 at radius (0.2 + 0.05 f) of the side.
+Volume ball(int frame) {
+    const Geometry geometry{{kSide, kSide, kSide}, Vec3(1), Vec3(0)};
+    const double radius = (0.2 + 0.05 * frame) * kSide, centre = (kSide - 1) / 2.0;
+    std::vector<float> samples;
+    for (int k = 0; k < kSide; ++k)
+        for (int j = 0; j < kSide; ++j)
+            for (int i = 0; i < kSide; ++i) {
+                const double r = std::sqrt((i - centre) * (i - centre) + (j - centre) * (j - centre) +
+                                           (k - centre) * (k - centre));
+                samples.push_back(static_cast<float>(std::max(0.0, 1 - r / radius)));
+            }
+    return {geometry, Samples(std::move(samples))};
+}
+
+struct BallOptions {
+    int frames = 6;
+    int broken = -1;
+    int milliseconds = 0; ///< that reading a frame takes
+};
+
+std::shared_ptr<TimeSeries> balls(const BallOptions& options = {}) {
+    SeriesListing listing;
+    listing.title = "growing ball";
+    listing.timeUnit = "s";
+    listing.hasTimes = true;
+    listing.declaredRange = ValueRange{0, 1};
+    for (int f = 0; f < options.frames; ++f) {
+        SeriesFrame frame;
+        frame.source.path = "ball_" + std::to_string(f) + ".raw";
+        frame.time = 0.5 * f;
+        listing.frames.push_back(frame);
+    }
+    return std::make_shared<TimeSeries>(std::move(listing), [options](int frame, const JobControl&) {
+        if (frame == options.broken) throw FileError("it ends early", "ball_" + std::to_string(frame) + ".raw", "mend it");
+        std::this_thread::sleep_for(std::chrono::milliseconds(options.milliseconds));
+        return ball(frame);
+    });
+}
+
+/// Under tents:3. Nobody reads its source, for the series is there.
+Scene sceneOf(const std::shared_ptr<TimeSeries>& series) {
+    Scene basis;
+    VolumeSource source;
+    source.path = "ball_%d.raw";
+    basis.session = sessionOf(source);
+    basis.series = series;
+    const ShownFrame shown = series->show(0, {});
+    basis.data = shown.data;
+    basis.volume = shown.volume;
+    Session session = basis.session;
+    session.setTf(tents(3));
+    Scene scene = resolve(session, basis);
+    prepareToShow(scene);
+    return scene;
+}
+
+struct SeriesWindow : OpenWindow {
+    std::shared_ptr<TimeSeries> series;
+
+    explicit SeriesWindow(const BallOptions& options = {}) : series(balls(options)) {
+        window.resize(1280, 900);
+        bench().store().open(sceneOf(series));
+        settle();
+    }
+    PlayerController& player() { return bench().player(); }
+    AdaptController& adapting() { return bench().player().adapting(); }
+    TimeStrip& strip() { return child<TimeStrip>("timeStrip"); }
+    const Session& session() { return bench().store().session(); }
+    int frame() { return session().frame; }
+    void goTo(int frame) {
+        player().goTo(frame);
+        REQUIRE(waitFor([&] { return this->frame() == frame; }));
+        settle();
+    }
+    void waitUntilKnown() {
+        REQUIRE(waitFor([&] { return player().knownCount() == player().frameCount(); }));
+    }
+    /// All opacities of the points times a factor.
+    TransferFunction scaled(double factor) {
+        TransferFunction tf = document().tf();
+        for (ControlPoint& p : tf.points) p.opacity *= factor;
+        return tf;
+    }
+    double peak() {
+        double most = 0;
+        for (const ControlPoint& p : document().tf().points) most = std::max(most, p.opacity);
+        return most;
+    }
+    bool hasNotice(const QString& part) {
+        for (const Notice& notice : bench().notices().all())
+            if (notice.text.contains(part)) return true;
+        return false;
+    }
+};
+
+} // namespace
+
+TEST_CASE("frames are stepped, scrubbed and played without a step of the history", "[player]") {
+    SeriesWindow w;
+    InputHabits habits;
+    QApplication::instance()->installEventFilter(&habits);
+    CHECK_FALSE(w.child<QDockWidget>("playerDock").isHidden()); // by itself
+    CHECK(w.child<QLabel>("frameLabel").text().contains("t = 0 s"));
+    const QImage first = w.picture();
+
+    QTest::keyClick(&w.window, Qt::Key_Period);
+    REQUIRE(waitFor([&] { return w.frame() == 1; }));
+    w.settle();
+    CHECK(w.child<QLabel>("frameLabel").text().contains("t = 0.5 s"));
+    CHECK(w.picture() != first);
+    CHECK(w.document().volume()->dataRange() == w.series->load(1)->dataRange());
+    QTest::keyClick(&w.window, Qt::Key_Comma);
+    REQUIRE(waitFor([&] { return w.frame() == 0; }));
+    CHECK(w.picture() == first); // the same frame, the same picture
+
+    // A press on the strip goes there, a drag follows: the latest wins.
+    const auto at = [&](int frame) { return w.strip().rectOf(frame).center(); };
+    CHECK(w.strip().frameAt(at(4).x()) == 4);
+    QTest::mouseClick(&w.strip(), Qt::LeftButton, {}, at(4).toPoint());
+    REQUIRE(waitFor([&] { return w.frame() == 4; }));
+    drag(w.strip(), at(4), at(2));
+    REQUIRE(waitFor([&] { return w.frame() == 2 && !w.player().awaited(); }));
+    QTest::keyClick(&w.strip(), Qt::Key_Right);
+    REQUIRE(waitFor([&] { return w.frame() == 3; }));
+
+    // Play goes round and round; Space pauses.
+    std::set<int> seen;
+    const auto watch = QObject::connect(&w.bench().store(), &SessionStore::changed,
+                                        [&](const Scene&, const Scene& after) { seen.insert(after.session.frame); });
+    w.player().setSpeed(30);
+    QTest::keyClick(&w.window, Qt::Key_Space);
+    CHECK(w.player().isPlaying());
+    REQUIRE(waitFor([&] { return seen.size() == 6; })); // 5 → 0 among them
+    QTest::keyClick(&w.window, Qt::Key_Space);
+    CHECK_FALSE(w.player().isPlaying());
+    QObject::disconnect(watch);
+    CHECK(w.child<QLabel>("rateLabel").text().contains("of 30 frames a second"));
+
+    // Without the loop it ends at the last frame.
+    w.player().setLoops(false);
+    w.child<QToolButton>("play").click();
+    CHECK(w.player().isPlaying());
+    REQUIRE(waitFor([&] { return !w.player().isPlaying(); }));
+    CHECK(w.frame() == 5);
+    w.settle();
+    CHECK(w.document().stepCount() == 0);
+    CHECK(w.document().isClean());
+}
+
+TEST_CASE("the strip shows how many voxels have which value when", "[player]") {
+    SeriesWindow w;
+    w.waitUntilKnown();
+    CHECK_FALSE(w.player().isSurveying());
+    const QImage& image = w.strip().histogram();
+    REQUIRE(image.width() == 6);
+    // The ball grows, and so does the number of voxels of values above ½: within half its radius there are
+    // 4/3 π (½ (0.2 + 0.05 f) 20)³ of them, 34 in frame 0 and 383 in frame 5.
+    std::vector<double> bright;
+    for (int f = 0; f < 6; ++f) {
+        double sum = 0;
+        for (int b = 0; b < image.height() / 2; ++b) sum += image.pixelColor(f, b).lightnessF();
+        bright.push_back(sum);
+    }
+    for (int f = 1; f < 6; ++f) {
+        INFO("frame " << f);
+        CHECK(bright[static_cast<std::size_t>(f)] > bright[static_cast<std::size_t>(f) - 1]);
+    }
+    // Most voxels are 0 in all frames: the lowest bin is the brightest.
+    CHECK(image.pixelColor(0, image.height() - 1).lightnessF() > image.pixelColor(0, image.height() / 2).lightnessF());
+    // The mark of the present frame is drawn where that is.
+    const auto marked = [&](int frame) {
+        const QImage strip = w.strip().grab().toImage();
+        const QPointF place = (w.strip().rectOf(frame).center()) * strip.devicePixelRatio();
+        return strip.pixelColor(place.toPoint());
+    };
+    const QColor before = marked(3);
+    w.goTo(3);
+    CHECK(marked(3) != before);
+}
+
+TEST_CASE("undo leaves the frame where it is, and edits hold no frames", "[player]") {
+    BallOptions options;
+    options.frames = 8;
+    SeriesWindow w(options);
+    const double start = w.peak();
+    std::vector<std::weak_ptr<const Volume>> frames;
+    for (int f = 0; f < 8; ++f) {
+        w.goTo(f);
+        frames.push_back(w.document().volume());
+        w.document().setTf(w.scaled(0.9), "Less");
+    }
+    CHECK(w.document().stepCount() == 8); // none was forgotten for its volume
+    // With room for two frames no more than these, the present ones and those with figures live on.
+    w.series->setBudget(1);
+    w.goTo(0);
+    w.goTo(1);
+    w.goTo(7);
+    int alive = 0;
+    for (const auto& frame : frames) alive += frame.expired() ? 0 : 1;
+    CHECK(alive <= 4);
+
+    w.goTo(3);
+    const auto volume = w.document().volume();
+    for (int i = 7; i >= 0; --i) {
+        w.document().undo();
+        CHECK(w.frame() == 3);
+        CHECK(w.peak() == Approx(start * std::pow(0.9, i)));
+    }
+    CHECK(w.document().volume() == volume);
+    w.document().redo();
+    CHECK(w.peak() == Approx(0.9 * start));
+
+    // A window is undone on the frame that is there.
+    w.opening().editData("Window", [](Session& session) {
+        session.variables.edit([](std::vector<Variable>& all) { all.front().window = ValueRange{0, 0.5}; });
+    });
+    REQUIRE(waitFor([&] { return w.document().volume()->range().hi == 0.5; }));
+    w.goTo(5);
+    CHECK(w.document().volume()->range().hi == 0.5);
+    const QImage narrow = w.picture();
+    w.document().undo();
+    CHECK(w.frame() == 5);
+    CHECK(w.document().volume()->range().hi == 1);
+    CHECK(w.document().histogram().total > 0);
+    CHECK(w.picture() != narrow);
+    // Another frame alone is nothing to be saved.
+    w.bench().store().setClean();
+    w.goTo(2);
+    CHECK(w.document().isClean());
+}
+
+TEST_CASE("a broken frame is told of once and left out", "[player]") {
+    BallOptions options;
+    options.broken = 2;
+    SeriesWindow w(options);
+    w.goTo(1);
+    QTest::keyClick(&w.window, Qt::Key_Period);
+    REQUIRE(waitFor([&] { return w.frame() == 3; }));
+    w.settle();
+    CHECK(w.hasNotice("ball_2.raw"));
+    CHECK(w.hasNotice("it ends early"));
+    const auto notices = w.bench().notices().all().size();
+    QTest::keyClick(&w.window, Qt::Key_Comma);
+    REQUIRE(waitFor([&] { return w.frame() == 1; }));
+    const QImage strip = w.strip().grab().toImage();
+    CHECK(strip.pixelColor((w.strip().rectOf(2).center() * strip.devicePixelRatio()).toPoint()) !=
+          strip.pixelColor((w.strip().rectOf(3).center() * strip.devicePixelRatio()).toPoint()));
+    // The player goes on behind it.
+    std::set<int> seen;
+    QObject::connect(&w.bench().store(), &SessionStore::changed, &w.window,
+                     [&](const Scene&, const Scene& after) { seen.insert(after.session.frame); });
+    w.player().setSpeed(30);
+    w.player().play();
+    REQUIRE(waitFor([&] { return seen.size() == 5; }));
+    w.player().pause();
+    w.settle();
+    CHECK_FALSE(seen.contains(2));
+    CHECK(w.bench().notices().all().size() == notices);
+    // Nobody gets there by hand.
+    w.goTo(3);
+    w.player().goTo(2);
+    w.settle();
+    CHECK(w.frame() == 3);
+}
+
+TEST_CASE("frames that come too late are dropped, and that is said", "[player]") {
+    BallOptions options;
+    options.frames = 30;
+    options.milliseconds = 60; // of which 3 or 4 are due 60 times a second
+    SeriesWindow w(options);
+    w.player().stopSurvey();
+    CHECK(w.child<QLabel>("rateLabel").text().isEmpty());
+    w.player().setSpeed(60);
+    w.player().play();
+    REQUIRE(waitFor([&] { return w.player().dropped() >= 3; }));
+    const QString said = w.child<QLabel>("rateLabel").text();
+    INFO(said.toStdString());
+    CHECK(said.contains("of 60 frames a second"));
+    CHECK(said.contains("dropped"));
+    CHECK_FALSE(said.contains("none"));
+    w.player().pause();
+    w.settle();
+    CHECK(w.picture() == w.picture());
+}
+
+TEST_CASE("between keys a transfer function is halfway", "[player]") {
+    SeriesWindow w;
+    const double start = w.peak();
+    w.goTo(4);
+    CHECK_FALSE(w.child<QToolButton>("tfKey").isChecked());
+    w.child<QToolButton>("tfKey").click();
+    CHECK(w.child<QToolButton>("tfKey").isChecked());
+    w.document().setTf(w.scaled(0.5), "Half");
+    CHECK(w.session().variable().track.keys.size() == 2);
+    const QImage half = w.picture();
+    w.goTo(2);
+    CHECK(w.peak() == Approx(0.75 * start)); // halfway from 1 to ½
+    CHECK_FALSE(w.child<QToolButton>("tfKey").isChecked());
+    QTest::keyClick(&w.window, Qt::Key_Comma, Qt::ControlModifier);
+    REQUIRE(waitFor([&] { return w.frame() == 0; }));
+    CHECK(w.peak() == Approx(start));
+    QTest::keyClick(&w.window, Qt::Key_Period, Qt::ControlModifier);
+    REQUIRE(waitFor([&] { return w.frame() == 4; }));
+    CHECK(w.picture() == half);
+    w.goTo(2);
+    w.document().undo(); // the half
+    CHECK(w.frame() == 2);
+    CHECK(w.peak() == Approx(start));
+    w.document().undo(); // the key
+    CHECK(w.session().variable().track.keys.size() == 1);
+
+    // Targets too.
+    w.document().setTargets({0.2, 0.3, 0.5});
+    w.goTo(0);
+    w.child<QToolButton>("targetKey").click();
+    w.goTo(4);
+    w.child<QToolButton>("targetKey").click();
+    w.document().setTargets({0.6, 0.1, 0.3});
+    w.goTo(2);
+    const std::vector<double> between = w.document().targets();
+    CHECK(between[0] == Approx(0.4)); // halfway from 0.2 to 0.6
+    CHECK(between[1] == Approx(0.2));
+    CHECK(w.document().targets().size() == 3);
+    w.goTo(4);
+    w.child<QToolButton>("targetKey").click(); // gone
+    CHECK(w.session().targetKeys->size() == 1);
+    CHECK(w.document().targets()[0] == Approx(0.6)); // what is shown stays
+}
+
+TEST_CASE("a click on the palette refines all frames, one from the other", "[player]") {
+    SeriesWindow w;
+    w.child<QComboBox>("adaptMode").setCurrentIndex(1);
+    Q_EMIT w.child<QComboBox>("adaptMode").activated(1);
+    w.settle();
+    CHECK(w.session().adapt->mode == AdaptSettings::Mode::Refine);
+    const int steps = w.document().stepCount();
+    auto& palette = w.child<PaletteBar>("paletteBar");
+    QTest::mouseClick(&palette, Qt::LeftButton, {}, QPoint(palette.width() * 4 / 5, palette.height() / 2));
+    w.settle();
+    CHECK(w.document().stepCount() == steps + 1); // what follows in other frames is none
+    const TfTrack& track = w.session().variable().track;
+    REQUIRE(track.adapted.size() == 5); // all but the key
+    REQUIRE(w.session().refine->intensity.has_value());
+    CHECK(w.adapting().progress().done == 5);
+    CHECK(w.child<QLabel>("adaptLabel").text() == "made for all frames");
+
+    // Each frame's is that of the frame before, refined by its own histogram.
+    TransferFunction tf = *track.keys.at(0);
+    RefineOptions by = w.session().refine->options();
+    by.priority.intensity = w.session().refine->intensity;
+    for (int f = 1; f < 6; ++f) {
+        const Volume volume = ball(f).withRange({0, 1});
+        tf = refine(makeHistogram(volume), tf, by).tf;
+        INFO("frame " << f);
+        REQUIRE(track.adapted.at(f).tf->points.size() == tf.points.size());
+        for (std::size_t i = 0; i < tf.points.size(); ++i)
+            CHECK(track.adapted.at(f).tf->points[i].opacity == Approx(tf.points[i].opacity).margin(1e-9));
+    }
+    w.goTo(5);
+    CHECK(w.document().tf().points[1].opacity == Approx(tf.points[1].opacity));
+    const QImage refined = w.picture();
+
+    // An edit at a frame is a key; only what comes after it is made anew.
+    w.goTo(3);
+    const AdaptedTf second = track.adapted.at(2);
+    w.document().setTf(w.scaled(0.5), "Half");
+    w.settle();
+    const TfTrack& now = w.session().variable().track;
+    CHECK(now.keys.contains(3));
+    CHECK(now.adapted.at(2) == second);
+    w.goTo(5);
+    CHECK(w.picture() != refined);
+    CHECK(w.adapting().progress().done == 4); // 1, 2, 4, 5
+    // Undone from another frame.
+    w.document().undo();
+    w.settle();
+    CHECK(w.frame() == 5);
+    CHECK_FALSE(w.session().variable().track.keys.contains(3));
+    CHECK(w.picture() == refined);
+    // Without coherence frames differ, with all of it none does.
+    w.child<QSlider>("coherence").setValue(100);
+    w.settle();
+    CHECK(std::isinf(w.session().adapt->coherence));
+    CHECK(w.document().tf().points[1].opacity == Approx(w.session().variable().track.keys.at(0)->points[1].opacity));
+}
+
+TEST_CASE("every frame is optimized to the targets, and the curves show it", "[player]") {
+    SeriesWindow w;
+    w.document().setTargets({0.2, 0.3, 0.5});
+    w.settle();
+    w.child<QAction>("adaptOptimizeAction").trigger();
+    w.settle();
+    CHECK(w.adapting().progress().done == w.adapting().progress().all);
+    REQUIRE(w.session().variable().track.adapted.size() == 5);
+
+    w.child<QAction>("temporalAction").trigger();
+    auto& panel = *w.window.findChild<TemporalPanel*>();
+    CHECK(panel.knownCount() == 0);
+    w.child<QToolButton>("temporalMeasure").click();
+    REQUIRE(waitFor([&] { return panel.knownCount() == 6; }));
+    const TemporalCurves curves = panel.curves();
+    REQUIRE(curves.runs.size() == 2);
+    CHECK(curves.runs[0].name == "optimize");
+    for (int f = 1; f < 6; ++f) {
+        INFO("frame " << f);
+        CHECK(curves.runs[0].frames[static_cast<std::size_t>(f)].objective < 0.02);
+        CHECK(curves.runs[1].frames[static_cast<std::size_t>(f)].objective > 0.02); // nobody has optimized the key
+        CHECK(*curves.runs[1].frames[static_cast<std::size_t>(f)].flicker == 0);
+        CHECK(*curves.runs[0].frames[static_cast<std::size_t>(f)].flicker > 0);
+    }
+    CHECK(w.child<QLabel>("temporalWords").text().contains("flicker"));
+    // The figures of the frame that is shown are those of the curve.
+    w.goTo(4);
+    REQUIRE(waitFor([&] { return w.bench().results().measuresAreCurrent(); }));
+    CHECK(*w.bench().results().objective() == Approx(curves.runs[0].frames[4].objective).margin(1e-9));
+    QTemporaryDir folder;
+    for (const char* name : {"curves.csv", "curves.png", "curves.svg"}) {
+        panel.exportTo(folder.filePath(name));
+        CHECK(QFileInfo(folder.filePath(name)).size() > 500);
+    }
+    QFile csv(folder.filePath("curves.csv"));
+    REQUIRE(csv.open(QIODevice::ReadOnly));
+    CHECK(QString::fromUtf8(csv.readAll()).split('\n', Qt::SkipEmptyParts).size() == 1 + 2 * 6);
+    const QImage drawn = w.child<QWidget>("temporalDynamic").grab().toImage();
+    // From another side nothing is known any more.
+    Camera camera = w.document().camera();
+    camera.eye = camera.center + 1.2 * (camera.eye - camera.center);
+    w.document().setCamera(camera);
+    CHECK(panel.knownCount() == 0);
+    CHECK(w.child<QWidget>("temporalDynamic").grab().toImage() != drawn);
+}

@@ -1,0 +1,309 @@
+// Transfer functions that follow the frames of a series.
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "optimize/tracking.h"
+#include "session/adapt.h"
+
+using namespace pellucid;
+
+namespace {
+
+using Mode = AdaptSettings::Mode;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr int kFrames = 8;
+
+/// Three layers one behind the other, intensities 1/6, 1/2 and 5/6; the borders between them move from frame to frame.
+Volume layers(int frame) {
+    constexpr int kSize = 18;
+    std::vector<float> samples;
+    const int first = 4 + frame / 2, second = 12 - frame / 3;
+    for (int k = 0; k < kSize; ++k)
+        for (int j = 0; j < kSize; ++j)
+            for (int i = 0; i < kSize; ++i) {
+                const bool inside = j > 1 && k > 1 && j < kSize - 2 && k < kSize - 2 && i > 0 && i < kSize - 1;
+                samples.push_back(!inside ? 0.0f : i < first ? 1.0f / 6 : i < second ? 0.5f : 5.0f / 6);
+            }
+    return Volume(Geometry{{kSize, kSize, kSize}}, Samples(std::move(samples)));
+}
+
+/// Frame `broken` cannot be read.
+Scene sceneOf(Mode mode, double coherence, int broken = -1) {
+    SeriesListing listing;
+    listing.title = "layers";
+    listing.declaredRange = ValueRange{0, 1};
+    for (int f = 0; f < kFrames; ++f) {
+        SeriesFrame frame;
+        frame.source.path = "layers.raw";
+        frame.source.step = f;
+        frame.time = f;
+        frame.name = "step " + std::to_string(f);
+        listing.frames.push_back(frame);
+    }
+    Scene basis;
+    basis.series = std::make_shared<TimeSeries>(listing, [broken](int frame, const JobControl&) {
+        if (frame == broken) throw FileError("it ends too early", "layers.raw", "copy it again");
+        return layers(frame);
+    });
+    Session session = sessionOf(listing.frames[0].source);
+    basis.session = session; // of the same source: resolve() takes the series
+    basis.data = basis.series->load(0);
+    basis.volume = std::make_shared<const Volume>(basis.data->withRange({0, 1}));
+    session.setTf(tents(3, 0.2));
+    session.measure.edit([](MeasureSettings& m) { m.engine = EngineChoice::Cpu; });
+    session.adapt.set({mode, coherence});
+    return resolve(session, basis);
+}
+
+/// Makes all transfer functions that are to be made, in their order; what was made.
+std::vector<AdaptedFrame> adaptAll(Scene& scene) {
+    Workspace workspace;
+    FrameAdapter adapter;
+    std::vector<AdaptedFrame> all;
+    while (const auto task = nextToAdapt(scene.session, *scene.series)) {
+        try {
+            all.push_back(adapter.adapt(scene, *task, workspace));
+        } catch (const FileError&) { // the frame is known to be broken now
+            continue;
+        }
+        scene.session = withAdapted(std::move(scene.session), task->frame, all.back().forTrack());
+    }
+    return all;
+}
+
+std::vector<int> framesOf(const std::vector<AdaptedFrame>& made) {
+    std::vector<int> frames;
+    for (const AdaptedFrame& f : made) frames.push_back(f.frame);
+    return frames;
+}
+
+/// Frames that have to be made anew, by making them.
+std::vector<int> stale(const Scene& scene) {
+    Scene copy = scene;
+    return framesOf(adaptAll(copy));
+}
+
+/// The key optimized to equal shares.
+void optimizeKey(Scene& scene) {
+    Workspace workspace;
+    const OptimizeResult r = workspace.optimize(measureInput(scene), scene.targets(), {}, {});
+    REQUIRE(r.converged());
+    Session session = scene.session;
+    session.variables.edit(
+        [&](std::vector<Variable>& all) { all.front().track.keys[0] = Part<TransferFunction>(r.tf); });
+    scene = resolve(session, scene);
+}
+
+std::vector<FrameFigures> figures(const Scene& scene) {
+    Workspace workspace;
+    std::vector<FrameFigures> all;
+    std::optional<TransferFunction> before;
+    for (int f = 0; f < scene.series->size(); ++f) {
+        const Scene at = sceneAt(scene, f, *scene.session.tfAt(f));
+        all.push_back(figuresOf(at, before ? &*before : nullptr, workspace));
+        before = at.tf;
+    }
+    return all;
+}
+
+using Ints = std::vector<int>;
+
+} // namespace
+
+TEST_CASE("every frame after the key is adapted once, each from the one before", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 0);
+    CHECK(firstStale(scene.session, *scene.series) == 1);
+    CHECK(adaptProgress(scene.session, *scene.series).all == kFrames - 1);
+    const auto made = adaptAll(scene);
+    CHECK(framesOf(made) == Ints{1, 2, 3, 4, 5, 6, 7});
+    CHECK_FALSE(nextToAdapt(scene.session, *scene.series));
+    CHECK(firstStale(scene.session, *scene.series) == -1);
+    CHECK(adaptProgress(scene.session, *scene.series).done == kFrames - 1);
+    for (const AdaptedFrame& f : made) {
+        CHECK(*scene.session.tfAt(f.frame) == f.tf);
+        const TransferFunction previous = *scene.session.tfAt(f.frame - 1);
+        CHECK(f.basis == fingerprintOf(scene.session, *scene.series, f.frame, previous));
+    }
+    // Static transfer functions are the keys', and nothing is to be made.
+    scene.session.adapt.set({Mode::Static, 0});
+    CHECK_FALSE(nextToAdapt(scene.session, *scene.series));
+    CHECK(*scene.session.tfAt(5) == *scene.session.tfAt(0));
+}
+
+TEST_CASE("frames are made anew from the first one that changes", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 0);
+    const TransferFunction key = *scene.session.tf();
+    const auto targets = [&](double first) {
+        return std::map<FeatureId, double>{
+            {key.features[0].id, first}, {key.features[1].id, 1}, {key.features[2].id, 1}};
+    };
+    scene.session.targetKeys.set({{0, targets(1)}, {4, targets(1)}, {6, targets(1)}});
+    adaptAll(scene);
+    CHECK(stale(scene).empty());
+
+    SECTION("targets of a later key frame") { // between frames 4 and 6 they are halfway
+        scene.session.targetKeys.edit([&](TargetKeys& keys) { keys[6] = targets(3); });
+        CHECK(stale(scene) == Ints{5, 6, 7});
+    }
+    SECTION("another key") {
+        Session session = scene.session;
+        session.frame = 4;
+        session.setTf(tents(3, 0.4));
+        scene.session = session;
+        CHECK(stale(scene) == Ints{5, 6, 7}); // 4 is made by hand now, 1 to 3 are as they were
+    }
+    SECTION("the only key") {
+        scene.session.setTf(tents(3, 0.25));
+        CHECK(stale(scene) == Ints{1, 2, 3, 4, 5, 6, 7});
+    }
+    SECTION("the view, limits, coherence and settings of measuring") {
+        const Scene before = scene;
+        scene.session.camera = homeCamera(scene.volume->geometry(), Projection::Orthographic);
+        CHECK(firstStale(scene.session, *scene.series) == 1);
+        scene = before;
+        scene.session.goals.edit([&](FeatureGoals& goals) { goals[key.features[1].id].highest = 0.9; });
+        CHECK(firstStale(scene.session, *scene.series) == 1);
+        scene = before;
+        scene.session.adapt.set({Mode::Optimize, 0.5});
+        CHECK(firstStale(scene.session, *scene.series) == 1);
+        scene = before;
+        scene.session.measure.edit([](MeasureSettings& m) { m.saliency.sigma = 3; });
+        CHECK(firstStale(scene.session, *scene.series) == 1);
+    }
+    SECTION("what plays no part") {
+        scene.session.refine.edit([](RefineSettings& r) { r.intensity = 0.5; });
+        scene.session.display.edit([](DisplaySettings& d) { d.background = {1, 1, 1}; });
+        scene.session.frame = 3;
+        CHECK(stale(scene).empty());
+    }
+}
+
+TEST_CASE("refinement depends on its own settings, not on the view", "[adapt]") {
+    Scene scene = sceneOf(Mode::Refine, 0);
+    adaptAll(scene);
+    scene.session.camera = homeCamera(scene.volume->geometry(), Projection::Orthographic);
+    scene.session.measure.edit([](MeasureSettings& m) { m.saliency.sigma = 3; });
+    CHECK(stale(scene).empty());
+    scene.session.refine.edit([](RefineSettings& r) { r.intensity = 0.5; });
+    CHECK(firstStale(scene.session, *scene.series) == 1);
+    adaptAll(scene);
+    // A region is of the picture, and that of the view.
+    scene.session.refine.edit([](RefineSettings& r) {
+        r.intensity.reset();
+        r.region = ImageRegion{{{0.3, 0.3}, {0.7, 0.3}, {0.7, 0.7}, {0.3, 0.7}}};
+    });
+    CHECK(firstStale(scene.session, *scene.series) == 1);
+    adaptAll(scene);
+    CHECK(stale(scene).empty());
+    scene.session.camera.reset();
+    CHECK(firstStale(scene.session, *scene.series) == 1);
+}
+
+TEST_CASE("infinite coherence is a static transfer function", "[adapt]") {
+    for (const Mode mode : {Mode::Optimize, Mode::Refine}) {
+        Scene scene = sceneOf(mode, kInfinite);
+        const TransferFunction key = *scene.session.tf();
+        for (const AdaptedFrame& f : adaptAll(scene)) {
+            CHECK(f.tf == key);
+            CHECK(f.moves == 0);
+        }
+        for (const FrameFigures& f : figures(scene)) CHECK(f.flicker.value_or(0) == 0);
+    }
+}
+
+TEST_CASE("without coherence every frame is on target", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 0);
+    optimizeKey(scene);
+    const auto made = adaptAll(scene);
+    for (const AdaptedFrame& f : made) {
+        CHECK(*f.objective <= kTrackGoal);
+        CHECK(f.moves <= 2);
+    }
+    const auto dynamic = figures(scene);
+    for (std::size_t i = 1; i < dynamic.size(); ++i) // what the adapter said is what is measured
+        CHECK(dynamic[i].objective == Approx(*made[i - 1].objective).margin(1e-9));
+    scene.session.adapt.set({Mode::Static, 0});
+    const auto fixed = figures(scene);
+    CHECK(summaryOf(dynamic).rms < 0.1 * summaryOf(fixed).rms);
+    CHECK(summaryOf(fixed).flicker == 0);
+    CHECK(summaryOf(dynamic).flicker > 0);
+}
+
+TEST_CASE("coherence trades the distance from the targets for flicker", "[adapt]") {
+    double flicker = kInfinite;
+    for (const double coherence : {0.0, 1.0, 3.0}) {
+        Scene scene = sceneOf(Mode::Optimize, coherence);
+        optimizeKey(scene);
+        adaptAll(scene);
+        const auto frames = figures(scene);
+        for (const FrameFigures& f : frames) CHECK(f.objective <= std::max(kTrackGoal, 0.01 * coherence));
+        CHECK(summaryOf(frames).flicker < flicker);
+        flicker = summaryOf(frames).flicker;
+    }
+}
+
+TEST_CASE("coherence pulls a refinement back toward the frame before", "[adapt]") {
+    Scene scene = sceneOf(Mode::Refine, 0);
+    const auto task = nextToAdapt(scene.session, *scene.series);
+    REQUIRE(task);
+    Workspace workspace;
+    FrameAdapter adapter;
+    const AdaptedFrame free = adapter.adapt(scene, *task, workspace);
+    const Scene at = sceneAt(scene, 1, task->previous);
+    const RefineResult alone = refine(*at.histogram, at.tf, scene.session.refine->options());
+    CHECK(free.tf == alone.tf);
+    CHECK(free.moves == alone.iterations);
+    REQUIRE(alone.iterations > 0);
+    scene.session.adapt.set({Mode::Refine, 1}); // halfway
+    const AdaptedFrame held = adapter.adapt(scene, *nextToAdapt(scene.session, *scene.series), workspace);
+    for (std::size_t i = 0; i < held.tf.points.size(); ++i)
+        CHECK(held.tf.points[i].opacity == Approx((alone.tf.points[i].opacity + at.tf.points[i].opacity) / 2));
+}
+
+TEST_CASE("a broken frame is passed over", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 0, 3);
+    const auto made = adaptAll(scene);
+    CHECK(framesOf(made) == Ints{1, 2, 4, 5, 6, 7});
+    CHECK(scene.series->summary(3).problem == "it ends too early");
+    // The next one starts from the last that there is.
+    CHECK(made[2].basis == fingerprintOf(scene.session, *scene.series, 4, made[1].tf));
+    CHECK(adaptProgress(scene.session, *scene.series).all == 6);
+    CHECK(brokenFigures(*scene.series, 3).problem == "it ends too early");
+}
+
+TEST_CASE("flicker is the change of one frame's picture under two transfer functions", "[adapt]") {
+    Scene scene = sceneOf(Mode::Static, 0);
+    Workspace workspace;
+    const TransferFunction tf = *scene.session.tf(), none = withFeatureOpacities(tf, {0, 0, 0});
+    const Scene at = sceneAt(scene, 2, tf);
+    CHECK_FALSE(figuresOf(at, nullptr, workspace).flicker);
+    CHECK(*figuresOf(at, &at.tf, workspace).flicker == 0);
+    const double toBlack = *figuresOf(at, &none, workspace).flicker;
+    CHECK(toBlack > 1);
+    // The other way round it is the same two pictures.
+    CHECK(*figuresOf(sceneAt(scene, 2, none), &at.tf, workspace).flicker == Approx(toBlack));
+}
+
+TEST_CASE("adapted transfer functions have the same bits on one thread and on two", "[adapt]") {
+    std::array<std::vector<AdaptedFrame>, 2> made;
+    std::array<std::vector<FrameFigures>, 2> shown;
+    for (std::size_t i = 0; i < 2; ++i) {
+        setThreadCount(static_cast<int>(i) + 1);
+        Scene scene = sceneOf(Mode::Optimize, 1);
+        made[i] = adaptAll(scene);
+        shown[i] = figures(scene);
+    }
+    setThreadCount(0);
+    REQUIRE(made[0].size() == made[1].size());
+    for (std::size_t f = 0; f < made[0].size(); ++f) {
+        CHECK(made[0][f].tf == made[1][f].tf);
+        CHECK(made[0][f].basis == made[1][f].basis);
+        CHECK(shown[0][f].flicker == shown[1][f].flicker);
+        CHECK(shown[0][f].vws == shown[1][f].vws);
+    }
+}
