@@ -15,6 +15,7 @@
 #include "series_dialog.h"
 #include "series_files.h"
 #include "session/scene_data.h"
+#include "session/variable_edits.h"
 #include "tf/formats/tf_file.h"
 #include "tf/presets.h"
 #include "volume/excerpt.h"
@@ -174,6 +175,8 @@ void OpenController::addActions() {
 void OpenController::openVolume(const VolumeSource& source, const QString& tfSpec) {
     Request request;
     request.inputs.session = sessionOf(source);
+    request.inputs.session.variables.edit(
+        [&](std::vector<Variable>& all) { all.front().name = freeVariableName({}, nameOfSource(source)); });
     request.inputs.session.display.edit([](DisplaySettings& d) { d.light.on = true; }); // shapes at the first look
     request.inputs.range = source.range;
     if (!tfSpec.isEmpty()) {
