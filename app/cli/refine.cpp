@@ -203,7 +203,7 @@ Answer run(const Options& o, Progress& progress) {
         job);
     if (o.outTf) writeTf(result.tf, *o.outTf);
     Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
-    addVariables(json, scene);
+    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     return {textOf(options, tf, result, comparison, priority, seconds),
             std::move(json),
             opened.notices(),

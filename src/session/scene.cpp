@@ -8,6 +8,7 @@
 #include "session/scene_data.h"
 #include "tf/color_maps.h"
 #include "tf/formats/tf_file.h"
+#include "tf/hsb_colors.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 

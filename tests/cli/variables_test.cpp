@@ -30,8 +30,6 @@ TEST_CASE("render draws by the variables that it is told", "[cli][variables]") {
     CHECK(json["hsb"]["hue"] == 120);
     CHECK(json["hsb"]["a"].get<double>() > 1); // by the data: deviations are below ½
     CHECK(json["hsb"]["b"] == 2.5);
-    REQUIRE(json["variables"].size() == 2);
-    CHECK(json["variables"][1]["source"] == "sample:hurricane/precipitation");
     // Green or grey on black, never more red or blue than green.
     const Image image = readImage(w.path("a.png").string());
     double most = 0, strongest = 0;
@@ -45,14 +43,12 @@ TEST_CASE("render draws by the variables that it is told", "[cli][variables]") {
     CHECK(most > 0.3);
     CHECK(strongest > 0.1);
 
-    // One that is named is not there unless it is wanted; another one may come first.
-    CHECK_FALSE(w.json(render)["hsb"].is_object());
-    CHECK_FALSE(w.json(render)["variables"].is_array());
+    // Colours are by the transfer function unless others are wanted; another variable may come first.
+    CHECK_FALSE(w.json(render).contains("hsb"));
     CHECK(w.json(render + kRain + Words{"--hsb", "alpha=y,brightness=x"})["hsb"]["alpha"] == "y");
     const auto gradient = w.json(render + Words{"--variable", "g=gradient:x", "--hsb", "hue=x,brightness=g,hue-to=90"});
     CHECK(gradient["hsb"]["hue"] == "x");
     CHECK(gradient["hsb"]["hue_to"] == 90);
-    CHECK(gradient["variables"][1]["source"] == "gradient:x");
 }
 
 TEST_CASE("measures are of the colours that are drawn", "[cli][variables]") {
@@ -87,21 +83,20 @@ TEST_CASE("variables that cannot be are told with their option", "[cli][variable
         CHECK_THAT(outcome.err, Contains(what));
     };
     fails({"--variable", "rain.nrrd"}, "NAME=FILE");
-    fails({"--variable", "x=sample:shells"}, "already");
+    fails({"--variable", "x=sample:shells"}, "VOLUME's");
     fails({"--variable", "a:b=sample:shells"}, "colon");
-    fails({"--variable", "g=gradient:z"}, "no variable z");
-    fails({"--hsb", "brightness=y"}, "--variable y=FILE adds one");
-    fails({"--hsb", "darkness=x"}, "is no channel");
-    fails({"--hsb", "a=1,a=2"}, "given twice");
-    fails({"--hsb", "brightness"}, "CHANNEL=VARIABLE");
-    fails({"--hsb", "a=-1"}, "--hsb a");
+    fails({"--variable", "g=gradient:z"}, "no variable 'z'");
+    fails({"--hsb", "brightness=y"}, "no variable 'y'");
+    fails({"--hsb", "darkness=x"}, "there is no 'darkness'");
+    fails({"--hsb", "brightness"}, "sets nothing");
+    fails({"--hsb", "a=-1"}, "--hsb");
     fails({"--hsb", "saturation=volatility:x:0"}, "out of range");
 }
 
 TEST_CASE("samples over time are written frame by frame", "[cli][generate]") {
     const Workshop w;
     const auto json = w.json({"generate", "vortex", "--size", "16", "--frames", "3", "--out", "v%02d.nrrd"});
-    CHECK(json["frames"] == 3);
+    CHECK(json["files"].size() == 3);
     CHECK(w.list() == std::vector<std::string>{"v00.nrrd", "v01.nrrd", "v02.nrrd"});
     CHECK_FALSE(w.read("v00.nrrd") == w.read("v01.nrrd"));
     CHECK(w.json({"info", "v%02d.nrrd"}).dump().find("v02") != std::string::npos);
@@ -111,5 +106,4 @@ TEST_CASE("samples over time are written frame by frame", "[cli][generate]") {
     CHECK(w.has("s_001.nrrd"));
     CHECK(w.run({"generate", "vortex", "--size", "16", "--frames", "101", "--out", "t.nrrd"}).status == 2);
     CHECK(w.run({"generate", "shells", "--size", "16", "--frames", "2", "--out", "t.nrrd"}).status == 2);
-    CHECK(w.run({"generate", "vortex", "--size", "16", "--frames", "2", "--out", "t%s.nrrd"}).status == 2);
 }

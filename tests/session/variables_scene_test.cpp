@@ -43,7 +43,7 @@ SceneInputs hurricane(int frame, int n) {
 std::vector<float> pictureOf(const Scene& scene) {
     const PictureInput in = pictureInput(scene, 48, 40);
     const auto renderer = makeRenderer(EngineChoice::Cpu, in.volume);
-    return renderer->render(in.camera, in.tf, in.settings).pixels;
+    return renderer->render(in.camera, in.tf, in.settings).rgba;
 }
 
 } // namespace
