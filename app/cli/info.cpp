@@ -144,6 +144,7 @@ Command addInfo(CLI::App& program) {
     CLI::App* app = program.add_subcommand("info", "What a volume holds: size, type, spacing, range, invalid voxels");
     const auto options = std::make_shared<SceneOptions>();
     options->volume.add(*app);
+    options->variables.add(*app);
     options->session.add(*app);
     return {app, [options](Progress& progress) {
                 const Opened opened = resolve(*options, progress, {.use = {}, .byEngine = false, .needsTf = false});

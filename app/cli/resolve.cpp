@@ -6,6 +6,7 @@ namespace pellucid::cli {
 
 void SceneOptions::addForFigures(CLI::App& app) {
     volume.add(app);
+    variables.add(app);
     session.add(app);
     tf.add(app);
     camera.add(app);
@@ -21,6 +22,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     SceneInputs inputs;
     inputs.session = std::move(file.session);
     options.volume.applyTo(inputs);
+    options.variables.applyTo(inputs);
     options.tf.applyTo(inputs);
     options.camera.applyTo(inputs);
     options.clip.applyTo(inputs);

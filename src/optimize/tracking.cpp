@@ -38,13 +38,6 @@ public:
         : m_function(function), m_targets(targets), m_limits(std::move(limits)), m_options(options), m_job(job),
           m_features(movable(targets, m_limits)) {
         m_start = inside(featureOpacities(function.base()));
-        for (const std::size_t f : m_features) {
-            Point& row = m_metric.emplace_back();
-            for (const std::size_t g : m_features)
-                row.push_back(!options.metric.empty() ? options.metric[f][g]
-                              : f == g                ? 1.0 / static_cast<double>(m_features.size())
-                                                      : 0.0);
-        }
     }
 
     Tracked run() {
@@ -71,6 +64,7 @@ public:
                 known = true;
             }
             if (at.objective <= m_goal || at.moves >= m_options.maxMoves) break;
+            findMetric();
             const std::vector<Point> candidates = candidatesFrom(at, derivative, caution);
             if (candidates.empty()) break;
             const auto vws = m_function.evaluate(candidates, m_job);
@@ -121,6 +115,17 @@ private:
     Point capped(Point x) const {
         for (const std::size_t f : m_features) x[f] = std::min(x[f], kMostOpacity);
         return x;
+    }
+
+    void findMetric() {
+        if (!m_metric.empty()) return;
+        std::vector<std::vector<double>> all;
+        if (m_options.metric) all = m_options.metric();
+        for (const std::size_t f : m_features) {
+            Point& row = m_metric.emplace_back();
+            for (const std::size_t g : m_features)
+                row.push_back(!all.empty() ? all[f][g] : f == g ? 1.0 / static_cast<double>(m_features.size()) : 0.0);
+        }
     }
 
     /// F where features that nothing can raise have 0, and the others divide what is left as well as it goes.

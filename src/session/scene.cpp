@@ -415,7 +415,12 @@ PictureInput plainPictureInput(const Scene& scene, int width, int height) {
 
 AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density) {
     const Volume& volume = *picture.volume;
-    return {show,           picture.camera, volume.geometry(), picture.tf,
+    TransferFunction tf = picture.tf;
+    if (picture.settings.colors) { // the legend tells opacities alone: a value has no colour
+        constexpr double kGrey = 0.8;
+        for (ControlPoint& p : tf.points) p.color = {kGrey, kGrey, kGrey};
+    }
+    return {show,           picture.camera, volume.geometry(), std::move(tf),
             volume.range(), volume.title,   picture.settings,  density};
 }
 

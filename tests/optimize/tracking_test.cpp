@@ -107,7 +107,7 @@ TEST_CASE("what is near enough already does not move", "[tracking]") {
 
 TEST_CASE("a metric says which features may jump", "[tracking]") {
     TrackOptions options;
-    options.metric = {{1e4, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    options.metric = [] { return std::vector<std::vector<double>>{{1e4, 0, 0}, {0, 1, 0}, {0, 0, 1}}; };
     const std::vector<double> sizes{4, 2, 1};
     const Tracked found = track(SideBySide(sizes, {0.1, 0.1, 0.1}), kEqual, {}, options);
     CHECK(found.objective <= kTrackGoal);
