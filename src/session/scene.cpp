@@ -110,8 +110,8 @@ void placeAsPublished(const Session& session, const Volume& data, TransferFuncti
 
 namespace {
 
-/// The frame, or where it cannot be read the next that can, from the beginning again after the last: data that are opened show
-/// something as long as one frame is sound. Throws what is wrong with the frame where none is.
+/// The frame, or where it cannot be read the next that can, from the beginning again after the last: data that are
+/// opened show something as long as one frame is sound. Throws what is wrong with the frame where none is.
 int soundFrame(TimeSeries& series, int frame, const JobControl& job) {
     try {
         series.load(frame, job);
@@ -415,7 +415,12 @@ PictureInput plainPictureInput(const Scene& scene, int width, int height) {
 
 AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density) {
     const Volume& volume = *picture.volume;
-    return {show,           picture.camera, volume.geometry(), picture.tf,
+    TransferFunction tf = picture.tf;
+    if (picture.settings.colors) { // the legend tells opacities alone: a value has no colour
+        constexpr double kGrey = 0.8;
+        for (ControlPoint& p : tf.points) p.color = {kGrey, kGrey, kGrey};
+    }
+    return {show,           picture.camera, volume.geometry(), std::move(tf),
             volume.range(), volume.title,   picture.settings,  density};
 }
 

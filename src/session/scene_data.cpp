@@ -180,12 +180,13 @@ void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const
     const HsbMapping& was = *basis.session.hsb;
     const bool sameMapping = basis.colors && was.saturation == hsb.saturation && was.brightness == hsb.brightness &&
                              basis.series == scene.series;
-    const auto scale = [&](const std::optional<double>& set, double before, const std::shared_ptr<const Volume>& v) {
-        if (set) return *set;
-        return sameMapping ? before : v ? automaticScale(*v) : 1.0;
+    const auto scale = [&](std::optional<double> HsbMapping::*set, double before,
+                           const std::shared_ptr<const Volume>& v) {
+        if (hsb.*set) return *(hsb.*set);
+        return sameMapping && !(was.*set) ? before : v ? automaticScale(*v) : 1.0;
     };
-    scene.hsbA = input.a = scale(hsb.a, basis.hsbA, input.saturation);
-    scene.hsbB = input.b = scale(hsb.b, basis.hsbB, input.brightness);
+    scene.hsbA = input.a = scale(&HsbMapping::a, basis.hsbA, input.saturation);
+    scene.hsbB = input.b = scale(&HsbMapping::b, basis.hsbB, input.brightness);
     input.hueFrom = hsb.hueFrom;
     input.hueTo = hsb.hueTo;
     scene.colors = std::make_shared<const VoxelColors>(hsbColors(input, job));

@@ -8,6 +8,12 @@
 namespace pellucid {
 namespace {
 
+/// How the variable of this name, or what is written like one, is made; empty: it is not derived.
+std::optional<Derivation> derivationOf(const Session& session, const std::string& name) {
+    if (const Variable* variable = session.variableNamed(name)) return variable->derivation;
+    return parseDerivation(name);
+}
+
 using Rename = std::function<std::string(const std::string&)>;
 
 /// `text` with the variable that it names, or is made of, under another name.
@@ -32,8 +38,7 @@ void renameInChannels(Session& session, const Rename& rename) {
 bool refersTo(const Session& session, std::string text, const std::string& name) {
     for (std::size_t depth = 0; depth < 100; ++depth) {
         if (text == name) return true;
-        const Variable* variable = session.variableNamed(text);
-        const auto derivation = variable != nullptr ? variable->derivation : parseDerivation(text);
+        const auto derivation = derivationOf(session, text);
         if (!derivation) return false;
         text = derivation->of;
     }
@@ -68,8 +73,7 @@ std::string titleOf(const Derivation& d) {
 std::string* volatilityIn(const Session& session, HsbMapping& hsb) {
     for (std::string* channel : {&hsb.saturation, &hsb.brightness, &hsb.hue}) {
         if (channel->empty()) continue;
-        const Variable* variable = session.variableNamed(*channel);
-        const auto derivation = variable != nullptr ? variable->derivation : parseDerivation(*channel);
+        const auto derivation = derivationOf(session, *channel);
         if (derivation && derivation->kind == Derivation::Kind::Volatility) return channel;
     }
     return nullptr;
@@ -88,7 +92,7 @@ std::string freeVariableName(const Session& session, const std::string& wish) {
 
 std::string nameOfSource(const VolumeSource& source) {
     if (!source.array.empty()) return source.array;
-    if (source.isSample()) return source.path.substr(source.path.find(':') + 1);
+    if (source.isSample()) return source.path.substr(source.path.find_last_of(":/") + 1);
     std::string name = std::filesystem::path(source.path).filename().string();
     // Up to the first dot, wildcard or conversion; then without what tells frames apart.
     const std::string stem = name.substr(0, name.find_first_of(".%*?[", 1));
@@ -184,8 +188,8 @@ std::optional<int> volatilityFrames(const Session& session) {
     HsbMapping hsb = *session.hsb;
     const std::string* text = volatilityIn(session, hsb);
     if (text == nullptr) return {};
-    const Variable* variable = session.variableNamed(*text);
-    return (variable != nullptr ? variable->derivation : parseDerivation(*text))->frames;
+    const auto derivation = derivationOf(session, *text);
+    return derivation->frames;
 }
 
 void setVolatilityFrames(Session& session, int frames) {

@@ -12,6 +12,7 @@
 #include "render/camera_motion.h"
 #include "render/clip_handles.h"
 #include "selection.h"
+#include "session/variable_edits.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -208,4 +209,45 @@ TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
     panel.compute();
     REQUIRE(waitFor([&] { return panel.isCurrent() && panel.isPictureComplete(); }));
     grab(w, "parameter_space.png");
+}
+
+TEST_CASE("several variables for the guide", "[.pictures][.variablespicture]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    struct Show {
+        const char *sample, *brightness, *file;
+        int frame, frames;
+        double azimuth, elevation;
+    };
+    const Show shows[] = {{"vortex", "gradient:vortex", "variables_vortex.png", 40, 10, 30, 15},
+                          {"smoke", "gradient:smoke", "variables_smoke.png", 90, 10, 30, 5},
+                          {"hurricane", "precipitation", "variables_hurricane.png", 30, 10, 0, 35}};
+    for (const Show& show : shows) {
+        OpenWindow w;
+        w.window.resize(1280, 860);
+        VolumeSource source;
+        source.path = "sample:" + std::string(show.sample);
+        w.open(source);
+        w.settle();
+        w.child<QAction>("variablesAction").trigger();
+        w.opening().editInJob("Mapping", [&](Session& s) {
+            s.frame = show.frame;
+            if (show.sample == std::string("hurricane")) {
+                Variable rain;
+                rain.name = "precipitation";
+                rain.source.path = "sample:hurricane/precipitation";
+                addVariable(s, rain);
+                s.ground.edit([](GroundView& g) { g.path = "sample:hurricane/ground"; });
+            }
+            s.hsb.edit([&](HsbMapping& h) {
+                h.on = true;
+                h.saturation = "volatility:" + std::string(show.sample) + ":" + std::to_string(show.frames);
+                h.brightness = show.brightness;
+            });
+        });
+        w.settle();
+        w.document().setCamera(
+            cameraFromView(w.document().volume()->geometry(), show.azimuth, show.elevation, 1.2, Projection::Perspective));
+        grab(w, ("window_" + std::string(show.file)).c_str());
+        REQUIRE(w.picture().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + show.file));
+    }
 }

@@ -162,4 +162,5 @@ TEST_CASE("variables are named after their files", "[variables]") {
     CHECK(nameOf("scan.nii.gz") == "scan");
     CHECK(nameOf("007.raw") == "007");
     CHECK(nameOf("sample:vortex") == "vortex");
+    CHECK(nameOf("sample:hurricane/wind") == "wind");
 }

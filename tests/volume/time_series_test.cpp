@@ -45,7 +45,8 @@ struct Counted {
     std::shared_ptr<std::vector<int>> made;
     TimeSeries series;
     explicit Counted(int count)
-        : made(std::make_shared<std::vector<int>>(count, 0)), series(listingOf(count), [made = made](int f, const JobControl&) {
+        : made(std::make_shared<std::vector<int>>(count, 0)),
+          series(listingOf(count), [made = made](int f, const JobControl&) {
               ++(*made)[static_cast<std::size_t>(f)];
               return ramp(f);
           }) {}
@@ -238,7 +239,6 @@ TEST_CASE("a hundred frames of 128³ floats play within 256 MiB, with one gone a
     CHECK(mostHeld > kBudget - 2 * (kFrameFile * 3 / 2)); // the budget is made use of
     const std::size_t grown = peakBytes() - before;
     INFO("held " << mostHeld / 1048576.0 << " MiB, the process grew by " << grown / 1048576.0 << " MiB");
-    // Beside the frames: 4 MiB through which files are read.
-    CHECK(grown <= kBudget + (std::size_t{16} << 20));
+    CHECK(grown <= kBudget + (std::size_t{8} << 20)); // libraries and the test itself take some, too
     for (const int f : {kGone, kCutOff}) CHECK(!series->summary(f).problem.empty());
 }

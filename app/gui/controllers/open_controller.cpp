@@ -15,6 +15,7 @@
 #include "series_dialog.h"
 #include "series_files.h"
 #include "session/scene_data.h"
+#include "session/variable_edits.h"
 #include "tf/formats/tf_file.h"
 #include "tf/presets.h"
 #include "volume/excerpt.h"
@@ -174,6 +175,8 @@ void OpenController::addActions() {
 void OpenController::openVolume(const VolumeSource& source, const QString& tfSpec) {
     Request request;
     request.inputs.session = sessionOf(source);
+    request.inputs.session.variables.edit(
+        [&](std::vector<Variable>& all) { all.front().name = freeVariableName({}, nameOfSource(source)); });
     request.inputs.session.display.edit([](DisplaySettings& d) { d.light.on = true; }); // shapes at the first look
     request.inputs.range = source.range;
     if (!tfSpec.isEmpty()) {
@@ -368,7 +371,7 @@ void OpenController::showChanged(const DataChange& change, Scene& scene) {
             });
     };
     // Other edits may have come meanwhile: the change is made of what is there now, and anew where that is other data.
-    Session present = store.committed().session;
+    Session present = store.session();
     andStart(present);
     if (needsData(present, scene)) return start(std::move(m_edit));
     const bool otherVoxels = scene.data != change.basis.data;
