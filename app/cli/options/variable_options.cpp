@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "parse.h"
 #include "session/variable_edits.h"
 #include "volume/series.h"
