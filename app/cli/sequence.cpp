@@ -521,6 +521,7 @@ Command addSequence(CLI::App& program) {
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where a frame is not on target; everything is written all the same");
     o->scene.picture.add(*app, PictureOptions::Mode::OfSession);
+    o->scene.ground.add(*app);
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -186,6 +186,7 @@ void addFile(SeriesListing& listing, const VolumeSource& given, const std::strin
     frame.source.path = path;
     frame.source.more.clear();
     frame.source.step = 0;
+    if (!alone) frame.source.frames.reset(); // they count files, not steps of a longer headerless one
     const std::optional<FileContents> contents = knownContents(frame.source, job);
     const int steps = contents ? contents->steps : 1;
     frame.source.frames.reset();

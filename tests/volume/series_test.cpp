@@ -248,6 +248,13 @@ TEST_CASE("a headerless file of several steps needs to be asked for them", "[ser
     CHECK(lettersOf(listing) == "ace");
     source.frames = FrameRange{1, 2, 1};
     CHECK(lettersOf(listSeries(source)) == "ce");
+    // Of several files each has one step: a longer one is damaged.
+    VolumeSource both = source;
+    both.path = folder.write("t.bin", "##gh");
+    both.more = {source.path};
+    both.frames = FrameRange{};
+    CHECK(listSeries(both).frames.size() == 2);
+    CHECK_THROWS_AS(loadVolume(listSeries(both).frames[1].source), FileError);
     source.raw->skipBytes = 1; // 7 bytes are no multiple of 2
     source.frames = FrameRange{};
     CHECK(listSeries(source).frames.size() == 1);
