@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "commands.h"
-#include "optimize/refine_words.h"
 #include "optimize/drawn_colors.h"
+#include "optimize/refine_words.h"
 #include "optimize/region_colors.h"
 #include "output_files.h"
 #include "parse.h"
@@ -199,15 +199,12 @@ Answer run(const Options& o, Progress& progress) {
     const RefineResult result = refineAsDrawn(histogram, tf, *scene.volume, scene.colors.get(), options, job);
     const double seconds = refining.seconds();
     const RefineComparison comparison = compareMethods(
-        histogram, options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get()), options,
-        job);
+        histogram, options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get()),
+        options, job);
     if (o.outTf) writeTf(result.tf, *o.outTf);
     Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
     if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
-    return {textOf(options, tf, result, comparison, priority, seconds),
-            std::move(json),
-            opened.notices(),
-            {}};
+    return {textOf(options, tf, result, comparison, priority, seconds), std::move(json), opened.notices(), {}};
 }
 
 void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {

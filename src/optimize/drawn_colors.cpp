@@ -51,8 +51,7 @@ TransferFunction withDrawnColors(const TransferFunction& tf, const Volume& volum
     };
     std::vector<Mean> means(tf.points.size());
     const auto add = [&](std::size_t point, double weight, const BinColors& bin) {
-        for (std::size_t c = 0; c < 3; ++c)
-            means[point].sum[c] += weight * static_cast<double>(bin.sum[c]) / 255;
+        for (std::size_t c = 0; c < 3; ++c) means[point].sum[c] += weight * static_cast<double>(bin.sum[c]) / 255;
         means[point].weight += weight * static_cast<double>(bin.count);
     };
     for (std::size_t b = 0; b < kBins; ++b) {

@@ -8,9 +8,9 @@
 
 namespace pellucid {
 
-/// `tf` with the drawn colours in place of its own: each control point has the mean colour of the voxels around it, which
-/// count by how near their intensity is, as in linear interpolation between neighbouring points. A point without voxels
-/// keeps its own. As it is where `colors` is null. What regions and hues of a picture are compared with
+/// `tf` with the drawn colours in place of its own: each control point has the mean colour of the voxels around it,
+/// which count by how near their intensity is, as in linear interpolation between neighbouring points. A point without
+/// voxels keeps its own. As it is where `colors` is null. What regions and hues of a picture are compared with
 /// (docs/method.md, "Entropy refinement").
 TransferFunction withDrawnColors(const TransferFunction& tf, const Volume& volume, const VoxelColors* colors);
 

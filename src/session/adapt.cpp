@@ -355,7 +355,8 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         options.priority = priority;
         made.tf = scene.tf;
         if (!std::isinf(settings.coherence)) {
-            const RefineResult result = refineAsDrawn(*scene.histogram, scene.tf, *scene.volume, scene.colors.get(), options, quiet);
+            const RefineResult result =
+                refineAsDrawn(*scene.histogram, scene.tf, *scene.volume, scene.colors.get(), options, quiet);
             made.tf = pulledBack(scene.tf, result.tf, settings.coherence);
             made.energy = result.energyMovableAfter;
             made.moves = result.iterations;

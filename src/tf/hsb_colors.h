@@ -26,8 +26,8 @@ struct HsbInput {
 /// Throws Cancelled.
 VoxelColors hsbColors(const HsbInput& input, const JobControl& job = {});
 
-/// Alpha of eq. 6.1: opacity rises evenly from 0 at intensity 0 to `top` at 1, (0,1]. Its features are the thirds of the
-/// window, so that there is something to measure.
+/// Alpha of eq. 6.1: opacity rises evenly from 0 at intensity 0 to `top` at 1, (0,1]. Its features are the thirds of
+/// the window, so that there is something to measure.
 TransferFunction opacityRamp(double top);
 /// `top` for opacityRamp(), in [0.02,1], by which a ray along the shortest edge of the box meets an optical depth of
 /// 1.5 on average.

@@ -8,10 +8,10 @@
 
 using namespace pellucid;
 using pellucid::test::operator+;
+using Catch::Matchers::Contains;
 using pellucid::test::Outcome;
 using pellucid::test::Words;
 using pellucid::test::Workshop;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -68,9 +68,10 @@ TEST_CASE("measures are of the colours that are drawn", "[cli][variables]") {
 
 TEST_CASE("a region is refined by the colours that are drawn", "[cli][variables]") {
     const Workshop w;
-    const auto json = w.json(Words{"refine"} + Words{"sample:hurricane", "--sample-size", "32", "--frame", "12"} + kRain +
-                             Words{"--hsb", "saturation=volatility:x:5,brightness=y", "--region", "20,20,60,60",
-                                   "--size", "80x80", "--tf", "tents:3:0.5"});
+    const auto json =
+        w.json(Words{"refine"} + Words{"sample:hurricane", "--sample-size", "32", "--frame", "12"} + kRain +
+               Words{"--hsb", "saturation=volatility:x:5,brightness=y", "--region", "20,20,60,60", "--size", "80x80",
+                     "--tf", "tents:3:0.5"});
     CHECK(json["hsb"]["brightness"] == "y");
     CHECK(json["priority"]["kind"] == "region");
 }

@@ -70,8 +70,7 @@ TEST_CASE("the colours of a scene are equation 6.1 of its frames, to 1/255", "[v
                 for (const auto& v : frames) sum += std::pow(normal(*v) - mean, 2);
             }
             const double s = std::min(1.0, 7 * std::sqrt(sum / static_cast<double>(frames.size())));
-            const double b =
-                1 - (now->isValid(i) ? std::min(1.0, 3 * (now->value(i) - y.lo) / (y.hi - y.lo)) : 0.0);
+            const double b = 1 - (now->isValid(i) ? std::min(1.0, 3 * (now->value(i) - y.lo) / (y.hi - y.lo)) : 0.0);
             const std::uint32_t c = scene.colors->rgba[i];
             const auto channel = [&](int at) { return static_cast<double>(c >> (8 * at) & 255u); };
             REQUIRE(channel(0) == Approx(255 * b).margin(1));

@@ -6,8 +6,8 @@
 #include <QScopedValueRollback>
 
 #include "controllers/optimize_controller.h"
-#include "optimize/refine_words.h"
 #include "optimize/drawn_colors.h"
+#include "optimize/refine_words.h"
 #include "optimize/region_colors.h"
 #include "picture_pair.h"
 #include "workbench.h"
