@@ -120,7 +120,7 @@ void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* nam
     combo->setObjectName(name);
     combo->setToolTip(tip);
     combo->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    combo->setMinimumContentsLength(14);
+    combo->setMinimumContentsLength(8);
     m_channels[indexOf(channel)] = combo;
     form.addRow(label, combo);
     connect(combo, &QComboBox::activated, this, [this, combo, channel] {
@@ -143,14 +143,14 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
     scale.slider->setObjectName(QString::fromLatin1(name) + "Slider");
     scale.slider->setRange(0, kScaleSteps);
     scale.slider->setPageStep(kScaleSteps / 20);
-    scale.slider->setMinimumWidth(60);
+    scale.slider->setMinimumWidth(40);
     scale.slider->setToolTip(tip);
     scale.box->setObjectName(name);
     scale.box->setRange(0, kLargestScale);
     scale.box->setDecimals(3);
     scale.box->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
     scale.box->setKeyboardTracking(false);
-    scale.box->setMaximumWidth(90);
+    scale.box->setMaximumWidth(76);
     scale.box->setToolTip(tip);
     scale.automatic->setObjectName(QString::fromLatin1(name) + "Automatic");
     scale.automatic->setText(tr("auto"));
@@ -186,7 +186,7 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
 void ChannelsBox::addHue(QFormLayout& form) {
     m_hueSlider->setObjectName("hsbHueSlider");
     m_hueSlider->setRange(0, 359);
-    m_hueSlider->setMinimumWidth(60);
+    m_hueSlider->setMinimumWidth(40);
     m_hueSlider->setToolTip(tr("The hue, degrees: 0 red, 120 green, 240 blue"));
     m_hueSwatch->setObjectName("hsbHueSwatch");
     const std::tuple<QDoubleSpinBox*, const char*, QString> boxes[] = {
