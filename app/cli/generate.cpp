@@ -1,9 +1,11 @@
 // `generate`: a built-in data set as a file.
 #include <filesystem>
+#include <optional>
 
 #include "commands.h"
 #include "output_files.h"
 #include "parse.h"
+#include "volume/file_names.h"
 #include "volume/loader.h"
 #include "volume/procedural.h"
 
@@ -15,6 +17,7 @@ struct Options {
     std::string name;
     int size = 0;
     std::uint32_t seed = 1;
+    std::optional<int> frames;
     std::string out;
 };
 
@@ -24,24 +27,51 @@ void checkSuffix(const std::string& path) {
                          "name the file something.nrrd");
 }
 
+/// The file of a frame: the pattern's conversion, else "_007" before the suffix.
+std::string fileOf(const std::string& out, int frame) {
+    if (const auto pattern = numberedName(out)) return pattern->with(frame);
+    const std::filesystem::path path(out);
+    std::string number = std::to_string(frame);
+    number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
+    return (path.parent_path() / (path.stem().string() + "_" + number + path.extension().string())).string();
+}
+
 Answer run(const Options& o, Progress& progress) {
     requireFileName(o.out, "--out");
     checkSuffix(o.out);
-    checkOutputFile(o.out, "--out");
-    const Volume volume = makeSample(o.name, o.size, o.seed, progress.phase("generating"));
-    progress.phase("writing");
-    writeNrrd(volume, o.out);
-    std::error_code notAFile; // but a pipe or device
-    const std::size_t bytes = std::filesystem::file_size(o.out, notAFile);
+    const SampleInfo& info = sampleInfo(o.name);
+    if (o.frames && *o.frames > info.frames)
+        throw UsageError("the sample has " + std::to_string(info.frames) + " frames", "--frames",
+                         "give 1 to " + std::to_string(info.frames));
+    std::vector<std::string> files;
+    for (int f = 0; f < o.frames.value_or(1); ++f) files.push_back(o.frames ? fileOf(o.out, f) : o.out);
+    for (const std::string& file : files) checkOutputFile(file, "--out");
+    const JobControl job = progress.phase("generating");
+    std::uintmax_t bytes = 0;
+    std::optional<Volume> volume;
+    bool areFiles = true; // no pipes or devices
+    for (std::size_t f = 0; f < files.size(); ++f) {
+        volume.emplace(makeSample(o.name, o.size, o.seed, job.part(f, files.size()), {}, static_cast<int>(f)));
+        if (files.size() == 1) progress.phase("writing");
+        writeNrrd(*volume, files[f]);
+        std::error_code notAFile;
+        const std::uintmax_t size = std::filesystem::file_size(files[f], notAFile);
+        areFiles = areFiles && !notAFile;
+        if (!notAFile) bytes += size;
+    }
     Json json{{"command", "generate"},
               {"name", o.name},
-              {"file", o.out},
-              {"file_bytes", notAFile ? Json() : Json(bytes)},
-              {"dims", jsonFromDims(volume.dims())},
-              {"type", name(volume.sampleType())},
-              {"spacing", jsonFromVector(volume.geometry().spacing)}};
-    return {"wrote " + o.out + ": " + dimsText(volume.dims()) + " voxels, " + name(volume.sampleType()) +
-                (notAFile ? "" : ", " + bytesText(bytes)) + "\n",
+              {"file", files.front()},
+              {"file_bytes", areFiles ? Json(bytes) : Json()},
+              {"dims", jsonFromDims(volume->dims())},
+              {"type", name(volume->sampleType())},
+              {"spacing", jsonFromVector(volume->geometry().spacing)}};
+    if (o.frames) json["files"] = files;
+    const std::string what = files.size() == 1
+                                 ? files.front()
+                                 : std::to_string(files.size()) + " frames, " + files.front() + " to " + files.back();
+    return {"wrote " + what + ": " + dimsText(volume->dims()) + " voxels, " + name(volume->sampleType()) +
+                (areFiles ? ", " + bytesText(bytes) : "") + "\n",
             std::move(json),
             {},
             {}};
@@ -63,6 +93,12 @@ Command addGenerate(CLI::App& program) {
             o->size = static_cast<int>(parseInteger(text, option, 8, 65536));
         },
         "voxels along the longest axis (default: the sample's own)");
+    addValue(
+        *app, "--frames", "N",
+        [o](const std::string& text, const std::string& option) {
+            o->frames = static_cast<int>(parseInteger(text, option, 1, 1'000'000));
+        },
+        "the first N time steps, a file each: --out is a pattern (f_%03d.nrrd) or gets _000, _001 …");
     addValue(
         *app, "--seed", "N",
         [o](const std::string& text, const std::string& option) {

@@ -103,7 +103,8 @@ std::string framesText(const Scene& scene) {
     if (listed.hasTimes) lines.emplace_back("time unit", listed.timeUnit.empty() ? "not known" : listed.timeUnit);
     if (const auto range = rangeOfAll(series)) lines.emplace_back("all frames", rangeText(range->lo, range->hi));
     for (const int f : brokenFrames(series))
-        lines.emplace_back("passed over", std::to_string(f) + ", " + listed.frames[static_cast<std::size_t>(f)].name + ": " + series.summary(f).problem);
+        lines.emplace_back("passed over", std::to_string(f) + ", " + listed.frames[static_cast<std::size_t>(f)].name +
+                                              ": " + series.summary(f).problem);
     for (const std::string& notice : listed.notices) lines.emplace_back("notice", notice);
     return listing(lines);
 }
@@ -143,6 +144,7 @@ Command addInfo(CLI::App& program) {
     CLI::App* app = program.add_subcommand("info", "What a volume holds: size, type, spacing, range, invalid voxels");
     const auto options = std::make_shared<SceneOptions>();
     options->volume.add(*app);
+    options->variables.add(*app);
     options->session.add(*app);
     return {app, [options](Progress& progress) {
                 const Opened opened = resolve(*options, progress, {.use = {}, .byEngine = false, .needsTf = false});

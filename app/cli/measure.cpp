@@ -107,6 +107,7 @@ Answer run(const Options& o, Progress& progress) {
     seconds.total = total.seconds();
     Json json = jsonOf(*input.volume, input.tf, m, matrices, engine, seconds);
     addProfile(json, input.settings);
+    if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     return {textOf(input.tf, m, matrices, engine + profileText(input.settings), seconds),
             std::move(json),
             opened.notices(),

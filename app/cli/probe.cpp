@@ -134,6 +134,7 @@ Command addProbe(CLI::App& program) {
         program.add_subcommand("probe", "What the ray of a pixel meets: intensities, opacity, each feature's share");
     const auto o = std::make_shared<Options>();
     o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
+    o->scene.variables.add(*app);
     app->add_option_function<std::string>(
            "PIXEL", [o](const std::string& text) { o->pixel = text; },
            "X,Y: its column and row, from 0,0 at the top left of the picture")

@@ -85,6 +85,7 @@ Command addPropose(CLI::App& program) {
     CLI::App* app = program.add_subcommand("propose", "A transfer function from what the data hold, and why");
     const auto o = std::make_shared<Options>();
     o->scene.volume.add(*app);
+    o->scene.variables.add(*app);
     o->scene.session.add(*app);
     addValue(
         *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },

@@ -240,6 +240,7 @@ Command addRefine(CLI::App& program) {
     CLI::App* app = program.add_subcommand("refine", "Evens out the information along the transfer function (entropy)");
     const auto o = std::make_shared<Options>();
     o->scene.volume.add(*app, VolumeOptions::SizeIs::Both);
+    o->scene.variables.add(*app);
     o->scene.session.add(*app);
     o->scene.tf.add(*app);
     o->scene.camera.add(*app);

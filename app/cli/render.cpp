@@ -190,6 +190,7 @@ Answer run(const Options& o, Progress& progress) {
     }
     Answer answer = o.slice.at ? drawSlice(o, opened, picture, total, progress)
                                : drawView(o, opened, picture, shown, total, progress);
+    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) answer.json["hsb"] = std::move(mapping);
     if (shown) answer.json["field"] = jsonFromField(scene, *shown);
     return answer;
 }
@@ -200,6 +201,7 @@ Command addRender(CLI::App& program) {
     CLI::App* app = program.add_subcommand("render", "Writes the picture of a volume");
     const auto o = std::make_shared<Options>();
     o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
+    o->scene.variables.add(*app);
     o->scene.session.add(*app);
     o->scene.tf.add(*app);
     o->scene.camera.add(*app);

@@ -6,6 +6,7 @@ namespace pellucid::cli {
 
 void SceneOptions::addForFigures(CLI::App& app) {
     volume.add(app);
+    variables.add(app);
     session.add(app);
     tf.add(app);
     camera.add(app);
@@ -21,6 +22,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     SceneInputs inputs;
     inputs.session = std::move(file.session);
     options.volume.applyTo(inputs);
+    options.variables.applyTo(inputs);
     options.tf.applyTo(inputs);
     options.camera.applyTo(inputs);
     options.clip.applyTo(inputs);
@@ -50,7 +52,8 @@ std::vector<std::string> Opened::notices() const {
     all.insert(all.end(), series.listing().notices.begin(), series.listing().notices.end());
     for (int f = 0; f < series.size() && series.varies(); ++f)
         if (const std::string problem = series.summary(f).problem; !problem.empty())
-            all.push_back("frame " + std::to_string(f) + " (" + series.listing().label(f) + ") is passed over: " + problem);
+            all.push_back("frame " + std::to_string(f) + " (" + series.listing().label(f) +
+                          ") is passed over: " + problem);
     all.insert(all.end(), scene.volume->notices.begin(), scene.volume->notices.end());
     if (scene.volume->excerpt && scene.volume->excerpt->forMemory)
         all.emplace_back("--region X0:X1,Y0:Y1,Z0:Z1 opens a part at full resolution, --downsample 1 all or nothing");

@@ -14,6 +14,7 @@
 #include "options/saliency_options.h"
 #include "options/session_options.h"
 #include "options/tf_options.h"
+#include "options/variable_options.h"
 #include "options/volume_options.h"
 #include "progress.h"
 
@@ -23,6 +24,7 @@ namespace pellucid::cli {
 struct SceneOptions {
     SessionOptions session;
     VolumeOptions volume;
+    VariableOptions variables;
     TfOptions tf;
     CameraOptions camera;
     ClipOptions clip;

@@ -11,8 +11,10 @@ Command addSamples(CLI::App& program) {
                 Json list = Json::array();
                 for (const SampleInfo& s : samples()) {
                     lines.emplace_back("sample:" + s.name, dimsText(s.defaultDims) + "  " + s.description);
-                    list.push_back(
-                        {{"name", s.name}, {"description", s.description}, {"dims", jsonFromDims(s.defaultDims)}});
+                    list.push_back({{"name", s.name},
+                                    {"description", s.description},
+                                    {"dims", jsonFromDims(s.defaultDims)},
+                                    {"frames", s.frames}});
                 }
                 return Answer{listing(lines), {{"command", "samples"}, {"samples", list}}, {}, {}};
             }};

@@ -262,7 +262,7 @@ std::optional<Frame> Sequence::next(int number) {
         throw;
     } catch (const Error&) {
         if (m_scene.series->summary(number).problem.empty()) throw; // not of the frame
-        return {}; // Opened::notices() tells
+        return {};                                                  // Opened::notices() tells
     }
 }
 
@@ -359,6 +359,7 @@ Json Sequence::json(const SequenceFigures& dynamic, const std::optional<Sequence
             json["coherence"] = settings().coherence;
     }
     json["volume"] = jsonFromVolume(*m_scene.volume);
+    if (Json mapping = jsonFromMapping(m_scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     json["from"] = m_start;
     json["frames"] = m_frames;
     json["broken"] = Json::array();
@@ -462,6 +463,7 @@ Command addSequence(CLI::App& program) {
         "sequence", "Draws and measures the frames of a series, each under a transfer function that may follow them");
     const auto o = std::make_shared<Options>();
     o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
+    o->scene.variables.add(*app);
     o->scene.session.add(*app);
     o->scene.tf.add(*app);
     o->scene.camera.add(*app);
@@ -519,6 +521,7 @@ Command addSequence(CLI::App& program) {
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where a frame is not on target; everything is written all the same");
     o->scene.picture.add(*app, PictureOptions::Mode::OfSession);
+    o->scene.ground.add(*app);
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

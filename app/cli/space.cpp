@@ -242,6 +242,7 @@ Command addSpace(CLI::App& program) {
         "space", "Shows how VWS and distance from the targets depend on the opacities of two or three features");
     const auto o = std::make_shared<Options>();
     o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
+    o->scene.variables.add(*app);
     o->scene.session.add(*app);
     o->scene.tf.add(*app);
     o->scene.camera.add(*app);

@@ -42,10 +42,11 @@ bool InputHabits::eventFilter(QObject* watched, QEvent* event) {
     switch (event->type()) {
     case QEvent::ShortcutOverride: {
         const auto* key = static_cast<QKeyEvent*>(event);
-        // What has the focus and is worked with Space keeps it.
+        // What has the focus and is worked with Space keeps it; it says so itself, or is one of the toolkit's.
         if (key->key() == Qt::Key_Space && key->modifiers() == Qt::NoModifier &&
             (qobject_cast<QAbstractButton*>(watched) != nullptr ||
-             qobject_cast<QAbstractItemView*>(watched) != nullptr || qobject_cast<QComboBox*>(watched) != nullptr)) {
+             qobject_cast<QAbstractItemView*>(watched) != nullptr || qobject_cast<QComboBox*>(watched) != nullptr ||
+             watched->property(kKeepsSpace).toBool())) {
             event->accept();
             return true;
         }

@@ -5,9 +5,11 @@
 
 namespace pellucid::gui {
 
+inline constexpr auto kKeepsSpace = "keepsSpace";
+
 /// Installed on the application:
 /// - undo in a number box that holds a finished number is the program's undo, not the box's own;
-/// - a button or list that has the focus keeps the space bar, whatever shortcut that is;
+/// - a button, a list, or what has the property kKeepsSpace, keeps the space bar while it has the focus;
 /// - tool tips stay within the window that they belong to.
 class InputHabits : public QObject {
     Q_OBJECT

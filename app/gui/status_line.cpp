@@ -73,11 +73,17 @@ void StatusLine::followScene() {
     if (!m_bench.store().hasVolume()) return;
     const Scene& scene = m_bench.scene();
     const Volume& volume = *scene.volume;
-    m_volume->setText(QStringLiteral("%1×%2×%3 %4")
-                          .arg(volume.dims().x)
-                          .arg(volume.dims().y)
-                          .arg(volume.dims().z)
-                          .arg(QString::fromLatin1(name(volume.sampleType()))));
+    QString text = QStringLiteral("%1×%2×%3 %4")
+                       .arg(volume.dims().x)
+                       .arg(volume.dims().y)
+                       .arg(volume.dims().z)
+                       .arg(QString::fromLatin1(name(volume.sampleType())));
+    if (scene.series->varies())
+        text += tr(", %1 (%L2 of %L3)")
+                    .arg(QString::fromStdString(scene.series->listing().label(scene.session.frame)))
+                    .arg(scene.session.frame + 1)
+                    .arg(scene.series->size());
+    m_volume->setText(text);
     m_volume->setToolTip(tr("%1, values %2, spacing %3 × %4 × %5, %L6 invalid voxels\naxes: %7")
                              .arg(QString::fromStdString(volume.format), rangeText(volume.dataRange()))
                              .arg(volume.geometry().spacing.x)

@@ -12,6 +12,7 @@
 #include <QToolTip>
 #include <QWheelEvent>
 
+#include "input_habits.h"
 #include "number_text.h"
 #include "store/edits.h"
 #include "tf/edit.h"
@@ -38,6 +39,7 @@ TfCanvas::TfCanvas(SessionStore& store, Results& results, Selection& selection, 
     setAccessibleName(tr("Transfer function"));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
+    setProperty(kKeepsSpace, true);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
     m_counts.setVolume(store.scene().volume);
     const auto updated = qOverload<>(&TfCanvas::update);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "optimize/boxed_step.h"
@@ -17,6 +18,7 @@ using Rows = std::vector<Point>;
 constexpr double kLeastOpacity = 1e-7;    ///< a logarithm has no place for 0
 constexpr double kMostOpacity = 1 - 2e-7; ///< beyond, extinction is capped
 constexpr double kSlow = 0.98;            ///< of F that a move leaves, where it is time to end
+constexpr double kFarWithin = 0.8;        ///< of the wanted F, below which a shorter way is looked for
 constexpr double kSafety = 0.97;          ///< of the wanted F that a step aims at: models are not exact
 
 double logDepth(double x) { return std::log(opticalDepthOfOpacity(std::clamp(x, kLeastOpacity, kMostOpacity))); }
@@ -38,13 +40,6 @@ public:
         : m_function(function), m_targets(targets), m_limits(std::move(limits)), m_options(options), m_job(job),
           m_features(movable(targets, m_limits)) {
         m_start = inside(featureOpacities(function.base()));
-        for (const std::size_t f : m_features) {
-            Point& row = m_metric.emplace_back();
-            for (const std::size_t g : m_features)
-                row.push_back(!options.metric.empty() ? options.metric[f][g]
-                              : f == g                ? 1.0 / static_cast<double>(m_features.size())
-                                                      : 0.0);
-        }
     }
 
     Tracked run() {
@@ -57,6 +52,7 @@ public:
             return at;
         }
         double caution = 1;
+        std::optional<double> first; // F of the start
         std::vector<std::vector<double>> derivative;
         for (bool known = false;;) {
             if (!known) {
@@ -66,11 +62,13 @@ public:
                 at.vws = std::move(linear.vws);
                 at.objective = objectiveOf(at.vws, m_targets);
                 derivative = std::move(linear.derivative);
+                if (!first) first = at.objective;
                 at.least = leastOf(at.vws, derivative);
                 m_goal = std::hypot(m_options.distance(), at.least);
                 known = true;
             }
             if (at.objective <= m_goal || at.moves >= m_options.maxMoves) break;
+            findMetric();
             const std::vector<Point> candidates = candidatesFrom(at, derivative, caution);
             if (candidates.empty()) break;
             const auto vws = m_function.evaluate(candidates, m_job);
@@ -92,6 +90,7 @@ public:
             known = false;
             if (reached <= m_goal || slow) break;
         }
+        if (at.moves > 0 && m_options.coherence > 0 && at.objective < kFarWithin * m_goal) shorten(at, first);
         at.evaluations = m_evaluations;
         return at;
     }
@@ -123,6 +122,17 @@ private:
         return x;
     }
 
+    void findMetric() {
+        if (!m_metric.empty()) return;
+        std::vector<std::vector<double>> all;
+        if (m_options.metric) all = m_options.metric();
+        for (const std::size_t f : m_features) {
+            Point& row = m_metric.emplace_back();
+            for (const std::size_t g : m_features)
+                row.push_back(!all.empty() ? all[f][g] : f == g ? 1.0 / static_cast<double>(m_features.size()) : 0.0);
+        }
+    }
+
     /// F where features that nothing can raise have 0, and the others divide what is left as well as it goes.
     double leastOf(const Point& vws, const Rows& derivative) const {
         double lost = 0, square = 0;
@@ -139,6 +149,34 @@ private:
         }
         if (others > 0) square += lost * lost / others;
         return std::sqrt(square / static_cast<double>(vws.size()));
+    }
+
+    /// A long step may end farther within the wanted distance than it must: then part of the way will do.
+    void shorten(Tracked& at, const std::optional<double>& first) {
+        const double near =
+            std::clamp((*first - m_goal) / (*first - at.objective), 0.0, 1.0); // where F is m_goal, about
+        const double rest = 1 - near;
+        std::vector<Point> points;
+        for (const double part : {0.6 * near, 0.68 * near, 0.76 * near, 0.84 * near, 0.92 * near, near,
+                                  near + 0.3 * rest, near + 0.65 * rest}) {
+            Point x = at.opacity;
+            for (const std::size_t f : m_features) {
+                const double y = logDepth(m_start[f]);
+                x[f] = std::clamp(opacityAt(y + part * (logDepth(at.opacity[f]) - y)), m_limits[f].lowest,
+                                  m_limits[f].highest);
+            }
+            points.push_back(std::move(x));
+        }
+        const auto vws = m_function.evaluate(points, m_job);
+        m_evaluations += static_cast<int>(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) { // the shortest first
+            const double reached = objectiveOf(vws[i], m_targets);
+            if (!(reached <= m_goal)) continue;
+            at.opacity = points[i];
+            at.vws = vws[i];
+            at.objective = reached;
+            return;
+        }
     }
 
     /// The square of a jump.

@@ -1,6 +1,7 @@
 // From the opacities of one frame to those of the next (docs/method.md, "Transfer functions over time").
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "optimize/optimizer.h"
@@ -16,11 +17,10 @@ struct TrackOptions {
     double coherence = 0; ///< ≥ 0; infinity: nothing moves
     int maxMoves = 8;     ///< each is a sweep with derivatives and one of up to eight candidates
     /// What a jump is: its square is Σ v_i·metric[i][j]·v_j, v the changes of ln τ of all features, τ = −ln(1 − x) the
-    /// optical depth of a peak. Symmetric, positive; empty: the mean of v².
-    std::vector<std::vector<double>> metric = {};
+    /// optical depth of a peak. Symmetric, positive; empty: the mean of v². Asked for before the first move.
+    std::function<std::vector<std::vector<double>>()> metric = {};
     /// F that is good enough: the larger of kTrackGoal and coherence·kCoherentDistance.
     double distance() const;
-    bool operator==(const TrackOptions&) const = default;
 };
 
 struct Tracked {
@@ -34,8 +34,8 @@ struct Tracked {
 };
 
 /// The opacities with the smallest jump from those of function.base() whose distance F from `targets` is at most
-/// √(options.distance()² + least²); where there are none, those of the smallest F that moves downhill find. `limits`: one per
-/// feature, or empty. Throws UsageError as normalizedTargets() does, Cancelled.
+/// √(options.distance()² + least²); where there are none, those of the smallest F that moves downhill find. `limits`:
+/// one per feature, or empty. Throws UsageError as normalizedTargets() does, Cancelled.
 Tracked track(const VwsFunction& function, const std::vector<double>& targets, const std::vector<OpacityLimits>& limits,
               const TrackOptions& options, const JobControl& job = {});
 

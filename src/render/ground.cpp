@@ -51,7 +51,7 @@ public:
         m_stepY = inView(ground.stepY);
         m_up = inView(ground.up);
         const Vec3 normal = glm::cross(ground.stepX, ground.stepY);
-        m_rightHanded = glm::dot(normal, ground.up) > 0;
+        m_rightHanded = glm::dot(normal, ground.up) >= 0;
         const Vec3 alongX = glm::normalize(ground.stepX), alongY = glm::normalize(ground.stepY);
         const Vec3 flat = glm::normalize(m_rightHanded ? normal : -normal);
         // From the upper left of the map, where y goes up on it, halfway up the sky.

@@ -155,7 +155,7 @@ Plot temporalObjectivePlot(const TemporalCurves& curves) {
 }
 
 Plot temporalFlickerPlot(const TemporalCurves& curves) {
-    Plot plot = plotOf(curves, "Flicker", "mean ΔE");
+    Plot plot = plotOf(curves, "Flicker", "mean delta E");
     for (std::size_t r = 0; r < curves.runs.size(); ++r)
         addCurve(plot, curves.runs[r], curves.runs[r].name, curveColor(r), false,
                  [](const FrameFigures& f) { return f.flicker; });

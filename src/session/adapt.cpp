@@ -367,7 +367,8 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         const EngineVws function(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws);
         TrackOptions track;
         track.coherence = settings.coherence;
-        if (settings.coherence > 0 && !std::isinf(settings.coherence)) track.metric = pictureMetric(scene, quiet);
+        if (settings.coherence > 0 && !std::isinf(settings.coherence))
+            track.metric = [&] { return pictureMetric(scene, quiet); };
         Tracked found = pellucid::track(function, targets, limits, track, quiet);
         // Moves downhill are stuck far from the targets: other starts may not be.
         const double enough = std::hypot(std::max(basis.session.optimize->tolerance, track.distance()), found.least);

@@ -54,20 +54,24 @@ Ground readGround(const GroundView& view, const Geometry& box, const JobControl&
     ground.nx = file.dims()[alongX];
     ground.ny = file.dims()[alongY];
     ground.heights.resize(file.size()); // one layer: the order of the file
+    // Of a negative scale they are depths.
+    const bool depths = view.scale.value_or(1) < 0;
     for (std::size_t i = 0; i < file.size(); ++i)
-        ground.heights[i] =
-            file.isValid(i) ? static_cast<float>(file.value(i)) : std::numeric_limits<float>::quiet_NaN();
+        ground.heights[i] = file.isValid(i) ? static_cast<float>(depths ? -file.value(i) : file.value(i))
+                                            : std::numeric_limits<float>::quiet_NaN();
+    ValueRange heights = file.dataRange();
+    if (depths) heights = {-heights.hi, -heights.lo};
 
     const Vec3 extent = box.spacing * Vec3(box.dims);
     ground.origin = box.corner(0);
     ground.stepX = box.directions[0] * (extent.x / (ground.nx - 1));
     ground.stepY = box.directions[1] * (extent.y / (ground.ny - 1));
-    ground.up = box.directions[2] * view.scale.value_or(scaleOf(file.dataRange(), extent.z));
+    ground.up = box.directions[2] * std::abs(view.scale.value_or(scaleOf(heights, extent.z)));
     ground.colorMap = view.colorMap;
     groundColors(ground.colorMap); // an unknown one is told now
     ground.relief = std::clamp(view.relief, 0.0, 1.0);
-    ground.lo = file.dataRange().lo;
-    ground.hi = file.dataRange().hi;
+    ground.lo = heights.lo;
+    ground.hi = heights.hi;
     // Below 0 it is sea, however deep.
     if (ground.colorMap == kTerrainMap && ground.lo < 0 && ground.hi > 0) ground.lo = 0;
     if (!(ground.lo < ground.hi)) ground.hi = ground.lo + 1;

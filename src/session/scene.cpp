@@ -110,8 +110,8 @@ void placeAsPublished(const Session& session, const Volume& data, TransferFuncti
 
 namespace {
 
-/// The frame, or where it cannot be read the next that can, from the beginning again after the last: data that are opened show
-/// something as long as one frame is sound. Throws what is wrong with the frame where none is.
+/// The frame, or where it cannot be read the next that can, from the beginning again after the last: data that are
+/// opened show something as long as one frame is sound. Throws what is wrong with the frame where none is.
 int soundFrame(TimeSeries& series, int frame, const JobControl& job) {
     try {
         series.load(frame, job);

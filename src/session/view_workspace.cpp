@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "optimize/objective.h"
 #include "render/cpu/cpu_engine.h"
+#include "volume/coarser_colors.h"
 #include "volume/excerpt.h"
 
 namespace pellucid {
@@ -41,6 +42,7 @@ void ViewWorkspace::forget() {
     m_volume.reset();
     m_haveWeights = false;
     m_weights = {};
+    m_weightsColors.reset();
 }
 
 ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job) {
@@ -54,9 +56,16 @@ ViewLevel ViewWorkspace::level(const MeasureInput& input, const JobControl& job)
         m_volume = input.volume;
     }
     const TransferFunction colors = colorsOf(input.tf);
-    if (!m_haveWeights || !(m_weightsTf == colors) || !(m_weightsOptions == input.settings.saliency)) {
+    if (!m_haveWeights || !(m_weightsTf == colors) || !(m_weightsOptions == input.settings.saliency) ||
+        m_weightsColors != input.colors) {
         m_haveWeights = false;
-        updateSaliencyFields(m_weights, m_engine->volume(), input.tf, input.settings.saliency, {job.stop, {}});
+        const Volume& volume = m_engine->volume();
+        std::optional<VoxelColors> coarse;
+        if (input.colors && volume.dims() != input.volume->dims())
+            coarse = coarserColors(*input.colors, coarseningForViews(input.volume->dims()));
+        updateSaliencyFields(m_weights, volume, input.tf, input.settings.saliency, {job.stop, {}},
+                             coarse ? &*coarse : input.colors.get());
+        m_weightsColors = input.colors;
         m_weightsTf = colors;
         m_weightsOptions = input.settings.saliency;
         m_haveWeights = true;

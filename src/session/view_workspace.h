@@ -43,6 +43,7 @@ private:
     std::shared_ptr<const Volume> m_volume; ///< the one that the copy was made of
     std::unique_ptr<VisibilityEngine> m_engine;
     TransferFunction m_weightsTf; ///< its colorsOf()
+    std::shared_ptr<const VoxelColors> m_weightsColors;
     SaliencyOptions m_weightsOptions;
     bool m_haveWeights = false;
     WeightFields m_weights;

@@ -18,8 +18,8 @@ namespace {
 constexpr std::string_view kSamplePrefix = "sample:";
 
 const std::array<const VolumeReader*, 5>& readers() {
-    static const std::array<const VolumeReader*, 5> kReaders{&nrrdReader(), &metaImageReader(), &niftiReader(), &vtiReader(),
-                                                            &pvdReader()};
+    static const std::array<const VolumeReader*, 5> kReaders{&nrrdReader(), &metaImageReader(), &niftiReader(),
+                                                             &vtiReader(), &pvdReader()};
     return kReaders;
 }
 

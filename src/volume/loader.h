@@ -40,7 +40,7 @@ struct VolumeSource {
     std::vector<std::string> more;    ///< files of the frames after that of `path`, in their order
     std::optional<FrameRange> frames; ///< only these of all that are there
     int step = 0;                     ///< of a file (or sample) with several time steps, from 0: the one that is read
-    std::string array;                ///< of a file with several named arrays; empty: its active scalars, else the first
+    std::string array;                ///< of a file with named arrays; empty: its active scalars, else the first
     std::optional<RawLayout> raw;     ///< given: the file is headerless
     std::optional<double> missing;    ///< this value is invalid (besides what the file declares)
     std::optional<ValueRange> range;  ///< the user's intensity window

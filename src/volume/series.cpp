@@ -72,9 +72,8 @@ std::vector<std::string> ofOneSuffix(std::vector<std::string> paths, bool anySuf
     // A collection names the files beside it, and their times.
     auto chosen = bySuffix.find(".pvd");
     if (chosen == bySuffix.end() || chosen->second.size() != 1)
-        chosen = std::max_element(bySuffix.begin(), bySuffix.end(), [](const auto& a, const auto& b) {
-            return a.second.size() < b.second.size();
-        });
+        chosen = std::max_element(bySuffix.begin(), bySuffix.end(),
+                                  [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
     std::vector<std::string> others;
     for (const auto& [suffix, files] : bySuffix)
         if (suffix != chosen->first) others.insert(others.end(), files.begin(), files.end());
@@ -98,8 +97,8 @@ void fillGaps(FileList& list, const std::optional<NumberedName>& pattern) {
     const std::vector<std::int64_t>& numbers = numbered->numbers;
     std::map<std::int64_t, int> steps;
     for (std::size_t i = 1; i < numbers.size(); ++i) ++steps[numbers[i] - numbers[i - 1]];
-    const auto usual = std::max_element(steps.begin(), steps.end(),
-                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto usual =
+        std::max_element(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     const std::int64_t step = usual->first;
     if (step < 1 || steps.size() == 1) return;
     std::uint64_t missing = 0;
@@ -187,6 +186,7 @@ void addFile(SeriesListing& listing, const VolumeSource& given, const std::strin
     frame.source.path = path;
     frame.source.more.clear();
     frame.source.step = 0;
+    if (!alone) frame.source.frames.reset(); // they count files, not steps of a longer headerless one
     const std::optional<FileContents> contents = knownContents(frame.source, job);
     const int steps = contents ? contents->steps : 1;
     frame.source.frames.reset();

@@ -34,17 +34,17 @@ struct SeriesListing {
 /// as people count: f2 before f10. Nothing but headers is read.
 ///
 /// Numbered files (of a pattern, and of a glob or folder whose names differ in one number only) run from the smallest
-/// number to the largest at the step most of them follow at. A number between that is not there is a frame, too, so that
-/// frames stay where they are in time: load() of it fails, and it is passed over like any broken one. Where more frames
-/// were missing than there are, only those that there are count. Of files of several suffixes those of the most frequent
-/// one are taken. Files that hold several steps give all of them, one file after the other.
+/// number to the largest at the step most of them follow at. A number between that is not there is a frame, too, so
+/// that frames stay where they are in time: load() of it fails, and it is passed over like any broken one. Where more
+/// frames were missing than there are, only those that there are count. Of files of several suffixes those of the most
+/// frequent one are taken. Files that hold several steps give all of them, one file after the other.
 ///
 /// Frames keep raw, missing, component, array, downsample and region of `source`. Throws FileError where nothing is
 /// found, UsageError for VolumeSource::frames that are not there.
 SeriesListing listSeries(const VolumeSource& source, const JobControl& job = {});
 
-/// The files that listSeries() takes frames from, in their order and without looking into them: those on disk, or the one
-/// that is named where nothing is there.
+/// The files that listSeries() takes frames from, in their order and without looking into them: those on disk, or the
+/// one that is named where nothing is there.
 std::vector<std::string> seriesFiles(const VolumeSource& source);
 
 /// Whether `path` names files by a printf pattern or a glob, rather than one.

@@ -18,6 +18,12 @@ constexpr std::chrono::milliseconds kLookAtStop{50}; // of who waits
 constexpr std::size_t kNoBudget = 0;
 std::atomic<std::size_t> g_defaultBudget = kNoBudget;
 
+/// What frames themselves may take of a budget: reading one and making its codes takes some for a while.
+std::size_t forFrames(std::size_t budget) {
+    constexpr std::size_t kWork = std::size_t{8} << 20;
+    return budget >= 8 * kWork ? budget - kWork : budget;
+}
+
 std::size_t defaultBudget() {
     if (const std::size_t set = g_defaultBudget; set != kNoBudget) return set;
     return static_cast<std::size_t>(std::min<std::uint64_t>(availableMemoryBytes() / 4, kMostBudget));
@@ -108,7 +114,7 @@ void TimeSeries::makeRoom(std::size_t bytes) {
         return entry.data.use_count() <= ours;
     };
     std::size_t sum = held();
-    for (auto frame = m_used.end(); frame != m_used.begin() && sum + bytes > m_budget;) {
+    for (auto frame = m_used.end(); frame != m_used.begin() && sum + bytes > forFrames(m_budget);) {
         --frame;
         const auto entry = m_entries.find(*frame);
         if ((bytes == 0 && m_entries.size() == 1) || !isOursAlone(entry->second)) continue;
@@ -122,7 +128,7 @@ void TimeSeries::makeRoom(std::size_t bytes) {
 bool TimeSeries::mustWait(int frame) const {
     if (m_loading.contains(frame)) return true;
     if (m_loading.empty()) return false;
-    return m_frameBytes == 0 || (m_loading.size() + 1) * m_frameBytes > m_budget;
+    return m_frameBytes == 0 || (m_loading.size() + 1) * m_frameBytes > forFrames(m_budget);
 }
 
 void TimeSeries::note(int frame, const Volume& volume) {
@@ -331,7 +337,8 @@ void TimeSeries::setDefaultBudget(std::optional<std::size_t> bytes) { g_defaultB
 int TimeSeries::roomFor() const {
     const std::lock_guard lock(m_mutex);
     if (m_frameBytes == 0) return size();
-    return std::max(1, static_cast<int>(std::min<std::size_t>(m_budget / m_frameBytes, m_listing.frames.size())));
+    return std::max(
+        1, static_cast<int>(std::min<std::size_t>(forFrames(m_budget) / m_frameBytes, m_listing.frames.size())));
 }
 
 } // namespace pellucid

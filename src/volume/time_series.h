@@ -72,9 +72,9 @@ public:
     /// where it is not known.
     std::vector<double> countsIn(int frame, const ValueRange& window, int bins) const;
 
-    /// Bytes that frames may take, codes and frames that are being read included; at least one frame is always held. The
-    /// default is a quarter of the memory that is free now, at most 2 GiB. Frames that somebody else holds, too, stay and
-    /// count: to forget them would free nothing. Who reads while there is no room waits for others who read to end.
+    /// Bytes that frames may take, codes and frames that are being read included; at least one frame is always held.
+    /// The default is a quarter of the memory that is free now, at most 2 GiB. Frames that somebody else holds, too,
+    /// stay and count: to forget them would free nothing. Who finds no room to read waits for others.
     void setBudget(std::size_t bytes);
     /// Of series that are opened from now on; empty: as above.
     static void setDefaultBudget(std::optional<std::size_t> bytes);
@@ -89,7 +89,7 @@ private:
         ShownFrame shown;                 // its volume is null until it is asked for
         std::size_t bytes = 0;
     };
-    std::size_t held() const;         // m_mutex is held, here and in the next ones
+    std::size_t held() const; // m_mutex is held, here and in the next ones
     void makeRoom(std::size_t bytes);
     void touch(int frame);
     bool mustWait(int frame) const;

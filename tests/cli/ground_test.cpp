@@ -12,10 +12,10 @@ using pellucid::test::Workshop;
 
 namespace {
 
-/// Under a ramp that shows nothing of the volume, from above, over red.
-const Words kSmall{"render", "sample:shells",  "--sample-size", "16",     "--tf",         "ramp:1", "--view",
-                   "0,90",   "--orthographic", "--size",        "40x40",  "--background", "1,0,0",  "--engine",
-                   "cpu",    "--mode",         "surface",       "--clip", "z:0.99:1"};
+/// From above, over red.
+const Words kSmall{"render", "sample:shells",  "--sample-size", "16",    "--tf",         "tents:3:0.1", "--view",
+                   "0,90",   "--orthographic", "--size",        "40x40", "--background", "1,0,0",       "--engine",
+                   "cpu"};
 
 } // namespace
 

@@ -89,6 +89,16 @@ TEST_CASE("frames are chosen by number", "[cli][series]") {
     CHECK(none.err.find("no file of this name pattern") != std::string::npos);
 }
 
+TEST_CASE("a headerless file holds as many steps as are asked for", "[cli][series]") {
+    const Workshop w;
+    w.write("s.bin", std::string("\1\2\3\4\5\6", 6));
+    CHECK(w.run({"info", "s.bin", "--raw", "2,1,1,u8"}).status == 1);
+    const json j = w.json({"info", "s.bin", "--raw", "2,1,1,u8", "--frames", ":", "--frame", "2"});
+    CHECK(j["frames"]["count"] == 3);
+    CHECK(j["frames"]["range"] == json({1, 6}));
+    CHECK(j["data_range"] == json({5, 6}));
+}
+
 TEST_CASE("other commands work on one frame, and say which are passed over", "[cli][series]") {
     const Workshop w;
     writeSeries(w);

@@ -134,13 +134,13 @@ TEST_CASE("frames are stepped, scrubbed and played without a step of the history
     CHECK(w.child<QLabel>("frameLabel").text().contains("t = 0 s"));
     const QImage first = w.picture();
 
-    QTest::keyClick(&w.window, Qt::Key_Period);
+    QTest::keyClick(&w.view(), Qt::Key_Period);
     REQUIRE(waitFor([&] { return w.frame() == 1; }));
     w.settle();
     CHECK(w.child<QLabel>("frameLabel").text().contains("t = 0.5 s"));
     CHECK(w.picture() != first);
     CHECK(w.document().volume()->dataRange() == w.series->load(1)->dataRange());
-    QTest::keyClick(&w.window, Qt::Key_Comma);
+    QTest::keyClick(&w.view(), Qt::Key_Comma);
     REQUIRE(waitFor([&] { return w.frame() == 0; }));
     CHECK(w.picture() == first); // the same frame, the same picture
 
@@ -159,10 +159,10 @@ TEST_CASE("frames are stepped, scrubbed and played without a step of the history
     const auto watch = QObject::connect(&w.bench().store(), &SessionStore::changed,
                                         [&](const Scene&, const Scene& after) { seen.insert(after.session.frame); });
     w.player().setSpeed(30);
-    QTest::keyClick(&w.window, Qt::Key_Space);
+    QTest::keyClick(&w.view(), Qt::Key_Space);
     CHECK(w.player().isPlaying());
     REQUIRE(waitFor([&] { return seen.size() == 6; })); // 5 → 0 among them
-    QTest::keyClick(&w.window, Qt::Key_Space);
+    QTest::keyClick(&w.view(), Qt::Key_Space);
     CHECK_FALSE(w.player().isPlaying());
     QObject::disconnect(watch);
     CHECK(w.child<QLabel>("rateLabel").text().contains("of 30 frames a second"));
@@ -265,13 +265,13 @@ TEST_CASE("a broken frame is told of once and left out", "[player]") {
     options.broken = 2;
     SeriesWindow w(options);
     w.goTo(1);
-    QTest::keyClick(&w.window, Qt::Key_Period);
+    QTest::keyClick(&w.view(), Qt::Key_Period);
     REQUIRE(waitFor([&] { return w.frame() == 3; }));
     w.settle();
     CHECK(w.hasNotice("ball_2.raw"));
     CHECK(w.hasNotice("it ends early"));
     const auto notices = w.bench().notices().all().size();
-    QTest::keyClick(&w.window, Qt::Key_Comma);
+    QTest::keyClick(&w.view(), Qt::Key_Comma);
     REQUIRE(waitFor([&] { return w.frame() == 1; }));
     const QImage strip = w.strip().grab().toImage();
     CHECK(strip.pixelColor((w.strip().rectOf(2).center() * strip.devicePixelRatio()).toPoint()) !=
@@ -327,10 +327,10 @@ TEST_CASE("between keys a transfer function is halfway", "[player]") {
     w.goTo(2);
     CHECK(w.peak() == Approx(0.75 * start)); // halfway from 1 to ½
     CHECK_FALSE(w.child<QToolButton>("tfKey").isChecked());
-    QTest::keyClick(&w.window, Qt::Key_Comma, Qt::ControlModifier);
+    QTest::keyClick(&w.view(), Qt::Key_Comma, Qt::ControlModifier);
     REQUIRE(waitFor([&] { return w.frame() == 0; }));
     CHECK(w.peak() == Approx(start));
-    QTest::keyClick(&w.window, Qt::Key_Period, Qt::ControlModifier);
+    QTest::keyClick(&w.view(), Qt::Key_Period, Qt::ControlModifier);
     REQUIRE(waitFor([&] { return w.frame() == 4; }));
     CHECK(w.picture() == half);
     w.goTo(2);
@@ -459,4 +459,81 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     w.document().setCamera(camera);
     CHECK(panel.knownCount() == 0);
     CHECK(w.child<QWidget>("temporalDynamic").grab().toImage() != drawn);
+}
+
+TEST_CASE("a session with a series comes back at its frame", "[player]") {
+    OpenWindow w;
+    VolumeSource source;
+    source.path = "sample:vortex";
+    source.sampleSize = 16;
+    source.frames = FrameRange{0, 9, 3}; // 0, 3, 6, 9
+    w.open(source);
+    w.settle();
+    PlayerController& player = w.bench().player();
+    REQUIRE(player.frameCount() == 4);
+    player.goTo(2);
+    REQUIRE(waitFor([&] { return w.bench().scene().session.frame == 2; }));
+    w.settle();
+    CHECK(w.child<QLabel>("volumeLabel").text().contains("(3 of 4)"));
+    player.adapting().setTfKey();
+    w.document().setTarget(0, 0.5);
+    player.adapting().setTargetKey();
+    player.adapting().setMode(AdaptSettings::Mode::Refine);
+    w.settle();
+    const QImage before = w.picture();
+    const Session saved = w.bench().store().session();
+    QTemporaryDir folder;
+    const QString path = folder.filePath("vortex.pellucid.json");
+    REQUIRE(w.saving().saveSession(path));
+    CHECK(w.document().isClean());
+    player.goTo(0);
+    w.settle();
+    CHECK(w.document().isClean()); // another frame is nothing to be saved
+
+    OpenWindow other;
+    other.opening().openSession(path);
+    REQUIRE(waitFor([&] { return other.bench().scene().series->size() == 4; }));
+    other.settle();
+    const Session& opened = other.bench().store().session();
+    CHECK(opened.frame == 2);
+    CHECK(opened.variable().track.keys == saved.variable().track.keys);
+    CHECK(opened.targetKeys == saved.targetKeys);
+    CHECK(opened.adapt->mode == AdaptSettings::Mode::Refine);
+    CHECK(opened.variable().track.adapted == saved.variable().track.adapted); // true still: not made again
+    CHECK(other.document().isClean());
+    CHECK(other.picture() == before);
+}
+
+// By hand, as in pictures_test.cpp.
+TEST_CASE("pictures of a series for the guide", "[.pictures]") {
+    if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
+    OpenWindow w;
+    w.window.resize(1280, 860);
+    VolumeSource source;
+    source.path = "sample:vortex";
+    source.sampleSize = 64;
+    source.frames = FrameRange{0, 98, 2};
+    w.open(source);
+    w.settle();
+    const auto grab = [&](const char* name) {
+        w.settle();
+        QTest::qWait(300); // docks arrange themselves
+        w.settle();
+        REQUIRE(w.window.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + name));
+    };
+    PlayerController& player = w.bench().player();
+    REQUIRE(waitFor([&] { return player.knownCount() == player.frameCount(); }));
+    w.optimizing().start();
+    REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
+    player.adapting().setMode(AdaptSettings::Mode::Optimize);
+    w.settle();
+    player.goTo(20);
+    w.settle();
+    grab("player.png");
+    w.child<QAction>("temporalAction").trigger();
+    w.window.resizeDocks({&w.child<QDockWidget>("temporalDock")}, {260}, Qt::Vertical);
+    w.child<QToolButton>("temporalMeasure").click();
+    auto& panel = *w.window.findChild<TemporalPanel*>();
+    REQUIRE(waitFor([&] { return panel.knownCount() == player.frameCount(); }));
+    grab("curves_over_time.png");
 }

@@ -78,6 +78,13 @@ TEST_CASE("heights are world units where they fit the box, else the highest rise
     CHECK(up({-40, -10, 0, 4}) == Approx(2.0 / 40)); // the deepest is the largest
     CHECK(up({0, 500, 700, 1000}, 0.5) == Approx(0.5));
     CHECK(up({0, 0, 0, 0}) == Approx(1));
+    // Depths: what is 30 deep lies lowest.
+    GroundView view = viewOf(rawFile(folder, {0, 10, 20, 30}), "2,2,1,f32");
+    view.scale = -0.5;
+    const Ground sea = readGround(view, kBox);
+    CHECK(sea.heights == std::vector<float>{0, -10, -20, -30});
+    CHECK((sea.lo == -30 && sea.hi == 0));
+    checkVec(sea.up, {0, 0, 0.5});
 }
 
 TEST_CASE("the terrain begins at the sea, other colours at the lowest height", "[ground]") {

@@ -484,7 +484,8 @@ TEST_CASE("one component of several, one of several time steps", "[formats]") {
         const Volume volume = loadVolume(series);
         CHECK(volume.dims() == Int3(2, 1, 1));
         const auto first = static_cast<std::uint8_t>('a' + 2 * step);
-        CHECK(samplesOf<std::uint8_t>(volume) == std::vector<std::uint8_t>{first, static_cast<std::uint8_t>(first + 1)});
+        CHECK(samplesOf<std::uint8_t>(volume) ==
+              std::vector<std::uint8_t>{first, static_cast<std::uint8_t>(first + 1)});
         CHECK(volume.notices.empty());
     }
     for (const int none : {3, -1}) {

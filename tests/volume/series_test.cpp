@@ -92,7 +92,9 @@ TEST_CASE("wildcards match names", "[series]") {
 TEST_CASE("a pattern, a glob and a folder list their files as people count", "[series]") {
     const TempFolder folder;
     for (const char* name : {"f2.nrrd", "f10.nrrd", "f1.nrrd", "g1.nrrd"})
-        folder.write(name, oneVoxel(name == std::string("f2.nrrd") ? 'b' : name == std::string("f10.nrrd") ? 'j' : 'a'));
+        folder.write(name, oneVoxel(name == std::string("f2.nrrd")    ? 'b'
+                                    : name == std::string("f10.nrrd") ? 'j'
+                                                                      : 'a'));
     folder.write("notes.txt", "text");
     folder.write(".f3.nrrd", oneVoxel('h'));
     const Names expected{"f1.nrrd", "f2.nrrd", "f10.nrrd"};
@@ -191,8 +193,7 @@ TEST_CASE("several files are frames in the order given, and all settings are eac
 
 TEST_CASE("frames are selected by their numbers", "[series]") {
     const TempFolder folder;
-    for (int i = 0; i < 6; ++i)
-        folder.write("f" + std::to_string(i) + ".nrrd", oneVoxel(static_cast<char>('a' + i)));
+    for (int i = 0; i < 6; ++i) folder.write("f" + std::to_string(i) + ".nrrd", oneVoxel(static_cast<char>('a' + i)));
     VolumeSource source = sourceOf(folder.path("f%d.nrrd"));
     const auto letters = [&](FrameRange frames) {
         source.frames = frames;
@@ -201,8 +202,8 @@ TEST_CASE("frames are selected by their numbers", "[series]") {
     CHECK(letters({1, 3, 1}) == "bcd");
     CHECK(letters({1, {}, 2}) == "bdf");
     CHECK(letters({5, 5, 1}) == "f");
-    for (const FrameRange none : {FrameRange{6, {}, 1}, FrameRange{0, 6, 1}, FrameRange{3, 2, 1}, FrameRange{-1, 2, 1},
-                                  FrameRange{0, 2, 0}})
+    for (const FrameRange none :
+         {FrameRange{6, {}, 1}, FrameRange{0, 6, 1}, FrameRange{3, 2, 1}, FrameRange{-1, 2, 1}, FrameRange{0, 2, 0}})
         CHECK_THROWS_WITH(letters(none), Contains("no such frames") && Contains("0 to 5"));
     VolumeSource one = sourceOf("sample:knee");
     one.frames = FrameRange{1, {}, 1};
@@ -215,7 +216,8 @@ TEST_CASE("bricks of simulations: big-endian floats with missing values, a file 
     const auto bigEndian = [](std::vector<float> values) {
         std::string bytes = bytesOf(values);
         for (std::size_t i = 0; i < bytes.size(); i += 4)
-            std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i), bytes.begin() + static_cast<std::ptrdiff_t>(i + 4));
+            std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(i + 4));
         return bytes;
     };
     folder.write("CLOUDf01.bin", bigEndian({1, 1e35f, 3}));
@@ -246,6 +248,13 @@ TEST_CASE("a headerless file of several steps needs to be asked for them", "[ser
     CHECK(lettersOf(listing) == "ace");
     source.frames = FrameRange{1, 2, 1};
     CHECK(lettersOf(listSeries(source)) == "ce");
+    // Of several files each has one step: a longer one is damaged.
+    VolumeSource both = source;
+    both.path = folder.write("t.bin", "##gh");
+    both.more = {source.path};
+    both.frames = FrameRange{};
+    CHECK(listSeries(both).frames.size() == 2);
+    CHECK_THROWS_AS(loadVolume(listSeries(both).frames[1].source), FileError);
     source.raw->skipBytes = 1; // 7 bytes are no multiple of 2
     source.frames = FrameRange{};
     CHECK(listSeries(source).frames.size() == 1);
@@ -281,8 +290,8 @@ TEST_CASE("NIfTI over time: times by pixdim in the unit of xyzt_units", "[series
 TEST_CASE("NRRD over time: by its kind, as a list behind space, or as one axis more", "[series]") {
     const TempFolder folder;
     const auto listed = [&](const std::string& sizes, const std::string& fields) {
-        return listSeries(sourceOf(folder.write(
-            "a.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: " + sizes + "\n" + fields + "encoding: raw\n\nabcdef")));
+        return listSeries(sourceOf(folder.write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: " + sizes +
+                                                              "\n" + fields + "encoding: raw\n\nabcdef")));
     };
     const SeriesListing behind = listed("2 1 1 3", "kinds: domain domain domain time\nspacings: 1 1 1 0.5\n"
                                                    "units: \"mm\" \"mm\" \"mm\" \"ms\"\naxis mins: 0 0 0 10\n");
@@ -296,18 +305,18 @@ TEST_CASE("NRRD over time: by its kind, as a list behind space, or as one axis m
     CHECK(lettersOf(listed("2 1 1 3", "kinds: domain domain domain list\n")) == "ace");
     CHECK(lettersOf(listed("2 1 1 3", "")) == "ace");
     CHECK(listed("3 2 1 1", "kinds: list domain domain domain\n").frames.size() == 1); // components
-    const SeriesListing inSpace =
-        listed("2 1 1 3", "space: scanner-xyz-time\nkinds: space space space time\nspace directions: (1,0,0,0) "
-                          "(0,1,0,0) (0,0,1,0) (0,0,0,2)\nspace origin: (0,0,0,4)\nspace units: \"mm\" \"mm\" \"mm\" \"s\"\n");
+    const SeriesListing inSpace = listed(
+        "2 1 1 3", "space: scanner-xyz-time\nkinds: space space space time\nspace directions: (1,0,0,0) "
+                   "(0,1,0,0) (0,0,1,0) (0,0,0,2)\nspace origin: (0,0,0,4)\nspace units: \"mm\" \"mm\" \"mm\" \"s\"\n");
     CHECK(inSpace.label(1) == "t = 6 s");
 }
 
 TEST_CASE("MetaImage of four axes: the last one is time", "[series]") {
     const TempFolder folder;
     const auto listed = [&](const std::string& fields) {
-        return listSeries(
-            sourceOf(folder.write("a.mha", "ObjectType = Image\nNDims = 4\nDimSize = 2 1 1 3\nElementType = MET_UCHAR\n" +
-                                               fields + "ElementDataFile = LOCAL\nabcdef")));
+        return listSeries(sourceOf(
+            folder.write("a.mha", "ObjectType = Image\nNDims = 4\nDimSize = 2 1 1 3\nElementType = MET_UCHAR\n" +
+                                      fields + "ElementDataFile = LOCAL\nabcdef")));
     };
     const SeriesListing timed = listed("ElementSpacing = 1 1 1 0.25\nOffset = 0 0 0 2\n");
     CHECK(lettersOf(timed) == "ace");
@@ -323,8 +332,8 @@ TEST_CASE("of a file that is cut off, the steps that are there can be read", "[s
     REQUIRE(plain.frames.size() == 3);
     CHECK(loadVolume(plain.frames[1].source).value(0) == 'c');
     CHECK_THROWS_WITH(loadVolume(plain.frames[2].source), Contains("4 of 6 bytes"));
-    const SeriesListing meta = listSeries(sourceOf(folder.write(
-        "a.mha", "NDims = 4\nDimSize = 2 1 1 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\nabcd")));
+    const SeriesListing meta = listSeries(sourceOf(
+        folder.write("a.mha", "NDims = 4\nDimSize = 2 1 1 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\nabcd")));
     CHECK(loadVolume(meta.frames[1].source).value(1) == 'd');
     CHECK_THROWS_AS(loadVolume(meta.frames[2].source), FileError);
 }

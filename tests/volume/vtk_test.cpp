@@ -25,8 +25,7 @@ std::string base64(const std::string& bytes) {
         std::uint32_t bits = 0;
         for (std::size_t b = 0; b < 3; ++b)
             bits = bits << 8 | (i + b < bytes.size() ? static_cast<unsigned char>(bytes[i + b]) : 0u);
-        for (std::size_t d = 0; d < 4; ++d)
-            text += i + d > bytes.size() ? '=' : digits[bits >> (18 - 6 * d) & 63];
+        for (std::size_t d = 0; d < 4; ++d) text += i + d > bytes.size() ? '=' : digits[bits >> (18 - 6 * d) & 63];
     }
     return text;
 }
@@ -41,7 +40,8 @@ struct Style {
 std::string number(const Style& style, std::uint64_t value) {
     std::string bytes;
     const int count = style.wide ? 8 : 4;
-    for (int i = 0; i < count; ++i) bytes += static_cast<char>(value >> (8 * (style.bigEndian ? count - 1 - i : i)) & 255);
+    for (int i = 0; i < count; ++i)
+        bytes += static_cast<char>(value >> (8 * (style.bigEndian ? count - 1 - i : i)) & 255);
     return bytes;
 }
 
@@ -79,7 +79,8 @@ struct Array {
 std::string vti(const Style& style, const std::vector<Array>& arrays, const std::string& pointData = "",
                 const std::string& image = "WholeExtent=\"0 1 0 2 0 0\" Origin=\"0 0 0\" Spacing=\"1 1 1\"",
                 const std::string& extent = "0 1 0 2 0 0") {
-    std::string text = "<?xml version=\"1.0\"?>\n<!-- <VTKFile type=\"Other\"> -->\n<VTKFile type=\"ImageData\" version=\"1.0\"";
+    std::string text =
+        "<?xml version=\"1.0\"?>\n<!-- <VTKFile type=\"Other\"> -->\n<VTKFile type=\"ImageData\" version=\"1.0\"";
     text += std::string(" byte_order=\"") + (style.bigEndian ? "BigEndian" : "LittleEndian") + "\"";
     if (style.wide) text += " header_type=\"UInt64\"";
     if (style.compressed) text += " compressor=\"vtkZLibDataCompressor\"";
@@ -192,13 +193,14 @@ TEST_CASE("the active scalars of a VTK file come first", "[vtk]") {
 }
 
 TEST_CASE("place and directions of a VTK image", "[vtk]") {
-    // Axis i points along +y, j along −x (the columns of Direction). The extent begins at voxel (1, −2, 0): its centre is
-    // origin + 1·2·(0,1,0) − 2·3·(−1,0,0) = (10 + 6, 20 + 2, 30).
+    // Axis i points along +y, j along −x (the columns of Direction). The extent begins at voxel (1, −2, 0): its centre
+    // is origin + 1·2·(0,1,0) − 2·3·(−1,0,0) = (10 + 6, 20 + 2, 30).
     const TempFolder folder;
     const Volume volume = loadVolume(sourceOf(folder.write(
-        "a.vti", vti({}, {{"type=\"UInt8\" Name=\"a\"", "1 2 3 4 5 6", ""}}, "",
-                     "WholeExtent=\"1 2 -2 0 0 0\" Origin=\"10 20 30\" Spacing=\"2 3 4\" Direction=\"0 -1 0 1 0 0 0 0 1\"",
-                     "1 2 -2 0 0 0"))));
+        "a.vti",
+        vti({}, {{"type=\"UInt8\" Name=\"a\"", "1 2 3 4 5 6", ""}}, "",
+            "WholeExtent=\"1 2 -2 0 0 0\" Origin=\"10 20 30\" Spacing=\"2 3 4\" Direction=\"0 -1 0 1 0 0 0 0 1\"",
+            "1 2 -2 0 0 0"))));
     CHECK(volume.geometry().spacing == Vec3(2, 3, 4));
     CHECK(volume.geometry().origin == Vec3(16, 22, 30));
     CHECK(volume.geometry().directions[0] == Vec3(0, 1, 0));
@@ -220,10 +222,12 @@ TEST_CASE("VTK files that are something else are refused in words", "[vtk][bad-i
     CHECK(changed("UInt8", "UInt8") == "no error");
     CHECK_THAT(changed("type=\"ImageData\"", "type=\"UnstructuredGrid\""), Contains("UnstructuredGrid"));
     CHECK_THAT(changed("PointData", "CellDatum"), Contains("no values of points"));
-    CHECK_THAT(errorOf(sourceOf(folder.write(
-                   "c.vti", "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece><CellData>"
-                            "<DataArray type=\"UInt8\" format=\"ascii\">1</DataArray></CellData></Piece></ImageData></VTKFile>"))),
-               Contains("of cells, not of points"));
+    CHECK_THAT(
+        errorOf(sourceOf(folder.write(
+            "c.vti",
+            "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece><CellData>"
+            "<DataArray type=\"UInt8\" format=\"ascii\">1</DataArray></CellData></Piece></ImageData></VTKFile>"))),
+        Contains("of cells, not of points"));
     CHECK_THAT(changed("LittleEndian", "MiddleEndian"), Contains("MiddleEndian"));
     CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" header_type=\"UInt16\""), Contains("UInt16"));
     CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" compressor=\"vtkLZ4DataCompressor\""), Contains("vtkLZ4"));
@@ -295,8 +299,11 @@ TEST_CASE("VTK data that are cut off or damaged are refused before anything is a
     const Style raw{Place::Raw, true, false, true};
     const std::string good = file(raw, values);
     const std::size_t header = good.rfind("_" + number(raw, 600)) + 1;
-    for (const auto& [at, claim] : {std::pair{0, std::uint64_t{1} << 62}, {8, std::uint64_t{1} << 62}, {16, 11u},
-                                    {24, std::uint64_t{1} << 62}, {0, 0u}}) {
+    for (const auto& [at, claim] : {std::pair{0, std::uint64_t{1} << 62},
+                                    {8, std::uint64_t{1} << 62},
+                                    {16, 11u},
+                                    {24, std::uint64_t{1} << 62},
+                                    {0, 0u}}) {
         std::string claims = good;
         claims.replace(header + static_cast<std::size_t>(at), 8, number(raw, claim));
         CAPTURE(at, claim);
@@ -308,8 +315,10 @@ TEST_CASE("time of a VTK image", "[vtk]") {
     const TempFolder folder;
     const auto at = [&](const std::string& name, const std::string& time) {
         std::string text = vti({}, {{"type=\"UInt8\" Name=\"a\"", "1 2 3 4 5 6", ""}});
-        text.insert(text.find("  <Piece"), "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
-                                           "format=\"ascii\">" + time + "</DataArray></FieldData>");
+        text.insert(text.find("  <Piece"),
+                    "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+                    "format=\"ascii\">" +
+                        time + "</DataArray></FieldData>");
         return folder.write(name, text);
     };
     at("f1.vti", "0.5");
@@ -332,9 +341,10 @@ TEST_CASE("a collection lists its files by time", "[vtk]") {
                "</Collection>\n</VTKFile>\n";
     };
     const std::string path = folder.write(
-        "all.pvd", collection("<DataSet timestep=\"10\" group=\"\" part=\"0\" file=\"f_b.vti\"/>\n"
-                              "<DataSet timestep=\"2.5\" group=\"\" part=\"0\" file=\"f_a.vti\"/>\n"
-                              "<DataSet timestep=\"11\" file='gone.vti'/><DataSet timestep=\"12\" file=\"./f_c.vti\"/>"));
+        "all.pvd",
+        collection("<DataSet timestep=\"10\" group=\"\" part=\"0\" file=\"f_b.vti\"/>\n"
+                   "<DataSet timestep=\"2.5\" group=\"\" part=\"0\" file=\"f_a.vti\"/>\n"
+                   "<DataSet timestep=\"11\" file='gone.vti'/><DataSet timestep=\"12\" file=\"./f_c.vti\"/>"));
     const SeriesListing listing = listSeries(sourceOf(path));
     REQUIRE(listing.frames.size() == 4);
     CHECK(listing.title == "all.pvd");
@@ -344,7 +354,7 @@ TEST_CASE("a collection lists its files by time", "[vtk]") {
     CHECK(loadVolume(listing.frames[3].source).value(0) == 'c');
     CHECK_THROWS_WITH(loadVolume(listing.frames[2].source), Contains("no such file") && Contains("gone.vti"));
     CHECK(contentsOf(sourceOf(path)).arrays == Names{"v"});
-    CHECK(filesOf(sourceOf(path)).size() == 5); // itself and the four
+    CHECK(filesOf(sourceOf(path)).size() == 5);                       // itself and the four
     CHECK(listSeries(sourceOf(folder.path("."))).title == "all.pvd"); // it knows the times of the files beside it
 
     const auto refused = [&](const std::string& text) { return errorOf(sourceOf(folder.write("b.pvd", text))); };
@@ -355,6 +365,7 @@ TEST_CASE("a collection lists its files by time", "[vtk]") {
     CHECK_THAT(refused(collection("<DataSet timestep=\"1\" part=\"0\" file=\"f_a.vti\"/>"
                                   "<DataSet timestep=\"1\" part=\"1\" file=\"f_b.vti\"/>")),
                Contains("one time step"));
-    CHECK_THAT(refused("<VTKFile type=\"Collection\"><Collection><DataSet file=\"f_a.vti\"/>"), Contains("ends within"));
+    CHECK_THAT(refused("<VTKFile type=\"Collection\"><Collection><DataSet file=\"f_a.vti\"/>"),
+               Contains("ends within"));
     CHECK_THAT(refused(vti({}, twoArrays({}))), Contains("not Collection"));
 }

@@ -67,8 +67,10 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
     m_command = "pellucid-cli " + app.get_name();
     app.add_option_function<std::string>(
            "VOLUME", [this](const std::string& text) { path = text; },
-           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVD) or (with --raw) headerless file, or sample:NAME; a series: a "
-           "file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with --session")
+           "a NRRD, MetaImage, NIfTI, VTK image (VTI, PVD) or (with --raw) headerless file, or sample:NAME; a series: "
+           "a "
+           "file with time steps, a pattern (f%03d.mhd), a quoted glob ('f*.mhd') or a folder; not needed with "
+           "--session")
         ->type_name("");
     addValue(
         app, "--frames", "A:B[:STEP]",
@@ -86,7 +88,8 @@ void VolumeOptions::add(CLI::App& app, SizeIs size) {
     addValue(
         app, "--cache", "MIB",
         [this](const std::string& text, const std::string& option) {
-            cacheBytes = std::max<std::size_t>(1, static_cast<std::size_t>(parseRealAbove(text, option, 0, 1e9) * 1048576));
+            cacheBytes =
+                std::max<std::size_t>(1, static_cast<std::size_t>(parseRealAbove(text, option, 0, 1e9) * 1048576));
         },
         "memory for frames of a series, in MiB (default: a quarter of what is free, at most 2048)", kGroup);
     addValue(
@@ -154,7 +157,8 @@ void VolumeOptions::takeRegion(const std::string& text, const std::string& optio
 }
 
 bool VolumeOptions::anyDetail() const {
-    return frames || frame || array || raw || spacing || skipBytes || missing || range || component || sampleSize || seed || downsample || region;
+    return frames || frame || array || raw || spacing || skipBytes || missing || range || component || sampleSize ||
+           seed || downsample || region;
 }
 
 void VolumeOptions::applyTo(SceneInputs& inputs) const {

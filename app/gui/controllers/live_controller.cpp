@@ -64,7 +64,9 @@ void LiveController::addActions() {
                  const bool on = !isOn();
                  m_bench.store().edit(on ? tr("Live targets") : tr("Live targets off"), {}, [on](Session& session) {
                      session.holdTargets = on;
-                     if (on) session.refine.edit([](RefineSettings& r) { r.live = false; }); // both set opacities
+                     if (!on) return;
+                     session.refine.edit([](RefineSettings& r) { r.live = false; }); // all of them set opacities
+                     session.adapt.edit([](AdaptSettings& a) { a.mode = AdaptSettings::Mode::Static; });
                  });
              },
          .enabled = [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); },
@@ -77,7 +79,10 @@ void LiveController::addActions() {
     });
 }
 
-bool LiveController::isOn() const { return m_bench.store().session().holdTargets; }
+bool LiveController::isOn() const {
+    const Session& session = m_bench.store().session();
+    return session.holdTargets && session.adapt->mode == AdaptSettings::Mode::Static; // frames have theirs made
+}
 
 LiveController::Task LiveController::present() const {
     const Scene& scene = m_bench.scene();

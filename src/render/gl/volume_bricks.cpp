@@ -17,14 +17,14 @@ constexpr int kShortest = 2 * kMargin + 8; ///< texture, voxels: shorter ones wo
 
 } // namespace
 
-BrickedVolume::BrickedVolume(const Volume& volume, int longest, std::shared_ptr<const VoxelColors> colors)
-    : m_geometry(volume.geometry()), m_grid(sharedIntensityGrid(volume)), m_colors(std::move(colors)),
+BrickedVolume::BrickedVolume(const Volume& volume, int longest, bool colored)
+    : m_geometry(volume.geometry()), m_grid(sharedIntensityGrid(volume)), m_colored(colored),
       m_hasInvalid(!m_grid->valid.empty()), m_maxCode(textureMaxCode(*m_grid)) {
     longest = std::min(longest, glInteger(GL_MAX_3D_TEXTURE_SIZE));
     PELLUCID_CHECK(longest >= kShortest);
     cut(Int3(longest));
     if (uploadAll()) {
-        if (!m_colors) m_grid.reset(); // the device has it now
+        if (!m_colored) m_grid.reset(); // the device has it now
         return;
     }
     // One brick at a time, half as long until it fits.
@@ -74,7 +74,7 @@ void BrickedVolume::cut(const Int3& longest) {
 /// One more.
 void BrickedVolume::makeTextures(const Int3& size, const std::string& what) {
     m_textures.push_back(makeTexture3d(size, codeFormat(*m_grid), GL_LINEAR, what));
-    if (m_colors) m_colorTextures.push_back(makeTexture3d(size, GL_RGBA8, GL_LINEAR, "the colours of " + what));
+    if (m_colored) m_colorTextures.push_back(makeTexture3d(size, GL_RGBA8, GL_LINEAR, "the colours of " + what));
 }
 
 void BrickedVolume::upload(std::size_t brick, std::size_t texture) {
@@ -98,7 +98,7 @@ bool BrickedVolume::uploadAll() {
 }
 
 void BrickedVolume::setColors(std::shared_ptr<const VoxelColors> colors) {
-    PELLUCID_CHECK(m_colors && colors);
+    PELLUCID_CHECK(m_colored && colors);
     if (colors == m_colors) return;
     m_colors = std::move(colors);
     if (m_textures.size() < m_bricks.size()) return; // they go up with each brick
@@ -134,7 +134,7 @@ const VolumeBrick& BrickedVolume::use(std::size_t index) {
     brick.textureFromVoxel = 1.0 / size;
     brick.textureOffset = (0.5 - Vec3(brick.first)) / size;
     brick.textureEnd = (Vec3(brick.size) - 0.5) / size;
-    if (m_colors) bindTexture(5, GL_TEXTURE_3D, m_colorTextures[at].name);
+    if (m_colored) bindTexture(5, GL_TEXTURE_3D, m_colorTextures[at].name);
     bindTexture(0, GL_TEXTURE_3D, texture.name);
     return brick;
 }

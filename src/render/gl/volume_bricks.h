@@ -23,15 +23,15 @@ struct VolumeBrick {
 
 class BrickedVolume {
 public:
-    /// Throws Error, OutOfMemory. `longest`: of textures, along any axis, voxels; the device's if less. `colors`: of
-    /// the volume's voxels, kept beside its intensities; null: none.
-    BrickedVolume(const Volume& volume, int longest, std::shared_ptr<const VoxelColors> colors = nullptr);
+    /// Throws Error, OutOfMemory. `longest`: of textures, along any axis, voxels; the device's if less. `colored`: with
+    /// room for colours of the voxels beside their intensities.
+    BrickedVolume(const Volume& volume, int longest, bool colored = false);
 
     std::size_t count() const noexcept { return m_bricks.size(); }
     bool hasInvalid() const noexcept { return m_hasInvalid; }
     int maxCode() const noexcept { return m_maxCode; } ///< textureMaxCode()
-    bool hasColors() const noexcept { return m_colors != nullptr; }
-    /// Other colours in place of those there are: nothing happens where they are the same. hasColors() is true.
+    bool isColored() const noexcept { return m_colored; }
+    /// Uploads colours, unless they are those that are there. isColored() is true.
     void setColors(std::shared_ptr<const VoxelColors> colors);
     /// Indices of bricks such that none hides an earlier one.
     std::vector<std::size_t> frontToBack(const Camera& camera) const;
@@ -47,8 +47,8 @@ private:
 
     Geometry m_geometry;
     std::shared_ptr<const IntensityGrid> m_grid; ///< kept only where something is uploaded again
-    std::shared_ptr<const VoxelColors> m_colors; ///< null: none
-    bool m_hasInvalid;
+    std::shared_ptr<const VoxelColors> m_colors; ///< null: none yet
+    bool m_colored, m_hasInvalid;
     int m_maxCode;
     std::vector<VolumeBrick> m_bricks;
     Int3 m_counts{1, 1, 1}, m_cells{1, 1, 1}; ///< bricks along each axis; voxels that each stands for

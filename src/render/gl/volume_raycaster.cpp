@@ -197,7 +197,13 @@ public:
     /// `window`: the whole picture or a part of it.
     void prepare(const RenderSettings& settings, const Camera& camera, const Geometry& geometry,
                  const GroundWindow& window, const JobControl& job) {
-        Drawn wanted{settings.ground, camera, settings.light.depthCue, settings.background, window};
+        Drawn wanted{settings.ground,
+                     camera,
+                     geometry.boxCenter(),
+                     geometry.radius(),
+                     settings.light.depthCue,
+                     settings.background,
+                     window};
         if (m_drawn == wanted) return;
         m_drawn.reset();
         const GroundPicture picture = groundOf(settings, camera, geometry, window, job);
@@ -232,7 +238,8 @@ private:
     struct Drawn {
         std::shared_ptr<const Ground> ground;
         Camera camera;
-        double depthCue = 0;
+        Vec3 center; // of the box: what depths count from
+        double radius = 0, depthCue = 0;
         std::optional<Rgb> background;
         GroundWindow window;
         bool operator==(const Drawn&) const = default;
@@ -326,17 +333,15 @@ struct VolumeRaycaster::Impl {
     void drawComposite(const RenderSettings& settings, const DrawTarget& target, const Tile& tile);
 };
 
-/// Colours lie beside the intensities: with the first, and after the last, both go up again.
+/// Colours lie beside the intensities: with the first, and after the last, those go up again.
 void VolumeRaycaster::Impl::fillColors(const RenderSettings& settings) {
     if (!isColored(settings.mode)) return;
     if (settings.colors)
         PELLUCID_CHECK(settings.colors->dims == volume->dims() &&
                        settings.colors->rgba.size() == voxelCount(volume->dims()));
-    if (bricks->hasColors() == (settings.colors != nullptr)) {
-        if (settings.colors) bricks->setColors(settings.colors);
-        return;
-    }
-    bricks = std::make_unique<BrickedVolume>(*volume, longestTexture, settings.colors);
+    const bool colored = settings.colors != nullptr;
+    if (bricks->isColored() != colored) bricks = std::make_unique<BrickedVolume>(*volume, longestTexture, colored);
+    if (colored) bricks->setColors(settings.colors);
 }
 
 /// In one piece for all tiles of a picture, unless it is large or drawn at a lower resolution.
@@ -614,7 +619,9 @@ VolumeRaycaster& VolumeRaycaster::operator=(VolumeRaycaster&&) noexcept = defaul
 
 void VolumeRaycaster::setVolume(std::shared_ptr<const Volume> volume, int longestTexture) {
     auto blocks = std::make_unique<RayBlocks>(*sharedIntensityGrid(*volume));
-    m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture);
+    // The next frame of what had colours has some, too.
+    const bool colored = m_impl->bricks && m_impl->bricks->isColored();
+    m_impl->bricks = std::make_unique<BrickedVolume>(*volume, longestTexture, colored);
     m_impl->longestTexture = longestTexture;
     m_impl->blocks = std::move(blocks);
     m_impl->volume = std::move(volume);

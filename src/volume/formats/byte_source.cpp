@@ -78,11 +78,10 @@ InflatedBytes::InflatedBytes(const std::string& path, const Place& place, bool z
 }
 
 InflatedBytes::Place InflatedBytes::place() const {
-    Place place{m_decoded, m_filePosition - m_stream.avail_in, m_memberEnded,
-                {new z_stream{}, [](z_stream* state) {
-                     inflateEnd(state);
-                     delete state;
-                 }}};
+    Place place{m_decoded, m_filePosition - m_stream.avail_in, m_memberEnded, {new z_stream{}, [](z_stream* state) {
+                                                                                   inflateEnd(state);
+                                                                                   delete state;
+                                                                               }}};
     // zlib copies from a state that it does not call const, and leaves it alone.
     PELLUCID_CHECK(inflateCopy(place.state.get(), const_cast<z_stream*>(&m_stream)) == Z_OK);
     return place;

@@ -81,9 +81,9 @@ void InflateIndex::require(std::uint64_t wanted, const JobControl& job) {
     using End = InflatedBytes::End;
     const std::lock_guard lock(m_mutex);
     if (m_sound > wanted || (m_ended && m_sound >= wanted)) return;
-    std::unique_ptr<InflatedBytes> bytes =
-        m_places.empty() ? std::make_unique<InflatedBytes>(m_path, m_start, m_zlib, job)
-                         : std::make_unique<InflatedBytes>(m_path, m_places.back(), m_zlib, job);
+    std::unique_ptr<InflatedBytes> bytes = m_places.empty()
+                                               ? std::make_unique<InflatedBytes>(m_path, m_start, m_zlib, job)
+                                               : std::make_unique<InflatedBytes>(m_path, m_places.back(), m_zlib, job);
     std::vector<char> unpacked(1u << 18);
     while (bytes->decoded() <= wanted && bytes->end() == End::None) {
         bytes->read(unpacked.data(), unpacked.size());

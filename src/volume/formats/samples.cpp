@@ -284,6 +284,23 @@ Collected collect(Values& values, const Selection& selection, const JobControl& 
     return {std::move(kept), {0, -1}};
 }
 
+/// The same where values are kept as the file has them and lie beside each other: nothing stands between file and
+/// samples.
+template <class T>
+Collected collectPlain(Values& values, const Selection& selection, const JobControl& job) {
+    std::vector<T> kept(voxelCount(selection.dims));
+    values.skip(selection.first);
+    ReadProgress progress(job, kept.size());
+    constexpr std::size_t kAtOnce = std::size_t{1} << 20;
+    for (std::size_t done = 0; done < kept.size();) {
+        const std::size_t count = std::min(kAtOnce, kept.size() - done);
+        values.read(reinterpret_cast<char*>(kept.data() + done), count);
+        done += count;
+        progress.add(count);
+    }
+    return {std::move(kept), {0, -1}};
+}
+
 /// The same for an excerpt: one layer of it is in the making while the file goes by.
 template <class T, class Kept, class Convert>
 Collected collectExcerpt(Values& values, const Selection& selection, const ExcerptPlan& plan,
@@ -314,13 +331,17 @@ Collected collectExcerpt(Values& values, const Selection& selection, const Excer
     return {std::move(kept), plan.factors == Int3(1) ? ValueRange{0, -1} : means.range()};
 }
 
+/// Whether the voxels lie one behind the other.
+bool isGapless(const Selection& selection) {
+    const auto nx = static_cast<std::uint64_t>(selection.dims.x), ny = static_cast<std::uint64_t>(selection.dims.y);
+    return selection.stride[0] == 1 && selection.stride[1] == nx && selection.stride[2] == nx * ny;
+}
+
 /// Where the samples can be used as they lie in the file: raw, in this machine's byte order, one after the other.
 bool isAsInMemory(const FileLayout& layout, const Selection& selection) {
     const auto bytes = bytesPerValue(layout.type);
     const bool native = bytes == 1 || layout.bigEndian == (std::endian::native == std::endian::big);
-    const auto nx = static_cast<std::uint64_t>(selection.dims.x), ny = static_cast<std::uint64_t>(selection.dims.y);
-    return layout.encoding == Encoding::Raw && !layout.open && native && !layout.scaling && selection.stride[0] == 1 &&
-           selection.stride[1] == nx && selection.stride[2] == nx * ny &&
+    return layout.encoding == Encoding::Raw && !layout.open && native && !layout.scaling && isGapless(selection) &&
            (layout.start + selection.first * bytes) % bytes == 0;
 }
 
@@ -358,6 +379,8 @@ Collected readAs(const FileLayout& layout, const Selection& selection, const Exc
         values = std::make_unique<TextValues<T>>(layout, job);
     else
         values = std::make_unique<BinaryValues<T>>(layout, job);
+    if constexpr (std::is_same_v<T, Kept>)
+        if (plan.isWhole() && !layout.scaling && isGapless(selection)) return collectPlain<T>(*values, selection, job);
     const auto read = [&](const auto& convert) {
         return plan.isWhole() ? collect<T, Kept>(*values, selection, job, convert)
                               : collectExcerpt<T, Kept>(*values, selection, plan, source.missing, job, convert);
@@ -385,7 +408,8 @@ std::uint64_t valuesUpTo(const FileLayout& layout, int step) {
     std::uint64_t all = 1;
     for (const FileAxis& axis : layout.axes) all *= static_cast<std::uint64_t>(axis.size);
     if (!selection.stepsAreApart) return all;
-    return all / selection.steps * std::min<std::uint64_t>(static_cast<std::uint64_t>(std::max(step, 0)) + 1, selection.steps);
+    return all / selection.steps *
+           std::min<std::uint64_t>(static_cast<std::uint64_t>(std::max(step, 0)) + 1, selection.steps);
 }
 
 void requireInflated(FileLayout& layout, std::uint64_t wanted, const JobControl& job) {
@@ -444,7 +468,8 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
 
     if (source.step < 0 || static_cast<std::uint64_t>(source.step) >= selection.steps)
         throw UsageError("there is no time step " + std::to_string(source.step), path,
-                         selection.steps == 1 ? "the file has one" : "give 0 to " + std::to_string(selection.steps - 1));
+                         selection.steps == 1 ? "the file has one"
+                                              : "give 0 to " + std::to_string(selection.steps - 1));
     if (!source.array.empty() && layout.array != source.array)
         throw UsageError("there is no array " + inQuotes(source.array), path, "the file's data has no name: give none");
 

@@ -58,7 +58,7 @@ struct FileLayout {
     /// Where given: the bytes of the values, in place of `encoding`, `start` and `skip` (raw to those who ask).
     std::function<std::unique_ptr<ByteSource>(const JobControl&)> open;
     std::shared_ptr<InflateIndex> index; ///< of Deflate with several steps: where to read on
-    std::string array; ///< name of the array that this is, where the file names its arrays
+    std::string array;                   ///< name of the array that this is, where the file names its arrays
     std::vector<std::string> notices;
 };
 
@@ -69,12 +69,12 @@ Vec3 cleanDirection(const Vec3& direction);
 /// Number of values along all axes together, which fits into 2^63 bytes. Throws FileError at `path`.
 std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
 
-/// Number of values from the first one that reading `step` has to go through: those of all steps up to it where steps lie
-/// one behind the other, otherwise all.
+/// Number of values from the first one that reading `step` has to go through: those of all steps up to it where steps
+/// lie one behind the other, otherwise all.
 std::uint64_t valuesUpTo(const FileLayout& layout, int step);
 
-/// requireInflates() of the layout's stream. Where the file has several steps, layout.index is made, and no byte is looked
-/// at twice as long as the file stays the same.
+/// requireInflates() of the layout's stream. Where the file has several steps, layout.index is made, and no byte is
+/// looked at twice as long as the file stays the same.
 void requireInflated(FileLayout& layout, std::uint64_t wanted, const JobControl& job);
 
 /// What the layout says that can be chosen of.

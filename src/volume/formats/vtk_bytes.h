@@ -1,5 +1,5 @@
-// The data of arrays as VTK's XML files hold them: after a header of their own, as they are or in base64, packed in blocks
-// or not.
+// The data of arrays as VTK's XML files hold them: after a header of their own, as they are or in base64, packed in
+// blocks or not.
 #pragma once
 
 #include <cstdint>
@@ -58,8 +58,8 @@ struct VtkData {
     int headerBytes = 4; ///< of a number in the header: 4 or 8
 };
 
-/// Throws FileError unless the header says that there are `bytes` bytes, and the file can hold them. Returns the place of
-/// the data of VtkData that are neither base64 nor compressed.
+/// Throws FileError unless the header says that there are `bytes` bytes, and the file can hold them. Returns the place
+/// of the data of VtkData that are neither base64 nor compressed.
 std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job);
 
 /// The bytes behind the header. The caller has looked at it by requireVtkBytes(). `job` must outlive it.

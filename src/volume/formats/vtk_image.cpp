@@ -101,8 +101,12 @@ std::uint64_t appendedStart(const std::string& path, std::uint64_t from, const J
 }
 
 VtkArray arrayOf(const XmlTag& tag, const std::string& path) {
-    VtkArray array{tag.get("Name"), tag.get("type"), lowerCase(tag.get("format")),
-                   wholeNumber(tag, "NumberOfComponents", 1, path), tag.end, 0};
+    VtkArray array{tag.get("Name"),
+                   tag.get("type"),
+                   lowerCase(tag.get("format")),
+                   wholeNumber(tag, "NumberOfComponents", 1, path),
+                   tag.end,
+                   0};
     const std::int64_t offset = wholeNumber(tag, "offset", 0, path);
     if (offset < 0) failAt(path, "the offset of an array is negative");
     array.offset = static_cast<std::uint64_t>(offset);
@@ -150,8 +154,7 @@ VtkImage readHeader(const std::string& path, const JobControl& job) {
             image.origin = tag.get("Origin");
             image.direction = tag.get("Direction");
         } else if (tag.name == "Piece" && parent == "ImageData") {
-            if (++pieces > 1)
-                failAt(path, "the image is in several pieces", "write it in one piece");
+            if (++pieces > 1) failAt(path, "the image is in several pieces", "write it in one piece");
             pieceExtent = tag.get("Extent");
         } else if (tag.name == "PointData" && parent == "Piece") {
             image.activeScalars = tag.get("Scalars");
@@ -183,8 +186,8 @@ VtkImage readHeader(const std::string& path, const JobControl& job) {
 
 ValueType typeOf(const VtkArray& array, const std::string& path) {
     static const std::map<std::string, ValueType> kTypes{
-        {"Int8", ValueType::I8},   {"UInt8", ValueType::U8},   {"Int16", ValueType::I16},   {"UInt16", ValueType::U16},
-        {"Int32", ValueType::I32}, {"UInt32", ValueType::U32}, {"Int64", ValueType::I64},   {"UInt64", ValueType::U64},
+        {"Int8", ValueType::I8},     {"UInt8", ValueType::U8},   {"Int16", ValueType::I16}, {"UInt16", ValueType::U16},
+        {"Int32", ValueType::I32},   {"UInt32", ValueType::U32}, {"Int64", ValueType::I64}, {"UInt64", ValueType::U64},
         {"Float32", ValueType::F32}, {"Float64", ValueType::F64}};
     const auto it = kTypes.find(array.type);
     if (it != kTypes.end()) return it->second;

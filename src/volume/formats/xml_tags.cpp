@@ -1,7 +1,7 @@
 #include "volume/formats/xml_tags.h"
 
-#include <charconv>
 #include <cctype>
+#include <charconv>
 #include <cstring>
 
 #include "base/error.h"
@@ -18,7 +18,8 @@ bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; 
 
 /// &amp; and the like; what is no entity stays as it is.
 std::string withoutEntities(const std::string& text) {
-    static const std::map<std::string, char> kNamed{{"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
+    static const std::map<std::string, char> kNamed{
+        {"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
     std::string plain;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const std::size_t end = text[i] == '&' ? text.find(';', i) : std::string::npos;
@@ -79,8 +80,8 @@ bool XmlTags::passOver(const std::string& end) {
 bool XmlTags::next(XmlTag& tag) {
     while (true) {
         while (true) { // to the next "<"
-            const void* found = m_at < m_piece.size() ? std::memchr(m_piece.data() + m_at, '<', m_piece.size() - m_at)
-                                                      : nullptr;
+            const void* found =
+                m_at < m_piece.size() ? std::memchr(m_piece.data() + m_at, '<', m_piece.size() - m_at) : nullptr;
             if (found != nullptr) {
                 m_at = static_cast<std::size_t>(static_cast<const char*>(found) - m_piece.data()) + 1;
                 break;

@@ -1,4 +1,5 @@
-// The tags of an XML file, one after the other, without keeping what stands between them: that may be gigabytes of data.
+// The tags of an XML file, one after the other, without keeping what stands between them: that may be gigabytes of
+// data.
 #pragma once
 
 #include <cstdint>

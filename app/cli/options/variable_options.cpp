@@ -1,0 +1,176 @@
+#include "options/variable_options.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "parse.h"
+#include "session/variable_edits.h"
+#include "volume/series.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+constexpr const char* kGroup = "Variables";
+constexpr const char* kHsb = "--hsb";
+constexpr const char* kHsbForm = "give alpha=, saturation=, brightness=, hue=, hue-from=, hue-to=, a=, b= with commas "
+                                 "between; auto; or off";
+
+VariableOptions::Named parseNamed(const std::string& text, const std::string& option) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+        throw UsageError("'" + text + "' names no variable", option,
+                         "give NAME=FILE, NAME=sample:NAME or NAME=gradient:OTHER and the like");
+    VariableOptions::Named named{text.substr(0, equals), text.substr(equals + 1)};
+    if (named.name.find_first_of(":,") != std::string::npos)
+        throw UsageError("the name '" + named.name + "' has a colon or comma", option, "give a plain name");
+    return named;
+}
+
+Variable variableOf(const VariableOptions::Named& named, const VolumeSource& first) {
+    Variable variable;
+    variable.name = named.name;
+    variable.derivation = atOption("--variable", [&] { return parseDerivation(named.spec); });
+    if (variable.derivation) return variable;
+    VolumeSource& source = variable.source;
+    source.path = named.spec;
+    source.frames = first.frames;
+    if (source.isSample()) {
+        source.sampleSize = first.sampleSize;
+        source.seed = first.seed;
+    } else {
+        source.raw = first.raw;
+        source.missing = first.missing;
+    }
+    source.downsample = first.downsample;
+    source.region = first.region;
+    return variable;
+}
+
+/// A channel's driver has to be there before anything is read.
+void requireVariable(const Session& session, std::string name) {
+    while (session.variableNamed(name) == nullptr) {
+        const auto derivation = atOption(kHsb, [&] { return parseDerivation(name); });
+        if (!derivation) {
+            std::string known;
+            for (const Variable& v : *session.variables) known += (known.empty() ? "" : ", ") + v.name;
+            throw UsageError("there is no variable '" + name + "'", kHsb, "the variables are " + known);
+        }
+        name = derivation->of;
+    }
+}
+
+void set(Session& session, const std::string& key, const std::string& value) {
+    const auto channel = [&](Channel which) {
+        requireVariable(session, value);
+        setChannel(session, which, value);
+    };
+    HsbMapping hsb = *session.hsb;
+    const auto degrees = [&] { return parseReal(value, kHsb, -360, 360); };
+    const auto scale = [&]() -> std::optional<double> {
+        if (value == "auto") return {};
+        return parseReal(value, kHsb, 0, kLargestScale);
+    };
+    if (key == "alpha") return channel(Channel::Opacity);
+    if (key == "saturation" || key == "brightness" || key == "hue") {
+        const Channel which = key == "saturation"   ? Channel::Saturation
+                              : key == "brightness" ? Channel::Brightness
+                                                    : Channel::Hue;
+        double constant = 0;
+        if (which == Channel::Hue && parseNumber(value, constant)) {
+            hsb.hue.clear();
+            hsb.hueFrom = degrees();
+        } else if (value == "none") {
+            return setChannel(session, which, "");
+        } else {
+            return channel(which);
+        }
+    } else if (key == "hue-from") {
+        hsb.hueFrom = degrees();
+    } else if (key == "hue-to") {
+        hsb.hueTo = degrees();
+    } else if (key == "a") {
+        hsb.a = scale();
+    } else if (key == "b") {
+        hsb.b = scale();
+    } else {
+        throw UsageError("there is no '" + key + "'", kHsb, kHsbForm);
+    }
+    session.hsb.set(std::move(hsb));
+}
+
+} // namespace
+
+void VariableOptions::add(CLI::App& app) {
+    app.add_option_function<std::vector<std::string>>(
+           "--variable",
+           [this](const std::vector<std::string>& texts) {
+               for (const std::string& text : texts) variables.push_back(parseNamed(text, "--variable"));
+           },
+           "another variable beside VOLUME, which is x: a file or series like VOLUME (--raw and --missing are of all), "
+           "or made of another one: gradient:NAME, volatility:NAME:FRAMES, difference:NAME:FRAME; repeatable")
+        ->type_name("NAME=SPEC")
+        ->allow_extra_args(false)
+        ->group(kGroup);
+    addValue(
+        app, kHsb, "CHANNELS", [this](const std::string& text, const std::string&) { hsb = text; },
+        "colours by variables in place of the transfer function's: alpha=, saturation=, brightness=, hue= (a variable, "
+        "of hue degrees too), hue-from=, hue-to= (degrees), a=, b= (scales of saturation and darkness, default auto) "
+        "with commas between; auto: volatility of 10 frames and the second variable; off",
+        kGroup);
+}
+
+void VariableOptions::applyTo(SceneInputs& inputs) const {
+    Session& session = inputs.session;
+    for (const Named& named : variables) {
+        const Variable variable = variableOf(named, session.variable().source);
+        session.variables.edit([&](std::vector<Variable>& all) {
+            const auto same =
+                std::find_if(all.begin(), all.end(), [&](const Variable& v) { return v.name == named.name; });
+            if (same == all.begin())
+                throw UsageError("the variable " + named.name + " is VOLUME's", "--variable", "give another name");
+            if (same == all.end())
+                all.push_back(variable);
+            else
+                *same = variable;
+        });
+    }
+    for (const Named& named : variables) requireVariable(session, named.name);
+    if (!hsb) return;
+    if (*hsb == "off") return session.hsb.edit([](HsbMapping& h) { h.on = false; });
+    if (*hsb == "auto") {
+        const Variable& x = session.variable();
+        startMapping(session, x.derivation || listSeries(x.source).frames.size() > 1);
+    } else {
+        for (const std::string& part : split(*hsb, ',')) {
+            const std::size_t equals = part.find('=');
+            if (equals == std::string::npos) throw UsageError("'" + part + "' sets nothing", kHsb, kHsbForm);
+            set(session, part.substr(0, equals), part.substr(equals + 1));
+        }
+    }
+    session.hsb.edit([](HsbMapping& h) { h.on = true; });
+}
+
+Json jsonFromMapping(const Scene& scene) {
+    if (!scene.colors) return nullptr;
+    const HsbMapping& hsb = *scene.session.hsb;
+    Json json{{"alpha", scene.session.variable().name}};
+    if (!hsb.saturation.empty()) {
+        json["saturation"] = hsb.saturation;
+        json["a"] = scene.hsbA;
+    }
+    if (!hsb.brightness.empty()) {
+        json["brightness"] = hsb.brightness;
+        json["b"] = scene.hsbB;
+    }
+    if (hsb.hue.empty()) {
+        json["hue"] = hsb.hueFrom;
+    } else {
+        json["hue"] = hsb.hue;
+        json["hue_from"] = hsb.hueFrom;
+        json["hue_to"] = hsb.hueTo;
+    }
+    return json;
+}
+
+} // namespace pellucid::cli

@@ -1,0 +1,33 @@
+// --variable, --hsb: several variables, and which of them drives what.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "output.h"
+#include "session/scene.h"
+
+namespace pellucid::cli {
+
+struct VariableOptions {
+    struct Named {
+        std::string name, spec;
+    };
+    std::vector<Named> variables;
+    std::optional<std::string> hsb;
+
+    void add(CLI::App& app);
+    /// After those of VOLUME, whose raw layout and missing value the files of further variables share. A variable of a
+    /// name that the session has takes its place; --hsb sets what it names and switches the mapping on, or off. Throws
+    /// UsageError.
+    void applyTo(SceneInputs& inputs) const;
+};
+
+/// {"alpha":"x","saturation":"volatility:x:10","a":12.5,…} with the scales that were used; null where colours are those
+/// of the transfer function.
+Json jsonFromMapping(const Scene& scene);
+
+} // namespace pellucid::cli
