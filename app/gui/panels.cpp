@@ -4,6 +4,7 @@
 // clang-format off
 #define PELLUCID_PANELS(PANEL) \
     PANEL(transferFunctionPanel) \
+    PANEL(playerPanel) /* below the one before it, which has no tabs yet: else it would become a tab, too */ \
     PANEL(featuresPanel) \
     PANEL(refinePanel) \
     PANEL(influencePanel) \
@@ -16,7 +17,6 @@
     PANEL(viewsPanel) \
     PANEL(settingsPanel) \
     PANEL(spacePanel) \
-    PANEL(playerPanel) \
     PANEL(variablesPanel) \
     PANEL(temporalPanel) \
     /* the end, so that a new line changes no other */

@@ -68,7 +68,7 @@ PanelInfo transferFunctionPanel() {
                                  [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
                 addGhostLayer(bench, editor->canvas());
                 editor->addRow(new PaletteBar(bench, editor->canvas(), editor));
-                editor->addRow(makeSourceNote(bench, "tfColorSource", colorSourceText, editor));
+                followTitle(bench, parent, curveTitle);
                 QObject::connect(&editor->canvas(), &TfCanvas::menuOpening, editor,
                                  [&bench](QMenu& menu, double, FeatureId id) { addFeatureMenu(menu, bench, id); });
                 const QString place = QObject::tr("Transfer function");

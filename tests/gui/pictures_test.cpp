@@ -245,8 +245,8 @@ TEST_CASE("several variables for the guide", "[.pictures][.variablespicture]") {
             });
         });
         w.settle();
-        w.document().setCamera(
-            cameraFromView(w.document().volume()->geometry(), show.azimuth, show.elevation, 1.2, Projection::Perspective));
+        w.document().setCamera(cameraFromView(w.document().volume()->geometry(), show.azimuth, show.elevation, 1.2,
+                                              Projection::Perspective));
         grab(w, ("window_" + std::string(show.file)).c_str());
         REQUIRE(w.picture().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + show.file));
     }

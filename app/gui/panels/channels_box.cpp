@@ -120,7 +120,7 @@ void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* nam
     combo->setObjectName(name);
     combo->setToolTip(tip);
     combo->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    combo->setMinimumContentsLength(14);
+    combo->setMinimumContentsLength(8);
     m_channels[indexOf(channel)] = combo;
     form.addRow(label, combo);
     connect(combo, &QComboBox::activated, this, [this, combo, channel] {
@@ -143,14 +143,14 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
     scale.slider->setObjectName(QString::fromLatin1(name) + "Slider");
     scale.slider->setRange(0, kScaleSteps);
     scale.slider->setPageStep(kScaleSteps / 20);
-    scale.slider->setMinimumWidth(60);
+    scale.slider->setMinimumWidth(40);
     scale.slider->setToolTip(tip);
     scale.box->setObjectName(name);
     scale.box->setRange(0, kLargestScale);
     scale.box->setDecimals(3);
     scale.box->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
     scale.box->setKeyboardTracking(false);
-    scale.box->setMaximumWidth(90);
+    scale.box->setMaximumWidth(76);
     scale.box->setToolTip(tip);
     scale.automatic->setObjectName(QString::fromLatin1(name) + "Automatic");
     scale.automatic->setText(tr("auto"));
@@ -186,7 +186,7 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
 void ChannelsBox::addHue(QFormLayout& form) {
     m_hueSlider->setObjectName("hsbHueSlider");
     m_hueSlider->setRange(0, 359);
-    m_hueSlider->setMinimumWidth(60);
+    m_hueSlider->setMinimumWidth(40);
     m_hueSlider->setToolTip(tr("The hue, degrees: 0 red, 120 green, 240 blue"));
     m_hueSwatch->setObjectName("hsbHueSwatch");
     const std::tuple<QDoubleSpinBox*, const char*, QString> boxes[] = {
@@ -333,44 +333,35 @@ void ChannelsBox::follow() {
     m_showing = false;
 }
 
-QString colorSourceText(const Session& session) {
-    if (session.isEmpty()) return {};
+QString curveTitle(const Session& session) {
+    const QString title = QObject::tr("Transfer function");
     const HsbMapping& hsb = *session.hsb;
-    const QString front = QString::fromStdString(session.variable().name);
-    if (!hsb.on) return session.variables->size() > 1 ? QObject::tr("The curve is that of %1.").arg(front) : QString();
+    if (session.isEmpty() || (!hsb.on && session.variables->size() < 2)) return title;
+    const QString of = QObject::tr("%1 of %2").arg(title, QString::fromStdString(session.variable().name));
+    if (!hsb.on) return of;
     QStringList channels;
     const std::pair<QString, const std::string&> driven[] = {{QObject::tr("saturation"), hsb.saturation},
                                                              {QObject::tr("brightness"), hsb.brightness},
                                                              {QObject::tr("hue"), hsb.hue}};
     for (const auto& [channel, name] : driven)
         if (!name.empty()) channels << QStringLiteral("%1 ← %2").arg(channel, driverText(session, name));
-    return QObject::tr("The curve is the opacity of %1; colours come from variables (%2), in pictures and in figures.")
-        .arg(front, channels.isEmpty() ? QObject::tr("one hue") : channels.join(", "));
+    return QObject::tr("%1: opacity alone, colours come from variables (%2)")
+        .arg(of, channels.isEmpty() ? QObject::tr("one hue") : channels.join(", "));
 }
 
-QString featureSourceText(const Session& session) {
-    if (session.isEmpty() || (session.variables->size() < 2 && !session.hsb->on)) return {};
-    const QString front = QString::fromStdString(session.variable().name);
-    return session.hsb->on ? QObject::tr("Features of %1, measured with the colours of the variables").arg(front)
-                           : QObject::tr("Features of %1").arg(front);
+QString featuresTitle(const Session& session) {
+    if (session.isEmpty() || (!session.hsb->on && session.variables->size() < 2)) return QObject::tr("Features");
+    const QString of = QObject::tr("Features of %1").arg(QString::fromStdString(session.variable().name));
+    return session.hsb->on ? QObject::tr("%1, measured in the colours of variables").arg(of) : of;
 }
 
-QLabel* makeSourceNote(Workbench& bench, const char* name, QString (*text)(const Session&), QWidget* parent) {
-    auto* note = new QLabel(parent);
-    note->setObjectName(name);
-    note->setWordWrap(true);
-    note->setTextFormat(Qt::PlainText);
-    note->setContentsMargins(10, 0, 10, 0);
-    const auto follow = [&bench, note, text] {
-        note->setText(text(bench.store().session()));
-        note->setVisible(!note->text().isEmpty());
-    };
-    QObject::connect(&bench.store(), &SessionStore::changed, note, [follow](const Scene& before, const Scene& after) {
-        if (!before.session.variables.isSame(after.session.variables) || !before.session.hsb.isSame(after.session.hsb))
-            follow();
-    });
-    follow();
-    return note;
+void followTitle(Workbench& bench, QWidget* dock, QString (*title)(const Session&)) {
+    QObject::connect(&bench.store(), &SessionStore::changed, dock,
+                     [dock, title](const Scene& before, const Scene& after) {
+                         if (!before.session.variables.isSame(after.session.variables) ||
+                             !before.session.hsb.isSame(after.session.hsb))
+                             dock->setWindowTitle(title(after.session));
+                     });
 }
 
 } // namespace pellucid::gui

@@ -64,12 +64,11 @@ private:
     bool m_showing = false; ///< the controls show, they do not edit
 };
 
-/// In words, whose opacity the curve says and where colours come from; empty where the transfer function says all.
-QString colorSourceText(const Session& session);
-/// In words, whose features those of the list are, and by which colours they are measured; likewise.
-QString featureSourceText(const Session& session);
-
-/// A line of one of these; hidden while there is nothing to say.
-QLabel* makeSourceNote(Workbench& bench, const char* name, QString (*text)(const Session&), QWidget* parent);
+/// In words, whose opacity the curve says and where colours come from: title of the editor of transfer functions.
+QString curveTitle(const Session& session);
+/// In words, whose features those of the list are, and by which colours they are measured.
+QString featuresTitle(const Session& session);
+/// Keeps the title of a dock so; a title takes no room from the picture, whatever it says.
+void followTitle(Workbench& bench, QWidget* dock, QString (*title)(const Session&));
 
 } // namespace pellucid::gui

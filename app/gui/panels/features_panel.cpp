@@ -274,7 +274,6 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(0, 0, 0, 8);
     column->setSpacing(8);
-    column->addWidget(makeSourceNote(m_bench, "featureSource", featureSourceText, this));
     column->addWidget(m_table);
     column->addWidget(makeShapeRow());
     column->addWidget(makeTargetRow());
@@ -517,6 +516,7 @@ PanelInfo featuresPanel() {
             .keys = QKeySequence("Ctrl+2"),
             .tip = QObject::tr("What each feature shows and what it should show"),
             .make = [](Workbench& bench, QWidget* parent) {
+                followTitle(bench, parent, featuresTitle);
                 const QString place = QObject::tr("Features");
                 bench.actions().addGestures(
                     {{place, QObject::tr("Click on an eye"), QObject::tr("show or hide the feature")},

@@ -67,7 +67,8 @@ GroundBox::GroundBox(Workbench& bench, QWidget* parent)
         m_colorMap->addItem(QString::fromStdString(name), QString::fromStdString(name));
     m_scale->setObjectName("groundScale");
     m_scale->setRange(-1e9, 1e9);
-    m_scale->setDecimals(6);
+    m_scale->setDecimals(4);
+    m_scale->setMinimumWidth(60);
     m_scale->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
     m_scale->setKeyboardTracking(false);
     m_scale->setToolTip(tr("Length in the world of one unit of height"));

@@ -156,7 +156,7 @@ QWidget* VariablesPanel::makeList() {
     m_list->setRootIsDecorated(false);
     m_list->setUniformRowHeights(true);
     m_list->setEditTriggers(QAbstractItemView::EditKeyPressed | QAbstractItemView::DoubleClicked);
-    m_list->setMinimumHeight(90);
+    m_list->setMinimumSize(120, 90);
     m_list->setMaximumHeight(150);
     m_list->setToolTip(tr("Double-click or F2: another name"));
     m_list->header()->setStretchLastSection(true);
@@ -175,7 +175,7 @@ QWidget* VariablesPanel::makeList() {
     m_lo->setObjectName("variableLo");
     m_hi->setObjectName("variableHi");
     for (QLineEdit* edit : {m_lo, m_hi}) {
-        edit->setMaximumWidth(80);
+        edit->setMinimumWidth(60);
         edit->setToolTip(tr("Values of the variable that are intensity 0 and 1, in its unit"));
         connect(edit, &QLineEdit::editingFinished, this, &VariablesPanel::editRange);
     }
@@ -185,11 +185,13 @@ QWidget* VariablesPanel::makeList() {
     row->addWidget(m_add);
     row->addWidget(m_remove);
     row->addStretch(1);
-    row->addWidget(new QLabel(tr("Range"), box));
-    row->addWidget(m_lo);
-    row->addWidget(m_hi);
-    row->addWidget(m_wholeRange);
     column->addLayout(row);
+    auto* range = new QHBoxLayout;
+    range->addWidget(new QLabel(tr("Range"), box));
+    range->addWidget(m_lo, 1);
+    range->addWidget(m_hi, 1);
+    range->addWidget(m_wholeRange);
+    column->addLayout(range);
 
     connect(m_addMenu, &QMenu::aboutToShow, this, &VariablesPanel::fillAddMenu);
     connect(m_remove, &QPushButton::clicked, this, &VariablesPanel::remove);
