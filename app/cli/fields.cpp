@@ -157,6 +157,7 @@ Answer run(const Options& o, Progress& progress) {
               {"files", names},
               {"seconds", {{"total", total.seconds()}}}};
     addProfile(json, input.settings);
+    if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     return {text, std::move(json), opened.notices(), {}};
 }
 

@@ -178,6 +178,7 @@ Answer run(const Options& o, Progress& progress) {
     std::string text = textOf(result, engine + profileText(input.settings), seconds);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
     addProfile(json, input.settings);
+    if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     std::vector<std::string> remarks;
     if (result.history[result.best].objective >= options.tolerance) {
         const Verdict verdict =

@@ -40,6 +40,7 @@ _pellucid_cli() {
         --scale) choices="linear log log:" ;;
         --paths) choices="newton parallel line fixed runs" ;;
         --show) choices="F" ;;
+        --hsb) choices="saturation= brightness= hue= alpha= off" ;;
         --ground-map) choices="terrain hue spiral ember sand grey blue-orange blue-red" ;;
         --ground)
             choices=$("$program" samples 2>/dev/null | sed -n 's/^\(sample:[^ ]*\) .*/\1/p')
@@ -83,7 +84,7 @@ _pellucid_cli() {
             --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
             --image-size | --report-size | --fix | --tolerance | --coverage | --window | --tf-strength | \
-            --features | --samples | --space-view | --from | --fps | --ground-raw | --ground-scale | --ground-relief)
+            --features | --samples | --space-view | --from | --fps | --ground-raw | --ground-scale | --ground-relief | --variable)
             return
             ;;
     esac

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "commands.h"
+#include "optimize/drawn_colors.h"
 #include "optimize/refine_words.h"
 #include "optimize/region_colors.h"
 #include "output_files.h"
@@ -112,7 +113,7 @@ RefinePriority priorityOf(const Options& o, const Scene& scene, const TransferFu
     RefinePriority priority;
     priority.intensity = o.intensity;
     if (!o.intensity && !o.hue && !o.region) priority.intensity = scene.session.refine->intensity;
-    if (o.hue) priority.intensity = intensityOfHue(tf, *o.hue);
+    if (o.hue) priority.intensity = intensityOfHue(withDrawnColors(tf, *scene.volume, scene.colors.get()), *o.hue);
     if (priority.intensity) {
         said = {{"kind", "intensity"}, {"intensity", *priority.intensity}};
         if (o.hue) said["hue"] = *o.hue;
@@ -194,14 +195,16 @@ Answer run(const Options& o, Progress& progress) {
     const Histogram histogram = makeHistogram(*opened.scene.volume);
     const JobControl job = progress.phase("refining");
     const Stopwatch refining;
-    const RefineResult result = refine(histogram, tf, options, job);
+    const Scene& scene = opened.scene;
+    const RefineResult result = refineAsDrawn(histogram, tf, *scene.volume, scene.colors.get(), options, job);
     const double seconds = refining.seconds();
-    const RefineComparison comparison = compareMethods(histogram, tf, options, job);
+    const RefineComparison comparison = compareMethods(
+        histogram, options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get()),
+        options, job);
     if (o.outTf) writeTf(result.tf, *o.outTf);
-    return {textOf(options, tf, result, comparison, priority, seconds),
-            jsonFromRefinement(tf, result, options.method, comparison, priority),
-            opened.notices(),
-            {}};
+    Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
+    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
+    return {textOf(options, tf, result, comparison, priority, seconds), std::move(json), opened.notices(), {}};
 }
 
 void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {

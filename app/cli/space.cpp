@@ -229,6 +229,7 @@ Answer run(const Options& o, Progress& progress) {
 
     Json json{{"command", "space"}, {"engine", engine}, {"volume", volume}, {"coarser_by", factor}, {"show", o.show}};
     json.update(jsonOf(space, names));
+    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     json["paths"] = std::move(pathsJson);
     json["files"] = files;
     json["seconds"] = {{"sampling", seconds}, {"total", total.seconds()}};

@@ -165,8 +165,10 @@ Answer run(const Options& o, Progress& progress) {
     if (o.map && isTable(*o.map)) writeTextAtomically(*o.map, tableOf(best.map));
     if (o.map && !isTable(*o.map)) writeImage(pictureOf(best.map), *o.map);
     const std::string feature = o.feature.value_or("");
+    Json json = jsonOf(metric, feature, best, *input.volume, engine, seconds);
+    if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     return {textOf(metric, feature, best, input.volume->geometry(), engine, seconds),
-            jsonOf(metric, feature, best, *input.volume, engine, seconds),
+            std::move(json),
             opened.notices(),
             {}};
 }

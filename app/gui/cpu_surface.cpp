@@ -189,8 +189,8 @@ void CpuSurface::takeGrown() {
 
 void CpuSurface::show(const Task& task, const Picture& picture) {
     const bool full = task.growing || (task.plan.scale == 1 && task.plan.stepInD0 == kFullStep);
-    m_frame = {task.pixels.width(), task.pixels.height(), task.plan.scale, task.plan.stepInD0, full && !m_again,
-               task.input.volume.get()};
+    m_frame = {task.pixels.width(), task.pixels.height(), task.plan.scale,
+               task.plan.stepInD0,  full && !m_again,     task.input.volume.get()};
     if (task.growing) {
         takeGrown();
         m_grow.stop();

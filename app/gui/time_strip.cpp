@@ -154,7 +154,8 @@ void TimeStrip::paintEvent(QPaintEvent*) {
     painter.drawLine(QPointF(x, r.top()), QPointF(x, r.bottom()));
     painter.setPen(QPen(theme::kKnob, 1));
     painter.setBrush(theme::kAccent);
-    painter.drawPolygon(QPolygonF{{x - 5, r.bottom() + kHeld + 2}, {x, r.bottom() - 5}, {x + 5, r.bottom() + kHeld + 2}});
+    painter.drawPolygon(
+        QPolygonF{{x - 5, r.bottom() + kHeld + 2}, {x, r.bottom() - 5}, {x + 5, r.bottom() + kHeld + 2}});
     if (hasFocus()) {
         painter.setBrush(Qt::NoBrush);
         painter.setPen(QPen(theme::kAccent, 1));
@@ -166,10 +167,8 @@ QString TimeStrip::tipAt(const QPointF& at) const {
     if (count() == 0) return {};
     const int f = frameAt(at.x());
     const FrameMark& mark = m_marks[static_cast<std::size_t>(f)];
-    QStringList lines{tr("%1 (%L2 of %L3)")
-                          .arg(QString::fromStdString(m_series->listing().label(f)))
-                          .arg(f + 1)
-                          .arg(count())};
+    QStringList lines{
+        tr("%1 (%L2 of %L3)").arg(QString::fromStdString(m_series->listing().label(f))).arg(f + 1).arg(count())};
     const QRectF r = plot();
     const auto& counts = m_counts[static_cast<std::size_t>(f)];
     if (r.contains(at) && !counts.empty()) {

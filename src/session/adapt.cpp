@@ -9,6 +9,7 @@
 
 #include "base/stopwatch.h"
 #include "engines/engines.h"
+#include "optimize/drawn_colors.h"
 #include "optimize/region_colors.h"
 #include "optimize/tracking.h"
 #include "render/color_difference.h"
@@ -354,7 +355,8 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         options.priority = priority;
         made.tf = scene.tf;
         if (!std::isinf(settings.coherence)) {
-            const RefineResult result = refine(*scene.histogram, scene.tf, options, quiet);
+            const RefineResult result =
+                refineAsDrawn(*scene.histogram, scene.tf, *scene.volume, scene.colors.get(), options, quiet);
             made.tf = pulledBack(scene.tf, result.tf, settings.coherence);
             made.energy = result.energyMovableAfter;
             made.moves = result.iterations;

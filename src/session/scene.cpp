@@ -8,6 +8,7 @@
 #include "session/scene_data.h"
 #include "tf/color_maps.h"
 #include "tf/formats/tf_file.h"
+#include "tf/hsb_colors.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 
@@ -27,6 +28,10 @@ std::optional<ValueRange> windowToSet(const Proposal& proposal, const Volume& da
 /// Window and transfer function from the data, where the session has none.
 void proposeStart(Scene& scene, const JobControl& job) {
     if (scene.session.tf() != nullptr) return;
+    if (scene.session.hsb->on) { // colours say the rest: opacity is the intensity itself
+        scene.session.setTf(opacityRamp(rampOpacity(*scene.volume)));
+        return;
+    }
     auto proposal = std::make_shared<const Proposal>(propose(*scene.volume, {job.stop, {}}));
     // Frames of a series are compared: their window is that of all values.
     if (!scene.session.variable().window && !scene.series->varies())

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "volume/coarser_colors.h"
 #include "volume/excerpt.h"
 
 namespace pellucid {
@@ -23,6 +24,7 @@ MeasureInput coarserInput(const MeasureInput& input, int factor) {
     if (factor == 1) return input;
     MeasureInput coarser = input;
     coarser.volume = std::make_shared<const Volume>(coarserCopy(*input.volume, factor));
+    if (input.colors) coarser.colors = std::make_shared<const VoxelColors>(coarserColors(*input.colors, factor));
     return coarser;
 }
 

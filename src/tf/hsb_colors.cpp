@@ -83,4 +83,37 @@ double automaticScale(const Volume& channel) {
     return static_cast<double>(kBins) / static_cast<double>(std::min(bin + 1, kBins));
 }
 
+TransferFunction opacityRamp(double top) {
+    PELLUCID_CHECK(top > 0 && top <= 1);
+    constexpr int kThirds = 3;
+    const std::array<const char*, kThirds> names{"low", "middle", "high"};
+    const std::array<Rgb, kThirds> colors{Rgb{0.30, 0.55, 0.85}, Rgb{0.90, 0.65, 0.20}, Rgb{0.85, 0.25, 0.25}};
+    TransferFunction tf;
+    for (int f = 0; f < kThirds; ++f) {
+        const auto index = static_cast<std::size_t>(f);
+        const double a = static_cast<double>(f) / kThirds, b = (f + 1.0) / kThirds;
+        // A pair of points where two features meet: each can be scaled alone.
+        tf.points.push_back({a, top * a, colors[index], false, {}});
+        tf.points.push_back({b, top * b, colors[index], false, {}});
+        tf.features.push_back({names[index], a, b, colors[index], {}});
+    }
+    return tf;
+}
+
+double rampOpacity(const Volume& volume) {
+    std::vector<double> sums(static_cast<std::size_t>(volume.dims().z), 0.0);
+    const std::size_t plane = static_cast<std::size_t>(volume.dims().x) * static_cast<std::size_t>(volume.dims().y);
+    parallelFor(sums.size(), [&](std::size_t k) {
+        for (std::size_t i = k * plane; i < (k + 1) * plane; ++i)
+            if (const double s = volume.intensity(i); s > 0) sums[k] += s; // NaN is not
+    });
+    double sum = 0;
+    for (const double s : sums) sum += s;
+    const Geometry& g = volume.geometry();
+    const Vec3 edges = Vec3(g.dims) * g.spacing / g.d0();
+    const double depth = sum / static_cast<double>(volume.size()) * std::min({edges.x, edges.y, edges.z});
+    constexpr double kDepth = 1.5, kLeast = 0.02;
+    return depth > 0 ? std::clamp(kDepth / depth, kLeast, 1.0) : 1.0;
+}
+
 } // namespace pellucid

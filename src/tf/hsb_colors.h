@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/job.h"
+#include "tf/transfer_function.h"
 #include "volume/volume.h"
 #include "volume/voxel_colors.h"
 
@@ -24,6 +25,13 @@ struct HsbInput {
 /// Eq. 6.1, hexcone HSB to sRGB, rounded to 8 bits. An invalid voxel of a variable has the value 0.
 /// Throws Cancelled.
 VoxelColors hsbColors(const HsbInput& input, const JobControl& job = {});
+
+/// Alpha of eq. 6.1: opacity rises evenly from 0 at intensity 0 to `top` at 1, (0,1]. Its features are the thirds of
+/// the window, so that there is something to measure.
+TransferFunction opacityRamp(double top);
+/// `top` for opacityRamp(), in [0.02,1], by which a ray along the shortest edge of the box meets an optical depth of
+/// 1.5 on average.
+double rampOpacity(const Volume& volume);
 
 /// A sensible scale for a channel: the 99th percentile of the values above 0 becomes 1. 1 where none is.
 double automaticScale(const Volume& channel);

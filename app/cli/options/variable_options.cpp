@@ -48,13 +48,13 @@ Variable variableOf(const VariableOptions::Named& named, const VolumeSource& fir
 }
 
 /// A channel's driver has to be there before anything is read.
-void requireVariable(const Session& session, std::string name) {
+void requireVariable(const Session& session, std::string name, const char* option = kHsb) {
     while (session.variableNamed(name) == nullptr) {
-        const auto derivation = atOption(kHsb, [&] { return parseDerivation(name); });
+        const auto derivation = atOption(option, [&] { return parseDerivation(name); });
         if (!derivation) {
             std::string known;
             for (const Variable& v : *session.variables) known += (known.empty() ? "" : ", ") + v.name;
-            throw UsageError("there is no variable '" + name + "'", kHsb, "the variables are " + known);
+            throw UsageError("there is no variable '" + name + "'", option, "the variables are " + known);
         }
         name = derivation->of;
     }
@@ -135,7 +135,8 @@ void VariableOptions::applyTo(SceneInputs& inputs) const {
                 *same = variable;
         });
     }
-    for (const Named& named : variables) requireVariable(session, named.name);
+    for (const Named& named : variables)
+        if (const auto derivation = parseDerivation(named.spec)) requireVariable(session, derivation->of, "--variable");
     if (!hsb) return;
     if (*hsb == "off") return session.hsb.edit([](HsbMapping& h) { h.on = false; });
     if (*hsb == "auto") {

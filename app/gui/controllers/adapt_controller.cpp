@@ -29,23 +29,23 @@ void editTrack(Session& session, const std::function<void(TfTrack&)>& change) {
 } // namespace
 
 AdaptController::AdaptController(Workbench& bench)
-    : m_bench(bench), m_job(
-                          [this](const Scene& basis, const JobControl& job) {
-                              Answer answer;
-                              const auto task = nextToAdapt(basis.session, *basis.series);
-                              answer.progress = adaptProgress(basis.session, *basis.series);
-                              answer.firstStale = task ? task->frame : -1;
-                              if (!task) return answer;
-                              try {
-                                  answer.made = m_maker.adapter.adapt(basis, *task, m_maker.workspace, job);
-                              } catch (const FileError&) {
-                                  // The frame is broken, which the player says; the next one is looked for.
-                                  if (basis.series->summary(task->frame).problem.empty()) throw;
-                              }
-                              return answer;
-                          },
-                          [this](const Scene& basis, Answer& answer) { finish(basis, answer); }, WhenBusy::StopOld,
-                          &m_lane) {
+    : m_bench(bench),
+      m_job(
+          [this](const Scene& basis, const JobControl& job) {
+              Answer answer;
+              const auto task = nextToAdapt(basis.session, *basis.series);
+              answer.progress = adaptProgress(basis.session, *basis.series);
+              answer.firstStale = task ? task->frame : -1;
+              if (!task) return answer;
+              try {
+                  answer.made = m_maker.adapter.adapt(basis, *task, m_maker.workspace, job);
+              } catch (const FileError&) {
+                  // The frame is broken, which the player says; the next one is looked for.
+                  if (basis.series->summary(task->frame).problem.empty()) throw;
+              }
+              return answer;
+          },
+          [this](const Scene& basis, Answer& answer) { finish(basis, answer); }, WhenBusy::StopOld, &m_lane) {
     m_timer.setSingleShot(true);
     m_timer.setInterval(kRest);
     connect(&m_timer, &QTimer::timeout, this, &AdaptController::look);
@@ -256,8 +256,8 @@ void AdaptController::follow(const Scene& before, const Scene& after) {
     } else if (other || mayDiffer(before.session, after.session)) {
         m_timer.start(); // what is under way may be stale: its fingerprint tells
     }
-    if (before.session.frame != after.session.frame || other ||
-        !before.session.adapt.isSame(after.session.adapt) || !before.session.targetKeys.isSame(after.session.targetKeys) ||
+    if (before.session.frame != after.session.frame || other || !before.session.adapt.isSame(after.session.adapt) ||
+        !before.session.targetKeys.isSame(after.session.targetKeys) ||
         !before.session.variables.isSame(after.session.variables))
         m_bench.actions().refresh();
 }

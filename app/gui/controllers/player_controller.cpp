@@ -11,10 +11,10 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kMostReady = 3;          // scenes that are made before they are wanted
-constexpr int kAheadAtRest = 2;        // frames that are read ahead while nothing plays
-constexpr qint64 kRateOver = 2000;     // milliseconds over which the rate is told
-constexpr qint64 kPatience = 1000;     // milliseconds that a frame waits for the picture of the one before
+constexpr int kMostReady = 3;           // scenes that are made before they are wanted
+constexpr int kAheadAtRest = 2;         // frames that are read ahead while nothing plays
+constexpr qint64 kRateOver = 2000;      // milliseconds over which the rate is told
+constexpr qint64 kPatience = 1000;      // milliseconds that a frame waits for the picture of the one before
 constexpr std::size_t kMostNotices = 3; // of frames that cannot be read, each with a notice of its own
 
 } // namespace
@@ -350,7 +350,7 @@ void PlayerController::deliver(const Ask& ask, Got& got) {
     if (!isPresent) return next();
     if (got.error) {
         m_broken[ask.frame] = {QString::fromStdString(got.error->problem()),
-                              QString::fromStdString(got.error->where())};
+                               QString::fromStdString(got.error->where())};
         if (m_wanted == ask.frame) {
             const int other = m_wantedBy == 0 ? ask.frame : goodFrame(ask.frame, m_wantedBy);
             if (m_broken.contains(other))
@@ -432,7 +432,7 @@ void PlayerController::reportProblems() {
     const TimeSeries& series = *m_bench.scene().series;
     for (int f = 0; f < series.size(); ++f) {
         const FrameSummary summary = series.summary(f);
-        if (!summary.problem.empty()) 
+        if (!summary.problem.empty())
             m_broken.try_emplace(
                 f, Problem{QString::fromStdString(summary.problem),
                            QString::fromStdString(series.listing().frames[static_cast<std::size_t>(f)].source.path)});

@@ -48,7 +48,8 @@ public:
     void play();
     void pause();
     bool isPlaying() const { return m_playing; }
-    /// To a frame, which is shown as soon as it is there; of several in a row the latest. What plays goes on from there.
+    /// To a frame, which is shown as soon as it is there; of several in a row the latest. What plays goes on from
+    /// there.
     void goTo(int frame);
     void step(int by); ///< as many frames forward, or back; over those that cannot be read
 
@@ -63,7 +64,8 @@ public:
     double rate() const;                      ///< frames a second that have been shown lately; 0 before
     QString rateText() const;                 ///< "12 of 24 frames a second, 3 dropped"; empty before play()
 
-    /// Frames that are not known yet are read, one by one, while nothing else is wanted; so that the strip can show them.
+    /// Frames that are not known yet are read, one by one, while nothing else is wanted; so that the strip can show
+    /// them.
     bool isSurveying() const;
     int knownCount() const;
     void stopSurvey();
@@ -75,8 +77,8 @@ public:
     void pictureShown(const Volume* volume);
 
 Q_SIGNALS:
-    void changed();   ///< playing, awaited, speed, direction, what was dropped
-    void surveyed();  ///< more frames are known
+    void changed();  ///< playing, awaited, speed, direction, what was dropped
+    void surveyed(); ///< more frames are known
     void heldChanged();
 
 private:
@@ -115,7 +117,7 @@ private:
     std::optional<int> m_wanted;
     int m_wantedBy = 0; ///< direction in which another is looked for where it cannot be read; 0: none is
     bool m_pictureSeen = true, m_surveyStopped = false;
-    std::map<int, Scene> m_ready;    ///< for the next frames
+    std::map<int, Scene> m_ready; ///< for the next frames
     struct Problem {
         QString what, where;
     };

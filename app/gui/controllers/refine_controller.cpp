@@ -6,6 +6,7 @@
 #include <QScopedValueRollback>
 
 #include "controllers/optimize_controller.h"
+#include "optimize/drawn_colors.h"
 #include "optimize/refine_words.h"
 #include "optimize/region_colors.h"
 #include "picture_pair.h"
@@ -241,7 +242,7 @@ Refinement RefineController::refineFrom(const TransferFunction& before, const Tr
                                         const Scene& scene, RefineOptions options) const {
     Refinement r{scene.volume, before, {}, start, std::move(options), {}, {}};
     // A few milliseconds, of the histogram alone: no reason to go to another thread.
-    r.result = pellucid::refine(*scene.histogram, r.start, r.options);
+    r.result = refineAsDrawn(*scene.histogram, r.start, *scene.volume, scene.colors.get(), r.options);
     r.after = r.result.tf;
     for (std::size_t i = 0; i < r.after.points.size(); ++i) r.after.points[i].fixed = before.points[i].fixed;
     r.words = QString::fromStdString(changeText(opacityChanges(r.before, r.after)));

@@ -131,8 +131,7 @@ PlayerPanel::PlayerPanel(Workbench& bench, QWidget* parent)
     PlayerController& player = bench.player();
     auto* row = new QHBoxLayout;
     row->setSpacing(2);
-    for (const auto& [action, name, sign] :
-         std::initializer_list<std::tuple<const char*, const char*, Sign>>{
+    for (const auto& [action, name, sign] : std::initializer_list<std::tuple<const char*, const char*, Sign>>{
              {"firstFrameAction", "firstFrame", Sign::First},
              {"previousFrameAction", "previousFrame", Sign::Previous},
              {"playAction", "play", Sign::Play},
@@ -237,8 +236,9 @@ QWidget* PlayerPanel::adaptRow() {
     m_coherence->setObjectName("coherence");
     m_coherence->setRange(0, kCoherenceSteps);
     m_coherence->setFixedWidth(110);
-    m_coherence->setToolTip(tr("Coherence, 0 to ∞, without unit: how much jumps of the transfer function from frame to\n"
-                               "frame are held back; 0: each frame for itself, ∞: as static"));
+    m_coherence->setToolTip(
+        tr("Coherence, 0 to ∞, without unit: how much jumps of the transfer function from frame to\n"
+           "frame are held back; 0: each frame for itself, ∞: as static"));
     connect(m_coherence, &QSlider::valueChanged, this,
             [&adapting](int step) { adapting.setCoherence(coherenceOf(step)); });
     m_coherenceText = new QLabel(widget);
@@ -253,8 +253,7 @@ QWidget* PlayerPanel::adaptRow() {
     row->addWidget(m_coherence);
     row->addWidget(m_coherenceText);
     row->addSpacing(6);
-    for (const auto& [action, name, text] :
-         std::initializer_list<std::tuple<const char*, const char*, QString>>{
+    for (const auto& [action, name, text] : std::initializer_list<std::tuple<const char*, const char*, QString>>{
              {"tfKeyAction", "tfKey", tr("◆ Key")},
              {"targetKeyAction", "targetKey", tr("○ Targets")},
              {"previousKeyAction", "previousKey", tr("‹ key")},
@@ -341,9 +340,10 @@ void PlayerPanel::followPlayer() {
     showNumber(*m_speed, player.speed());
     m_rate->setText(player.rateText());
     if (!series) return m_frame->setText({});
-    m_frame->setText(
-        tr("<b>%1</b> (%L2 of %L3)").arg(player.label(player.frame()).toHtmlEscaped()).arg(player.frame() + 1).arg(
-            player.frameCount()));
+    m_frame->setText(tr("<b>%1</b> (%L2 of %L3)")
+                         .arg(player.label(player.frame()).toHtmlEscaped())
+                         .arg(player.frame() + 1)
+                         .arg(player.frameCount()));
     m_strip->setFrame(player.frame(), player.awaited());
 }
 

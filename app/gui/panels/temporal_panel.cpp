@@ -277,8 +277,7 @@ std::vector<Plot> TemporalPanel::plots() const {
             return temporalOpacityPlot(now, run);
         default:
             double highest = 0;
-            for (std::size_t r = 0; r < now.runs.size(); ++r)
-                highest = std::max(highest, temporalVwsPlot(now, r).y.hi);
+            for (std::size_t r = 0; r < now.runs.size(); ++r) highest = std::max(highest, temporalVwsPlot(now, r).y.hi);
             return temporalVwsPlot(now, run, highest);
         }
     };

@@ -1,0 +1,172 @@
+// Scenes of several variables: colours, pictures, figures.
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "engines/engines.h"
+#include "render/image_renderer.h"
+#include "session/space_inputs.h"
+#include "session/variable_edits.h"
+#include "session/view_workspace.h"
+#include "session/workspace.h"
+#include "tf/hsb_colors.h"
+
+using namespace pellucid;
+
+namespace {
+
+/// Cloud x and precipitation y of the small hurricane at a frame; volatility of x over n frames as saturation.
+SceneInputs hurricane(int frame, int n) {
+    SceneInputs inputs;
+    VolumeSource source;
+    source.path = "sample:hurricane";
+    source.sampleSize = 40;
+    inputs.session = sessionOf(source);
+    Variable rain;
+    rain.name = "y";
+    rain.source = source;
+    rain.source.path = "sample:hurricane/precipitation";
+    addVariable(inputs.session, rain);
+    inputs.session.hsb.edit([&](HsbMapping& h) {
+        h.on = true;
+        h.saturation = "volatility:x:" + std::to_string(n);
+        h.brightness = "y";
+        h.a = 7;
+        h.b = 3;
+        h.hueFrom = 0;
+    });
+    inputs.frame = frame;
+    inputs.session.measure.edit([](MeasureSettings& m) { m.engine = EngineChoice::Cpu; });
+    return inputs;
+}
+
+std::vector<float> pictureOf(const Scene& scene) {
+    const PictureInput in = pictureInput(scene, 48, 40);
+    const auto renderer = makeRenderer(EngineChoice::Cpu, in.volume);
+    return renderer->render(in.camera, in.tf, in.settings).rgba;
+}
+
+} // namespace
+
+TEST_CASE("the colours of a scene are equation 6.1 of its frames, to 1/255", "[variables]") {
+    // Frame 3 of n = 10 has four frames before and with it; hue 0 is red: (B, B(1 − S), B(1 − S)).
+    for (const auto& [frame, n] : {std::pair{3, 10}, std::pair{12, 5}, std::pair{12, 1}}) {
+        const Scene scene = openScene(hurricane(frame, n));
+        REQUIRE(scene.colors != nullptr);
+        const ValueRange x = scene.series->range();
+        TimeSeries& rain = *scene.others.at("y");
+        const ValueRange y = rain.range();
+        std::vector<std::shared_ptr<const Volume>> frames;
+        for (int f = std::max(0, frame - n + 1); f <= frame; ++f) frames.push_back(scene.series->load(f));
+        const auto now = rain.load(frame);
+        double colored = 0;
+        for (std::size_t i = 0; i < scene.volume->size(); ++i) {
+            double mean = 0, sum = 0;
+            bool valid = true;
+            const auto normal = [&](const Volume& v) { return (v.value(i) - x.lo) / (x.hi - x.lo); };
+            for (const auto& v : frames) valid = valid && v->isValid(i);
+            if (valid) {
+                for (const auto& v : frames) mean += normal(*v) / static_cast<double>(frames.size());
+                for (const auto& v : frames) sum += std::pow(normal(*v) - mean, 2);
+            }
+            const double s = std::min(1.0, 7 * std::sqrt(sum / static_cast<double>(frames.size())));
+            const double b = 1 - (now->isValid(i) ? std::min(1.0, 3 * (now->value(i) - y.lo) / (y.hi - y.lo)) : 0.0);
+            const std::uint32_t c = scene.colors->rgba[i];
+            const auto channel = [&](int at) { return static_cast<double>(c >> (8 * at) & 255u); };
+            REQUIRE(channel(0) == Approx(255 * b).margin(1));
+            REQUIRE(channel(1) == Approx(255 * b * (1 - s)).margin(1));
+            REQUIRE(channel(2) == Approx(255 * b * (1 - s)).margin(1));
+            colored = std::max(colored, channel(0) - channel(1));
+        }
+        if (n == 1)
+            CHECK(colored == 0); // one frame does not vary
+        else
+            CHECK(colored > 50);
+    }
+}
+
+TEST_CASE("swapping X and Y and back gives the same picture", "[variables]") {
+    const Scene first = openScene(hurricane(12, 5));
+    const std::vector<float> before = pictureOf(first);
+    Session swapped = first.session;
+    swapOpacityAndBrightness(swapped);
+    const Scene second = resolve(swapped, first);
+    CHECK(second.session.variable().name == "y");
+    CHECK_FALSE(pictureOf(second) == before);
+    Session back = second.session;
+    swapOpacityAndBrightness(back);
+    const Scene third = resolve(back, second);
+    CHECK(third.tf == first.tf);
+    CHECK(third.colors->rgba == first.colors->rgba);
+    CHECK(pictureOf(third) == before);
+}
+
+TEST_CASE("where colours are by variable, opacity begins as a ramp with features", "[variables]") {
+    const Scene scene = openScene(hurricane(12, 5));
+    CHECK(scene.proposal == nullptr);
+    REQUIRE(scene.tf.features.size() == 3);
+    CHECK(scene.tf.points.front().opacity == 0);
+    const double top = scene.tf.points.back().opacity;
+    CHECK(top > 0);
+    for (const ControlPoint& p : scene.tf.points) CHECK(p.opacity == Approx(top * p.x).margin(1e-12));
+    const Measures m = Workspace().measure(measureInput(scene));
+    double sum = 0;
+    for (const FeatureMeasures& f : m.features) {
+        CHECK(f.vws > 0);
+        sum += f.vws;
+    }
+    CHECK(sum == Approx(1).margin(1e-6));
+}
+
+TEST_CASE("the average ray along the shortest edge meets an optical depth of 1.5", "[variables]") {
+    // Intensity ½ on average, 40 voxels: h·½·40 = 1.5.
+    std::vector<float> values(40 * 50 * 60);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 2);
+    Geometry g;
+    g.dims = {40, 50, 60};
+    CHECK(rampOpacity(Volume(g, SampleArray<float>(std::move(values)))) == Approx(0.075));
+    CHECK(rampOpacity(Volume(g, SampleArray<float>(std::vector<float>(120000, 0.0f)))) == 1);
+}
+
+TEST_CASE("figures, coarser copies and views are of the colours that are drawn", "[variables]") {
+    const Scene scene = openScene(hurricane(12, 5));
+    const MeasureInput drawn = measureInput(scene);
+    REQUIRE(drawn.colors == scene.colors);
+    MeasureInput plain = drawn;
+    plain.colors.reset();
+    Workspace workspace; // one for both: what is kept knows its colours
+    const Measures a = workspace.measure(drawn), b = workspace.measure(plain), c = workspace.measure(drawn);
+    CHECK(std::abs(a.features[0].vws - b.features[0].vws) > 0.01);
+    for (std::size_t f = 0; f < a.features.size(); ++f) {
+        CHECK(c.features[f].vws == a.features[f].vws);
+        CHECK(a.features[f].visibility == b.features[f].visibility);
+    }
+
+    const MeasureInput coarse = coarserInput(drawn, 3);
+    REQUIRE(coarse.colors != nullptr);
+    CHECK(coarse.colors->dims == coarse.volume->dims());
+    const int nx = drawn.colors->dims.x, ny = drawn.colors->dims.y;
+    double red = 0; // of the first block
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i)
+                red += (drawn.colors->rgba[static_cast<std::size_t>(i + nx * (j + ny * k))] & 255u) / 27.0;
+    CHECK((coarse.colors->rgba[0] & 255u) == Approx(red).margin(0.5 + 1e-9));
+    MeasureInput coarsePlain = coarse;
+    coarsePlain.colors.reset();
+    CHECK(std::abs(workspace.measure(coarse).features[0].vws - workspace.measure(coarsePlain).features[0].vws) > 0.01);
+
+    ViewWorkspace views;
+    ViewMetric metric;
+    metric.targets = {0.2, 0.3, 0.5};
+    const auto mapOf = [&](const MeasureInput& input) { return views.search(input, metric, 20).map.values; };
+    const std::vector<double> ofDrawn = mapOf(drawn), ofPlain = mapOf(plain);
+    CHECK_FALSE(ofDrawn == ofPlain);
+    CHECK(mapOf(drawn) == ofDrawn);
+}
+
+TEST_CASE("the published profile has no colours by variable", "[variables]") {
+    SceneInputs inputs = hurricane(12, 5);
+    inputs.session.measure.edit([](MeasureSettings& m) { m.profile = Profile::Published; });
+    CHECK(measureInput(openScene(inputs)).colors == nullptr);
+}
