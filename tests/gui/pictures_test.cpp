@@ -8,6 +8,8 @@
 #include <QDoubleSpinBox>
 #include <QToolButton>
 
+#include "engines/engines.h"
+#include "image_io/image_file.h"
 #include "panels/space_panel.h"
 #include "render/camera_motion.h"
 #include "render/clip_handles.h"
@@ -214,13 +216,13 @@ TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
 TEST_CASE("several variables for the guide", "[.pictures][.variablespicture]") {
     if (qEnvironmentVariableIsEmpty("PELLUCID_PICTURES")) return;
     struct Show {
-        const char *sample, *brightness, *file;
+        const char *sample, *brightness;
         int frame, frames;
-        double azimuth, elevation;
+        double a, b, azimuth, elevation, zoom; // a, b 0: automatic
     };
-    const Show shows[] = {{"vortex", "gradient:vortex", "variables_vortex.png", 40, 10, 30, 15},
-                          {"smoke", "gradient:smoke", "variables_smoke.png", 90, 10, 30, 5},
-                          {"hurricane", "precipitation", "variables_hurricane.png", 30, 10, 0, 35}};
+    const Show shows[] = {{"vortex", "gradient:vortex", 40, 10, 0, 1, 30, 15, 1.2},
+                          {"smoke", "gradient:smoke", 90, 10, 10, 1.5, 30, 5, 1.4},
+                          {"hurricane", "precipitation", 30, 10, 0, 8, 20, 40, 1.5}};
     for (const Show& show : shows) {
         OpenWindow w;
         w.window.resize(1280, 860);
@@ -242,12 +244,18 @@ TEST_CASE("several variables for the guide", "[.pictures][.variablespicture]") {
                 h.on = true;
                 h.saturation = "volatility:" + std::string(show.sample) + ":" + std::to_string(show.frames);
                 h.brightness = show.brightness;
+                if (show.a > 0) h.a = show.a;
+                if (show.b > 0) h.b = show.b;
             });
         });
         w.settle();
-        w.document().setCamera(cameraFromView(w.document().volume()->geometry(), show.azimuth, show.elevation, 1.2,
-                                              Projection::Perspective));
-        grab(w, ("window_" + std::string(show.file)).c_str());
-        REQUIRE(w.picture().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + show.file));
+        w.document().setCamera(cameraFromView(w.document().volume()->geometry(), show.azimuth, show.elevation,
+                                              show.zoom, Projection::Perspective));
+        w.settle();
+        const PictureInput picture = pictureInput(w.bench().scene(), 640, 480);
+        const auto renderer = makeRenderer(EngineChoice::Cpu, picture.volume);
+        const std::string folder = qEnvironmentVariable("PELLUCID_PICTURES").toStdString() + "/variables_";
+        writeImage(renderer->render(picture.camera, picture.tf, picture.settings, {}), folder + show.sample + ".png");
+        if (show.sample == std::string("hurricane")) grab(w, "variables.png");
     }
 }
