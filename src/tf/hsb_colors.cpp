@@ -79,7 +79,7 @@ double automaticScale(const Volume& channel) {
     }
     if (above == 0) return 1;
     std::size_t below = 0, bin = 0;
-    for (; bin < kBins && below + counts[bin] < above - above / 100; ++bin) below += counts[bin];
+    for (; bin < kBins && below + counts[bin] < above - above / 20; ++bin) below += counts[bin];
     return static_cast<double>(kBins) / static_cast<double>(std::min(bin + 1, kBins));
 }
 

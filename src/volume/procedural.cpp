@@ -225,7 +225,7 @@ const std::vector<Sample>& table() {
          {0.5, 0.5, 0.7},
          makeKnee},
         {{"vortex",
-          "the vorticity of a turbulent flow that decays, 100 frames, u8",
+          "the vorticity of a turbulent flow, 100 frames, u8",
           {128, 128, 128},
           kVortexFrames,
           kVortexRange},

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "parse.h"
 #include "session/variable_edits.h"
+#include "volume/formats/file_check.h"
 #include "volume/series.h"
 
 namespace pellucid::cli {
@@ -44,6 +45,10 @@ Variable variableOf(const VariableOptions::Named& named, const VolumeSource& fir
     }
     source.downsample = first.downsample;
     source.region = first.region;
+    // A name that leads nowhere is told, whether the variable is used or not.
+    const SeriesListing listing = listSeries(source);
+    const VolumeSource& frame = listing.frames.front().source;
+    if (!frame.isSample()) readableFileBytes(frame.path);
     return variable;
 }
 

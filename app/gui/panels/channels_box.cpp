@@ -79,12 +79,12 @@ ChannelsBox::ChannelsBox(Workbench& bench, QWidget* parent)
     m_frames->setToolTip(tr("Volatility is the standard deviation of a voxel over the latest n frames"));
     form->addRow(QString(), m_frames);
     addScale(*form, 0, "hsbA", tr("a"),
-             tr("Factor of saturation: values of 1/a and more are fully saturated. Automatic: 99 % of those above 0 "
+             tr("Factor of saturation: values of 1/a and more are fully saturated. Automatic: 95 % of those above 0 "
                 "are not clipped"));
     addChannel(*form, Channel::Brightness, "hsbBrightness", tr("Brightness ←"),
                tr("Brightness = 1 − clip(b · Y): the more of it, the darker"));
     addScale(*form, 1, "hsbB", tr("b"),
-             tr("Factor of darkness: values of 1/b and more are black. Automatic: 99 % of those above 0 are not "
+             tr("Factor of darkness: values of 1/b and more are black. Automatic: 95 % of those above 0 are not "
                 "clipped"));
     m_swap->setObjectName("hsbSwap");
     m_swap->setToolTip(tr("The variable of brightness drives opacity, with its own transfer function, and the other "

@@ -15,8 +15,8 @@ inline constexpr ValueRange kCloudRange{0, 0.002}, kPrecipitationRange{0, 0.008}
 inline constexpr ValueRange kWindRange{0, 80};                                    ///< m/s
 inline constexpr ValueRange kGroundRange{0, 1800};                                ///< m
 
-/// The magnitude of a decaying, turbulent vorticity, u8: a divergence-free sum of waves that drift and are carried
-/// along by a larger flow; small structures fade first.
+/// The magnitude of a turbulent vorticity, u8: a divergence-free sum of waves that drift and are carried along by a
+/// larger flow; small structures fade, and larger ones take their place.
 Volume makeVortex(const Geometry& geometry, const SampleOrder& order, const JobControl& job);
 
 /// The density of smoke that rises from a source at the bottom, f32: an incompressible flow on a coarse grid, step by

@@ -59,6 +59,7 @@ private:
 std::vector<Wave> wavesAt(double t, std::uint32_t seed) {
     Dice dice(seed);
     std::vector<Wave> waves;
+    double energy = 0;
     while (waves.size() < kWaves) {
         const Vec3 k(std::round(dice.between(-6.5, 6.5)), std::round(dice.between(-6.5, 6.5)),
                      std::round(dice.between(-6.5, 6.5)));
@@ -79,7 +80,12 @@ std::vector<Wave> wavesAt(double t, std::uint32_t seed) {
         }
         wave.phase = static_cast<float>(phase + 0.32 * drift * std::pow(length, 2.0 / 3) * t);
         waves.push_back(wave);
+        energy += strength * strength;
     }
+    // What drives the flow keeps its energy.
+    const auto scale = static_cast<float>(1 / std::sqrt(energy));
+    for (Wave& wave : waves)
+        for (float& a : wave.amplitude) a *= scale;
     return waves;
 }
 
@@ -111,10 +117,10 @@ Volume makeVortex(const Geometry& geometry, const SampleOrder& order, const JobC
                 coarse[coarse.index(i, j, k)] = sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2];
             }
     });
-    // Its magnitude, drawn out so that strong vortices stand apart; the whole weakens over time.
+    // Its magnitude, drawn out so that strong vortices stand apart.
     const Grid<float> fine = cubicZoom(coarse, geometry.dims, true, job);
     std::vector<std::uint8_t> values(fine.size());
-    constexpr float kScale = 45.0f;
+    constexpr float kScale = 90.0f;
     const std::size_t plane = values.size() / static_cast<std::size_t>(geometry.dims.z);
     parallelFor(static_cast<std::size_t>(geometry.dims.z), [&](std::size_t k) {
         for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
