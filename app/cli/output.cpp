@@ -11,12 +11,6 @@ namespace pellucid::cli {
 
 namespace {
 
-std::string printed(const char* format, double value) {
-    std::array<char, 512> buffer{}; // %.*f of the largest double has 309 digits before the point
-    std::snprintf(buffer.data(), buffer.size(), format, value);
-    return buffer.data();
-}
-
 /// Columns that a terminal needs for UTF-8 text: every byte that does not continue a character.
 std::size_t width(const std::string& text) {
     return static_cast<std::size_t>(
@@ -67,8 +61,6 @@ std::string listing(const std::vector<std::pair<std::string, std::string>>& line
         text.append(name).append(padding(name, columns)).append("  ").append(value).append("\n");
     return text;
 }
-
-std::string plainText(double value) { return printed("%.6g", value); }
 
 std::string countText(std::size_t value) {
     std::string text = std::to_string(value);

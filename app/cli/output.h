@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/round_numbers.h"
 #include "base/error.h"
+#include "base/round_numbers.h"
 #include "volume/volume.h"
 
 namespace pellucid::cli {
@@ -37,13 +37,12 @@ private:
 /// Aligned "name  value" lines.
 std::string listing(const std::vector<std::pair<std::string, std::string>>& lines);
 
-std::string plainText(double value);             ///< the shortest of six significant digits: "0.957031", "1e+06"
-std::string countText(std::size_t value);        ///< "26,470,255"
-std::string bytesText(std::size_t bytes);        ///< "12.3 MiB"
-std::string dimsText(const Int3& dims);          ///< "41 x 41 x 41"
-std::string vectorText(const Vec3& v);           ///< "0.5 x 0.5 x 1"
-std::string rangeText(double lo, double hi);     ///< "0 .. 255"
-std::string secondsText(double seconds);         ///< "2.10 s", "210.0 ms", "21.0 µs"
+std::string countText(std::size_t value);    ///< "26,470,255"
+std::string bytesText(std::size_t bytes);    ///< "12.3 MiB"
+std::string dimsText(const Int3& dims);      ///< "41 x 41 x 41"
+std::string vectorText(const Vec3& v);       ///< "0.5 x 0.5 x 1"
+std::string rangeText(double lo, double hi); ///< "0 .. 255"
+std::string secondsText(double seconds);     ///< "2.10 s", "210.0 ms", "21.0 µs"
 
 Json jsonFromVector(const Vec3& v);
 Json jsonFromDims(const Int3& d);

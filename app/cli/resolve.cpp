@@ -4,8 +4,8 @@
 
 namespace pellucid::cli {
 
-void SceneOptions::addForFigures(CLI::App& app) {
-    volume.add(app);
+void SceneOptions::addForFigures(CLI::App& app, VolumeOptions::SizeIs size) {
+    volume.add(app, size);
     variables.add(app);
     session.add(app);
     tf.add(app);

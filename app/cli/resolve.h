@@ -36,7 +36,7 @@ struct SceneOptions {
     FieldOptions field;
 
     /// All that figures of a view depend on: the groups of `measure`, `fields` and `optimize`.
-    void addForFigures(CLI::App& app);
+    void addForFigures(CLI::App& app, VolumeOptions::SizeIs size = VolumeOptions::SizeIs::Sample);
 };
 
 /// What a command does with the volume, and the memory that it takes beside it.

@@ -462,15 +462,7 @@ Command addSequence(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "sequence", "Draws and measures the frames of a series, each under a transfer function that may follow them");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
-    o->scene.variables.add(*app);
-    o->scene.session.add(*app);
-    o->scene.tf.add(*app);
-    o->scene.camera.add(*app);
-    o->scene.clip.add(*app);
-    o->scene.engine.add(*app, "high: half the error, more time");
-    o->scene.saliency.add(*app);
-    o->scene.profile.add(*app);
+    o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
     addValue(
         *app, "--mode", "static|refine|optimize",
         [o](const std::string& text, const std::string& option) {

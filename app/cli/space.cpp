@@ -242,15 +242,7 @@ Command addSpace(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "space", "Shows how VWS and distance from the targets depend on the opacities of two or three features");
     const auto o = std::make_shared<Options>();
-    o->scene.volume.add(*app, VolumeOptions::SizeIs::Image);
-    o->scene.variables.add(*app);
-    o->scene.session.add(*app);
-    o->scene.tf.add(*app);
-    o->scene.camera.add(*app);
-    o->scene.clip.add(*app);
-    o->scene.engine.add(*app, "high: half the error, more time");
-    o->scene.saliency.add(*app);
-    o->scene.profile.add(*app);
+    o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
     addValue(
         *app, "--target", "T1,T2,...",
         [o](const std::string& text, const std::string& option) { o->targets = parseReals(text, option); },

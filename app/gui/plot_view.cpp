@@ -2,11 +2,16 @@
 
 #include <cmath>
 
+#include <QBuffer>
+#include <QFileInfo>
 #include <QFontMetricsF>
 #include <QMouseEvent>
 #include <QPainter>
 
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "number_text.h"
+#include "report/svg_plot.h"
 #include "theme.h"
 
 namespace pellucid::gui {
@@ -116,6 +121,22 @@ QImage imageOf(std::span<const Plot> plots, const QSize& size, double density) {
         paintPlot(painter, plots[static_cast<std::size_t>(i)], pageOf(size, 12), colors);
     }
     return image;
+}
+
+void writePlots(const std::string& file, std::span<const Plot> plots) {
+    constexpr int kWidth = 640, kHeight = 400;
+    const QString suffix = QFileInfo(QString::fromStdString(file)).suffix().toLower();
+    if (suffix == "svg") {
+        writeTextAtomically(file, svgOf(plots, {.width = kWidth, .height = kHeight}));
+    } else if (suffix == "png") {
+        QByteArray bytes;
+        QBuffer buffer(&bytes);
+        buffer.open(QIODevice::WriteOnly);
+        imageOf(plots, {kWidth, kHeight}, 2).save(&buffer, "PNG");
+        writeTextAtomically(file, {bytes.constData(), static_cast<std::size_t>(bytes.size())});
+    } else {
+        throw UsageError("curves are written as .csv, .png or .svg", file, "give one of these suffixes");
+    }
 }
 
 PlotView::PlotView(QWidget* parent) : QWidget(parent) { setMouseTracking(true); }

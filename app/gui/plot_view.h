@@ -23,6 +23,9 @@ PlotColors paperPlotColors(); ///< dark on white, for files
 void paintPlot(QPainter& painter, const Plot& plot, const PlotPage& page, const PlotColors& colors);
 /// Plots below each other, each of `size` logical pixels, on white; `density` pixels for each.
 QImage imageOf(std::span<const Plot> plots, const QSize& size, double density);
+/// The same as a file, a PNG or SVG by its suffix. Throws UsageError for another one (a .csv is of who has the
+/// numbers), FileError.
+void writePlots(const std::string& file, std::span<const Plot> plots);
 
 /// Draws a plot in the colours of the theme. The mouse reads values, and finds dots.
 class PlotView : public QWidget {

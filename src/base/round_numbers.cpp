@@ -37,6 +37,7 @@ double roundNumberBelow(double most) {
 }
 
 std::string fixedText(double value, int decimals) { return printed(value, std::chars_format::fixed, decimals); }
+std::string plainText(double value) { return printed(value, std::chars_format::general, 6); }
 std::string shortText(double value) { return printed(value, std::chars_format::general, 4); }
 
 std::string numberText(double value, double span) {

@@ -293,7 +293,9 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
 // ---- grids
 
 bool onSameGrid(const Geometry& a, const Geometry& b) {
-    const auto near = [](const Vec3& p, const Vec3& q, double scale) { return glm::length(p - q) <= 1e-6 * scale; };
+    const auto near = [](const Vec3& p, const Vec3& q, double scale) {
+        return std::abs(p.x - q.x) + std::abs(p.y - q.y) + std::abs(p.z - q.z) <= 1e-6 * scale;
+    };
     return a.dims == b.dims && near(a.spacing, b.spacing, a.d0()) && near(a.origin, b.origin, a.radius()) &&
            near(a.directions[0], b.directions[0], 1) && near(a.directions[1], b.directions[1], 1) &&
            near(a.directions[2], b.directions[2], 1);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 
+#include "base/round_numbers.h"
 #include "base/text.h"
 #include "volume/file_contents.h"
 #include "volume/file_names.h"
@@ -16,12 +16,6 @@ namespace pellucid {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string numberText(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.6g", value);
-    return text.data();
-}
 
 /// "a, b, c and 4 more".
 std::string someOf(const std::vector<std::string>& names) {
@@ -212,7 +206,7 @@ void addFile(SeriesListing& listing, const VolumeSource& given, const std::strin
 std::string SeriesListing::label(int frame) const {
     const SeriesFrame& f = frames.at(static_cast<std::size_t>(frame));
     if (!hasTimes) return f.name;
-    return "t = " + numberText(f.time) + (timeUnit.empty() ? "" : " " + timeUnit);
+    return "t = " + plainText(f.time) + (timeUnit.empty() ? "" : " " + timeUnit);
 }
 
 bool isSeriesPattern(const std::string& path) {

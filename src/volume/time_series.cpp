@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/memory.h"
+#include "volume/derived.h"
 
 namespace pellucid {
 
@@ -45,16 +46,6 @@ std::vector<std::uint32_t> valueCounts(const Volume& volume) {
         },
         volume.samples());
     return counts;
-}
-
-bool sameGrid(const Geometry& a, const Geometry& b) {
-    const auto near = [](const Vec3& p, const Vec3& q, double scale) {
-        return std::abs(p.x - q.x) + std::abs(p.y - q.y) + std::abs(p.z - q.z) <= 1e-6 * scale;
-    };
-    const double size = a.radius();
-    return a.dims == b.dims && near(a.spacing, b.spacing, a.d0()) && near(a.origin, b.origin, size) &&
-           near(a.directions[0], b.directions[0], 1) && near(a.directions[1], b.directions[1], 1) &&
-           near(a.directions[2], b.directions[2], 1);
 }
 
 std::string dimsOf(const Int3& d) {
@@ -189,7 +180,7 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
             const FrameSummary& summary = m_summaries[static_cast<std::size_t>(frame)];
             known = summary.isKnown && summary.problem.empty(); // a file may have come back
         }
-        if (!sameGrid(*grid, volume->geometry()))
+        if (!onSameGrid(*grid, volume->geometry()))
             throw FileError("its grid (" + dimsOf(volume->dims()) + ") is not that of the series (" +
                                 dimsOf(grid->dims) + ")",
                             m_listing.frames[static_cast<std::size_t>(frame)].source.path, "leave it out");

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <QBoxLayout>
-#include <QBuffer>
 #include <QCheckBox>
 #include <QDir>
 #include <QDockWidget>
@@ -431,7 +430,6 @@ void ConvergencePanel::chooseFile(const QString& suffix) {
 }
 
 void ConvergencePanel::exportTo(const QString& path) {
-    constexpr int kWidth = 640, kHeight = 400;
     const std::string file = path.toStdString();
     const QString suffix = QFileInfo(path).suffix().toLower();
     const std::vector<Plot> all = plots();
@@ -441,16 +439,8 @@ void ConvergencePanel::exportTo(const QString& path) {
             if (const Run* shown = shownRun(); shown && std::find(runs.begin(), runs.end(), shown) == runs.end())
                 runs.push_back(shown);
             writeTextAtomically(file, csvOf(runs));
-        } else if (suffix == "svg") {
-            writeTextAtomically(file, svgOf(all, {.width = kWidth, .height = kHeight}));
-        } else if (suffix == "png") {
-            QByteArray bytes;
-            QBuffer buffer(&bytes);
-            buffer.open(QIODevice::WriteOnly);
-            imageOf(all, {kWidth, kHeight}, 2).save(&buffer, "PNG");
-            writeTextAtomically(file, {bytes.constData(), static_cast<std::size_t>(bytes.size())});
         } else {
-            throw UsageError("curves are written as .csv, .png or .svg", file, "give one of these suffixes");
+            writePlots(file, all);
         }
         Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
     } catch (const Error& error) {

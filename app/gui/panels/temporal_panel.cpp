@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <QBuffer>
 #include <QComboBox>
 #include <QDir>
 #include <QFileDialog>
@@ -339,22 +338,13 @@ void TemporalPanel::chooseFile() {
 }
 
 void TemporalPanel::exportTo(const QString& path) {
-    constexpr int kWidth = 640, kHeight = 400;
     const std::string file = path.toStdString();
     const QString suffix = QFileInfo(path).suffix().toLower();
     try {
         if (suffix == "csv") {
             writeTextAtomically(file, csvOf(curves()));
-        } else if (suffix == "svg") {
-            writeTextAtomically(file, svgOf(temporalPlots(curves()), {.width = kWidth, .height = kHeight}));
-        } else if (suffix == "png") {
-            QByteArray bytes;
-            QBuffer buffer(&bytes);
-            buffer.open(QIODevice::WriteOnly);
-            imageOf(std::span<const Plot>(temporalPlots(curves())), QSize(kWidth, kHeight), 2).save(&buffer, "PNG");
-            writeTextAtomically(file, {bytes.constData(), static_cast<std::size_t>(bytes.size())});
         } else {
-            throw UsageError("curves are written as .csv, .png or .svg", file, "give one of these suffixes");
+            writePlots(file, temporalPlots(curves()));
         }
         Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
     } catch (const Error& error) {
