@@ -43,7 +43,7 @@ struct Options {
     std::optional<TargetInput> targets;
     std::optional<double> tolerance;
     std::optional<int> from;
-    bool bothWays = false, compare = false, requireConverged = false, noPictures = false;
+    bool compare = false, requireConverged = false, noPictures = false;
     std::string out;
     std::optional<double> framesPerSecond;
     std::optional<std::string> movie;
@@ -118,14 +118,18 @@ public:
 
 private:
     void prepareKey();
-    void planBothWays(ReadAhead& ahead);
-    std::optional<AdaptedFrame> adapted(int number, int key, const TransferFunction& previous);
+    void setKey(const TransferFunction& tf); ///< of the start frame
+    void plan(ReadAhead& ahead);
     std::optional<Frame> next(int number);
     void finish(std::vector<Frame>& batch);
     TemporalCurves curves() const;
     std::string text(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
     Json json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
 
+    /// Whether all frames are looked at before one is drawn.
+    bool isPlanned() const {
+        return settings().mode == Mode::Optimize && settings().coherence > 0 && !std::isinf(settings().coherence);
+    }
     const AdaptSettings& settings() const { return *m_scene.session.adapt; }
 
     const Options& m_o;
@@ -136,8 +140,9 @@ private:
     Workspace m_workspace;
     std::vector<Workspace> m_sideBySide;
     FrameAdapter m_adapter;
+    TransferFunction m_fixed;                          ///< of the start frame, as static
     std::optional<TransferFunction> m_before, m_chain; ///< of the frame before; what the next one starts from
-    std::map<int, AdaptedFrame> m_planned;             ///< of planBothWays()
+    std::map<int, AdaptedFrame> m_planned;             ///< of plan(), by frame: the session has what is drawn
     std::vector<FrameFigures> m_figures, m_static;
     std::vector<Json> m_frames;
     std::vector<std::string> m_pictures;
@@ -171,57 +176,55 @@ void Sequence::prepareKey() {
         m_scene.tf = withShownOpacities(m_scene.tf, result.history[result.best].opacity);
         m_keyMoves = result.iterations();
     }
-    session.variables.edit(
-        [&](std::vector<Variable>& all) { all.front().track.keys[m_start] = Part<TransferFunction>(m_scene.tf); });
+    session.variables.edit([&](std::vector<Variable>& all) { // what is before the start frame is not asked for
+        TfTrack& track = all.front().track;
+        track.keys.erase(track.keys.begin(), track.keys.lower_bound(m_start));
+    });
+    m_fixed = m_scene.tf;
+    setKey(m_fixed);
     m_keySeconds = watch.seconds();
 }
 
-/// Empty where the frame is broken.
-std::optional<AdaptedFrame> Sequence::adapted(int number, int key, const TransferFunction& previous) {
-    try {
-        return m_adapter.adapt(m_scene, {number, key, previous, {}}, m_workspace, {interruptToken(), {}});
-    } catch (const Error&) {
-        if (m_scene.series->summary(number).problem.empty()) throw; // not of the frame
-        return {};
-    }
+void Sequence::setKey(const TransferFunction& tf) {
+    m_scene.session.variables.edit(
+        [&](std::vector<Variable>& all) { all.front().track.keys[m_start] = Part<TransferFunction>(tf); });
 }
 
-/// Forward, then from the last frame back: what must change later begins to change as early as the distance that is
-/// allowed for lets it, and the first frame, which no hand has made, gives way too.
-void Sequence::planBothWays(ReadAhead& ahead) {
-    const TfTrack track = m_scene.session.variable().track;
-    const int end = m_scene.series->size();
-    const auto isKey = [&](int frame) { return track.keys.contains(frame) && (frame != m_start || !m_o.targets); };
-    JobControl job = m_progress.phase("there and back");
-    std::optional<TransferFunction> chain = m_scene.tf;
-    for (int f = m_start + 1; f < end; ++f) {
+/// What coherence asks for: all frames forward, then smoothed together. A start frame that no hand has made gives way.
+void Sequence::plan(ReadAhead& ahead) {
+    Session& session = m_scene.session;
+    const TimeSeries& series = *m_scene.series;
+    const JobControl job = m_progress.phase("following");
+    while (const auto task = nextToAdapt(session, series)) {
         job.throwIfStopped();
-        ahead.begin(f + 1);
-        if (isKey(f))
-            chain = *track.keys.at(f);
-        else if (auto made = adapted(f, track.keyBefore(f), *chain)) {
-            chain = made->tf;
-            m_planned[f] = std::move(*made);
+        ahead.begin(task->frame + 1);
+        try {
+            AdaptedFrame made = m_adapter.adapt(m_scene, *task, m_workspace, {job.stop, {}});
+            session = withAdapted(std::move(session), made.frame, made.forTrack());
+            m_planned[made.frame] = std::move(made);
+        } catch (const Error&) {
+            if (series.summary(task->frame).problem.empty()) throw; // not of the frame
         }
-        job.report(0.5 * (f - m_start) / (end - m_start));
+        job.report((task->frame - m_start) / static_cast<double>(series.size() - m_start));
     }
-    for (int f = end - 1; f >= m_start; --f) {
-        job.throwIfStopped();
-        if (f > m_start) ahead.begin(f - 1);
-        if (isKey(f)) {
-            chain = *track.keys.at(f);
-        } else if (f == m_start || m_planned.contains(f)) {
-            auto made = adapted(f, track.keyBefore(f), *chain);
-            if (!made) continue;
-            chain = made->tf;
-            if (f > m_start) {
-                made->moves += m_planned[f].moves;
-                made->seconds += m_planned[f].seconds;
+    std::optional<TransferFunction> start;
+    const JobControl smoothing = m_progress.phase("smoothing");
+    while (const auto task = nextToSmooth(session, series)) {
+        try {
+            const bool keyMoves = task->key == m_start && m_o.targets;
+            const SmoothedFrames smooth = m_adapter.smooth(m_scene, *task, keyMoves, m_workspace, smoothing);
+            session = withSmoothed(std::move(session), smooth);
+            if (keyMoves) start = smooth.tfs.at(m_start);
+            for (const int frame : task->frames) {
+                AdaptedFrame& made = m_planned[frame];
+                ++made.moves;
+                made.seconds += smooth.seconds / static_cast<double>(task->frames.size());
             }
-            m_planned[f] = std::move(*made);
+        } catch (const FileError&) { // a frame that broke meanwhile belongs to no task any more
+            if (const auto again = nextToSmooth(session, series); again && again->basis == task->basis) throw;
         }
-        job.report(0.5 + 0.5 * (end - f) / (end - m_start));
     }
+    if (start) setKey(*start);
 }
 
 /// The frame with its transfer function, ready to be drawn and measured; empty where it is broken.
@@ -232,11 +235,9 @@ std::optional<Frame> Sequence::next(int number) {
     try {
         TransferFunction tf;
         const TfTrack& track = m_scene.session.variable().track;
-        if (const auto planned = m_planned.find(number); planned != m_planned.end()) {
-            frame.made = planned->second;
-            tf = frame.made->tf;
-        } else if (settings().mode == Mode::Static) {
+        if (settings().mode == Mode::Static || isPlanned()) {
             tf = *m_scene.session.tfAt(number);
+            if (const auto planned = m_planned.find(number); planned != m_planned.end()) frame.made = planned->second;
         } else if (track.keys.contains(number) || !m_chain) {
             tf = *track.keys.at(track.keyBefore(number));
         } else {
@@ -251,8 +252,7 @@ std::optional<Frame> Sequence::next(int number) {
             }
         }
         frame.scene = sceneAt(m_scene, number, tf, job);
-        if (m_o.compare)
-            frame.asStatic = sceneAt(frame.scene, number, *m_scene.session.variable().track.keys.at(m_start), job);
+        if (m_o.compare) frame.asStatic = sceneAt(frame.scene, number, m_fixed, job);
         frame.before = m_before;
         m_before = m_chain = frame.scene.tf;
         return frame;
@@ -379,12 +379,7 @@ Answer Sequence::run(const Opened& opened) {
     fs::create_directories(m_o.out, ignored);
     const TimeSeries& series = *m_scene.series;
     ReadAhead ahead(m_scene.series, windowOf(m_scene.session.variable(), *m_scene.series, {interruptToken(), {}}));
-    if (m_o.bothWays) {
-        if (settings().mode != Mode::Optimize)
-            throw UsageError("transfer functions are optimized both ways, or not", "--both-ways",
-                             "give --mode optimize too, or leave it out");
-        planBothWays(ahead);
-    }
+    if (isPlanned()) plan(ahead);
     const JobControl job = m_progress.phase("frames");
     // Contexts of GL are not shared by threads; threads share a CPU well.
     const bool cpu = makeRenderer(m_scene.session.measure->engine, m_scene.volume)->name() == "cpu" &&
@@ -481,10 +476,8 @@ Command addSequence(CLI::App& program) {
             o->coherence = text == "inf" ? std::numeric_limits<double>::infinity() : parseReal(text, option, 0, 1e6);
         },
         "how much jumps of the transfer function are held back: 0 not at all, inf: as static; with optimize opacities "
-        "stay as near to those of the frame before as a distance of L/100 from the targets allows (default 2)");
-    app->add_flag("--both-ways", o->bothWays,
-                  "with optimize: go forward, then from the last frame back, so that frames give way to what comes "
-                  "later, the first one too: least flicker, twice the time");
+        "change as little over the whole series as a distance of L/100 from the targets on average (RMS) allows; the "
+        "first frame's give way too, but for a key of a session (default 2)");
     addValue(
         *app, "--tolerance", "F",
         [o](const std::string& text, const std::string& option) { o->tolerance = parseRealAbove(text, option, 0, 1); },

@@ -35,10 +35,10 @@ std::vector<std::size_t> movable(const std::vector<double>& targets, const std::
 /// One frame's search. Unknowns: y = ln τ of the movable features.
 class Tracker {
 public:
-    Tracker(const VwsFunction& function, const std::vector<double>& targets, std::vector<OpacityLimits> limits,
+    Tracker(const VwsFunction& function, std::vector<double> targets, std::vector<OpacityLimits> limits,
             const TrackOptions& options, const JobControl& job)
-        : m_function(function), m_targets(targets), m_limits(std::move(limits)), m_options(options), m_job(job),
-          m_features(movable(targets, m_limits)) {
+        : m_function(function), m_targets(std::move(targets)), m_limits(std::move(limits)), m_options(options),
+          m_job(job), m_features(movable(m_targets, m_limits)) {
         m_start = inside(featureOpacities(function.base()));
     }
 
@@ -63,7 +63,7 @@ public:
                 at.objective = objectiveOf(at.vws, m_targets);
                 derivative = std::move(linear.derivative);
                 if (!first) first = at.objective;
-                at.least = leastOf(at.vws, derivative);
+                at.least = leastDistance(at.vws, derivative, m_targets);
                 m_goal = std::hypot(m_options.distance(), at.least);
                 known = true;
             }
@@ -131,24 +131,6 @@ private:
             for (const std::size_t g : m_features)
                 row.push_back(!all.empty() ? all[f][g] : f == g ? 1.0 / static_cast<double>(m_features.size()) : 0.0);
         }
-    }
-
-    /// F where features that nothing can raise have 0, and the others divide what is left as well as it goes.
-    double leastOf(const Point& vws, const Rows& derivative) const {
-        double lost = 0, square = 0;
-        int others = 0;
-        for (std::size_t i = 0; i < vws.size(); ++i) {
-            const bool absent = vws[i] < 1e-9 && std::all_of(derivative[i].begin(), derivative[i].end(),
-                                                             [](double d) { return std::abs(d) < 1e-9; });
-            if (!absent) {
-                ++others;
-                continue;
-            }
-            lost += m_targets[i];
-            square += m_targets[i] * m_targets[i];
-        }
-        if (others > 0) square += lost * lost / others;
-        return std::sqrt(square / static_cast<double>(vws.size()));
     }
 
     /// A long step may end farther within the wanted distance than it must: then part of the way will do.
@@ -273,7 +255,7 @@ private:
     }
 
     const VwsFunction& m_function;
-    const std::vector<double>& m_targets;
+    const std::vector<double> m_targets;
     const std::vector<OpacityLimits> m_limits;
     const TrackOptions& m_options;
     const JobControl& m_job;
@@ -288,18 +270,41 @@ private:
 
 double TrackOptions::distance() const { return std::max(kTrackGoal, coherence * kCoherentDistance); }
 
-Tracked track(const VwsFunction& function, const std::vector<double>& targets, const std::vector<OpacityLimits>& given,
-              const TrackOptions& options, const JobControl& job) {
-    const std::size_t n = function.featureCount();
-    const std::vector<double> normalized = normalizedTargets(targets, n);
+std::vector<OpacityLimits> limitsOfMoves(const TransferFunction& base, const std::vector<OpacityLimits>& given) {
+    const std::size_t n = base.features.size();
     std::vector<OpacityLimits> limits = given.empty() ? std::vector<OpacityLimits>(n) : given;
     if (limits.size() != n)
         throw UsageError(std::to_string(limits.size()) + " limits for " + std::to_string(n) + " features", "limits",
                          "give one per feature");
-    const std::vector<double> most = featureOpacities(withFullPeaks(function.base()));
-    for (std::size_t f = 0; f < n; ++f) // what is hidden, and what nothing can raise, stays
-        if (function.base().features[f].hidden || most[f] == 0) limits[f].locked = true;
-    return Tracker(function, normalized, std::move(limits), options, job).run();
+    const std::vector<double> most = featureOpacities(withFullPeaks(base));
+    for (std::size_t f = 0; f < n; ++f)
+        if (base.features[f].hidden || most[f] == 0) limits[f].locked = true;
+    return limits;
+}
+
+double leastDistance(const std::vector<double>& vws, const std::vector<std::vector<double>>& derivative,
+                     const std::vector<double>& targets) {
+    double lost = 0, square = 0;
+    int others = 0;
+    for (std::size_t i = 0; i < vws.size(); ++i) {
+        const bool absent = vws[i] < 1e-9 && std::all_of(derivative[i].begin(), derivative[i].end(),
+                                                         [](double d) { return std::abs(d) < 1e-9; });
+        if (!absent) {
+            ++others;
+            continue;
+        }
+        lost += targets[i];
+        square += targets[i] * targets[i];
+    }
+    if (others > 0) square += lost * lost / others;
+    return std::sqrt(square / static_cast<double>(vws.size()));
+}
+
+Tracked track(const VwsFunction& function, const std::vector<double>& targets, const std::vector<OpacityLimits>& limits,
+              const TrackOptions& options, const JobControl& job) {
+    return Tracker(function, normalizedTargets(targets, function.featureCount()),
+                   limitsOfMoves(function.base(), limits), options, job)
+        .run();
 }
 
 } // namespace pellucid

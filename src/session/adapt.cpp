@@ -10,6 +10,7 @@
 #include "base/stopwatch.h"
 #include "engines/engines.h"
 #include "optimize/drawn_colors.h"
+#include "optimize/log_depths.h"
 #include "optimize/region_colors.h"
 #include "optimize/tracking.h"
 #include "render/color_difference.h"
@@ -228,6 +229,55 @@ void visitFrames(const Session& session, const TimeSeries& series, const Visit& 
     }
 }
 
+bool smooths(const AdaptSettings& settings) {
+    return settings.mode == Mode::Optimize && settings.coherence > 0 && !std::isinf(settings.coherence);
+}
+
+/// Frames from one key to the next.
+struct Stretch {
+    SmoothTask task;
+    int all = 0, done = 0; ///< frames that should have a transfer function, and have one
+    bool isSmooth = true;  ///< what was smoothed is of the present ones
+};
+
+/// In the order of nextToAdapt().
+std::vector<Stretch> stretchesOf(const Session& session, const TimeSeries& series) {
+    std::vector<Stretch> stretches;
+    std::vector<std::vector<std::string>> bases;
+    visitFrames(session, series, [&](const std::optional<AdaptTask>& task, bool fresh) {
+        if (task && (stretches.empty() || stretches.back().task.key != task->key)) {
+            stretches.emplace_back().task.key = task->key;
+            bases.emplace_back();
+        }
+        Stretch& stretch = stretches.back(); // the first frame after a key has a task
+        ++stretch.all;
+        if (!fresh) return true;
+        ++stretch.done;
+        stretch.task.frames.push_back(task->frame);
+        bases.back().push_back(task->basis);
+        return true;
+    });
+    if (!smooths(*session.adapt)) return stretches;
+    const TfTrack& track = session.variable().track;
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+        Stretch& stretch = stretches[i];
+        if (stretch.done < stretch.all) {
+            stretch.isSmooth = false;
+            continue;
+        }
+        Hash hash;
+        for (const std::string& basis : bases[i]) hash.add(basis);
+        addTf(hash, *track.adapted.at(stretch.task.frames.back()).tf); // those before it are in the next one's basis
+        if (const auto next = track.keys.upper_bound(stretch.task.key); next != track.keys.end())
+            addTf(hash, *next->second);
+        stretch.task.basis = hash.text();
+        for (const int frame : stretch.task.frames)
+            stretch.isSmooth = stretch.isSmooth && track.adapted.at(frame).smooth &&
+                               track.adapted.at(frame).smoothBasis == stretch.task.basis;
+    }
+    return stretches;
+}
+
 TransferFunction writtenFor(const TransferFunction& tf, const ValueRange& window) {
     return window.lo < window.hi && tf.range ? inRange(tf, window) : tf;
 }
@@ -275,6 +325,45 @@ std::vector<std::vector<double>> pictureMetric(const Scene& scene, const JobCont
     return metric;
 }
 
+/// What a model depends on: the transfer function, and what that depends on.
+std::string modelBasis(const TransferFunction& tf, const std::string& basis) {
+    Hash hash;
+    hash.add(basis);
+    addTf(hash, tf);
+    return hash.text();
+}
+
+/// Of the scene's frame at `opacity`. `metric`: pictureMetric() under the transfer function of the frame before.
+FrameModel modelOf(const Scene& scene, const VwsFunction& function, std::vector<double> opacity,
+                   const AdaptSettings& settings, Matrix metric, const JobControl& job) {
+    std::vector<double> below1 = opacity; // where derivatives are
+    for (double& x : below1) x = std::min(x, kMaxOpacity);
+    VwsFunction::Linear linear = function.jacobian(below1, job);
+    FrameModel model;
+    model.targets = normalizedTargets(scene.targets(), function.featureCount());
+    TrackOptions track;
+    track.coherence = settings.coherence;
+    model.distance = std::max(std::hypot(track.distance(), leastDistance(linear.vws, linear.derivative, model.targets)),
+                              objectiveOf(linear.vws, model.targets));
+    model.opacity = std::move(opacity);
+    model.vws = std::move(linear.vws);
+    model.derivative = std::move(linear.derivative);
+    model.metric = std::move(metric);
+    model.limits = limitsOfMoves(function.base(), limitsOf(scene.tf, *scene.session.goals));
+    return model;
+}
+
+/// A part of the way from one to the other in ln τ; the ends themselves at 0 and 1.
+std::vector<double> opacitiesBetween(const std::vector<double>& from, const std::vector<double>& to, double part) {
+    std::vector<double> x = to;
+    for (std::size_t f = 0; f < x.size(); ++f) {
+        if (part >= 1 || from[f] == to[f] || from[f] <= 0 || to[f] <= 0) continue;
+        const double a = logDepthOf(from[f]);
+        x[f] = opacityOfLogDepth(a + part * (logDepthOf(to[f]) - a));
+    }
+    return x;
+}
+
 } // namespace
 
 std::string fingerprintOf(const Session& session, const TimeSeries& series, int frame,
@@ -299,12 +388,19 @@ int firstStale(const Session& session, const TimeSeries& series) {
 
 AdaptProgress adaptProgress(const Session& session, const TimeSeries& series) {
     AdaptProgress progress;
-    visitFrames(session, series, [&](const std::optional<AdaptTask>&, bool fresh) {
-        ++progress.all;
-        progress.done += fresh ? 1 : 0;
-        return true;
-    });
+    for (const Stretch& stretch : stretchesOf(session, series)) {
+        progress.all += stretch.all;
+        progress.done += stretch.done;
+        progress.smooth += stretch.isSmooth ? stretch.all : 0;
+    }
     return progress;
+}
+
+std::optional<SmoothTask> nextToSmooth(const Session& session, const TimeSeries& series) {
+    if (!smooths(*session.adapt)) return {};
+    for (Stretch& stretch : stretchesOf(session, series))
+        if (stretch.done == stretch.all && !stretch.isSmooth) return std::move(stretch.task);
+    return {};
 }
 
 Scene sceneAt(const Scene& basis, int frame, const TransferFunction& tf, const JobControl& job) {
@@ -369,8 +465,8 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         const EngineVws function(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws);
         TrackOptions track;
         track.coherence = settings.coherence;
-        if (settings.coherence > 0 && !std::isinf(settings.coherence))
-            track.metric = [&] { return pictureMetric(scene, quiet); };
+        std::optional<Matrix> metric;
+        if (smooths(settings)) track.metric = [&] { return *(metric = pictureMetric(scene, quiet)); };
         Tracked found = pellucid::track(function, targets, limits, track, quiet);
         // Moves downhill are stuck far from the targets: other starts may not be.
         const double enough = std::hypot(std::max(basis.session.optimize->tolerance, track.distance()), found.least);
@@ -391,6 +487,11 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
             }
         }
         made.tf = std::isinf(settings.coherence) ? scene.tf : withShownOpacities(scene.tf, found.opacity);
+        if (smooths(settings)) { // while the frame is at hand
+            if (!metric) metric = pictureMetric(scene, quiet);
+            m_models[task.frame] = {modelBasis(made.tf, task.basis),
+                                    modelOf(scene, function, found.opacity, settings, std::move(*metric), quiet)};
+        }
         made.vws = std::move(found.vws);
         made.objective = found.objective;
         made.moves = found.moves;
@@ -399,8 +500,108 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
     return made;
 }
 
+SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, bool keyMoves, Workspace& workspace,
+                                    const JobControl& job) {
+    const Stopwatch watch;
+    const JobControl quiet{job.stop, {}};
+    const AdaptSettings& settings = *basis.session.adapt;
+    const TfTrack& track = basis.session.variable().track;
+    const TimeSeries& series = *basis.series;
+    std::vector<int> frames{task.key};
+    std::vector<TransferFunction> tfs{*track.keys.at(task.key)};
+    for (const int frame : task.frames) {
+        frames.push_back(frame);
+        tfs.push_back(*track.adapted.at(frame).tf);
+    }
+    const auto next = track.keys.upper_bound(task.key);
+    const bool hasNext =
+        next != track.keys.end() && next->first < series.size() && series.summary(next->first).problem.empty();
+    if (hasNext) {
+        frames.push_back(next->first);
+        tfs.push_back(*next->second);
+    }
+    const auto stays = [&](std::size_t i) { return (i == 0 && !keyMoves) || (hasNext && i + 1 == frames.size()); };
+    const auto withFunction = [&](std::size_t i, const auto& use) {
+        const Scene scene = sceneAt(basis, frames[i], tfs[i], quiet);
+        tfs[i] = scene.tf;
+        const MeasureInput input = measureInput(scene);
+        VisibilityEngine& engine = workspace.engine(input);
+        use(scene, EngineVws(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws));
+    };
+
+    std::vector<FrameModel> models(frames.size());
+    double allowed = 0;
+    std::size_t moving = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        job.throwIfStopped();
+        job.report(0.5 * static_cast<double>(i) / static_cast<double>(frames.size()));
+        FrameModel& model = models[i];
+        const auto adapted = track.adapted.find(frames[i]);
+        const auto known = m_models.find(frames[i]);
+        if (adapted != track.adapted.end() && known != m_models.end() &&
+            known->second.basis == modelBasis(tfs[i], adapted->second.basis)) {
+            model = known->second.model;
+        } else if (i == 0 && stays(i)) { // a jump is seen where it goes to
+            model.opacity = featureOpacities(shownTf(tfs[i]));
+        } else {
+            Matrix metric = pictureMetric(sceneAt(basis, frames[i], tfs[i == 0 ? 0 : i - 1], quiet), quiet);
+            withFunction(i, [&](const Scene& scene, const EngineVws& function) {
+                model = modelOf(scene, function, featureOpacities(function.base()), settings, std::move(metric), quiet);
+            });
+            if (adapted != track.adapted.end())
+                m_models[frames[i]] = {modelBasis(tfs[i], adapted->second.basis), model};
+        }
+        model.stays = stays(i);
+        if (model.stays) continue;
+        allowed += model.distance * model.distance;
+        ++moving;
+    }
+    const std::vector<std::vector<double>> found = smoothed(models, quiet);
+
+    // Models are not exact: as far of the way as the distance allows.
+    constexpr std::array<double, 7> kParts{1, 0.97, 0.93, 0.88, 0.8, 0.6, 0.3};
+    std::array<double, kParts.size()> sums{};
+    std::vector<std::vector<std::vector<double>>> ways(frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        job.throwIfStopped();
+        job.report(0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(frames.size()));
+        if (stays(i)) continue;
+        for (const double part : kParts) ways[i].push_back(opacitiesBetween(models[i].opacity, found[i], part));
+        withFunction(i, [&](const Scene&, const EngineVws& function) {
+            const auto vws = function.evaluate(ways[i], quiet);
+            for (std::size_t p = 0; p < kParts.size(); ++p) {
+                const double objective = objectiveOf(vws[p], models[i].targets);
+                sums[p] += objective * objective;
+            }
+        });
+    }
+    std::size_t part = 0;
+    while (part < kParts.size() && !(sums[part] <= allowed)) ++part;
+
+    SmoothedFrames smoothed;
+    smoothed.basis = task.basis;
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        if (!stays(i))
+            smoothed.tfs[frames[i]] =
+                withShownOpacities(tfs[i], part < kParts.size() ? ways[i][part] : models[i].opacity);
+    smoothed.seconds = watch.seconds();
+    return smoothed;
+}
+
 Session withAdapted(Session session, int frame, AdaptedTf adapted) {
     session.variables.edit([&](std::vector<Variable>& all) { all.front().track.adapted[frame] = std::move(adapted); });
+    return session;
+}
+
+Session withSmoothed(Session session, const SmoothedFrames& smoothed) {
+    session.variables.edit([&](std::vector<Variable>& all) {
+        std::map<int, AdaptedTf>& adapted = all.front().track.adapted;
+        for (const auto& [frame, tf] : smoothed.tfs)
+            if (const auto there = adapted.find(frame); there != adapted.end()) {
+                there->second.smooth = Part<TransferFunction>(tf);
+                there->second.smoothBasis = smoothed.basis;
+            }
+    });
     return session;
 }
 

@@ -2,10 +2,12 @@
 // be made anew, how one is made, and what a frame shows under it. For the window and the command line alike.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "optimize/smoothing.h"
 #include "session/workspace.h"
 
 namespace pellucid {
@@ -35,11 +37,23 @@ std::string fingerprintOf(const Session& session, const TimeSeries& series, int 
 std::optional<AdaptTask> nextToAdapt(const Session& session, const TimeSeries& series);
 /// The frame of nextToAdapt(); −1: none.
 int firstStale(const Session& session, const TimeSeries& series);
-/// How many frames have a transfer function that is not stale, and how many should.
+/// How many frames have a transfer function that is not stale, and how many should; and to how many of these it is true
+/// that they are smoothed, or need not be.
 struct AdaptProgress {
-    int done = 0, all = 0;
+    int done = 0, all = 0, smooth = 0;
 };
 AdaptProgress adaptProgress(const Session& session, const TimeSeries& series);
+
+/// Frames from one key to the next, or to the end, whose transfer functions are to be smoothed together.
+struct SmoothTask {
+    int key = 0;
+    std::vector<int> frames; ///< those with a transfer function that is not stale, and no other between
+    std::string basis;       ///< fingerprint of all these transfer functions, the next key's included
+};
+
+/// In the mode Optimize with a coherence between 0 and infinity: the first such frames that have all been made and are
+/// not smoothed, or from other transfer functions than the present ones. In the order of nextToAdapt(); reads nothing.
+std::optional<SmoothTask> nextToSmooth(const Session& session, const TimeSeries& series);
 
 /// The scene of another frame under a given transfer function; everything else is that of `basis`. Where `basis` is of
 /// that frame, no data is read. Throws as resolve() does.
@@ -58,7 +72,15 @@ struct AdaptedFrame {
     AdaptedTf forTrack() const { return {Part<TransferFunction>(tf), basis}; }
 };
 
-/// Makes transfer functions frame by frame. Keeps what they share; used by one thread at a time.
+/// What came out of a SmoothTask.
+struct SmoothedFrames {
+    std::map<int, TransferFunction> tfs; ///< by frame
+    std::string basis;                   ///< that of the task
+    double seconds = 0;                  ///< of all frames together, reading included
+};
+
+/// Makes transfer functions frame by frame, and smooths them. Keeps what frames share, and models of frames that are
+/// to be smoothed; used by one thread at a time.
 class FrameAdapter {
 public:
     /// The transfer function of the task's frame, under the settings of basis.session; reads the frame. Throws
@@ -66,15 +88,28 @@ public:
     /// Workspace::measure() does.
     AdaptedFrame adapt(const Scene& basis, const AdaptTask& task, Workspace& workspace, const JobControl& job = {});
 
+    /// The transfer functions of these frames, and the key's where `keyMoves`, with as little change from frame to
+    /// frame as the distance of the coherence allows on average. Reads the frames, those adapted here before only once.
+    /// Throws FileError where one is broken (it is known as such then), Cancelled, and as Workspace::measure() does.
+    SmoothedFrames smooth(const Scene& basis, const SmoothTask& task, bool keyMoves, Workspace& workspace,
+                          const JobControl& job = {});
+
 private:
+    struct Known {
+        std::string basis; ///< of the transfer function that the model is of
+        FrameModel model;
+    };
     RefinePriority priorityOf(const Scene& basis, const AdaptTask& task, const JobControl& job);
 
     std::string m_regionBasis; ///< what m_colors were taken from
     std::vector<RegionColor> m_colors;
+    std::map<int, Known> m_models;
 };
 
 /// The session with that transfer function in its track.
 Session withAdapted(Session session, int frame, AdaptedTf adapted);
+/// The session with those that were smoothed beside those that they came from; a key stays as it is.
+Session withSmoothed(Session session, const SmoothedFrames& smoothed);
 
 /// What a frame shows under a transfer function.
 struct FrameFigures {

@@ -95,7 +95,7 @@ std::shared_ptr<const TransferFunction> Session::tfAt(int at) const {
     if (adapt->mode == AdaptSettings::Mode::Static || track.keys.empty()) return track.at(at);
     const int key = track.keyBefore(at);
     const auto next = track.adapted.upper_bound(at);
-    if (next != track.adapted.begin() && std::prev(next)->first > key) return std::prev(next)->second.tf.shared();
+    if (next != track.adapted.begin() && std::prev(next)->first > key) return std::prev(next)->second.shown().shared();
     return track.keys.at(key).shared();
 }
 

@@ -28,6 +28,11 @@ namespace pellucid {
 struct AdaptedTf {
     Part<TransferFunction> tf;
     std::string basis; ///< fingerprint of all that it depends on (adapt.h); another one now: it is to be made anew
+    /// The same after all frames from key to key were smoothed together, and the fingerprint of that; empty: not yet.
+    std::optional<Part<TransferFunction>> smooth = {};
+    std::string smoothBasis = {};
+
+    const Part<TransferFunction>& shown() const { return smooth ? *smooth : tf; }
     bool operator==(const AdaptedTf&) const = default;
 };
 

@@ -262,9 +262,14 @@ json fromVariable(const Variable& v, const std::string& folder, DataPaths paths)
     if (v.window) j["window"] = fromRange(*v.window);
     for (const auto& [frame, tf] : v.track.keys)
         j["transfer_functions"].push_back({{"frame", frame}, {"tf", jsonFromTf(*tf, Identities::Keep)}});
-    for (const auto& [frame, adapted] : v.track.adapted)
-        j["adapted"].push_back(
-            {{"frame", frame}, {"tf", jsonFromTf(*adapted.tf, Identities::Keep)}, {"basis", adapted.basis}});
+    for (const auto& [frame, adapted] : v.track.adapted) {
+        json one{{"frame", frame}, {"tf", jsonFromTf(*adapted.tf, Identities::Keep)}, {"basis", adapted.basis}};
+        if (adapted.smooth) {
+            one["smooth_tf"] = jsonFromTf(**adapted.smooth, Identities::Keep);
+            one["smooth_basis"] = adapted.smoothBasis;
+        }
+        j["adapted"].push_back(std::move(one));
+    }
     addUnknownKeys(j, v.extraJson);
     return j;
 }
@@ -281,9 +286,13 @@ Variable toVariable(const JsonValue& j, const std::string& folder, std::vector<s
         v.track.keys[static_cast<int>(key["frame"].integer(0, kMostFrames))] =
             Part<TransferFunction>(tfFromJson(key["tf"], Identities::Keep));
     if (j.has("adapted"))
-        for (const JsonValue& item : j["adapted"].items())
-            v.track.adapted[static_cast<int>(item["frame"].integer(0, kMostFrames))] = {
-                Part<TransferFunction>(tfFromJson(item["tf"], Identities::Keep)), item["basis"].text()};
+        for (const JsonValue& item : j["adapted"].items()) {
+            AdaptedTf& adapted = v.track.adapted[static_cast<int>(item["frame"].integer(0, kMostFrames))];
+            adapted = {Part<TransferFunction>(tfFromJson(item["tf"], Identities::Keep)), item["basis"].text()};
+            if (!item.has("smooth_tf")) continue;
+            adapted.smooth = Part<TransferFunction>(tfFromJson(item["smooth_tf"], Identities::Keep));
+            adapted.smoothBasis = item["smooth_basis"].text();
+        }
     v.extraJson = j.unknownKeys({"name", "source", "derived", "window", "transfer_functions", "adapted"});
     return v;
 }

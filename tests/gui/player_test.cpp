@@ -432,6 +432,42 @@ TEST_CASE("a click on the palette refines all frames, one from the other", "[pla
     CHECK(w.document().tf().points[1].opacity == Approx(w.session().variable().track.keys.at(0)->points[1].opacity));
 }
 
+TEST_CASE("with coherence frames are smoothed together, and undo knows nothing of it", "[player]") {
+    SeriesWindow w;
+    w.document().setTargets({0.2, 0.3, 0.5});
+    w.child<QSlider>("coherence").setValue(60);
+    w.child<QAction>("adaptOptimizeAction").trigger();
+    const int steps = w.document().stepCount();
+    w.settle();
+    REQUIRE(w.session().adapt->coherence > 0);
+    REQUIRE(std::isfinite(w.session().adapt->coherence));
+    const auto track = [&]() -> const TfTrack& { return w.session().variable().track; };
+    REQUIRE(track().adapted.size() == 5);
+    for (const auto& [frame, adapted] : track().adapted) {
+        INFO("frame " << frame);
+        REQUIRE(adapted.smooth);
+        CHECK_FALSE(adapted.smoothBasis.empty());
+        CHECK(adapted.smoothBasis == track().adapted.at(1).smoothBasis);
+    }
+    CHECK(w.adapting().progress().smooth == 5);
+    CHECK(w.child<QLabel>("adaptLabel").text() == "made for all frames");
+    CHECK(w.document().stepCount() == steps);
+    // What is shown and edited is the smoothed one.
+    w.goTo(4);
+    CHECK(w.document().tf() == **track().adapted.at(4).smooth);
+    const QImage smooth = w.picture();
+    const AdaptedTf made = track().adapted.at(4);
+    // Without coherence the frames are made anew, each for itself; back again it is the picture it was.
+    w.child<QSlider>("coherence").setValue(0);
+    w.settle();
+    CHECK_FALSE(track().adapted.at(4).smooth);
+    CHECK(w.picture() != smooth);
+    w.document().undo();
+    w.settle();
+    CHECK(track().adapted.at(4) == made);
+    CHECK(w.picture() == smooth);
+}
+
 TEST_CASE("every frame is optimized to the targets, and the curves show it", "[player]") {
     SeriesWindow w;
     w.document().setTargets({0.2, 0.3, 0.5});

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "optimize/tracking.h"
 #include "session/adapt.h"
+#include "tf/opacity.h"
 
 using namespace pellucid;
 
@@ -74,6 +75,19 @@ std::vector<AdaptedFrame> adaptAll(Scene& scene) {
         scene.session = withAdapted(std::move(scene.session), task->frame, all.back().forTrack());
     }
     return all;
+}
+
+/// Smooths all that is to be smoothed; the tasks.
+std::vector<SmoothTask> smoothAll(Scene& scene) {
+    Workspace workspace;
+    FrameAdapter adapter;
+    std::vector<SmoothTask> tasks;
+    while (auto task = nextToSmooth(scene.session, *scene.series)) {
+        scene.session = withSmoothed(std::move(scene.session), adapter.smooth(scene, *task, false, workspace));
+        tasks.push_back(std::move(*task));
+        REQUIRE(tasks.size() < 10);
+    }
+    return tasks;
 }
 
 std::vector<int> framesOf(const std::vector<AdaptedFrame>& made) {
@@ -247,6 +261,103 @@ TEST_CASE("coherence trades the distance from the targets for flicker", "[adapt]
         CHECK(summaryOf(frames).flicker < flicker);
         flicker = summaryOf(frames).flicker;
     }
+}
+
+TEST_CASE("frames are smoothed together once all are made", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 2);
+    optimizeKey(scene);
+    CHECK_FALSE(nextToSmooth(scene.session, *scene.series)); // nothing is made yet
+    adaptAll(scene);
+    const auto forward = figures(scene);
+    CHECK(adaptProgress(scene.session, *scene.series).smooth == 0);
+    const auto tasks = smoothAll(scene);
+    REQUIRE(tasks.size() == 1);
+    CHECK(tasks[0].key == 0);
+    CHECK(tasks[0].frames == Ints{1, 2, 3, 4, 5, 6, 7});
+    const AdaptProgress progress = adaptProgress(scene.session, *scene.series);
+    CHECK(progress.smooth == progress.all);
+    auto smooth = figures(scene);
+    CHECK(summaryOf(smooth).flicker < 0.95 * summaryOf(forward).flicker); // all borders drift one way
+    smooth.erase(smooth.begin());                                         // the key
+    CHECK(summaryOf(smooth).rms <= 0.02);
+    CHECK(*scene.session.tfAt(0) == *scene.session.variable().track.keys.at(0));
+    CHECK_FALSE(nextToAdapt(scene.session, *scene.series)); // what they were made of is still there
+
+    SECTION("a frame that is made anew is smoothed anew, with all others") {
+        scene.session.variables.edit([](std::vector<Variable>& all) { all.front().track.adapted.erase(4); });
+        CHECK_FALSE(nextToSmooth(scene.session, *scene.series));
+        CHECK(framesOf(adaptAll(scene)) == Ints{4}); // those after it come out as they are
+        CHECK(adaptProgress(scene.session, *scene.series).smooth == 0);
+        CHECK(smoothAll(scene).size() == 1);
+    }
+    SECTION("other targets") {
+        scene.session.goals.edit([&](FeatureGoals& goals) { goals[scene.tf.features[0].id].target = 2; });
+        CHECK_FALSE(nextToSmooth(scene.session, *scene.series)); // first they are made
+        adaptAll(scene);
+        CHECK(smoothAll(scene).size() == 1);
+    }
+    SECTION("without coherence, and with nothing but it, nothing is smoothed") {
+        for (const double coherence : {0.0, kInfinite}) {
+            scene.session.adapt.set({Mode::Optimize, coherence});
+            adaptAll(scene);
+            CHECK_FALSE(nextToSmooth(scene.session, *scene.series));
+            const AdaptProgress p = adaptProgress(scene.session, *scene.series);
+            CHECK(p.smooth == p.all);
+        }
+        scene.session.adapt.set({Mode::Refine, 2});
+        adaptAll(scene);
+        CHECK_FALSE(nextToSmooth(scene.session, *scene.series));
+    }
+}
+
+TEST_CASE("smoothing ends at keys and passes over broken frames", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 2, 6);
+    optimizeKey(scene);
+    TransferFunction second = *scene.session.tf();
+    second = withFeatureOpacities(second, {0.3, 0.2, 0.4});
+    scene.session.variables.edit([&](std::vector<Variable>& all) { all.front().track.keys[3] = second; });
+    adaptAll(scene);
+    const auto tasks = smoothAll(scene);
+    REQUIRE(tasks.size() == 2);
+    CHECK(tasks[0].frames == Ints{1, 2});
+    CHECK(tasks[1].key == 3);
+    CHECK(tasks[1].frames == Ints{4, 5, 7});
+    CHECK(featureOpacities(*scene.session.tfAt(3)) == featureOpacities(second));
+
+    // Another key changes what lies before it, too: the jump to it counts.
+    scene.session.variables.edit([&](std::vector<Variable>& all) {
+        all.front().track.keys[3] = withFeatureOpacities(second, {0.2, 0.2, 0.2});
+    });
+    adaptAll(scene);
+    CHECK(smoothAll(scene).size() == 2);
+}
+
+TEST_CASE("models of frames that are kept, and those taken anew, give the same", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 2);
+    optimizeKey(scene);
+    Workspace workspace;
+    FrameAdapter adapter;
+    while (const auto task = nextToAdapt(scene.session, *scene.series)) {
+        const AdaptedFrame made = adapter.adapt(scene, *task, workspace);
+        scene.session = withAdapted(std::move(scene.session), made.frame, made.forTrack());
+    }
+    const auto task = nextToSmooth(scene.session, *scene.series);
+    REQUIRE(task);
+    const SmoothedFrames kept = adapter.smooth(scene, *task, true, workspace);
+    Workspace otherWorkspace;
+    FrameAdapter other;
+    const SmoothedFrames anew = other.smooth(scene, *task, true, otherWorkspace);
+    REQUIRE(kept.tfs.size() == kFrames); // the key gives way
+    REQUIRE(anew.tfs.size() == kFrames);
+    for (const auto& [frame, tf] : kept.tfs) {
+        const auto x = featureOpacities(tf), y = featureOpacities(anew.tfs.at(frame));
+        INFO("frame " << frame);
+        for (std::size_t f = 0; f < x.size(); ++f) CHECK(x[f] == Approx(y[f]).epsilon(1e-6));
+    }
+    CHECK(featureOpacities(kept.tfs.at(0)) != featureOpacities(*scene.session.tfAt(0)));
+    std::stop_source stop;
+    stop.request_stop();
+    CHECK_THROWS_AS(adapter.smooth(scene, *task, true, workspace, {stop.get_token(), {}}), Cancelled);
 }
 
 TEST_CASE("coherence pulls a refinement back toward the frame before", "[adapt]") {

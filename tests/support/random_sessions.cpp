@@ -82,7 +82,11 @@ Variable randomVariable(Random& random, int& features) {
     for (int i = keys == 0 ? 0 : random.below(3); i > 0; --i) {
         TransferFunction tf = randomTf(random);
         features = std::max(features, static_cast<int>(tf.features.size()));
-        v.track.adapted[100 + i] = {Part<TransferFunction>(std::move(tf)), "fingerprint " + std::to_string(i)};
+        AdaptedTf& adapted = v.track.adapted[100 + i];
+        adapted = {Part<TransferFunction>(tf), "fingerprint " + std::to_string(i)};
+        if (!random.chance(0.5)) continue;
+        adapted.smooth = Part<TransferFunction>(std::move(tf));
+        adapted.smoothBasis = "of all " + std::to_string(i);
     }
     v.extraJson = randomExtra(random);
     return v;

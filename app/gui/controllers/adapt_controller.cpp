@@ -36,12 +36,17 @@ AdaptController::AdaptController(Workbench& bench)
               const auto task = nextToAdapt(basis.session, *basis.series);
               answer.progress = adaptProgress(basis.session, *basis.series);
               answer.firstStale = task ? task->frame : -1;
-              if (!task) return answer;
+              const auto smooth = task ? std::nullopt : nextToSmooth(basis.session, *basis.series);
               try {
-                  answer.made = m_maker.adapter.adapt(basis, *task, m_maker.workspace, job);
+                  if (task) answer.made = m_maker.adapter.adapt(basis, *task, m_maker.workspace, {job.stop, {}});
+                  if (smooth) answer.smoothed = m_maker.adapter.smooth(basis, *smooth, false, m_maker.workspace, job);
               } catch (const FileError&) {
-                  // The frame is broken, which the player says; the next one is looked for.
-                  if (basis.series->summary(task->frame).problem.empty()) throw;
+                  // A frame is broken, which the player says; what can be made without it is looked for.
+                  const auto again = nextToAdapt(basis.session, *basis.series);
+                  if (task && again && again->frame == task->frame) throw;
+                  const auto others = nextToSmooth(basis.session, *basis.series);
+                  if (smooth && others && others->basis == smooth->basis) throw;
+                  answer.goesOn = true;
               }
               return answer;
           },
@@ -55,6 +60,10 @@ AdaptController::AdaptController(Workbench& bench)
         if (isWanted()) m_timer.start();
     });
     connect(&m_job, &JobBase::busyChanged, this, &AdaptController::changed);
+    connect(&m_job, &JobBase::progress, this, [this](double fraction) {
+        m_smoothing = fraction;
+        Q_EMIT changed();
+    });
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_stopped = true;
         m_bench.notices().add(
@@ -254,7 +263,9 @@ void AdaptController::follow(const Scene& before, const Scene& after) {
             Q_EMIT changed();
         }
     } else if (other || mayDiffer(before.session, after.session)) {
-        m_timer.start(); // what is under way may be stale: its fingerprint tells
+        // What is under way may be stale: its fingerprint tells. Smoothing takes too long to wait for that.
+        if (m_smoothing > 0 && before.session.frame == after.session.frame) m_job.cancel();
+        m_timer.start();
     }
     if (before.session.frame != after.session.frame || other || !before.session.adapt.isSame(after.session.adapt) ||
         !before.session.targetKeys.isSame(after.session.targetKeys) ||
@@ -267,6 +278,7 @@ void AdaptController::look() {
     if (m_job.isRunning()) return; // its end looks again
     if (m_bench.opening().isBusy()) return m_timer.start();
     // What the hand holds is not committed: no frame needs it yet.
+    m_smoothing = 0;
     m_job.start(m_bench.store().committed(), tr("the frames"));
 }
 
@@ -284,9 +296,12 @@ void AdaptController::finish(const Scene& basis, Answer& answer) {
             if (!keys.contains(made.frame)) session = withAdapted(std::move(session), made.frame, made.forTrack());
         });
         ++m_progress.done;
-        Q_EMIT adapted(made);
     }
-    const bool goesOn = answer.firstStale >= 0;
+    if (answer.smoothed && !store.isPreviewing()) {
+        store.amend([&](Session& session) { session = withSmoothed(std::move(session), *answer.smoothed); });
+        m_progress = adaptProgress(store.session(), *store.scene().series);
+    }
+    const bool goesOn = answer.made || answer.smoothed || answer.goesOn;
     if (goesOn && !store.isPreviewing()) {
         m_timer.stop();
         look();

@@ -15,7 +15,8 @@ class Workbench;
 
 /// While the session's transfer functions adapt, those that are missing or of other inputs than the present ones are
 /// made one after the other on a thread of its own, beside what one looks at. Each is put in as it comes and is no step
-/// of the history. Waits while an optimization runs, data are fetched, or a hand drags.
+/// of the history; where coherence asks for it they are smoothed together in the end. Waits while an optimization runs,
+/// data are fetched, or a hand drags.
 class AdaptController : public QObject {
     Q_OBJECT
 public:
@@ -41,7 +42,8 @@ public:
 
     /// Of the present state, as of the latest look; {0, 0} in the mode static.
     AdaptProgress progress() const { return m_progress; }
-    bool isStale(int frame) const; ///< what was made for it is of other inputs than the present ones
+    double smoothing() const { return m_smoothing; } ///< fraction of the smoothing that is under way
+    bool isStale(int frame) const;                   ///< what was made for it is of other inputs than the present ones
     /// Transfer functions are being made, or will be.
     bool isBusy() const { return m_job.isRunning() || m_timer.isActive(); }
     bool isStopped() const { return m_stopped; }
@@ -50,14 +52,15 @@ public:
 
 Q_SIGNALS:
     void changed(); ///< progress, busy or stopped
-    void adapted(const pellucid::AdaptedFrame& frame);
 
 private:
-    /// The state of the track, and what was made for the first frame that lacked something.
+    /// The state of the track, and what was made for the first frame that lacked something, or for all at once.
     struct Answer {
         AdaptProgress progress;
         int firstStale = -1;
         std::optional<AdaptedFrame> made;
+        std::optional<SmoothedFrames> smoothed;
+        bool goesOn = false; ///< a frame is known to be broken now: there may be more to do
     };
     struct Maker { ///< what the frames share; used in m_job alone, which does one thing at a time
         Workspace workspace;
@@ -71,6 +74,7 @@ private:
     Workbench& m_bench;
     AdaptProgress m_progress;
     int m_firstStale = -1, m_staleKey = -1;
+    double m_smoothing = 0;
     bool m_stopped = false;
     QTimer m_timer;
     Maker m_maker;

@@ -238,7 +238,8 @@ QWidget* PlayerPanel::adaptRow() {
     m_coherence->setFixedWidth(110);
     m_coherence->setToolTip(
         tr("Coherence, 0 to ∞, without unit: how much jumps of the transfer function from frame to\n"
-           "frame are held back; 0: each frame for itself, ∞: as static"));
+           "frame are held back; 0: each frame for itself, ∞: as static\n"
+           "optimize: over the whole series, for a mean distance (RMS) of a hundredth of this from the targets"));
     connect(m_coherence, &QSlider::valueChanged, this,
             [&adapting](int step) { adapting.setCoherence(coherenceOf(step)); });
     m_coherenceText = new QLabel(widget);
@@ -295,11 +296,14 @@ void PlayerPanel::followAdapting() {
     m_adaptText->setVisible(adapts && open);
     m_adaptText->setText(progress.done < progress.all
                              ? tr("made for %L1 of %L2 frames").arg(progress.done).arg(progress.all)
-                             : tr("made for all frames"));
-    const bool making = adapts && open && progress.done < progress.all;
+                         : progress.smooth < progress.all ? tr("smoothing over all frames")
+                                                          : tr("made for all frames"));
+    const bool making = adapts && open && (progress.done < progress.all || progress.smooth < progress.all);
     m_adapt->setVisible(making);
-    m_adapt->setRange(0, std::max(1, progress.all));
-    m_adapt->setValue(progress.done);
+    m_adapt->setRange(0, 1000);
+    m_adapt->setValue(
+        static_cast<int>(1000 * (progress.done < progress.all ? static_cast<double>(progress.done) / progress.all
+                                                              : adapting.smoothing())));
     m_stopAdapt->setVisible(making);
     m_stopAdapt->setText(adapting.isStopped() ? tr("Go on") : tr("Stop"));
     m_stopAdapt->setToolTip(adapting.isStopped() ? tr("Make the transfer functions of the other frames")
