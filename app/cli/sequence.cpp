@@ -128,7 +128,8 @@ private:
 
     /// Whether all frames are looked at before one is drawn.
     bool isPlanned() const {
-        return settings().mode == Mode::Optimize && settings().coherence > 0 && !std::isinf(settings().coherence);
+        return settings().mode == Mode::Optimize && settings().usedCoherence() > 0 &&
+               !std::isinf(settings().usedCoherence());
     }
     const AdaptSettings& settings() const { return *m_scene.session.adapt; }
 
@@ -155,7 +156,7 @@ void Sequence::prepareKey() {
     m_start = session.frame;
     session.adapt.edit([&](AdaptSettings& a) {
         a.mode = m_o.mode.value_or(a.mode);
-        a.coherence = m_o.coherence.value_or(m_o.scene.session.file ? a.coherence : kUsualCoherence);
+        if (m_o.coherence) a.coherence = m_o.coherence;
     });
     if (m_o.tolerance) session.optimize.edit([&](OptimizeOptions& options) { options.tolerance = *m_o.tolerance; });
     if (m_o.targets) {
@@ -336,7 +337,7 @@ std::string Sequence::text(const SequenceFigures& dynamic, const std::optional<S
                    f.flicker ? fixedText(*f.flicker, 3) : "-", f.moves ? std::to_string(*f.moves) : "-",
                    f.moves ? fixedText(f.seconds, 3) : "-"});
     std::string text = table.text() + name(settings().mode);
-    if (settings().mode != Mode::Static) text += ", coherence " + coherenceText(settings().coherence);
+    if (settings().mode != Mode::Static) text += ", coherence " + coherenceText(settings().usedCoherence());
     text += ": RMS of F " + fixedText(dynamic.rms, 4) + ", flicker " + fixedText(dynamic.flicker, 3) + " on average";
     if (settings().mode != Mode::Static)
         text += ", " + fixedText(dynamic.moves, 2) + " moves and " + secondsText(dynamic.seconds) + " a frame";
@@ -353,10 +354,10 @@ Json jsonFromFigures(const SequenceFigures& f) {
 Json Sequence::json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const {
     Json json{{"command", "sequence"}, {"mode", name(settings().mode)}};
     if (settings().mode != Mode::Static) {
-        if (std::isinf(settings().coherence))
+        if (std::isinf(settings().usedCoherence()))
             json["coherence"] = "infinite";
         else
-            json["coherence"] = settings().coherence;
+            json["coherence"] = settings().usedCoherence();
     }
     json["volume"] = jsonFromVolume(*m_scene.volume);
     if (Json mapping = jsonFromMapping(m_scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
@@ -477,7 +478,7 @@ Command addSequence(CLI::App& program) {
         },
         "how much jumps of the transfer function are held back: 0 not at all, inf: as static; with optimize opacities "
         "change as little over the whole series as a distance of L/100 from the targets on average (RMS) allows; the "
-        "first frame's give way too, but for a key of a session (default 2)");
+        "first frame's give way too, but for a key of a session (default: the session's, else 2 with optimize)");
     addValue(
         *app, "--tolerance", "F",
         [o](const std::string& text, const std::string& option) { o->tolerance = parseRealAbove(text, option, 0, 1); },

@@ -133,6 +133,7 @@ public:
         const Mode mode = session.adapt->mode;
         Session common; // nothing but what counts
         common.adapt = session.adapt;
+        common.adapt.edit([](AdaptSettings& a) { a.coherence = a.usedCoherence(); });
         const bool viewed = mode == Mode::Optimize || (mode == Mode::Refine && session.refine->region);
         if (mode == Mode::Refine) {
             common.refine = session.refine;
@@ -230,7 +231,7 @@ void visitFrames(const Session& session, const TimeSeries& series, const Visit& 
 }
 
 bool smooths(const AdaptSettings& settings) {
-    return settings.mode == Mode::Optimize && settings.coherence > 0 && !std::isinf(settings.coherence);
+    return settings.mode == Mode::Optimize && settings.usedCoherence() > 0 && !std::isinf(settings.usedCoherence());
 }
 
 /// Frames from one key to the next.
@@ -342,7 +343,7 @@ FrameModel modelOf(const Scene& scene, const VwsFunction& function, std::vector<
     FrameModel model;
     model.targets = normalizedTargets(scene.targets(), function.featureCount());
     TrackOptions track;
-    track.coherence = settings.coherence;
+    track.coherence = settings.usedCoherence();
     model.distance = std::max(std::hypot(track.distance(), leastDistance(linear.vws, linear.derivative, model.targets)),
                               objectiveOf(linear.vws, model.targets));
     model.opacity = std::move(opacity);
@@ -450,10 +451,10 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         RefineOptions options = basis.session.refine->options();
         options.priority = priority;
         made.tf = scene.tf;
-        if (!std::isinf(settings.coherence)) {
+        if (!std::isinf(settings.usedCoherence())) {
             const RefineResult result =
                 refineAsDrawn(*scene.histogram, scene.tf, *scene.volume, scene.colors.get(), options, quiet);
-            made.tf = pulledBack(scene.tf, result.tf, settings.coherence);
+            made.tf = pulledBack(scene.tf, result.tf, settings.usedCoherence());
             made.energy = result.energyMovableAfter;
             made.moves = result.iterations;
         }
@@ -464,13 +465,13 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         VisibilityEngine& engine = workspace.engine(input);
         const EngineVws function(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws);
         TrackOptions track;
-        track.coherence = settings.coherence;
+        track.coherence = settings.usedCoherence();
         std::optional<Matrix> metric;
         if (smooths(settings)) track.metric = [&] { return *(metric = pictureMetric(scene, quiet)); };
         Tracked found = pellucid::track(function, targets, limits, track, quiet);
         // Moves downhill are stuck far from the targets: other starts may not be.
         const double enough = std::hypot(std::max(basis.session.optimize->tolerance, track.distance()), found.least);
-        if (!std::isinf(settings.coherence) && found.objective > enough) {
+        if (!std::isinf(settings.usedCoherence()) && found.objective > enough) {
             MeasureInput from = input;
             from.tf = withFeatureOpacities(input.tf, found.opacity);
             OptimizeOptions options = *basis.session.optimize;
@@ -486,7 +487,7 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
                 found.moves += anew.iterations();
             }
         }
-        made.tf = std::isinf(settings.coherence) ? scene.tf : withShownOpacities(scene.tf, found.opacity);
+        made.tf = std::isinf(settings.usedCoherence()) ? scene.tf : withShownOpacities(scene.tf, found.opacity);
         if (smooths(settings)) { // while the frame is at hand
             if (!metric) metric = pictureMetric(scene, quiet);
             m_models[task.frame] = {modelBasis(made.tf, task.basis),

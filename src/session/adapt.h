@@ -12,9 +12,6 @@
 
 namespace pellucid {
 
-/// What AdaptSettings::coherence should be where nobody says (docs/method.md, "Transfer functions over time").
-inline constexpr double kUsualCoherence = 2;
-
 /// A transfer function that is to be made, from that of the frame before.
 struct AdaptTask {
     int frame = 0;

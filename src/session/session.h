@@ -49,6 +49,10 @@ struct TfTrack {
     bool operator==(const TfTrack&) const = default;
 };
 
+/// What AdaptSettings::coherence is with the mode Optimize where nobody says (docs/method.md, "Transfer functions over
+/// time").
+inline constexpr double kUsualCoherence = 2;
+
 /// How transfer functions follow the frames of a series (docs/method.md, "Transfer functions over time").
 struct AdaptSettings {
     enum class Mode {
@@ -57,7 +61,10 @@ struct AdaptSettings {
         Optimize ///< each frame to the targets, from the one before (§5.4.1)
     };
     Mode mode = Mode::Static;
-    double coherence = 0; ///< ≥ 0; how much jumps from frame to frame are held back; infinity: as static
+    /// ≥ 0; how much jumps from frame to frame are held back; infinity: as static; empty: kUsualCoherence to optimize,
+    /// else none.
+    std::optional<double> coherence = {};
+    double usedCoherence() const { return coherence.value_or(mode == Mode::Optimize ? kUsualCoherence : 0); }
     bool operator==(const AdaptSettings&) const = default;
 };
 const char* name(AdaptSettings::Mode mode); ///< "static", "refine", "optimize"

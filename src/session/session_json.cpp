@@ -318,10 +318,10 @@ TargetKeys toTargetKeys(const JsonValue& j) {
 
 json fromAdapt(const AdaptSettings& a) {
     json j{{"mode", name(a.mode)}};
-    if (std::isinf(a.coherence))
+    if (a.coherence && std::isinf(*a.coherence))
         j["coherence"] = "infinite";
-    else
-        j["coherence"] = a.coherence;
+    else if (a.coherence)
+        j["coherence"] = *a.coherence;
     return j;
 }
 AdaptSettings toAdapt(const JsonValue& j) {
@@ -329,6 +329,7 @@ AdaptSettings toAdapt(const JsonValue& j) {
     const auto mode = adaptModeFromName(j["mode"].text());
     if (!mode) j["mode"].fail("no such mode", "write static, refine or optimize");
     a.mode = *mode;
+    if (!j.has("coherence")) return a;
     if (j["coherence"].json().is_string()) {
         if (j["coherence"].text() != "infinite") j["coherence"].fail("no such coherence", "write a number or infinite");
         a.coherence = std::numeric_limits<double>::infinity();

@@ -428,19 +428,19 @@ TEST_CASE("a click on the palette refines all frames, one from the other", "[pla
     // Without coherence frames differ, with all of it none does.
     w.child<QSlider>("coherence").setValue(100);
     w.settle();
-    CHECK(std::isinf(w.session().adapt->coherence));
+    CHECK(std::isinf(w.session().adapt->usedCoherence()));
     CHECK(w.document().tf().points[1].opacity == Approx(w.session().variable().track.keys.at(0)->points[1].opacity));
 }
 
 TEST_CASE("with coherence frames are smoothed together, and undo knows nothing of it", "[player]") {
     SeriesWindow w;
     w.document().setTargets({0.2, 0.3, 0.5});
-    w.child<QSlider>("coherence").setValue(60);
     w.child<QAction>("adaptOptimizeAction").trigger();
+    w.child<QSlider>("coherence").setValue(60);
     const int steps = w.document().stepCount();
     w.settle();
-    REQUIRE(w.session().adapt->coherence > 0);
-    REQUIRE(std::isfinite(w.session().adapt->coherence));
+    REQUIRE(*w.session().adapt->coherence > 0);
+    REQUIRE(std::isfinite(*w.session().adapt->coherence));
     const auto track = [&]() -> const TfTrack& { return w.session().variable().track; };
     REQUIRE(track().adapted.size() == 5);
     for (const auto& [frame, adapted] : track().adapted) {
@@ -473,6 +473,9 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     w.document().setTargets({0.2, 0.3, 0.5});
     w.settle();
     w.child<QAction>("adaptOptimizeAction").trigger();
+    CHECK(w.session().adapt->usedCoherence() == kUsualCoherence);
+    CHECK(w.child<QLabel>("coherenceLabel").text() == "2");
+    w.adapting().setCoherence(0);
     w.settle();
     CHECK(w.adapting().progress().done == w.adapting().progress().all);
     REQUIRE(w.session().variable().track.adapted.size() == 5);

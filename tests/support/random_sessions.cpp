@@ -113,8 +113,10 @@ void addSeriesParts(Session& s, Random& random) {
             keys[10 * i][static_cast<FeatureId>(1 + random.below(4))] = oddNumber(random, 0, 1);
         s.targetKeys = keys;
     }
-    s.adapt = AdaptSettings{static_cast<AdaptSettings::Mode>(random.below(3)),
-                            random.chance(0.2) ? std::numeric_limits<double>::infinity() : oddNumber(random, 0, 100)};
+    AdaptSettings adapt{static_cast<AdaptSettings::Mode>(random.below(3))};
+    if (random.chance(0.8))
+        adapt.coherence = random.chance(0.2) ? std::numeric_limits<double>::infinity() : oddNumber(random, 0, 100);
+    s.adapt = adapt;
     if (random.chance(0.5)) {
         HsbMapping hsb;
         hsb.on = random.chance(0.5);

@@ -287,11 +287,12 @@ void PlayerPanel::followAdapting() {
     m_mode->setEnabled(open);
     m_mode->setCurrentIndex(static_cast<int>(settings.mode));
     m_coherence->setEnabled(open && adapts);
+    const double coherence = settings.usedCoherence();
     {
         const QSignalBlocker quiet(m_coherence);
-        if (coherenceOf(m_coherence->value()) != settings.coherence) m_coherence->setValue(stepOf(settings.coherence));
+        if (coherenceOf(m_coherence->value()) != coherence) m_coherence->setValue(stepOf(coherence));
     }
-    m_coherenceText->setText(coherenceText(settings.coherence));
+    m_coherenceText->setText(coherenceText(coherence));
     const AdaptProgress progress = adapting.progress();
     m_adaptText->setVisible(adapts && open);
     m_adaptText->setText(progress.done < progress.all
