@@ -50,10 +50,13 @@ std::vector<std::string> Opened::notices() const {
     std::vector<std::string> all = sessionNotices;
     const TimeSeries& series = *scene.series;
     all.insert(all.end(), series.listing().notices.begin(), series.listing().notices.end());
+    constexpr int kMost = 8; // one by one
+    int broken = 0;
     for (int f = 0; f < series.size() && series.varies(); ++f)
-        if (const std::string problem = series.summary(f).problem; !problem.empty())
+        if (const std::string problem = series.summary(f).problem; !problem.empty() && ++broken <= kMost)
             all.push_back("frame " + std::to_string(f) + " (" + series.listing().label(f) +
                           ") is passed over: " + problem);
+    if (broken > kMost) all.push_back(std::to_string(broken - kMost) + " more frames are passed over");
     all.insert(all.end(), scene.volume->notices.begin(), scene.volume->notices.end());
     if (scene.volume->excerpt && scene.volume->excerpt->forMemory)
         all.emplace_back("--region X0:X1,Y0:Y1,Z0:Z1 opens a part at full resolution, --downsample 1 all or nothing");

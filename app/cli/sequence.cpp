@@ -145,6 +145,8 @@ private:
     std::optional<TransferFunction> m_before, m_chain; ///< of the frame before; what the next one starts from
     std::map<int, AdaptedFrame> m_planned;             ///< of plan(), by frame: the session has what is drawn
     std::vector<FrameFigures> m_figures, m_static;
+    FrameFigures m_broken; ///< of the latest frame that next() could not read
+    std::vector<std::string> m_notices;
     std::vector<Json> m_frames;
     std::vector<std::string> m_pictures;
 };
@@ -183,6 +185,18 @@ void Sequence::prepareKey() {
     });
     m_fixed = m_scene.tf;
     setKey(m_fixed);
+    // Figures of all frames stand in the same columns.
+    const auto features = [](const TransferFunction& tf) {
+        std::vector<std::pair<FeatureId, std::string>> all;
+        for (const Feature& f : tf.features) all.emplace_back(f.id, f.name);
+        return all;
+    };
+    for (const auto& [frame, tf] : session.variable().track.keys)
+        if (features(*tf) != features(*session.variable().track.keys.at(m_start)))
+            throw UsageError("the transfer functions of frames " + std::to_string(m_start) + " and " +
+                                 std::to_string(frame) + " have other features",
+                             m_o.scene.session.file.value_or("the session"),
+                             "give both the same in the same order, or begin with --from " + std::to_string(frame));
     m_keySeconds = watch.seconds();
 }
 
@@ -241,6 +255,7 @@ std::optional<Frame> Sequence::next(int number) {
             if (const auto planned = m_planned.find(number); planned != m_planned.end()) frame.made = planned->second;
         } else if (track.keys.contains(number) || !m_chain) {
             tf = *track.keys.at(track.keyBefore(number));
+            m_chain = tf; // broken or not, what follows begins here
         } else {
             AdaptTask task{number, track.keyBefore(number), *m_chain, {}};
             task.basis = fingerprintOf(m_scene.session, *m_scene.series, number, *m_chain);
@@ -257,13 +272,13 @@ std::optional<Frame> Sequence::next(int number) {
         frame.before = m_before;
         m_before = m_chain = frame.scene.tf;
         return frame;
-    } catch (const UsageError&) {
-        throw;
-    } catch (const Cancelled&) {
-        throw;
-    } catch (const Error&) {
-        if (m_scene.series->summary(number).problem.empty()) throw; // not of the frame
-        return {};                                                  // Opened::notices() tells
+    } catch (const FileError& error) {
+        m_broken = brokenFigures(*m_scene.series, number);
+        if (m_scene.series->summary(number).problem.empty()) { // else Opened::notices() tells: here another variable's
+            m_broken.problem = error.problem();
+            m_notices.push_back("frame " + std::to_string(number) + " is passed over: " + error.what());
+        }
+        return {};
     }
 }
 
@@ -376,8 +391,10 @@ Json Sequence::json(const SequenceFigures& dynamic, const std::optional<Sequence
 Answer Sequence::run(const Opened& opened) {
     const Stopwatch total;
     prepareKey();
-    std::error_code ignored;
-    fs::create_directories(m_o.out, ignored);
+    std::error_code failure;
+    fs::create_directories(m_o.out, failure);
+    if (failure && !fs::is_directory(m_o.out))
+        throw FileError("the folder cannot be made: " + failure.message(), m_o.out, "give another one to --out");
     const TimeSeries& series = *m_scene.series;
     ReadAhead ahead(m_scene.series, windowOf(m_scene.session.variable(), *m_scene.series, {interruptToken(), {}}));
     if (isPlanned()) plan(ahead);
@@ -395,8 +412,8 @@ Answer Sequence::run(const Opened& opened) {
             batch.push_back(std::move(*frame));
         } else {
             finish(batch);
-            m_figures.push_back(brokenFigures(series, number));
-            if (m_o.compare) m_static.push_back(m_figures.back());
+            m_figures.push_back(m_broken);
+            if (m_o.compare) m_static.push_back(m_broken);
         }
         if (static_cast<int>(batch.size()) == most) finish(batch);
         job.report((number + 1.0 - m_start) / (series.size() - m_start));
@@ -419,6 +436,7 @@ Answer Sequence::run(const Opened& opened) {
     std::optional<SequenceFigures> asStatic;
     if (m_o.compare) asStatic = summaryOf(m_static);
     Answer answer{text(dynamic, asStatic), json(dynamic, asStatic), opened.notices(), {}};
+    answer.notices.insert(answer.notices.end(), m_notices.begin(), m_notices.end());
     answer.json["seconds"] = {{"key", m_keySeconds}, {"total", total.seconds()}};
     if (m_o.requireConverged) {
         const double tolerance = m_scene.session.optimize->tolerance;

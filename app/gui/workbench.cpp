@@ -96,7 +96,7 @@ void Workbench::addEditActions() {
                    .menu = tr("&Edit"),
                    .text = tr("&Undo"),
                    .keys = keys("Ctrl+Z"),
-                   .trigger = [this] { m_store.undo(); },
+                   .trigger = [this] { goBack([this] { m_store.undo(); }, tr("This cannot be undone now")); },
                    .enabled = [this] { return !isReadOnly() && m_store.canUndo(); },
                    .say = [this] { return m_store.canUndo() ? tr("Undo: %1").arg(m_store.undoText()) : tr("Undo"); },
                    .inToolBar = true});
@@ -104,10 +104,18 @@ void Workbench::addEditActions() {
                    .menu = tr("&Edit"),
                    .text = tr("&Redo"),
                    .keys = keys("Ctrl+Shift+Z", "Ctrl+Y"),
-                   .trigger = [this] { m_store.redo(); },
+                   .trigger = [this] { goBack([this] { m_store.redo(); }, tr("This cannot be done again now")); },
                    .enabled = [this] { return !isReadOnly() && m_store.canRedo(); },
                    .say = [this] { return m_store.canRedo() ? tr("Redo: %1").arg(m_store.redoText()) : tr("Redo"); },
                    .inToolBar = true});
+}
+
+void Workbench::goBack(const std::function<void()>& step, const QString& failure) {
+    try {
+        step();
+    } catch (const Error& error) { // a file of that state has gone: the present state stays
+        showError(failure, error);
+    }
 }
 
 bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }

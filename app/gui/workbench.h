@@ -67,6 +67,8 @@ public:
     bool isIdle() const;
 
     void showError(const QString& title, const Error& error);
+    /// A step of the history; where it fails the state stays, and `failure` is told.
+    void goBack(const std::function<void()>& step, const QString& failure);
 
 Q_SIGNALS:
     void readOnlyChanged();

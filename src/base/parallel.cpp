@@ -10,6 +10,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 namespace pellucid {
 
@@ -46,6 +47,8 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
     // In order, one by one: who has nothing left to do waits for one call of body at most.
     std::atomic<std::size_t> next = 0;
     const auto run = [&] {
+        // A loop within another's body is not left half done where that one ends early by an error.
+        tbb::task_group_context alone(tbb::task_group_context::isolated);
         const auto workers = std::min(count, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, workers, 1),
@@ -57,7 +60,7 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
                     throw;
                 }
             },
-            tbb::simple_partitioner{});
+            tbb::simple_partitioner{}, alone);
     };
     if (const auto a = arena())
         a->execute(run);

@@ -146,10 +146,11 @@ public:
         if (mode == Mode::Optimize) {
             common.measure = session.measure;
             common.optimize = session.optimize;
-            common.hsb = session.hsb;
         }
+        const bool coloured = viewed && session.hsb->on; // what is measured, and what a region shows
+        if (coloured) common.hsb = session.hsb;
         m_common.add(jsonFromSession(common, "", DataPaths::Absolute).dump());
-        const std::size_t variables = mode == Mode::Optimize && session.hsb->on ? session.variables->size() : 1;
+        const std::size_t variables = coloured ? session.variables->size() : 1;
         for (std::size_t i = 0; i < variables; ++i) {
             const Variable& v = (*session.variables)[i];
             m_common.add(v.derivation ? v.derivation->text() : std::string());
@@ -272,6 +273,7 @@ std::vector<Stretch> stretchesOf(const Session& session, const TimeSeries& serie
         if (const auto next = track.keys.upper_bound(stretch.task.key); next != track.keys.end())
             addTf(hash, *next->second);
         stretch.task.basis = hash.text();
+        if (track.keys.at(stretch.task.key)->features.empty()) continue; // nothing was optimized
         for (const int frame : stretch.task.frames)
             stretch.isSmooth = stretch.isSmooth && track.adapted.at(frame).smooth &&
                                track.adapted.at(frame).smoothBasis == stretch.task.basis;
@@ -296,7 +298,10 @@ TransferFunction pulledBack(const TransferFunction& before, TransferFunction aft
 /// ∂Lab/∂y_j⟩, so that a jump is a root mean square ΔE. Empty where the picture shows no change at all.
 std::vector<std::vector<double>> pictureMetric(const Scene& scene, const JobControl& job) {
     const auto renderer = makeRenderer(scene.session.measure->engine, scene.volume);
-    const PictureInput picture = pictureInput(scene, kMetricSize, kMetricSize);
+    Scene plain = scene; // no figure depends on how it is displayed
+    plain.session.display.set({});
+    plain.ground.reset();
+    const PictureInput picture = pictureInput(plain, kMetricSize, kMetricSize);
     const auto labOf = [&](const TransferFunction& tf) {
         return labPixels(renderer->render(picture.camera, tf, picture.settings, job));
     };
@@ -515,8 +520,9 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
         tfs.push_back(*track.adapted.at(frame).tf);
     }
     const auto next = track.keys.upper_bound(task.key);
-    const bool hasNext =
-        next != track.keys.end() && next->first < series.size() && series.summary(next->first).problem.empty();
+    const bool hasNext = next != track.keys.end() && next->first < series.size() &&
+                         next->second->features.size() == tfs.front().features.size() &&
+                         series.summary(next->first).problem.empty();
     if (hasNext) {
         frames.push_back(next->first);
         tfs.push_back(*next->second);
@@ -532,7 +538,6 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
 
     std::vector<FrameModel> models(frames.size());
     double allowed = 0;
-    std::size_t moving = 0;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         job.throwIfStopped();
         job.report(0.5 * static_cast<double>(i) / static_cast<double>(frames.size()));
@@ -555,7 +560,6 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
         model.stays = stays(i);
         if (model.stays) continue;
         allowed += model.distance * model.distance;
-        ++moving;
     }
     const std::vector<std::vector<double>> found = smoothed(models, quiet);
 
@@ -582,9 +586,12 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
     SmoothedFrames smoothed;
     smoothed.basis = task.basis;
     for (std::size_t i = 0; i < frames.size(); ++i)
-        if (!stays(i))
+        if (!stays(i)) {
             smoothed.tfs[frames[i]] =
                 withShownOpacities(tfs[i], part < kParts.size() ? ways[i][part] : models[i].opacity);
+            if (const auto from = track.adapted.find(frames[i]); from != track.adapted.end())
+                smoothed.from[frames[i]] = from->second.basis;
+        }
     smoothed.seconds = watch.seconds();
     return smoothed;
 }
@@ -598,7 +605,8 @@ Session withSmoothed(Session session, const SmoothedFrames& smoothed) {
     session.variables.edit([&](std::vector<Variable>& all) {
         std::map<int, AdaptedTf>& adapted = all.front().track.adapted;
         for (const auto& [frame, tf] : smoothed.tfs)
-            if (const auto there = adapted.find(frame); there != adapted.end()) {
+            if (const auto there = adapted.find(frame); there != adapted.end() && smoothed.from.contains(frame) &&
+                                                        smoothed.from.at(frame) == there->second.basis) {
                 there->second.smooth = Part<TransferFunction>(tf);
                 there->second.smoothBasis = smoothed.basis;
             }

@@ -72,6 +72,7 @@ struct AdaptedFrame {
 /// What came out of a SmoothTask.
 struct SmoothedFrames {
     std::map<int, TransferFunction> tfs; ///< by frame
+    std::map<int, std::string> from;     ///< fingerprints of what they came from, by frame; a key has none
     std::string basis;                   ///< that of the task
     double seconds = 0;                  ///< of all frames together, reading included
 };
@@ -105,7 +106,8 @@ private:
 
 /// The session with that transfer function in its track.
 Session withAdapted(Session session, int frame, AdaptedTf adapted);
-/// The session with those that were smoothed beside those that they came from; a key stays as it is.
+/// The session with those that were smoothed beside those that they came from, where these are still there; a key
+/// stays as it is.
 Session withSmoothed(Session session, const SmoothedFrames& smoothed);
 
 /// What a frame shows under a transfer function.

@@ -67,15 +67,24 @@ Ground readGround(const GroundView& view, const Geometry& box, const JobControl&
     ground.stepX = box.directions[0] * (extent.x / (ground.nx - 1));
     ground.stepY = box.directions[1] * (extent.y / (ground.ny - 1));
     ground.up = box.directions[2] * std::abs(view.scale.value_or(scaleOf(heights, extent.z)));
+    dressGround(ground, view);
+    return ground;
+}
+
+void dressGround(Ground& ground, const GroundView& view) {
+    groundColors(view.colorMap); // an unknown one is told now
     ground.colorMap = view.colorMap;
-    groundColors(ground.colorMap); // an unknown one is told now
     ground.relief = std::clamp(view.relief, 0.0, 1.0);
-    ground.lo = heights.lo;
-    ground.hi = heights.hi;
+    ground.lo = std::numeric_limits<double>::infinity();
+    ground.hi = -ground.lo;
+    for (const float height : ground.heights)
+        if (std::isfinite(height)) {
+            ground.lo = std::min(ground.lo, static_cast<double>(height));
+            ground.hi = std::max(ground.hi, static_cast<double>(height));
+        }
     // Below 0 it is sea, however deep.
     if (ground.colorMap == kTerrainMap && ground.lo < 0 && ground.hi > 0) ground.lo = 0;
     if (!(ground.lo < ground.hi)) ground.hi = ground.lo + 1;
-    return ground;
 }
 
 } // namespace pellucid

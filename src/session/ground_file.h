@@ -14,4 +14,7 @@ namespace pellucid {
 /// one layer along every axis, UsageError for an unknown colour map, and as loadVolume() does.
 Ground readGround(const GroundView& view, const Geometry& box, const JobControl& job = {});
 
+/// Gives the heights the colours and relief of `view`. Throws UsageError for an unknown colour map.
+void dressGround(Ground& ground, const GroundView& view);
+
 } // namespace pellucid

@@ -105,7 +105,11 @@ bool needsData(const Session& session, const Scene& basis) {
     if (!sameOrigin(now, before)) return true;
     const int frame = basis.series->nearest(session.frame);
     if (frame != basis.session.frame) return !basis.series->isShown(frame, now.window);
-    return now.window != before.window && windowOf(now, *basis.series) != basis.volume->range();
+    if (now.window == before.window) return false;
+    const std::optional<ValueRange> all =
+        basis.series->varies() ? basis.series->knownRange() : std::optional(basis.data->range());
+    const std::optional<ValueRange> window = now.window ? now.window : all;
+    return !window || *window != basis.volume->range();
 }
 
 void placeAsPublished(const Session& session, const Volume& data, TransferFunction& tf) {

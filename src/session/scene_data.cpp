@@ -11,6 +11,12 @@ bool sameOrigin(const Variable& a, const Variable& b) {
     return a.derivation == b.derivation && (a.derivation || a.source == b.source);
 }
 
+bool sameData(const std::vector<Variable>& a, const std::vector<Variable>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Variable& v, const Variable& w) {
+        return v.name == w.name && sameOrigin(v, w) && v.window == w.window;
+    });
+}
+
 ValueRange windowOf(const Variable& variable, TimeSeries& series, const JobControl& job) {
     return variable.window ? *variable.window : series.range(job);
 }
@@ -64,7 +70,7 @@ std::shared_ptr<TimeSeries> SeriesFinder::derived(const std::string& name, const
         const Variable* variable = m_basis.session.variableNamed(name);
         if (variable == nullptr || variable->derivation == derivation) return before;
     }
-    return derive(std::move(base), derivation);
+    return derive(std::move(base), derivation, m_job);
 }
 
 bool SeriesFinder::isKnown(const Variable& variable) const {
@@ -152,17 +158,13 @@ std::shared_ptr<const Volume> channelOf(Scene& scene, SeriesFinder& finder, cons
 /// Whether colours, and what they are made of, are those of `basis`.
 bool sameColors(const Scene& scene, const Scene& basis) {
     return scene.data == basis.data && scene.session.hsb == basis.session.hsb &&
-           std::equal(scene.session.variables->begin(), scene.session.variables->end(),
-                      basis.session.variables->begin(), basis.session.variables->end(),
-                      [](const Variable& a, const Variable& b) {
-                          return a.name == b.name && sameOrigin(a, b) && a.window == b.window;
-                      });
+           sameData(*scene.session.variables, *basis.session.variables);
 }
 
 } // namespace
 
 void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const JobControl& job) {
-    const HsbMapping& hsb = *scene.session.hsb;
+    const HsbMapping hsb = *scene.session.hsb;
     if (!hsb.on) return;
     if (basis.colors && sameColors(scene, basis)) {
         scene.colors = basis.colors;
@@ -176,20 +178,21 @@ void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const
     input.saturation = channelOf(scene, finder, hsb.saturation, job);
     input.brightness = channelOf(scene, finder, hsb.brightness, job);
     input.hue = channelOf(scene, finder, hsb.hue, job);
-    // Automatic scales stay what they were when the mapping began, so that frames can be compared.
-    const HsbMapping& was = *basis.session.hsb;
-    const bool sameMapping = basis.colors && was.saturation == hsb.saturation && was.brightness == hsb.brightness &&
-                             basis.series == scene.series;
-    const auto scale = [&](std::optional<double> HsbMapping::*set, double before,
-                           const std::shared_ptr<const Volume>& v) {
-        if (hsb.*set) return *(hsb.*set);
-        return sameMapping && !(was.*set) ? before : v ? automaticScale(*v) : 1.0;
+    // Automatic scales stay what they were when the mapping began.
+    HsbMapping::Found found{hsb.saturation, hsb.brightness, {}, {}};
+    const auto scale = [&](const std::optional<double>& set, bool isKnown, const std::optional<double>& before,
+                           const std::shared_ptr<const Volume>& v, std::optional<double>& now) {
+        if (set || !v) return set.value_or(1);
+        now = isKnown && before ? before : automaticScale(*v);
+        return *now;
     };
-    scene.hsbA = input.a = scale(&HsbMapping::a, basis.hsbA, input.saturation);
-    scene.hsbB = input.b = scale(&HsbMapping::b, basis.hsbB, input.brightness);
+    const HsbMapping::Found& was = hsb.found;
+    scene.hsbA = input.a = scale(hsb.a, was.saturation == hsb.saturation, was.a, input.saturation, found.a);
+    scene.hsbB = input.b = scale(hsb.b, was.brightness == hsb.brightness, was.b, input.brightness, found.b);
     input.hueFrom = hsb.hueFrom;
     input.hueTo = hsb.hueTo;
     scene.colors = std::make_shared<const VoxelColors>(hsbColors(input, job));
+    scene.session.hsb.edit([&](HsbMapping& mapping) { mapping.found = found; });
 }
 
 void resolveGround(Scene& scene, const Scene& basis, const JobControl& job) {
@@ -202,8 +205,7 @@ void resolveGround(Scene& scene, const Scene& basis, const JobControl& job) {
         scene.ground = basis.ground;
         if (view == *basis.session.ground) return;
         Ground ground = *basis.ground;
-        ground.colorMap = view.colorMap;
-        ground.relief = view.relief;
+        dressGround(ground, view);
         scene.ground = std::make_shared<const Ground>(std::move(ground));
     } else {
         scene.ground = std::make_shared<const Ground>(readGround(view, scene.volume->geometry(), job));

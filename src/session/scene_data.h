@@ -11,6 +11,8 @@ namespace pellucid {
 
 /// Whether both variables have the same values, whatever they are called and seen through.
 bool sameOrigin(const Variable& a, const Variable& b);
+/// The same variables in the same order through the same windows, whatever their transfer functions are.
+bool sameData(const std::vector<Variable>& a, const std::vector<Variable>& b);
 
 /// The window of the variable that `series` has the values of: its own, or all values.
 ValueRange windowOf(const Variable& variable, TimeSeries& series, const JobControl& job = {});

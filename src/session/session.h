@@ -91,6 +91,14 @@ struct HsbMapping {
     std::string saturation, brightness, hue; ///< empty: saturation and brightness 1, hue `hueFrom`
     std::optional<double> a, b;              ///< scales of saturation and darkness, ≥ 0; empty: automaticScale()
     double hueFrom = 0, hueTo = 240;         ///< degrees, at intensity 0 and 1 of the variable `hue`
+    /// automaticScale() of the variables in the frame where the mapping began, for a and b where they are empty: kept,
+    /// so that frames can be compared. Set by resolve(); of other variables it means nothing.
+    struct Found {
+        std::string saturation, brightness;
+        std::optional<double> a, b;
+        bool operator==(const Found&) const = default;
+    };
+    Found found = {};
     bool operator==(const HsbMapping&) const = default;
 };
 

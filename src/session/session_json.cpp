@@ -344,6 +344,8 @@ json fromHsb(const HsbMapping& h) {
            {"hue", h.hue}, {"hue_from", h.hueFrom},      {"hue_to", h.hueTo}};
     if (h.a) j["a"] = *h.a;
     if (h.b) j["b"] = *h.b;
+    if (h.found.a) j["found_a"] = {{"of", h.found.saturation}, {"scale", *h.found.a}};
+    if (h.found.b) j["found_b"] = {{"of", h.found.brightness}, {"scale", *h.found.b}};
     return j;
 }
 HsbMapping toHsb(const JsonValue& j) {
@@ -356,6 +358,14 @@ HsbMapping toHsb(const JsonValue& j) {
     h.hueTo = j["hue_to"].number(-360, 360);
     if (j.has("a")) h.a = j["a"].number(0, kLargestScale);
     if (j.has("b")) h.b = j["b"].number(0, kLargestScale);
+    if (j.has("found_a")) {
+        h.found.saturation = j["found_a"]["of"].text();
+        h.found.a = j["found_a"]["scale"].number(0, kLargestScale);
+    }
+    if (j.has("found_b")) {
+        h.found.brightness = j["found_b"]["of"].text();
+        h.found.b = j["found_b"]["scale"].number(0, kLargestScale);
+    }
     return h;
 }
 

@@ -242,7 +242,8 @@ constexpr int kMostFrames = 2048; // so that sums of squares fit
 
 } // namespace
 
-std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation& derivation) {
+std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation& derivation,
+                                   const JobControl& job) {
     SeriesListing listing = base->listing();
     const std::string title = derivation.text();
     listing.title = title;
@@ -269,7 +270,7 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
             throw UsageError("the series has no frame " + std::to_string(reference), "variable " + title,
                              "give 0 to " + std::to_string(base->size() - 1));
         if (base->varies()) { // zero in the middle
-            const ValueRange range = base->range();
+            const ValueRange range = base->range({job.stop, {}});
             listing.declaredRange = ValueRange{range.lo - range.hi, range.hi - range.lo};
         }
         return std::make_shared<TimeSeries>(std::move(listing), [base, title, reference](int frame,

@@ -32,7 +32,8 @@ std::optional<Derivation> parseDerivation(const std::string& text);
 /// frames. A voxel that is invalid in any frame it is made of is invalid. Volatility keeps running sums, so that the
 /// next frame costs one frame, in either direction; a frame that cannot be read is left out of it.
 /// Throws UsageError for a reference frame that is not there.
-std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation& derivation);
+std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Derivation& derivation,
+                                   const JobControl& job = {});
 
 /// Trilinear samples of `volume` at the voxels of `grid`, in the world; invalid beyond its box. Float.
 Volume resampledTo(const Volume& volume, const Geometry& grid, const JobControl& job = {});

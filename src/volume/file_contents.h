@@ -11,12 +11,13 @@ namespace pellucid {
 /// What can be chosen of a file, and how large it is.
 struct FileContents {
     Int3 dims{0, 0, 0};
-    SampleType type = SampleType::U8; ///< as loadVolume() keeps it
-    int components = 1;               ///< of each voxel
-    int steps = 1;                    ///< time steps
-    std::vector<double> times;        ///< of the steps, in timeUnit; empty: not known
-    std::string timeUnit;             ///< "s", "ms", …; empty: not known
-    std::vector<std::string> arrays;  ///< by name, in their order; empty: there is one, without a name
+    SampleType type = SampleType::U8;   ///< as loadVolume() keeps it
+    int components = 1;                 ///< of each voxel
+    int steps = 1;                      ///< time steps
+    std::vector<double> times;          ///< of the steps, in timeUnit; empty: not known
+    std::string timeUnit;               ///< "s", "ms", …; empty: not known
+    std::vector<std::string> stepFiles; ///< of a collection, the file of each step; empty: they are in this one
+    std::vector<std::string> arrays;    ///< by name, in their order; empty: there is one, without a name
 };
 
 /// Reads the header of source.path, which is one file; of VTK files with inline data it has to pass over those, too.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -16,6 +17,8 @@ namespace pellucid {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kMostFrames = 100'000; ///< a few hundred bytes each
 
 /// "a, b, c and 4 more".
 std::string someOf(const std::vector<std::string>& names) {
@@ -43,17 +46,19 @@ SeriesListing listSample(const VolumeSource& source) {
     return listing;
 }
 
-/// Of all frames those that are asked for.
-void select(SeriesListing& listing, const FrameRange& range) {
-    const int count = static_cast<int>(listing.frames.size());
-    const int last = range.last.value_or(count - 1);
-    if (range.first < 0 || range.first >= count || last < range.first || last >= count || range.stride < 1)
-        throw UsageError("the series has no such frames", listing.title,
+/// The frames that are asked for of `count`; all without `range`.
+std::vector<int> selected(int count, const std::optional<FrameRange>& range, const std::string& title) {
+    const FrameRange wanted = range.value_or(FrameRange{0, {}, 1});
+    const int last = wanted.last.value_or(count - 1);
+    if (wanted.first < 0 || wanted.first >= count || last < wanted.first || last >= count || wanted.stride < 1)
+        throw UsageError("the series has no such frames", title,
                          count == 1 ? "it has one, number 0" : "give frames from 0 to " + std::to_string(count - 1));
-    std::vector<SeriesFrame> chosen;
-    for (int f = range.first; f <= last; f += range.stride)
-        chosen.push_back(std::move(listing.frames[static_cast<std::size_t>(f)]));
-    listing.frames = std::move(chosen);
+    if ((last - wanted.first) / wanted.stride >= kMostFrames)
+        throw UsageError("a series of " + std::to_string((last - wanted.first) / wanted.stride + 1LL) + " frames",
+                         title, "choose at most " + std::to_string(kMostFrames) + " of them");
+    std::vector<int> frames;
+    for (long long f = wanted.first; f <= last; f += wanted.stride) frames.push_back(static_cast<int>(f));
+    return frames;
 }
 
 /// Those of the most frequent suffix that volumes have (any suffix, where data are headerless).
@@ -184,18 +189,28 @@ void addFile(SeriesListing& listing, const VolumeSource& given, const std::strin
     const std::optional<FileContents> contents = knownContents(frame.source, job);
     const int steps = contents ? contents->steps : 1;
     frame.source.frames.reset();
+    // Of one file with many steps, no more are listed than are asked for.
+    const std::vector<int> chosen = selected(steps, alone ? given.frames : std::nullopt, listing.title);
     std::string stem = fs::path(path).filename().string();
     if (const std::string suffix = volumeSuffix(path); suffix.size() < stem.size())
         stem.resize(stem.size() - suffix.size());
-    for (int step = 0; step < steps; ++step) {
+    const bool isTimed =
+        contents && contents->times.size() == static_cast<std::size_t>(steps) &&
+        std::all_of(contents->times.begin(), contents->times.end(), [](double t) { return std::isfinite(t); });
+    listing.hasTimes = listing.hasTimes && isTimed;
+    for (const int step : chosen) {
         frame.source.step = step;
+        if (contents && !contents->stepFiles.empty()) { // a collection: its files are read as they are
+            frame.source.path = contents->stepFiles[static_cast<std::size_t>(step)];
+            frame.source.step = 0;
+        }
         // A headerless file is longer than a layout says: that it may be, the selection alone tells.
         if (given.raw && steps > 1) frame.source.frames = FrameRange{step, step, 1};
-        frame.time = static_cast<double>(listing.frames.size());
-        const bool isTimed = contents && contents->times.size() == static_cast<std::size_t>(steps);
+        frame.time = alone ? step : static_cast<double>(listing.frames.size());
         if (isTimed) frame.time = contents->times[static_cast<std::size_t>(step)];
-        listing.hasTimes = listing.hasTimes && isTimed;
-        frame.name = steps == 1 ? stem : (alone ? "" : stem + ", ") + "step " + std::to_string(step);
+        frame.name = alone && steps == 1 && !isTimed ? listing.title
+                     : steps == 1                    ? stem
+                                                     : (alone ? "" : stem + ", ") + "step " + std::to_string(step);
         listing.frames.push_back(frame);
     }
     if (contents && !contents->timeUnit.empty()) listing.timeUnit = contents->timeUnit;
@@ -228,6 +243,7 @@ std::vector<std::string> seriesFiles(const VolumeSource& source) {
 
 SeriesListing listSeries(const VolumeSource& source, const JobControl& job) {
     SeriesListing listing;
+    bool alone = false; // one file, of which addFile() has chosen
     if (source.isSample()) {
         listing = listSample(source);
     } else if (source.path.empty()) {
@@ -237,17 +253,23 @@ SeriesListing listSeries(const VolumeSource& source, const JobControl& job) {
         listing.title = std::move(list.title);
         listing.notices = std::move(list.notices);
         listing.hasTimes = true;
+        alone = list.paths.size() == 1;
         for (const std::string& path : list.paths) {
             job.throwIfStopped();
-            addFile(listing, source, path, list.paths.size() == 1, job);
+            addFile(listing, source, path, alone, job);
         }
         if (!listing.hasTimes) {
             listing.timeUnit.clear();
-            for (std::size_t f = 0; f < listing.frames.size(); ++f) listing.frames[f].time = static_cast<double>(f);
+            for (std::size_t f = 0; f < listing.frames.size() && !alone; ++f)
+                listing.frames[f].time = static_cast<double>(f);
         }
-        if (listing.frames.size() == 1 && !listing.hasTimes) listing.frames.front().name = listing.title;
     }
-    if (source.frames) select(listing, *source.frames);
+    if (source.frames && !alone) {
+        std::vector<SeriesFrame> chosen;
+        for (const int f : selected(static_cast<int>(listing.frames.size()), source.frames, listing.title))
+            chosen.push_back(listing.frames[static_cast<std::size_t>(f)]);
+        listing.frames = std::move(chosen);
+    }
     return listing;
 }
 

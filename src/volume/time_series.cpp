@@ -87,16 +87,9 @@ std::shared_ptr<TimeSeries> TimeSeries::open(const VolumeSource& source, const M
     });
 }
 
-void TimeSeries::touch(int frame) {
-    m_used.remove(frame);
-    m_used.push_front(frame);
-}
+void TimeSeries::touch(Entry& entry) { m_used.splice(m_used.begin(), m_used, entry.used); }
 
-std::size_t TimeSeries::held() const {
-    std::size_t sum = m_loading.size() * m_frameBytes;
-    for (const auto& [frame, entry] : m_entries) sum += entry.bytes;
-    return sum;
-}
+std::size_t TimeSeries::held() const { return m_loading.size() * m_frameBytes + m_entryBytes; }
 
 void TimeSeries::makeRoom(std::size_t bytes) {
     // Others get hold of a frame under the mutex only: none that is ours alone becomes theirs meanwhile.
@@ -110,6 +103,7 @@ void TimeSeries::makeRoom(std::size_t bytes) {
         const auto entry = m_entries.find(*frame);
         if ((bytes == 0 && m_entries.size() == 1) || !isOursAlone(entry->second)) continue;
         sum -= entry->second.bytes;
+        m_entryBytes -= entry->second.bytes;
         m_entries.erase(entry);
         frame = m_used.erase(frame);
     }
@@ -146,7 +140,7 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
         std::unique_lock lock(m_mutex);
         while (true) { // one reads, the others wait for it
             if (const auto found = m_entries.find(frame); found != m_entries.end()) {
-                touch(frame);
+                touch(found->second);
                 return found->second.data;
             }
             if (!mustWait(frame)) break;
@@ -160,11 +154,15 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
         const std::lock_guard lock(m_mutex);
         m_loading.erase(frame);
         if (volume) {
-            Entry& entry = m_entries[frame];
+            const auto [at, isNew] = m_entries.try_emplace(frame);
+            Entry& entry = at->second;
+            if (isNew) entry.used = m_used.insert(m_used.begin(), frame);
             entry.data = volume;
+            m_entryBytes -= entry.bytes;
             entry.bytes = bytesOf(*volume);
+            m_entryBytes += entry.bytes;
             m_frameBytes = std::max(m_frameBytes, entry.bytes);
-            touch(frame);
+            touch(entry);
             makeRoom(0); // it may be larger than those before
         }
         m_loaded.notify_all();
@@ -241,6 +239,11 @@ ValueRange TimeSeries::range(const JobControl& job) {
     survey(job);
     const std::lock_guard lock(m_mutex);
     return *m_range;
+}
+
+std::optional<ValueRange> TimeSeries::knownRange() const {
+    const std::lock_guard lock(m_mutex);
+    return m_range;
 }
 
 bool TimeSeries::isSurveyed() const {

@@ -63,6 +63,7 @@ public:
 
     /// Smallest and largest value of all frames: those of the only one, what the data declare, or what survey() finds.
     ValueRange range(const JobControl& job = {});
+    std::optional<ValueRange> knownRange() const; ///< of several frames, the same where none has to be read for it
     /// Reads every frame once, if that has not been done, without keeping more than the budget allows. A frame that
     /// cannot be read is passed over; Error where none can.
     void survey(const JobControl& job = {});
@@ -88,10 +89,11 @@ private:
         std::optional<ValueRange> window; // of `shown`
         ShownFrame shown;                 // its volume is null until it is asked for
         std::size_t bytes = 0;
+        std::list<int>::iterator used; // in m_used
     };
     std::size_t held() const; // m_mutex is held, here and in the next ones
     void makeRoom(std::size_t bytes);
-    void touch(int frame);
+    void touch(Entry& entry);
     bool mustWait(int frame) const;
     void note(int frame, const Volume& volume);
     void noteProblem(int frame, const std::string& problem);
@@ -105,6 +107,7 @@ private:
     std::set<int> m_loading; // frames that somebody is reading
     std::vector<FrameSummary> m_summaries;
     std::optional<Geometry> m_geometry; // of the first frame that was read
+    std::size_t m_entryBytes = 0;       // of all m_entries
     std::size_t m_frameBytes = 0;       // of a frame with its codes; 0: not known yet
     std::size_t m_budget = 0;
     std::optional<ValueRange> m_range;

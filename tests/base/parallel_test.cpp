@@ -37,6 +37,24 @@ TEST_CASE("a reduction by slots has the same bits for any thread count", "[paral
     setThreadCount(0);
 }
 
+TEST_CASE("an error in one call leaves no loop of another call half done", "[parallel]") {
+    setThreadCount(4);
+    for (int round = 0; round < 50; ++round) {
+        std::atomic<int> returned = 0, calls = 0;
+        const auto outer = [&](std::size_t i) {
+            if (i == 1) throw std::runtime_error("one of them");
+            parallelFor(200, [&](std::size_t) {
+                std::this_thread::yield();
+                ++calls;
+            });
+            ++returned;
+        };
+        CHECK_THROWS_AS(parallelFor(4, outer), std::runtime_error);
+        CHECK(calls == 200 * returned);
+    }
+    setThreadCount(0);
+}
+
 TEST_CASE("the thread count is what was asked for", "[parallel]") {
     setThreadCount(3);
     CHECK(threadCount() == 3);

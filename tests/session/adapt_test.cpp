@@ -310,6 +310,52 @@ TEST_CASE("frames are smoothed together once all are made", "[adapt]") {
     }
 }
 
+TEST_CASE("what is made does not depend on light, background and mode, with coherence either", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 2);
+    optimizeKey(scene);
+    Scene lit = scene;
+    lit.session.display.edit([](DisplaySettings& d) {
+        d.background = {1, 1, 1};
+        d.light.on = true;
+        d.mode = RenderMode::Mip;
+    });
+    lit = resolve(lit.session, lit);
+    const auto plain = adaptAll(scene), other = adaptAll(lit);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        CHECK(plain[i].tf == other[i].tf);
+        CHECK(plain[i].basis == other[i].basis);
+    }
+    smoothAll(scene);
+    smoothAll(lit);
+    for (int f = 0; f < kFrames; ++f) CHECK(*scene.session.tfAt(f) == *lit.session.tfAt(f));
+}
+
+TEST_CASE("a transfer function without features is not smoothed", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 2);
+    TransferFunction plain = *scene.session.tf();
+    plain.features.clear();
+    scene.session.setTf(plain);
+    scene = resolve(scene.session, scene);
+    adaptAll(scene);
+    CHECK_FALSE(nextToSmooth(scene.session, *scene.series));
+    const AdaptProgress progress = adaptProgress(scene.session, *scene.series);
+    CHECK(progress.smooth == progress.all);
+}
+
+TEST_CASE("smoothed transfer functions are put beside those that they came from alone", "[adapt]") {
+    Scene scene = sceneOf(Mode::Optimize, 2);
+    adaptAll(scene);
+    Workspace workspace;
+    FrameAdapter adapter;
+    const auto task = nextToSmooth(scene.session, *scene.series);
+    REQUIRE(task);
+    const SmoothedFrames smooth = adapter.smooth(scene, *task, false, workspace);
+    scene.session.variables.edit([](std::vector<Variable>& all) { all.front().track.adapted.at(3).basis = "other"; });
+    const Session put = withSmoothed(scene.session, smooth);
+    CHECK(put.variable().track.adapted.at(2).smooth);
+    CHECK_FALSE(put.variable().track.adapted.at(3).smooth);
+}
+
 TEST_CASE("smoothing ends at keys and passes over broken frames", "[adapt]") {
     Scene scene = sceneOf(Mode::Optimize, 2, 6);
     optimizeKey(scene);

@@ -99,6 +99,13 @@ TEST_CASE("the terrain begins at the sea, other colours at the lowest height", "
     view.colorMap = "grey";
     const Ground grey = readGround(view, kBox);
     CHECK((grey.lo == -300 && grey.hi == 200 && grey.colorMap == "grey"));
+    // Dressed in another way it is what it would have been read as.
+    Ground dressed = terrain;
+    dressGround(dressed, view);
+    CHECK((dressed.lo == grey.lo && dressed.hi == grey.hi && dressed.colorMap == grey.colorMap));
+    view.colorMap = "terrain";
+    dressGround(dressed, view);
+    CHECK((dressed.lo == 0 && dressed.hi == 200));
     const Ground flat = readGround(viewOf(rawFile(folder, {7, 7, 7, 7}), "2,2,1,f32"), kBox);
     CHECK(flat.lo < flat.hi);
 }

@@ -170,3 +170,40 @@ TEST_CASE("the published profile has no colours by variable", "[variables]") {
     inputs.session.measure.edit([](MeasureSettings& m) { m.profile = Profile::Published; });
     CHECK(measureInput(openScene(inputs)).colors == nullptr);
 }
+
+TEST_CASE("automatic scales are those of the frame where the mapping began, also in a session opened elsewhere",
+          "[variables]") {
+    SceneInputs inputs = hurricane(20, 5);
+    inputs.session.hsb.edit([](HsbMapping& h) { h.a.reset(), h.b.reset(); });
+    const Scene began = openScene(inputs);
+    const HsbMapping::Found& found = began.session.hsb->found;
+    CHECK(found.saturation == "volatility:x:5");
+    CHECK(found.brightness == "y");
+    CHECK(found.a == began.hsbA);
+    CHECK(found.b == began.hsbB);
+    Session later = began.session;
+    later.frame = 33;
+    const Scene moved = resolve(later, began);
+    SceneInputs again;
+    again.session = moved.session;
+    const Scene opened = openScene(again);
+    CHECK(opened.session.frame == 33);
+    for (const Scene* scene : {&moved, &opened}) {
+        CHECK(scene->hsbA == began.hsbA);
+        CHECK(scene->hsbB == began.hsbB);
+    }
+    CHECK(opened.colors->rgba == moved.colors->rgba);
+
+    // What is set by hand, and what is of another variable, is not found there.
+    Session other = moved.session;
+    other.hsb.edit([](HsbMapping& h) {
+        h.a = 2;
+        h.brightness = "gradient:x";
+    });
+    const Scene changed = resolve(other, moved);
+    CHECK(changed.hsbA == 2);
+    CHECK_FALSE(changed.session.hsb->found.a);
+    CHECK(changed.session.hsb->found.brightness == "gradient:x");
+    TimeSeries& gradient = *changed.others.at("gradient:x");
+    CHECK(changed.hsbB == automaticScale(gradient.load(33)->withRange(gradient.range())));
+}

@@ -124,6 +124,10 @@ void addSeriesParts(Session& s, Random& random) {
         hsb.brightness = random.chance(0.5) ? "derived" : "";
         if (random.chance(0.5)) hsb.a = oddNumber(random, 0, 100);
         hsb.hueFrom = oddNumber(random, 0, 360);
+        if (random.chance(0.5)) {
+            hsb.found.saturation = hsb.saturation;
+            hsb.found.a = oddNumber(random, 0, 100);
+        }
         s.hsb = hsb;
     }
     if (random.chance(0.5)) {

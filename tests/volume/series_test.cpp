@@ -202,6 +202,7 @@ TEST_CASE("frames are selected by their numbers", "[series]") {
     CHECK(letters({1, 3, 1}) == "bcd");
     CHECK(letters({1, {}, 2}) == "bdf");
     CHECK(letters({5, 5, 1}) == "f");
+    CHECK(letters({1, 5, 2147483647}) == "b");
     for (const FrameRange none :
          {FrameRange{6, {}, 1}, FrameRange{0, 6, 1}, FrameRange{3, 2, 1}, FrameRange{-1, 2, 1}, FrameRange{0, 2, 0}})
         CHECK_THROWS_WITH(letters(none), Contains("no such frames") && Contains("0 to 5"));
@@ -309,6 +310,18 @@ TEST_CASE("NRRD over time: by its kind, as a list behind space, or as one axis m
         "2 1 1 3", "space: scanner-xyz-time\nkinds: space space space time\nspace directions: (1,0,0,0) "
                    "(0,1,0,0) (0,0,1,0) (0,0,0,2)\nspace origin: (0,0,0,4)\nspace units: \"mm\" \"mm\" \"mm\" \"s\"\n");
     CHECK(inSpace.label(1) == "t = 6 s");
+}
+
+TEST_CASE("a header that claims endless steps takes no memory", "[series]") {
+    const TempFolder folder;
+    VolumeSource source = sourceOf(
+        folder.write("long.nrrd", "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 1 1 1 2000000000\nencoding: raw\n"
+                                  "kinds: domain domain domain time\n\nabcdef"));
+    CHECK_THROWS_WITH(listSeries(source), Contains("a series of 2000000000 frames") && Contains("choose at most"));
+    source.frames = FrameRange{1, 5, 2};
+    const SeriesListing listing = listSeries(source);
+    CHECK(lettersOf(listing) == "bdf");
+    CHECK(listing.frames[1].time == 3); // as it is numbered in the file
 }
 
 TEST_CASE("MetaImage of four axes: the last one is time", "[series]") {

@@ -356,6 +356,11 @@ TEST_CASE("a collection lists its files by time", "[vtk]") {
     CHECK(contentsOf(sourceOf(path)).arrays == Names{"v"});
     CHECK(filesOf(sourceOf(path)).size() == 5);                       // itself and the four
     CHECK(listSeries(sourceOf(folder.path("."))).title == "all.pvd"); // it knows the times of the files beside it
+    // Numbered characters, as other writers give them: grün ü €.vti
+    folder.write("gr\u00fcn \u00fc \u20ac.vti", vti({}, {{"type=\"UInt8\" Name=\"v\"", "100 2 3 4 5 6", ""}}));
+    const SeriesListing odd =
+        listSeries(sourceOf(folder.write("odd.pvd", collection("<DataSet file=\"gr&#252;n &#xfc; &#x20AC;.vti\"/>"))));
+    CHECK(loadVolume(odd.frames[0].source).value(0) == 'd');
 
     const auto refused = [&](const std::string& text) { return errorOf(sourceOf(folder.write("b.pvd", text))); };
     CHECK_THAT(refused(collection("")), Contains("names no files"));

@@ -276,8 +276,8 @@ void AdaptController::follow(const Scene& before, const Scene& after) {
 void AdaptController::look() {
     if (!isWanted()) return;
     if (m_job.isRunning()) return; // its end looks again
-    if (m_bench.opening().isBusy()) return m_timer.start();
     // What the hand holds is not committed: no frame needs it yet.
+    if (m_bench.opening().isBusy() || m_bench.store().isPreviewing()) return m_timer.start();
     m_smoothing = 0;
     m_job.start(m_bench.store().committed(), tr("the frames"));
 }

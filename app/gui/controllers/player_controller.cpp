@@ -423,6 +423,13 @@ void PlayerController::follow(const Scene& before, const Scene& after) {
         Q_EMIT surveyed();
         m_bench.actions().refresh();
     }
+    // Another mapping may do without the frame of another variable that could not be read.
+    const bool others = !before.session.hsb.isSame(after.session.hsb) ||
+                        !before.session.variables.isSame(after.session.variables) ||
+                        !before.session.ground.isSame(after.session.ground);
+    if (others && after.series)
+        std::erase_if(m_broken,
+                      [&](const auto& broken) { return after.series->summary(broken.first).problem.empty(); });
     // In a later turn: what has changed is being told to others.
     QMetaObject::invokeMethod(this, &PlayerController::next, Qt::QueuedConnection);
 }

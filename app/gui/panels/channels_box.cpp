@@ -23,7 +23,7 @@ namespace pellucid::gui {
 namespace {
 
 constexpr double kLeastScale = 0.1, kMostScale = 1000; ///< of sliders
-constexpr int kScaleSteps = 400, kMostFrames = 999;
+constexpr int kScaleSteps = 400, kMostFrames = 2048;
 /// Voxels of which colours are made while the hand moves: some 40 ms.
 constexpr std::size_t kFastVoxels = std::size_t{4} << 20;
 constexpr Channel kChannels[] = {Channel::Opacity, Channel::Saturation, Channel::Brightness, Channel::Hue};

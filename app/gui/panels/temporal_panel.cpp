@@ -18,6 +18,7 @@
 #include "panel.h"
 #include "plot_view.h"
 #include "report/svg_plot.h"
+#include "session/scene_data.h"
 #include "tf/tf_range.h"
 #include "theme.h"
 #include "workbench.h"
@@ -159,10 +160,10 @@ TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
     known.camera = scene.camera;
     known.clipping = *session.clipping;
     known.hsb = *session.hsb;
+    known.variables = session.variables;
+    known.ground = *session.ground;
     known.display = *session.display;
     known.window = scene.volume->range();
-    Session there = session;
-    there.frame = frame;
     FeatureGoals goals = *session.goals;
     if (!session.targetKeys->empty())
         for (const auto& [id, target] : targetsBetween(*session.targetKeys, frame))
@@ -179,7 +180,8 @@ TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
 
 bool TemporalPanel::isCurrent(const Known& known, const Known& wanted) {
     return known.measure == wanted.measure && known.camera == wanted.camera && known.clipping == wanted.clipping &&
-           known.hsb == wanted.hsb && known.display == wanted.display && known.window == wanted.window &&
+           known.hsb == wanted.hsb && (!known.hsb.on || sameData(*known.variables, *wanted.variables)) &&
+           known.ground == wanted.ground && known.display == wanted.display && known.window == wanted.window &&
            known.targets == wanted.targets && same(known.tf, wanted.tf) && same(known.before, wanted.before) &&
            same(known.fixedTf, wanted.fixedTf) && same(known.fixedBefore, wanted.fixedBefore);
 }

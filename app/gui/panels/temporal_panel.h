@@ -49,6 +49,8 @@ private:
         Camera camera;
         Clipping clipping;
         HsbMapping hsb;
+        Part<std::vector<Variable>> variables;
+        GroundView ground;
         DisplaySettings display;
         ValueRange window;
         std::vector<double> targets;
@@ -77,7 +79,7 @@ private:
     QToolButton *m_measure, *m_export;
     QProgressBar* m_progress;
     std::map<int, Known> m_known;
-    bool m_asked = false; ///< frames that are not known are measured
+    bool m_asked = false;  ///< frames that are not known are measured
     Workspace m_workspace; // used in m_job alone
     Lane m_lane;
     Job<Task, Known> m_job; // last: it ends before the rest goes

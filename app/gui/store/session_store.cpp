@@ -102,6 +102,10 @@ Scene SessionStore::atPresentFrame(Scene scene) const {
     if (!session.targetKeys->empty()) session.goals.set(goalsAt(session, session.frame));
     // Data that are there are seen through another window at once.
     Scene basis = m_scene;
+    if (scene.ground) { // kept with the step
+        basis.session.ground = scene.session.ground;
+        basis.ground = scene.ground;
+    }
     basis.session.goals = session.goals;
     basis.session.targetKeys = session.targetKeys;
     Scene next = resolve(std::move(session), basis);
@@ -116,6 +120,8 @@ Scene SessionStore::movedTo(const Scene& shown, const Scene& from) {
     Scene basis = shown;
     basis.session.goals = session.goals; // so that following the target keys takes none of them for an edit
     basis.session.targetKeys = session.targetKeys;
+    basis.session.ground = from.session.ground; // one ground lies under all frames
+    basis.ground = from.ground;
     return resolve(std::move(session), basis);
 }
 
@@ -125,10 +131,7 @@ bool SessionStore::isShownBy(const Scene& shown) const {
         Session session = scene.session;
         session.frame = shown.session.frame;
         return !needsData(session, shown) && session.hsb == shown.session.hsb &&
-               std::equal(session.variables->begin(), session.variables->end(), shown.session.variables->begin(),
-                          shown.session.variables->end(), [](const Variable& a, const Variable& b) {
-                              return a.name == b.name && sameOrigin(a, b) && a.window == b.window;
-                          });
+               sameData(*session.variables, *shown.session.variables);
     };
     return fits(m_scene) && (!m_committed || fits(*m_committed));
 }
@@ -257,16 +260,18 @@ QString SessionStore::redoText() const { return canRedo() ? m_steps[m_index].tex
 void SessionStore::undo() {
     if (isPreviewing()) return cancel(); // a drag under way is what is undone
     if (m_index == 0) return;
+    Scene before = atPresentFrame(m_steps[m_index - 1].before); // may throw: then nothing has happened
     --m_index;
-    show(atPresentFrame(m_steps[m_index].before));
+    show(std::move(before));
     Q_EMIT historyChanged();
 }
 
 void SessionStore::redo() {
     if (isPreviewing()) cancel();
     if (m_index >= m_steps.size()) return;
+    Scene after = atPresentFrame(m_steps[m_index].after);
     ++m_index;
-    show(atPresentFrame(m_steps[m_index - 1].after));
+    show(std::move(after));
     Q_EMIT historyChanged();
 }
 

@@ -390,6 +390,8 @@ public:
         for (const CollectionEntry& entry : entries)
             if (entry.time) contents.times.push_back(*entry.time);
         if (contents.times.size() != entries.size()) contents.times.clear();
+        contents.stepFiles.clear();
+        for (const CollectionEntry& entry : entries) contents.stepFiles.push_back(entry.path);
         return contents;
     }
     Volume read(const VolumeSource& source, const JobControl& job) const override {

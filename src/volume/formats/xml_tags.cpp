@@ -17,6 +17,22 @@ constexpr std::size_t kMostTagBytes = 1u << 16;
 bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
 /// &amp; and the like; what is no entity stays as it is.
+/// UTF-8 of "#252" or "#xfc"; empty where that is no character.
+std::string ofNumber(const std::string& entity) {
+    if (entity.size() < 2 || entity[0] != '#') return {};
+    const bool hex = entity[1] == 'x' || entity[1] == 'X';
+    unsigned code = 0;
+    const char *first = entity.data() + (hex ? 2 : 1), *last = entity.data() + entity.size();
+    const auto [end, error] = std::from_chars(first, last, code, hex ? 16 : 10);
+    if (error != std::errc() || end != last || code == 0 || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
+        return {};
+    const auto tail = [&](int shift) { return static_cast<char>(0x80 | (code >> shift & 0x3f)); };
+    if (code < 0x80) return {static_cast<char>(code)};
+    if (code < 0x800) return {static_cast<char>(0xc0 | code >> 6), tail(0)};
+    if (code < 0x10000) return {static_cast<char>(0xe0 | code >> 12), tail(6), tail(0)};
+    return {static_cast<char>(0xf0 | code >> 18), tail(12), tail(6), tail(0)};
+}
+
 std::string withoutEntities(const std::string& text) {
     static const std::map<std::string, char> kNamed{
         {"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
@@ -29,11 +45,8 @@ std::string withoutEntities(const std::string& text) {
             i = end;
             continue;
         }
-        int code = 0; // of a plain character
-        if (entity.size() > 1 && entity[0] == '#' &&
-            std::from_chars(entity.data() + 1, entity.data() + entity.size(), code).ec == std::errc() && code > 31 &&
-            code < 127) {
-            plain += static_cast<char>(code);
+        if (const std::string character = ofNumber(entity); !character.empty()) {
+            plain += character;
             i = end;
             continue;
         }
