@@ -92,7 +92,7 @@ void requireMovieWriter(const std::string& path, const std::string& option) {
         throw UsageError("'" + path + "' does not end in .mp4", option, "give a name such as film.mp4");
     if (findProgram().empty())
         throw Error("ffmpeg is not installed", option,
-                    "install it, or leave the option out: the pictures of all frames are written anyway");
+                    "install it, or leave the option out: the pictures of all frames are written without it, too");
 }
 
 void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond, const std::string& path,

@@ -122,6 +122,7 @@ private:
     void plan(ReadAhead& ahead);
     std::optional<Frame> next(int number);
     void finish(std::vector<Frame>& batch);
+    void tellMissed();
     TemporalCurves curves() const;
     std::string text(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
     Json json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
@@ -343,6 +344,30 @@ TemporalCurves Sequence::curves() const {
     return curves;
 }
 
+/// Where targets were not reached, and why where that can be seen.
+void Sequence::tellMissed() {
+    if (settings().mode != Mode::Optimize || std::isinf(settings().usedCoherence())) return;
+    const double tolerance = m_scene.session.optimize->tolerance;
+    int missed = 0;
+    std::vector<int> unseen(m_scene.tf.features.size(), 0);
+    double worst = 0;
+    for (const FrameFigures& f : m_figures) {
+        if (!f.problem.empty() || f.objective < 2 * tolerance) continue; // coherence may stray for a moment
+        ++missed;
+        worst = std::max(worst, f.objective);
+        for (std::size_t i = 0; i < unseen.size() && i < f.vws.size(); ++i)
+            unseen[i] += f.targets[i] > 0 && f.vws[i] < 1e-6 ? 1 : 0;
+    }
+    if (missed == 0) return;
+    m_notices.push_back(std::to_string(missed) + " of " + std::to_string(m_frames.size()) +
+                        " frames are far from the targets (distance up to " + plainText(worst) + ")");
+    for (std::size_t i = 0; i < unseen.size(); ++i)
+        if (unseen[i] > 0)
+            m_notices.push_back("nothing of '" + m_scene.tf.features[i].name + "' is seen in " +
+                                std::to_string(unseen[i]) +
+                                " of them: choose a range (--range) or features that all frames have");
+}
+
 std::string coherenceText(double coherence) { return std::isinf(coherence) ? "infinite" : plainText(coherence); }
 
 std::string Sequence::text(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const {
@@ -358,8 +383,8 @@ std::string Sequence::text(const SequenceFigures& dynamic, const std::optional<S
         text += ", " + fixedText(dynamic.moves, 2) + " moves and " + secondsText(dynamic.seconds) + " a frame";
     text += "\n";
     if (asStatic) text += "static: RMS of F " + fixedText(asStatic->rms, 4) + "\n";
-    return text + "wrote " + std::to_string(m_frames.size()) + " frames and curves.csv, curves.svg, curves.png to " +
-           m_o.out + (m_o.movie ? ", and " + *m_o.movie : "") + "\n";
+    return text + "wrote " + std::to_string(m_frames.size()) + (m_frames.size() == 1 ? " frame" : " frames") +
+           " and curves.csv, curves.svg, curves.png to " + m_o.out + (m_o.movie ? ", and " + *m_o.movie : "") + "\n";
 }
 
 Json jsonFromFigures(const SequenceFigures& f) {
@@ -435,6 +460,7 @@ Answer Sequence::run(const Opened& opened) {
     const SequenceFigures dynamic = summaryOf(m_figures);
     std::optional<SequenceFigures> asStatic;
     if (m_o.compare) asStatic = summaryOf(m_static);
+    tellMissed();
     Answer answer{text(dynamic, asStatic), json(dynamic, asStatic), opened.notices(), {}};
     answer.notices.insert(answer.notices.end(), m_notices.begin(), m_notices.end());
     answer.json["seconds"] = {{"key", m_keySeconds}, {"total", total.seconds()}};
@@ -463,7 +489,7 @@ Answer run(const Options& o, Progress& progress) {
         throw UsageError("--target is required", "pellucid-cli sequence", "see pellucid-cli sequence --help");
     Opened opened;
     SceneInputs inputs = inputsOf(o.scene, {toMeasureAndDrawField(), true}, opened.sessionNotices);
-    if (o.from) inputs.frame = *o.from;
+    if (o.from || !inputs.frame) inputs.frame = o.from.value_or(0); // wherever the session was left
     opened.scene = openScene(inputs, progress.phase("loading"));
     o.scene.tf.applyTo(opened.scene);
     o.scene.picture.applyTo(opened.scene);
@@ -506,7 +532,7 @@ Command addSequence(CLI::App& program) {
         [o](const std::string& text, const std::string& option) {
             o->from = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
         },
-        "begin with this frame of the series, from 0 (default: the session's, else 0)");
+        "begin with this frame of the series (default 0)");
     app->add_flag("--compare", o->compare, "measure and draw every frame under the first one's transfer function, too");
     addValue(
         *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },

@@ -107,7 +107,18 @@ int main(int argc, char** argv) {
         return complain("no display, DISPLAY and WAYLAND_DISPLAY are not set, use pellucid-cli, or xvfb-run pellucid",
                         kFailed);
 
-    QApplication application(argc, argv);
+    // Qt takes "--session ID" for itself, but not "--session=FILE".
+    std::vector<std::string> words;
+    for (int i = 0; i < argc; ++i) {
+        words.emplace_back(argv[i]);
+        if ((words.back() == "--session" || words.back() == "-session") && i + 1 < argc)
+            words.back() = std::string("--session=") + argv[++i];
+    }
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    int count = static_cast<int>(arguments.size());
+    arguments.push_back(nullptr);
+    QApplication application(count, arguments.data());
     InputHabits habits;
     application.installEventFilter(&habits);
     if (!parser.parse(QApplication::arguments()))

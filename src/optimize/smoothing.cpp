@@ -17,6 +17,7 @@ constexpr double kSafety = 0.99;       ///< of the wanted distance that is aimed
 constexpr int kRounds = 40;            ///< of reweighting
 constexpr double kSharper = 0.75;      ///< from round to round, of the jump that counts as none
 constexpr double kSmallStep = 0.05;    ///< of ln τ
+constexpr double kTrace = 3e-3;        ///< likewise, of what is left of a jump
 constexpr double kNoJump = 1e-3;       ///< of the usual jump: what counts as none in the end
 constexpr double kHeld = 1e8;          ///< of the largest entry: what holds an unknown at its bound
 constexpr double kDensityWeight = 1e3;
@@ -81,7 +82,7 @@ public:
         if (m_counted == 0 || (m_isStill && distance(none) <= m_wanted)) return opacities(none);
         double lo = std::log10(kLeastWeight), hi = std::log10(kMostWeight); // distance falls with weight
         Numbers best = minimum(kLeastWeight);
-        if (distance(best) <= m_wanted) return opacities(best);
+        if (distance(best) <= m_wanted) return opacities(withoutTraces(best));
         best = minimum(kMostWeight);
         for (int i = 0; i < kBisections && distance(best) <= m_wanted; ++i) {
             const double middle = (lo + hi) / 2;
@@ -93,7 +94,7 @@ public:
                 lo = middle;
             }
         }
-        return opacities(best);
+        return opacities(withoutTraces(best));
     }
 
 private:
@@ -235,6 +236,21 @@ private:
             b[u] += kHeld * most * (held[u] > 0 ? m_highest[u] : m_lowest[u]);
         }
         return a.solve(std::move(b));
+    }
+
+    /// What is left of a jump that there is no reason for is none.
+    Numbers withoutTraces(Numbers d) const {
+        Numbers y = m_depth;
+        for (std::size_t u = 0; u < d.size(); ++u) y[u] += d[u];
+        for (std::size_t t = 1; t < m_frames.size(); ++t) {
+            if (jump(y, t) > kTrace * m_usualJump) continue;
+            for (std::size_t f = 0; f < m_features; ++f) {
+                const std::size_t u = at(t, f);
+                d[u] = std::clamp(y[at(t - 1, f)] - m_depth[u], m_lowest[u], m_highest[u]);
+                y[u] = m_depth[u] + d[u];
+            }
+        }
+        return d;
     }
 
     std::vector<std::vector<double>> opacities(const Numbers& d) const {

@@ -240,6 +240,10 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (!tf && session.tf() == nullptr && inputs.start == SceneInputs::Start::Tents) tf = tents(3);
     if (tf) session.setTf(*tf);
     const bool windowIsOpen = !session.variable().window;
+    // Who asks for what the data propose gets it also where colours come from several variables.
+    const Part<HsbMapping> mapping = session.hsb;
+    const bool proposesFirst = inputs.tf == kAutomaticTf && mapping->on;
+    if (proposesFirst) session.hsb.edit([](HsbMapping& h) { h.on = false; });
     Scene scene = resolve(std::move(session), {}, inputs.then, job);
     if (inputs.frame && *inputs.frame != scene.session.frame && *inputs.frame < scene.series->size())
         scene.series->load(*inputs.frame, job); // tells why not
@@ -257,6 +261,13 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
     if (inputs.start == SceneInputs::Start::Tuned && scene.proposal) {
         scene.session.setTf(tunedTf(scene, job));
         resolveTf(scene);
+    }
+    if (proposesFirst) {
+        Session mapped = scene.session;
+        mapped.hsb = mapping;
+        const auto proposal = scene.proposal;
+        scene = resolve(std::move(mapped), scene, inputs.then, job);
+        scene.proposal = proposal;
     }
     scene.camera = cameraOf(inputs, scene.volume->geometry());
     if (inputs.camera || inputs.view || inputs.namedView || inputs.projection) scene.session.camera = scene.camera;

@@ -184,7 +184,7 @@ void resolveColors(Scene& scene, const Scene& basis, SeriesFinder& finder, const
                            const std::shared_ptr<const Volume>& v, std::optional<double>& now) {
         if (set || !v) return set.value_or(1);
         now = isKnown && before ? before : automaticScale(*v);
-        return *now;
+        return now.value_or(1); // nothing there yet, as with the first frame's volatility: found later
     };
     const HsbMapping::Found& was = hsb.found;
     scene.hsbA = input.a = scale(hsb.a, was.saturation == hsb.saturation, was.a, input.saturation, found.a);

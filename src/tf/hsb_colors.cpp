@@ -67,7 +67,7 @@ VoxelColors hsbColors(const HsbInput& input, const JobControl& job) {
     return colors;
 }
 
-double automaticScale(const Volume& channel) {
+std::optional<double> automaticScale(const Volume& channel) {
     constexpr std::size_t kBins = 4096;
     std::array<std::size_t, kBins + 1> counts{};
     std::size_t above = 0;
@@ -77,7 +77,7 @@ double automaticScale(const Volume& channel) {
         ++counts[static_cast<std::size_t>(s * kBins)];
         ++above;
     }
-    if (above == 0) return 1;
+    if (above == 0) return {};
     std::size_t below = 0, bin = 0;
     for (; bin < kBins && below + counts[bin] < above - above / 20; ++bin) below += counts[bin];
     return static_cast<double>(kBins) / static_cast<double>(std::min(bin + 1, kBins));

@@ -33,7 +33,7 @@ TransferFunction opacityRamp(double top);
 /// 1.5 on average.
 double rampOpacity(const Volume& volume);
 
-/// A sensible scale for a channel: the 95th percentile of the values above 0 becomes 1. 1 where none is.
-double automaticScale(const Volume& channel);
+/// A sensible scale for a channel: the 95th percentile of the values above 0 becomes 1. Empty where none is.
+std::optional<double> automaticScale(const Volume& channel);
 
 } // namespace pellucid

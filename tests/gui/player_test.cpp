@@ -585,6 +585,7 @@ TEST_CASE("pictures of a series for the guide", "[.pictures]") {
     w.optimizing().start();
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     player.adapting().setMode(AdaptSettings::Mode::Optimize);
+    player.adapting().setCoherence(0.3);
     w.settle();
     player.goTo(20);
     w.settle();

@@ -113,6 +113,7 @@ TEST_CASE("a session is opened from a shell", "[program]") {
     INFO(run.err.toStdString());
     CHECK(run.status == 0);
     CHECK(QFile::exists(picture));
+    CHECK(start({"--session", folder.filePath("none.pellucid.json"), "--screenshot", picture}).status == 1);
     std::ofstream(session.toStdString()) << R"({"format":"pellucid-session","version":99,"variables":[]})";
     const Outcome newer = start({session, "--screenshot", picture});
     CHECK(newer.status == 1);

@@ -194,6 +194,16 @@ TEST_CASE("automatic scales are those of the frame where the mapping began, also
     }
     CHECK(opened.colors->rgba == moved.colors->rgba);
 
+    // Where a variable is 0 everywhere, as volatility is in the first frame, nothing is found yet.
+    SceneInputs still = hurricane(0, 5);
+    still.session.hsb.edit([](HsbMapping& h) { h.a.reset(); });
+    const Scene first = openScene(still);
+    CHECK(first.hsbA == 1);
+    CHECK_FALSE(first.session.hsb->found.a);
+    Session next = first.session;
+    next.frame = 20;
+    CHECK(resolve(next, first).hsbA == began.hsbA);
+
     // What is set by hand, and what is of another variable, is not found there.
     Session other = moved.session;
     other.hsb.edit([](HsbMapping& h) {

@@ -351,8 +351,7 @@ QString curveTitle(const Session& session) {
 
 QString featuresTitle(const Session& session) {
     if (session.isEmpty() || (!session.hsb->on && session.variables->size() < 2)) return QObject::tr("Features");
-    const QString of = QObject::tr("Features of %1").arg(QString::fromStdString(session.variable().name));
-    return session.hsb->on ? QObject::tr("%1, measured in the colours of variables").arg(of) : of;
+    return QObject::tr("Features of %1").arg(QString::fromStdString(session.variable().name));
 }
 
 void followTitle(Workbench& bench, QWidget* dock, QString (*title)(const Session&)) {

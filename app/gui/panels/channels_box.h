@@ -66,7 +66,7 @@ private:
 
 /// In words, whose opacity the curve says and where colours come from: title of the editor of transfer functions.
 QString curveTitle(const Session& session);
-/// In words, whose features those of the list are, and by which colours they are measured.
+/// In words, whose features those of the list are.
 QString featuresTitle(const Session& session);
 /// Keeps the title of a dock so; a title takes no room from the picture, whatever it says.
 void followTitle(Workbench& bench, QWidget* dock, QString (*title)(const Session&));

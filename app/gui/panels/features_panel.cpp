@@ -38,9 +38,10 @@ namespace pellucid::gui {
 namespace {
 
 constexpr int kRowHeight = 26;
-constexpr int kSwatch = 26;  // width of the colour in the name's cell
-constexpr int kEye = 30;     // width of the eyes' column
-constexpr int kPadlock = 16; // width in the name's cell
+constexpr int kSwatch = 26;   // width of the colour in the name's cell
+constexpr int kEye = 30;      // width of the eyes' column
+constexpr int kOpacity = 104; // width of the opacities: a slider and four decimals
+constexpr int kPadlock = 16;  // width in the name's cell
 
 constexpr const char* kNoIndicator = "QToolButton::menu-indicator { image: none; }"; // the text has an arrow
 
@@ -184,6 +185,8 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Eye, QHeaderView::Fixed);
     m_table->setColumnWidth(FeaturesModel::Eye, kEye);
     m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Range, QHeaderView::ResizeToContents);
+    m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Opacity, QHeaderView::Fixed);
+    m_table->setColumnWidth(FeaturesModel::Opacity, kOpacity);
     m_table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
     m_table->horizontalHeader()->setHighlightSections(false);
     m_table->setShowGrid(false);
