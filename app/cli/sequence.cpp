@@ -127,11 +127,6 @@ private:
     std::string text(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
     Json json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
 
-    /// Whether all frames are looked at before one is drawn.
-    bool isPlanned() const {
-        return settings().mode == Mode::Optimize && settings().usedCoherence() > 0 &&
-               !std::isinf(settings().usedCoherence());
-    }
     const AdaptSettings& settings() const { return *m_scene.session.adapt; }
 
     const Options& m_o;
@@ -251,7 +246,7 @@ std::optional<Frame> Sequence::next(int number) {
     try {
         TransferFunction tf;
         const TfTrack& track = m_scene.session.variable().track;
-        if (settings().mode == Mode::Static || isPlanned()) {
+        if (settings().mode == Mode::Static || smooths(settings())) {
             tf = *m_scene.session.tfAt(number);
             if (const auto planned = m_planned.find(number); planned != m_planned.end()) frame.made = planned->second;
         } else if (track.keys.contains(number) || !m_chain) {
@@ -422,7 +417,7 @@ Answer Sequence::run(const Opened& opened) {
         throw FileError("the folder cannot be made: " + failure.message(), m_o.out, "give another one to --out");
     const TimeSeries& series = *m_scene.series;
     ReadAhead ahead(m_scene.series, windowOf(m_scene.session.variable(), *m_scene.series, {interruptToken(), {}}));
-    if (isPlanned()) plan(ahead);
+    if (smooths(settings())) plan(ahead); // all frames are looked at before one is drawn
     const JobControl job = m_progress.phase("frames");
     // Contexts of GL are not shared by threads; threads share a CPU well.
     const bool cpu = makeRenderer(m_scene.session.measure->engine, m_scene.volume)->name() == "cpu" &&

@@ -231,10 +231,6 @@ void visitFrames(const Session& session, const TimeSeries& series, const Visit& 
     }
 }
 
-bool smooths(const AdaptSettings& settings) {
-    return settings.mode == Mode::Optimize && settings.usedCoherence() > 0 && !std::isinf(settings.usedCoherence());
-}
-
 /// Frames from one key to the next.
 struct Stretch {
     SmoothTask task;
@@ -371,6 +367,10 @@ std::vector<double> opacitiesBetween(const std::vector<double>& from, const std:
 }
 
 } // namespace
+
+bool smooths(const AdaptSettings& settings) {
+    return settings.mode == Mode::Optimize && settings.usedCoherence() > 0 && !std::isinf(settings.usedCoherence());
+}
 
 std::string fingerprintOf(const Session& session, const TimeSeries& series, int frame,
                           const TransferFunction& previous) {

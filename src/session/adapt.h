@@ -41,6 +41,9 @@ struct AdaptProgress {
 };
 AdaptProgress adaptProgress(const Session& session, const TimeSeries& series);
 
+/// Whether frames are smoothed together: in the mode Optimize with a coherence between 0 and infinity.
+bool smooths(const AdaptSettings& settings);
+
 /// Frames from one key to the next, or to the end, whose transfer functions are to be smoothed together.
 struct SmoothTask {
     int key = 0;
@@ -48,8 +51,8 @@ struct SmoothTask {
     std::string basis;       ///< fingerprint of all these transfer functions, the next key's included
 };
 
-/// In the mode Optimize with a coherence between 0 and infinity: the first such frames that have all been made and are
-/// not smoothed, or from other transfer functions than the present ones. In the order of nextToAdapt(); reads nothing.
+/// Where smooths(): the first such frames that have all been made and are not smoothed, or from other transfer
+/// functions than the present ones. In the order of nextToAdapt(); reads nothing.
 std::optional<SmoothTask> nextToSmooth(const Session& session, const TimeSeries& series);
 
 /// The scene of another frame under a given transfer function; everything else is that of `basis`. Where `basis` is of
