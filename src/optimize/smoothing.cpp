@@ -16,11 +16,11 @@ constexpr double kReach = 1;           ///< of ln τ: models are not good for mo
 constexpr double kSafety = 0.99;       ///< of the wanted distance that is aimed at: models are not exact
 constexpr int kRounds = 40;            ///< of reweighting
 constexpr double kSharper = 0.75;      ///< from round to round, of the jump that counts as none
-constexpr double kSmallStep = 0.05;    ///< of ln τ
-constexpr double kTrace = 3e-3;        ///< likewise, of what is left of a jump
+constexpr double kSmallStep = 0.05;    ///< of ln τ: the usual jump is at least what that makes
 constexpr double kNoJump = 1e-3;       ///< of the usual jump: what counts as none in the end
+constexpr double kTrace = 3e-3;        ///< likewise: what is taken away then
 constexpr double kHeld = 1e8;          ///< of the largest entry: what holds an unknown at its bound
-constexpr double kDensityWeight = 1e3;
+constexpr double kDensityWeight = 1e3; ///< of the first frame's change of density, in ΔE², against jumps
 constexpr double kLeastWeight = 1e-3, kMostWeight = 1e9; ///< of F², against jumps
 constexpr int kBisections = 24;
 

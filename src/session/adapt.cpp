@@ -117,15 +117,6 @@ void addTf(Hash& hash, const TransferFunction& tf) {
     }
 }
 
-/// The goals of a frame: targets of the keys where there are some.
-FeatureGoals goalsOf(const Session& session, int frame) {
-    FeatureGoals goals = *session.goals;
-    if (session.targetKeys->empty() || frame == session.frame) return goals;
-    for (const auto& [id, target] : targetsBetween(*session.targetKeys, frame))
-        if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
-    return goals;
-}
-
 /// Fingerprints of one session: what its frames have in common is hashed once.
 class Fingerprints {
 public:
@@ -181,7 +172,7 @@ public:
             addSource(hash, m_series.listing().frames[static_cast<std::size_t>(m_series.nearest(key))].source);
         }
         if (m_session.adapt->mode == Mode::Optimize) {
-            const FeatureGoals goals = goalsOf(m_session, frame);
+            const FeatureGoals goals = frame == m_session.frame ? *m_session.goals : goalsAt(m_session, frame);
             for (const double t : targetsOf(previous, goals)) hash.add(t);
             for (const OpacityLimits& limit : limitsOf(previous, goals)) {
                 hash.add(limit.lowest);

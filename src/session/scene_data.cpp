@@ -115,6 +115,14 @@ std::string SeriesFinder::knownNames() const {
 
 // ---- targets
 
+FeatureGoals goalsAt(const Session& session, int frame) {
+    FeatureGoals goals = *session.goals;
+    if (session.targetKeys->empty()) return goals;
+    for (const auto& [id, target] : targetsBetween(*session.targetKeys, frame))
+        if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
+    return goals;
+}
+
 void followTargetKeys(Session& session, const Scene& basis) {
     if (session.targetKeys->empty()) return;
     if (basis.session.frame == session.frame && session.targetKeys.isSame(basis.session.targetKeys)) {
@@ -129,10 +137,7 @@ void followTargetKeys(Session& session, const Scene& basis) {
             session.targetKeys.edit([&](TargetKeys& keys) { keys[session.frame] = std::move(targets); });
         return;
     }
-    session.goals.edit([&](FeatureGoals& goals) {
-        for (const auto& [id, target] : targetsBetween(*session.targetKeys, session.frame))
-            if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
-    });
+    session.goals.set(goalsAt(session, session.frame));
 }
 
 // ---- colours

@@ -51,6 +51,9 @@ private:
 /// once. Throws as loadVolume() does.
 void openNewVariables(Scene& scene, const Scene& basis, const MemoryUse& then, const JobControl& job);
 
+/// The goals with the targets that the session's keys have at a frame; where there are no keys, as they are.
+FeatureGoals goalsAt(const Session& session, int frame);
+
 /// Targets of the present frame: from the keys where frame or keys are others than those of `basis`, else into them.
 void followTargetKeys(Session& session, const Scene& basis);
 

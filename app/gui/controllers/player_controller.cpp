@@ -6,6 +6,7 @@
 #include "controllers/adapt_controller.h"
 #include "controllers/open_controller.h"
 #include "render/memory_needs.h"
+#include "session/scene_data.h"
 #include "workbench.h"
 
 namespace pellucid::gui {
@@ -425,7 +426,7 @@ void PlayerController::follow(const Scene& before, const Scene& after) {
     }
     // Another mapping may do without the frame of another variable that could not be read.
     const bool others = !before.session.hsb.isSame(after.session.hsb) ||
-                        !before.session.variables.isSame(after.session.variables) ||
+                        !sameData(*before.session.variables, *after.session.variables) ||
                         !before.session.ground.isSame(after.session.ground);
     if (others && after.series)
         std::erase_if(m_broken,

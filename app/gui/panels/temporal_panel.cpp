@@ -164,17 +164,13 @@ TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
     known.ground = *session.ground;
     known.display = *session.display;
     known.window = scene.volume->range();
-    FeatureGoals goals = *session.goals;
-    if (!session.targetKeys->empty())
-        for (const auto& [id, target] : targetsBetween(*session.targetKeys, frame))
-            if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
     known.tf = session.tfAt(frame);
     known.fixedTf = track.at(frame);
     if (frame > 0) {
         known.before = session.tfAt(frame - 1);
         known.fixedBefore = track.at(frame - 1);
     }
-    if (known.tf) known.targets = targetsOf(*known.tf, goals);
+    if (known.tf) known.targets = targetsOf(*known.tf, goalsAt(session, frame));
     return task;
 }
 

@@ -13,21 +13,13 @@ constexpr std::size_t kMostSteps = 500;
 constexpr std::size_t kMostCameras = 200;
 constexpr std::size_t kMostData = 3; // volumes that the history keeps in memory, the present one among them
 
-// The goals with the targets that the session's keys, of which there are some, have at a frame.
-FeatureGoals goalsAt(const Session& session, int frame) {
-    FeatureGoals goals = *session.goals;
-    for (const auto& [id, target] : targetsBetween(*session.targetKeys, frame))
-        if (const auto goal = goals.find(id); goal != goals.end()) goal->second.target = target;
-    return goals;
-}
-
 // The session without where and when one looks, which has a history of its own or none, and without what is made for
 // frames by itself.
 Session withoutGaze(Session session) {
     session.camera.reset();
     if (session.slices->crosshair) session.slices.edit([](SliceViews& s) { s.crosshair.reset(); });
     session.frame = 0;
-    if (!session.targetKeys->empty()) session.goals.set(goalsAt(session, 0));
+    session.goals.set(goalsAt(session, 0));
     if (!session.isEmpty() && !session.variable().track.adapted.empty())
         session.variables.edit([](std::vector<Variable>& all) { all.front().track.adapted.clear(); });
     return session;
@@ -99,7 +91,7 @@ Scene SessionStore::atPresentFrame(Scene scene) const {
     if (!isSeries(scene) || scene.series != m_scene.series) return scene; // with other data come its frames
     Session session = scene.session;
     session.frame = m_scene.session.frame;
-    if (!session.targetKeys->empty()) session.goals.set(goalsAt(session, session.frame));
+    session.goals.set(goalsAt(session, session.frame));
     // Data that are there are seen through another window at once.
     Scene basis = m_scene;
     if (scene.ground) { // kept with the step
@@ -116,7 +108,7 @@ Scene SessionStore::atPresentFrame(Scene scene) const {
 Scene SessionStore::movedTo(const Scene& shown, const Scene& from) {
     Session session = from.session;
     session.frame = shown.session.frame;
-    if (!session.targetKeys->empty()) session.goals.set(goalsAt(session, session.frame));
+    session.goals.set(goalsAt(session, session.frame));
     Scene basis = shown;
     basis.session.goals = session.goals; // so that following the target keys takes none of them for an edit
     basis.session.targetKeys = session.targetKeys;
