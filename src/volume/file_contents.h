@@ -28,4 +28,8 @@ FileContents contentsOf(const VolumeSource& source, const JobControl& job = {});
 /// Whether a reader takes files of this name, whatever is in them.
 bool hasVolumeSuffix(const std::string& path);
 
+/// Whether `path` is a file of which only its user can tell how its bytes lie: neither name nor content says what it
+/// is.
+bool mayBeHeaderless(const std::string& path);
+
 } // namespace pellucid

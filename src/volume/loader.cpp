@@ -41,6 +41,7 @@ std::string knownSuffixes() {
 /// Throws FileError where there is none for this suffix.
 const VolumeReader& readerOf(const std::string& path) {
     if (const VolumeReader* reader = readerFor(path)) return *reader;
+    if (const auto unread = unreadFormat(path)) throw *unread;
     const bool named = lowerCase(path).ends_with(".raw");
     throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format", path,
                     named ? "say how its bytes lie" : "give one of " + knownSuffixes(), Remedy::GiveRawLayout);
@@ -167,6 +168,11 @@ FileContents contentsOf(const VolumeSource& source, const JobControl& job) {
 }
 
 bool hasVolumeSuffix(const std::string& path) { return readerFor(path) != nullptr; }
+
+bool mayBeHeaderless(const std::string& path) {
+    std::error_code ec;
+    return std::filesystem::is_regular_file(path, ec) && !hasVolumeSuffix(path) && !unreadFormat(path);
+}
 
 const std::vector<std::string>& volumeFilePatterns() {
     static const std::vector<std::string> kPatterns = [] {

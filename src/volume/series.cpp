@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "volume/file_contents.h"
 #include "volume/file_names.h"
+#include "volume/formats/file_check.h"
 #include "volume/procedural.h"
 
 namespace pellucid {
@@ -149,9 +150,12 @@ FileList listFiles(const VolumeSource& source) {
     } else {
         list.paths = pattern ? filesNumbered(*pattern) : filesMatching(path);
     }
-    const bool found = !list.paths.empty();
+    const std::vector<std::string> all = list.paths;
+    const bool found = !all.empty();
     if (!pattern) list.paths = ofOneSuffix(std::move(list.paths), source.raw.has_value(), list.notices);
     if (list.paths.empty()) {
+        for (const std::string& file : all)
+            if (const auto unread = unreadFormat(file)) throw *unread;
         if (isFolder)
             throw FileError(found ? "there is no file of a known volume format in this folder"
                                   : "there is no file in this folder",

@@ -187,7 +187,10 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
         finish(volume);
         return volume;
     } catch (const Error& error) {
-        noteProblem(frame, error.problem());
+        // Frames are spoken of by their own name: where another file is to blame, by that.
+        const bool own =
+            error.where().empty() || error.where() == m_listing.frames[static_cast<std::size_t>(frame)].source.path;
+        noteProblem(frame, own ? error.problem() : error.problem() + ", " + error.where());
         finish(nullptr);
         throw;
     } catch (...) {

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -118,10 +119,8 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
     : m_geometry(geometry), m_missing(missing) {
     const Int3 d = geometry.dims;
     if (d.x < 1 || d.y < 1 || d.z < 1) throw Error("a volume needs at least one voxel along each axis", "", "");
-    for (int a = 0; a < 3; ++a)
-        if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
-            throw Error("spacing must be positive and finite, origin finite", "", "correct the header",
-                        Remedy::GiveSpacing);
+    if (const std::string wrong = geometryProblem(geometry.spacing, geometry.origin); !wrong.empty())
+        throw Error(wrong, "", "correct the header", Remedy::GiveSpacing);
     constexpr double kFlat = 1e-6; // of the volume that three axes of length 1 span
     bool unit = true;
     for (int a = 0; a < 3; ++a) unit = unit && std::abs(glm::length(geometry.directions[a]) - 1) < 1e-6;

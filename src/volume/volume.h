@@ -99,7 +99,7 @@ struct SharedCodes {
 /// "Volume and intensity").
 class Volume {
 public:
-    /// Throws Error where sizes and samples disagree, a spacing is not positive and finite, or the axes lie in a plane.
+    /// Throws Error where sizes and samples disagree, geometryProblem() finds one, or the axes lie in a plane.
     Volume(const Geometry& geometry, Samples samples, std::optional<double> missing = {});
 
     const Geometry& geometry() const noexcept { return m_geometry; }

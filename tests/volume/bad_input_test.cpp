@@ -9,8 +9,10 @@
 #include <catch2/catch.hpp>
 
 #include "support/temp_folder.h"
+#include "volume/file_contents.h"
 #include "volume/formats/file_check.h"
 #include "volume/loader.h"
+#include "volume/series.h"
 #include "volume_files.h"
 
 using namespace pellucid;
@@ -107,6 +109,58 @@ TEST_CASE("a file of another type under a volume's name is told what it is", "[b
     CHECK_THAT(errorOf(folder.write("m.nrrd", mha("DimSize = 1 1 1", "x"))), Contains("a MetaImage header"));
 }
 
+TEST_CASE("files of formats that cannot be read yet are told what they are", "[bad-input]") {
+    const TempFolder folder;
+    // DICOM with its preamble; without, by elements of a type that is written out (VR) or is not; TIFF in both byte
+    // orders, and those of more than 4 GB.
+    const std::string preamble = std::string(128, '\0') + "DICM\2\0\0\0UL\4\0\xca\0\0\0"s;
+    const std::string written = "\x08\0\x05\0CS\x0a\0ISO_IR 100\x08\0\x08\0CS\x04\0ABCD\x08\0\x16\0UI\x02\0"
+                                "12"s;
+    const std::string unwritten = "\x08\0\x05\0\x0a\0\0\0ISO_IR 100\x08\0\x08\0\4\0\0\0ABCD\x08\0\x16\0\2\0\0\0"
+                                  "12"s;
+    const std::string rest(400, '\7');
+    const std::pair<std::string, const char*> files[] = {
+        {preamble, "this is a DICOM file"},          {written, "this is a DICOM file"},
+        {unwritten, "this is a DICOM file"},         {"II*\0\x8\0\0\0"s, "this is a TIFF image"},
+        {"MM\0*\0\0\0\x8"s, "this is a TIFF image"}, {"II+\0\x8\0\0\0"s, "this is a TIFF image"},
+        {"MM\0+\0\x8\0\0"s, "this is a TIFF image"}};
+    for (const auto& [begin, what] : files)
+        for (const char* name : {"slice", "a.dcm", "a.tif", "a.raw", "a.nrrd", "a.mhd", "a.nii", "a.nii.gz", "a.vti"}) {
+            CAPTURE(what, name);
+            VolumeSource source;
+            source.path = folder.write(name, begin + rest);
+            CHECK_THAT(errorOf(source), Contains(what) && Contains("cannot read yet") && Contains("convert"));
+            CHECK_FALSE(mayBeHeaderless(source.path));
+            try {
+                loadVolume(source);
+            } catch (const FileError& e) {
+                CHECK(e.remedy() == Remedy::AsSaid); // not "say how its bytes lie"
+            }
+            // Those who know how they lie may still say so.
+            source.raw = parseRawLayout("10,10,1,u8");
+            source.raw->skipBytes = begin.size() + rest.size() - 100;
+            CHECK(loadVolume(source).value(0) == 7);
+        }
+    // A folder of them, and a pattern: not "no file of a known format".
+    std::filesystem::create_directory(folder.path("scan"));
+    for (const char* name : {"scan/1-001.dcm", "scan/1-002.dcm"}) folder.write(name, preamble + rest);
+    folder.write("scan/README", "Slices of a head.");
+    for (const std::string& path : {folder.path("scan"), folder.path("scan/1-*")}) {
+        VolumeSource source;
+        source.path = path;
+        CHECK_THROWS_WITH(listSeries(source), Contains("this is a DICOM file") && Contains("1-001.dcm"));
+    }
+    // Numbers that happen to begin like these are no such file: an element's length leads nowhere.
+    for (const std::string& begin : {"\x08\0\x05\0\x0a\0\0\0"s, "\x08\0\x05\0CS\x0a\0"s, "II"s, "MM\0\0"s}) {
+        const std::string path = folder.write("numbers", begin + rest);
+        CHECK(mayBeHeaderless(path));
+        CHECK_THAT(errorOf(path), Contains("suffix"));
+    }
+    CHECK_FALSE(mayBeHeaderless(folder.path("none")));
+    CHECK_FALSE(mayBeHeaderless(folder.path("scan")));
+    CHECK_FALSE(mayBeHeaderless(folder.write("b.nrrd", "abc")));
+}
+
 TEST_CASE("a header that claims more than its file holds is refused", "[bad-input]") {
     // 10000³ = 10¹² voxels; the product in the last lines passes 2⁶³ and, unchecked, would come out as 0.
     const TempFolder folder;
@@ -197,6 +251,50 @@ TEST_CASE("a spacing that is zero, negative, infinite or no number is refused", 
     }
 }
 
+TEST_CASE("a spacing that is too small or too large to compute with is refused with that reason", "[bad-input]") {
+    // Lengths of 1e-15 pass for zero somewhere, and products of lengths of 1e30 are no floats.
+    const TempFolder folder;
+    const std::string vti =
+        "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\" Spacing=\"1 SPACING 1\">"
+        "<Piece Extent=\"0 1 0 1 0 1\"><PointData><DataArray type=\"UInt8\" format=\"ascii\">"
+        "1 2 3 4 5 6 7 8</DataArray></PointData></Piece></ImageData></VTKFile>";
+    for (const auto& [value, what] : {std::pair{"1e-15", "too small"},
+                                      {"9e-13", "too small"},
+                                      {"1e-40", "too small"},
+                                      {"1.1e24", "too large"},
+                                      {"1e30", "too large"},
+                                      {"1e200", "too large"},
+                                      {"1e-12", ""},
+                                      {"1e24", ""}}) {
+        CAPTURE(value);
+        const std::string triple = std::string("1 ") + value + " 1";
+        std::string image = vti;
+        image.replace(image.find("SPACING"), 7, value);
+        std::vector<VolumeSource> sources(4);
+        sources[0].path = folder.write("a.nrrd", nrrd("sizes: 2 2 2\nspacings: " + triple, "12345678"));
+        sources[1].path = folder.write("a.mha", mha("DimSize = 2 2 2\nElementSpacing = " + triple, "12345678"));
+        sources[2].path = folder.write("a.vti", image);
+        sources[3].path = folder.write("a.raw", "12345678");
+        sources[3].raw = parseRawLayout("2,2,2,u8");
+        sources[3].raw->spacing.y = std::stod(value);
+        for (const VolumeSource& source : sources) {
+            CAPTURE(source.path);
+            if (*what == '\0')
+                CHECK(loadVolume(source).geometry().spacing.y == std::stod(value));
+            else
+                CHECK_THROWS_WITH(loadVolume(source), Contains("spacing of axis 1") && Contains(what));
+        }
+    }
+    Nifti nifti;
+    nifti.pixdim[2] = 1e-20f;
+    CHECK_THAT(errorOf(folder.write("a.nii", nifti.header() + std::string(24, 'x'))),
+               Contains("spacing of axis 1 is 1e-20, too small"));
+    nifti.pixdim[2] = 1e22f;
+    nifti.units = 1; // metres, 1000 of ours
+    CHECK_THAT(errorOf(folder.write("b.nii", nifti.header() + std::string(24, 'x'))),
+               Contains("spacing of axis 1 is 1e+25, too large"));
+}
+
 TEST_CASE("truncated data is refused in every format and encoding", "[bad-input]") {
     const TempFolder folder;
     std::vector<std::uint16_t> values(24 * 100);
@@ -261,7 +359,12 @@ TEST_CASE("a data file beside the header must exist and be long enough", "[bad-i
     };
     for (const auto& make :
          {std::function<std::string(std::string)>(mhd), std::function<std::string(std::string)>(nhdr)}) {
-        CHECK_THAT(errorOf(make("none.raw")), Contains("no such file") && Contains("none.raw"));
+        // The header is there: what is missing is named beside it.
+        const std::string header = make("none.raw");
+        CHECK_THAT(errorOf(header), Contains("the data file 'none.raw' that the header names is missing") &&
+                                        Contains(header) && !Contains("no such file"));
+        CHECK_THAT(errorOf(make("below/none.raw")), Contains("'below/none.raw'"));
+        CHECK_THAT(errorOf(make("/" + std::string(100, 'x') + "/none.raw")), Contains("'none.raw'"));
         CHECK_THAT(errorOf(make("short.raw")), Contains("7 of 8 bytes") && Contains("short.raw"));
         CHECK_THAT(errorOf(make("LIST")), Contains("several parts"));
         CHECK_THAT(errorOf(make("slice%s.raw 1 2 1")), Contains("several parts"));

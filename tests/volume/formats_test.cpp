@@ -7,6 +7,7 @@
 
 #include "support/full_disk.h"
 #include "support/temp_folder.h"
+#include "volume/file_contents.h"
 #include "volume/loader.h"
 #include "volume_files.h"
 
@@ -266,11 +267,16 @@ TEST_CASE("NIfTI says where the volume lies", "[formats]") {
     nifti.qformCode = 1;
     CHECK(read().geometry().origin == Vec3(-10, -20, 30));
     CHECK(read().notices.size() == 1); // 24 equal voxels, but no turned axes
-    nifti.sformCode = 2;               // aligned to something else: qform stays
-    CHECK(read().geometry().origin == Vec3(-10, -20, 30));
-    nifti.sformCode = 1;
+    for (const std::int16_t code : {std::int16_t{1}, std::int16_t{2}, std::int16_t{4}}) { // whatever it is aligned to
+        nifti.sformCode = code;
+        CHECK(read().geometry().origin == Vec3(-5, -6, 7));
+        REQUIRE(read().notices.size() == 2);
+        CHECK_THAT(read().notices[0], Contains("sform and qform place the volume differently"));
+    }
+    nifti.qform = {0, 0, 1, 5, 6, 7};
     CHECK(read().geometry().origin == Vec3(-5, -6, 7));
     CHECK(read().notices.size() == 1);
+    nifti.qformCode = 0;
     nifti.units = 1; // metres
     CHECK(read().geometry().origin == Vec3(-5000, -6000, 7000));
     CHECK(read().geometry().spacing == Vec3(1000, 2000, 3000));
@@ -291,6 +297,107 @@ TEST_CASE("NIfTI says where the volume lies", "[formats]") {
     const Volume packed = load(folder.write("b.nii", gzipped(nifti.header() + data))); // .gz left out of the name
     CHECK(packed.dims() == Int3(2, 3, 4));
     CHECK(packed.value(23) == 'x');
+}
+
+TEST_CASE("NIfTI's sform counts where qform differs from it, and the volume says so", "[formats]") {
+    // A CT whose gantry was tilted by 20°: slices are 3 apart, along an axis that leans 20° from their normal. No
+    // quaternion can say that, so qform has the slices at right angles, as pixdim has 3.
+    const TempFolder folder;
+    const std::string data(24, 'x');
+    const double tilt = 20 * 3.14159265358979323846 / 180;
+    const auto lean = static_cast<float>(3 * std::sin(tilt)), rise = static_cast<float>(3 * std::cos(tilt));
+    Nifti nifti; // spacing 1, 2, 3
+    nifti.qformCode = nifti.sformCode = 1;
+    nifti.qform = {0, 0, 0, 10, 20, 30};
+    nifti.sform = {1, 0, 0, 10, 0, 2, lean, 20, 0, 0, rise, 30};
+    const auto read = [&] { return load(folder.write("a.nii", nifti.header() + data)); };
+    for (const std::int16_t code : {std::int16_t{1}, std::int16_t{2}, std::int16_t{3}, std::int16_t{4}}) {
+        nifti.sformCode = code;
+        const Volume tilted = read();
+        // Ours are x to the left and y to the back: j goes (0, −1, 0), k (0, −sin 20°, cos 20°).
+        CHECK(tilted.geometry().directions[0] == Vec3(-1, 0, 0));
+        CHECK(tilted.geometry().directions[1] == Vec3(0, -1, 0));
+        CHECK(glm::length(tilted.geometry().directions[2] - Vec3(0, -std::sin(tilt), std::cos(tilt))) < 1e-6);
+        CHECK(glm::length(tilted.geometry().spacing - Vec3(1, 2, 3)) < 1e-6);
+        // Voxel (0, 0, 2) is at 2·k from (10, 20, 30).
+        CHECK(glm::length(tilted.geometry().worldFromVoxel({0, 0, 2}) - Vec3(-10, -20 - 2 * lean, 30 + 2 * rise)) <
+              1e-5);
+        REQUIRE(tilted.notices.size() == 2);
+        CHECK_THAT(tilted.notices[0], Contains("sform and qform place the volume differently"));
+    }
+    nifti.sformCode = 0; // not set: qform alone, and nothing to tell
+    CHECK(read().geometry().directions[2] == Vec3(0, 0, 1));
+    CHECK(read().notices.size() == 1);
+    nifti.sformCode = 1; // another spacing is a difference, too; rounding is none
+    nifti.sform = {1, 0, 0, 10, 0, 2, 0, 20, 0, 0, 3.5f, 30};
+    CHECK(read().notices.size() == 2);
+    CHECK(read().geometry().spacing.z == 3.5);
+    nifti.sform = {1, 1e-6f, 0, 10.00001f, 0, 2, -1e-6f, 20, 0, 0, 3.00001f, 30};
+    CHECK(read().notices.size() == 1);
+    nifti.sform = {1, 1, 0, 10, 2, 2, 0, 20, 0, 0, 3, 30}; // in one plane: of no use
+    CHECK_THAT(read().notices[0], Contains("in one plane"));
+    CHECK(read().geometry().directions[2] == Vec3(0, 0, 1));
+}
+
+TEST_CASE("scaled integers keep their values", "[formats]") {
+    // 2²⁴ + 1 and 2²⁴ + 3 are no floats: their scaled values 2·v + 1 = 33 554 435 and 33 554 439 would be one with
+    // their neighbours. All that follows is exact in doubles.
+    const TempFolder folder;
+    Nifti nifti;
+    nifti.dim = {3, 2, 1, 1, 1, 1, 1, 1};
+    const auto scaled = [&](std::int16_t datatype, float slope, float intercept, const std::string& data) {
+        nifti.datatype = datatype;
+        nifti.slope = slope;
+        nifti.intercept = intercept;
+        VolumeSource source;
+        source.path = folder.write("a.nii", nifti.header() + data);
+        Volume volume = loadVolume(source);
+        CHECK(contentsOf(source).type == volume.sampleType());
+        return volume;
+    };
+    const Volume signedOnes = scaled(8, 2, 1, bytesOf(std::vector<std::int32_t>{16777217, -16777219}));
+    CHECK(samplesOf<double>(signedOnes) == std::vector<double>{33554435, -33554437});
+    const Volume unsignedOnes = scaled(768, 0.5f, -1, bytesOf(std::vector<std::uint32_t>{4294967295u, 4294967293u}));
+    CHECK(samplesOf<double>(unsignedOnes) == std::vector<double>{2147483646.5, 2147483645.5});
+    // 16 bits fit into a float, unless what is added is large: floats near 10⁹ are 64 apart.
+    CHECK(samplesOf<float>(scaled(4, 0.5f, -1, bytesOf(std::vector<std::int16_t>{32767, -3}))) ==
+          std::vector<float>{16382.5f, -2.5f});
+    CHECK(samplesOf<double>(scaled(4, 1, 1e9f, bytesOf(std::vector<std::int16_t>{1, 2}))) ==
+          std::vector<double>{1000000001, 1000000002});
+    // Of 8 bits and a slope of 1, floats tell 2²⁴ − 2⁸ apart from its neighbours, and no more.
+    CHECK(scaled(2, 1, 16776960, "ab").sampleType() == SampleType::F32);
+    CHECK(scaled(2, 1, 16776962, "ab").sampleType() == SampleType::F64);
+}
+
+TEST_CASE("NRRD says by the ends of its axes how far apart voxels are", "[formats]") {
+    const TempFolder folder;
+    const auto read = [&](const std::string& fields) {
+        return load(folder.write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\n" + fields +
+                                               "encoding: raw\n\nabcdefghijklmnopqrstuvwx"));
+    };
+    const std::string ends = "axis mins: 0 10 -1\naxis maxs: 1 13 1\n"; // lengths 1, 3, 2
+    // Cells, as where nothing is said: 1/2, 3/3, 2/4; the first centre half a cell behind the beginning.
+    for (const char* centers : {"", "centers: cell cell ???\n"}) {
+        const Volume cells = read(ends + centers);
+        CHECK(cells.geometry().spacing == Vec3(0.5, 1, 0.5));
+        CHECK(cells.geometry().origin == Vec3(0.25, 10.5, -0.75));
+        CHECK(cells.notices.empty());
+    }
+    // Nodes: one interval less, from the first voxel to the last: 1/1, 3/2, 2/3.
+    const Volume nodes = read(ends + "centerings: node node node\n");
+    CHECK(nodes.geometry().spacing == Vec3(1, 1.5, 2.0 / 3));
+    CHECK(nodes.geometry().origin == Vec3(0, 10, -1));
+    // Spacings count before the ends, of each axis that has them.
+    CHECK(read(ends + "spacings: nan 1 nan\n").geometry().spacing == Vec3(0.5, 1, 0.5));
+    const Volume both = read(ends + "spacings: 0.5 1 2\n");
+    CHECK(both.geometry().spacing == Vec3(0.5, 1, 2));
+    REQUIRE(both.notices.size() == 1);
+    CHECK_THAT(both.notices[0], Contains("differ along axis 2"));
+    for (const char* backwards : {"axis mins: 0 0 1\naxis maxs: 1 1 0\n", "axis mins: 0 0 1\naxis maxs: 1 1 1\n"})
+        CHECK_THROWS_WITH(read(backwards), Contains("spacing of axis 2") && Contains("positive"));
+    // Where directions say it, the ends do not.
+    CHECK(read("space dimension: 3\nspace directions: (2,0,0) (0,3,0) (0,0,4)\n" + ends).geometry().spacing ==
+          Vec3(2, 3, 4));
 }
 
 TEST_CASE("compressed MetaImage data tell themselves where they end", "[formats]") {

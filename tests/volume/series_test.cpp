@@ -370,13 +370,13 @@ TEST_CASE("steps of packed files are the same in any order of reading", "[series
         CHECK(std::string(samples.begin(), samples.end()) ==
               all.substr(static_cast<std::size_t>(step) * kVoxels, kVoxels));
     }
-    // Another file under the same name is another file; of one that is cut off the first steps stay.
+    // Another file under the same name is another file; of one that is cut off no step is known to be sound.
     std::string packed = gzipped(nifti.header() + all);
     packed.resize(packed.size() / 2);
     folder.write("a.nii.gz", packed);
-    CHECK_NOTHROW(loadVolume(listing.frames[5].source));
     CHECK_THROWS_WITH(loadVolume(listing.frames[30].source), Contains("compressed data ends after"));
-    CHECK_NOTHROW(loadVolume(listing.frames[15].source));
+    for (const std::size_t step : {5u, 15u})
+        CHECK_THROWS_WITH(loadVolume(listing.frames[step].source), Contains("before its checksum"));
 }
 
 TEST_CASE("contents of a file are told by its header", "[series]") {

@@ -115,7 +115,7 @@ TEST_CASE("the range of a series is that of all frames, found once and by frames
     CHECK(series.isSurveyed());
     CHECK(series.heldBytes() <= 2 * kRampBytes);
     CHECK(made == std::vector<int>{1, 1, 1, 1, 1, 1});
-    CHECK(series.summary(2).problem == "it is damaged");
+    CHECK(series.summary(2).problem == "it is damaged, two.nrrd");
     CHECK(series.summary(3).range == ValueRange{30, 1029});
     CHECK(series.summary(3).validCount == 1000);
     CHECK(series.countsIn(2, {0, 1}, 4).empty());
@@ -147,6 +147,22 @@ TEST_CASE("a frame that comes back is sound again; one of another grid is refuse
     CHECK(series.summary(1).validCount == 1000);
     CHECK_THROWS_WITH(series.load(2), Contains("5 x 10 x 20") && Contains("10 x 10 x 10") && Contains("frame 2"));
     CHECK(series.heldBytes() == kRampBytes);
+}
+
+TEST_CASE("a frame tells which file is to blame where it is not the frame's own", "[time-series]") {
+    const TempFolder folder;
+    for (const char* name : {"a", "b", "c"})
+        folder.write(std::string(name) + ".mhd", "NDims = 1\nDimSize = 2\nElementType = MET_UCHAR\nElementDataFile = " +
+                                                     std::string(name) + ".raw\n");
+    folder.write("a.raw", "12");
+    folder.write("c.raw", "1"); // too short
+    VolumeSource source;
+    source.path = folder.path("*.mhd");
+    const auto series = TimeSeries::open(source);
+    series->survey({});
+    CHECK(series->summary(0).problem.empty());
+    CHECK(series->summary(1).problem == "the data file 'b.raw' that the header names is missing");
+    CHECK(series->summary(2).problem == "the data has 1 of 2 bytes, " + folder.path("c.raw"));
 }
 
 TEST_CASE("many threads get the same frames within the budget", "[time-series]") {

@@ -431,9 +431,8 @@ void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec
 bool OpenController::askRawLayout(VolumeSource& source) {
     if (source.isSample() || source.raw) return true;
     const QStringList files = filesOfFrames(source);
-    // What is not there, opening tells.
-    if (files.isEmpty() || hasVolumeSuffix(files.front().toStdString()) || !QFileInfo(files.front()).isFile())
-        return true;
+    // What is not there, or of a format that cannot be read, opening tells.
+    if (files.isEmpty() || !mayBeHeaderless(files.front().toStdString())) return true;
     return askLayout(source, files);
 }
 

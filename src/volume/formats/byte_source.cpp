@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <string_view>
 
 #include "base/check.h"
 
@@ -18,6 +19,12 @@ bool refill(ByteSource& from, std::string& piece, std::size_t& at) {
     piece.resize(from.read(piece.data(), piece.size()));
     at = 0;
     return !piece.empty();
+}
+
+/// Whether inflate() failed at a sum or length behind data that it could unpack; zlib tells by its message alone.
+bool failsItsSum(const z_stream& stream) {
+    const std::string_view message = stream.msg == nullptr ? "" : stream.msg;
+    return message == "incorrect data check" || message == "incorrect length check";
 }
 
 int hexDigit(char c) {
@@ -64,24 +71,25 @@ bool FileBytes::skip(std::uint64_t count) {
 }
 
 InflatedBytes::InflatedBytes(const std::string& path, std::uint64_t start, bool zlib, const JobControl& job)
-    : m_in(path, std::ios::binary), m_zlib(zlib), m_job(job), m_packed(kPiece), m_filePosition(start) {
+    : m_in(path, std::ios::binary), m_job(job), m_packed(kPiece), m_filePosition(start) {
     m_in.seekg(static_cast<std::streamoff>(start));
     PELLUCID_CHECK(inflateInit2(&m_stream, zlib ? MAX_WBITS + 32 : MAX_WBITS + 16) == Z_OK);
 }
 
-InflatedBytes::InflatedBytes(const std::string& path, const Place& place, bool zlib, const JobControl& job)
-    : m_in(path, std::ios::binary), m_zlib(zlib), m_job(job), m_packed(kPiece), m_memberEnded(place.memberEnded),
-      m_decoded(place.decoded), m_filePosition(place.packed) {
+InflatedBytes::InflatedBytes(const std::string& path, const Place& place, const JobControl& job)
+    : m_in(path, std::ios::binary), m_job(job), m_packed(kPiece), m_memberEnded(place.memberEnded),
+      m_decoded(place.decoded), m_sound(place.sound), m_filePosition(place.packed) {
     m_in.seekg(static_cast<std::streamoff>(place.packed));
     PELLUCID_CHECK(inflateCopy(&m_stream, place.state.get()) == Z_OK);
     m_stream.avail_in = 0;
 }
 
 InflatedBytes::Place InflatedBytes::place() const {
-    Place place{m_decoded, m_filePosition - m_stream.avail_in, m_memberEnded, {new z_stream{}, [](z_stream* state) {
-                                                                                   inflateEnd(state);
-                                                                                   delete state;
-                                                                               }}};
+    const auto drop = [](z_stream* state) {
+        inflateEnd(state);
+        delete state;
+    };
+    Place place{m_decoded, m_sound, m_filePosition - m_stream.avail_in, m_memberEnded, {new z_stream{}, drop}};
     // zlib copies from a state that it does not call const, and leaves it alone.
     PELLUCID_CHECK(inflateCopy(place.state.get(), const_cast<z_stream*>(&m_stream)) == Z_OK);
     return place;
@@ -89,28 +97,39 @@ InflatedBytes::Place InflatedBytes::place() const {
 
 InflatedBytes::~InflatedBytes() { inflateEnd(&m_stream); }
 
+/// More of the file; false at its end.
+bool InflatedBytes::fill() {
+    m_job.throwIfStopped();
+    m_in.read(reinterpret_cast<char*>(m_packed.data()), static_cast<std::streamsize>(m_packed.size()));
+    m_stream.next_in = m_packed.data();
+    m_stream.avail_in = static_cast<uInt>(m_in.gcount());
+    m_filePosition += m_stream.avail_in;
+    return m_stream.avail_in > 0;
+}
+
+/// Behind a member: whether there is another one. Otherwise m_end says what there is.
+bool InflatedBytes::beginMember() {
+    constexpr Bytef kGzip = 0x1f; // the first byte of a member
+    if (*m_stream.next_in == kGzip && inflateReset(&m_stream) == Z_OK) {
+        m_memberEnded = false;
+        return true;
+    }
+    while (m_stream.avail_in > 0 && *m_stream.next_in == 0) { // padding, as tapes and some writers have it
+        ++m_stream.next_in;
+        if (--m_stream.avail_in == 0) fill();
+    }
+    m_end = m_stream.avail_in == 0 ? End::Whole : End::Followed;
+    return false;
+}
+
 std::size_t InflatedBytes::read(char* to, std::size_t count) {
     std::size_t done = 0;
     while (done < count && m_end == End::None) {
-        if (m_stream.avail_in == 0) {
-            m_job.throwIfStopped();
-            m_in.read(reinterpret_cast<char*>(m_packed.data()), static_cast<std::streamsize>(m_packed.size()));
-            m_stream.next_in = m_packed.data();
-            m_stream.avail_in = static_cast<uInt>(m_in.gcount());
-            m_filePosition += m_stream.avail_in;
-            if (m_stream.avail_in == 0) {
-                m_end = m_memberEnded ? End::Whole : End::CutOff;
-                break;
-            }
+        if (m_stream.avail_in == 0 && !fill()) {
+            m_end = m_memberEnded ? End::Whole : End::CutOff;
+            break;
         }
-        // Only another gzip member may follow a finished one; other bytes are left alone.
-        if (m_memberEnded) {
-            if (m_zlib || *m_stream.next_in != 0x1f || inflateReset(&m_stream) != Z_OK) {
-                m_end = End::Whole;
-                break;
-            }
-            m_memberEnded = false;
-        }
+        if (m_memberEnded && !beginMember()) break;
         const std::size_t piece = std::min<std::size_t>(count - done, 1u << 30);
         m_stream.next_out = reinterpret_cast<Bytef*>(to + done);
         m_stream.avail_out = static_cast<uInt>(piece);
@@ -118,7 +137,9 @@ std::size_t InflatedBytes::read(char* to, std::size_t count) {
         done += piece - m_stream.avail_out;
         m_decoded += piece - m_stream.avail_out;
         m_memberEnded = status == Z_STREAM_END;
-        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) m_end = End::Damaged;
+        if (m_memberEnded) m_sound = m_decoded;
+        if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
+            m_end = failsItsSum(m_stream) ? End::WrongSum : End::Damaged;
     }
     return done;
 }

@@ -35,11 +35,18 @@ private:
     const JobControl& m_job;
 };
 
-/// What the deflate stream that begins at byte `start` of a file unpacks to: gzip, several members too; one of zlib or
-/// gzip where `zlib`.
+/// What the deflate stream that begins at byte `start` of a file unpacks to: gzip, several members too; of zlib or gzip
+/// where `zlib`. What read() hands out may be damaged until the member that it lies in has ended: see soundBytes().
 class InflatedBytes final : public ByteSource {
 public:
-    enum class End { None, Whole, CutOff, Damaged };
+    enum class End {
+        None,     ///< there is more
+        Whole,    ///< the file ends with the stream, or with zeros behind it
+        Followed, ///< something else stands behind it
+        CutOff,   ///< within a member
+        WrongSum, ///< checksum or length of a member are not those of what it unpacks to
+        Damaged   ///< what there is does not unpack
+    };
 
     InflatedBytes(const std::string& path, std::uint64_t start, bool zlib, const JobControl& job);
     ~InflatedBytes() override;
@@ -49,26 +56,30 @@ public:
     /// A place in the stream where reading can go on.
     struct Place {
         std::uint64_t decoded = 0; ///< bytes that have come out
+        std::uint64_t sound = 0;   ///< soundBytes()
         std::uint64_t packed = 0;  ///< byte of the file that is next
         bool memberEnded = false;
         std::unique_ptr<z_stream, void (*)(z_stream*)> state; ///< about 40 kB
     };
     /// Goes on at `place` of the stream of this file.
-    InflatedBytes(const std::string& path, const Place& place, bool zlib, const JobControl& job);
+    InflatedBytes(const std::string& path, const Place& place, const JobControl& job);
     Place place() const;
     std::uint64_t decoded() const { return m_decoded; } ///< bytes that have come out
+    /// Of those, how many from the first one on lie in members that have ended with the right checksum and length.
+    std::uint64_t soundBytes() const { return m_sound; }
 
     /// How the stream ended; None before read() has returned fewer bytes than it was asked for.
     End end() const { return m_end; }
 
 private:
+    bool fill();
+    bool beginMember();
     std::ifstream m_in;
-    bool m_zlib;
     const JobControl& m_job;
     z_stream m_stream{};
     std::vector<unsigned char> m_packed;
     bool m_memberEnded = false;
-    std::uint64_t m_decoded = 0, m_filePosition = 0; // of m_in, from the beginning of the file
+    std::uint64_t m_decoded = 0, m_sound = 0, m_filePosition = 0; // the last of m_in, from the beginning of the file
     End m_end = End::None;
 };
 

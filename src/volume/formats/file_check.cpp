@@ -7,8 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/error.h"
-
 namespace pellucid {
 
 namespace fs = std::filesystem;
@@ -29,6 +27,17 @@ std::uint64_t readableFileBytes(const std::string& path) {
     return bytes;
 }
 
+std::uint64_t dataFileBytes(const std::string& data, const std::string& header) {
+    std::error_code ec;
+    if (data == header || fs::status(data, ec).type() != fs::file_type::not_found) return readableFileBytes(data);
+    constexpr std::size_t kShown = 40;
+    const fs::path path(data);
+    std::string name = path.lexically_proximate(fs::path(header).parent_path()).string();
+    if (name.size() > kShown) name = path.filename().string();
+    throw FileError("the data file " + inQuotes(name) + " that the header names is missing", header,
+                    "put the data file there, or correct the header");
+}
+
 std::string fileHead(const std::string& path, std::size_t limit) {
     const std::uint64_t bytes = std::min<std::uint64_t>(readableFileBytes(path), limit);
     std::string head(static_cast<std::size_t>(bytes), '\0');
@@ -38,14 +47,49 @@ std::string fileHead(const std::string& path, std::size_t limit) {
     return head;
 }
 
+namespace {
+
+bool isTiff(std::string_view head) {
+    using namespace std::string_view_literals;
+    const std::string_view begin = head.substr(0, 4); // the last two are those of large files
+    return begin == "II*\0"sv || begin == "MM\0*"sv || begin == "II+\0"sv || begin == "MM\0+"sv;
+}
+
+/// With a preamble, or as older files without: then three elements of the first groups have to follow each other.
+bool isDicom(std::string_view head) {
+    if (head.size() >= 132 && head.substr(128, 4) == "DICM") return true;
+    const auto number = [&](std::size_t at, std::size_t bytes) {
+        std::size_t value = 0;
+        for (std::size_t i = bytes; i-- > 0;) value = value << 8 | static_cast<unsigned char>(head[at + i]);
+        return value;
+    };
+    const auto isLetter = [&](std::size_t at) { return head[at] >= 'A' && head[at] <= 'Z'; };
+    constexpr std::size_t kElements = 3, kHeader = 12, kMostBytes = 256;
+    std::size_t at = 0, before = 0;
+    for (std::size_t n = 0; n < kElements; ++n) {
+        if (at + kHeader > head.size()) return false;
+        const std::size_t group = number(at, 2), tag = group << 16 | number(at + 2, 2);
+        const bool first = n == 0 && (group == 2 || group == 8) && (tag & 0xffff) <= 0x18;
+        if (n == 0 ? !first : tag <= before || group > 0x10) return false;
+        before = tag;
+        const std::string_view type = head.substr(at + 4, 2);
+        const bool named = isLetter(at + 4) && isLetter(at + 5);
+        const bool wide = type == "OB" || type == "OW" || type == "SQ" || type == "UN" || type == "UT";
+        const std::size_t bytes = !named ? number(at + 4, 4) : wide ? number(at + 8, 4) : number(at + 6, 2);
+        if (bytes > kMostBytes || bytes % 2 != 0) return false;
+        at += bytes + (named && wide ? 12 : 8);
+    }
+    return true;
+}
+
+} // namespace
+
 std::string describeContent(std::string_view head) {
     using namespace std::string_view_literals;
     static constexpr std::pair<std::string_view, const char*> kSignatures[] = {
         {"\x89PNG"sv, "a PNG image"},
         {"\xff\xd8\xff"sv, "a JPEG image"},
         {"GIF8"sv, "a GIF image"},
-        {"II*\0"sv, "a TIFF image"},
-        {"MM\0*"sv, "a TIFF image"},
         {"BM"sv, "a BMP image"},
         {"%PDF"sv, "a PDF document"},
         {"\x1f\x8b"sv, "gzip-compressed data"},
@@ -59,12 +103,41 @@ std::string describeContent(std::string_view head) {
     };
     for (const auto& [signature, description] : kSignatures)
         if (head.substr(0, signature.size()) == signature) return description;
-    if (head.size() >= 132 && head.substr(128, 4) == "DICM") return "a DICOM file";
+    if (isTiff(head)) return "a TIFF image";
+    if (isDicom(head)) return "a DICOM file";
     const auto looksLikeText = [](char c) {
         const auto u = static_cast<unsigned char>(c);
         return u >= 0x20 || u == '\n' || u == '\r' || u == '\t';
     };
     return std::all_of(head.begin(), head.end(), looksLikeText) ? "text" : "binary data";
+}
+
+namespace {
+
+std::optional<FileError> unreadFormat(const std::string& path, std::string_view head) {
+    if (isDicom(head))
+        return FileError("this is a DICOM file, which Pellucid cannot read yet", path,
+                         "convert the series to NIfTI or NRRD, for example with dcm2niix");
+    if (isTiff(head))
+        return FileError("this is a TIFF image, which Pellucid cannot read yet", path,
+                         "convert it to NRRD or MetaImage, for example with ImageJ");
+    return {};
+}
+
+} // namespace
+
+std::optional<FileError> unreadFormat(const std::string& path) {
+    try {
+        return unreadFormat(path, fileHead(path, 1024));
+    } catch (const FileError&) {
+        return {};
+    }
+}
+
+FileError notOfFormat(const std::string& expected, const std::string& path, std::string_view head) {
+    if (auto unread = unreadFormat(path, head)) return *unread;
+    return {"this is not " + expected + " but " + describeContent(head), path, "give it the suffix of its own format",
+            Remedy::GiveRawLayout};
 }
 
 std::uint64_t valueCount(const std::string& path, std::span<const std::int64_t> sizes, std::uint64_t bytesPerValue) {
@@ -117,29 +190,55 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
     }
 }
 
-std::uint64_t requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
-                              const JobControl& job, bool toTheEnd) {
-    using End = InflatedBytes::End;
-    InflatedBytes bytes(path, start, zlib, job);
+namespace {
+
+/// Reads on until `wanted` bytes are sound, or the stream ends.
+void inflateUpTo(InflatedBytes& bytes, std::uint64_t wanted) {
     std::vector<char> unpacked(1u << 20);
-    std::uint64_t yield = 0;
-    // Beyond what is wanted nothing matters, so that a stream which never ends cannot hold us up.
-    while ((yield <= wanted || toTheEnd) && bytes.end() == End::None)
-        yield += bytes.read(unpacked.data(), unpacked.size());
-    if (yield <= wanted || toTheEnd) requireYield(path, yield, wanted, bytes.end());
-    return yield;
+    while (bytes.soundBytes() < wanted && bytes.end() == InflatedBytes::End::None)
+        bytes.read(unpacked.data(), unpacked.size());
 }
 
-void requireYield(const std::string& path, std::uint64_t yield, std::uint64_t wanted, InflatedBytes::End end) {
+} // namespace
+
+void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                     const JobControl& job) {
+    InflatedBytes bytes(path, start, zlib, job);
+    inflateUpTo(bytes, wanted);
+    if (bytes.soundBytes() < wanted) failToInflate(path, bytes, wanted);
+}
+
+std::uint64_t requireInflatesToEnd(const std::string& path, std::uint64_t start, std::uint64_t wanted,
+                                   const JobControl& job) {
+    InflatedBytes bytes(path, start, false, job);
+    inflateUpTo(bytes, std::numeric_limits<std::uint64_t>::max());
+    // What is no gzip may once have been: then the data would end elsewhere.
+    if (bytes.end() == InflatedBytes::End::Followed)
+        throw FileError("the compressed data is followed by something else, so that the end of the data is not known",
+                        path, "copy the file again, or give the header a byte skip from the beginning");
+    if (bytes.soundBytes() < wanted || bytes.end() != InflatedBytes::End::Whole) failToInflate(path, bytes, wanted);
+    return bytes.soundBytes();
+}
+
+void failToInflate(const std::string& path, const InflatedBytes& bytes, std::uint64_t wanted) {
     using End = InflatedBytes::End;
-    if (yield >= wanted && end == End::Whole) return;
-    const bool damaged = end == End::Damaged;
-    if (yield >= wanted && damaged)
+    const std::uint64_t yield = bytes.decoded();
+    const std::string after =
+        " after " + std::to_string(yield) + (yield < wanted ? " of " + std::to_string(wanted) + " bytes" : " bytes");
+    switch (bytes.end()) {
+    case End::WrongSum:
         throw FileError("the checksum of the compressed data is wrong", path, "copy or write the file again");
-    if (yield >= wanted) throw FileError("the compressed data is cut off at its end", path, "copy the file again");
-    throw FileError("the compressed data " + std::string(damaged ? "is damaged" : "ends") + " after " +
-                        std::to_string(yield) + " of " + std::to_string(wanted) + " bytes",
-                    path, "copy or write the file again");
+    case End::Damaged:
+        throw FileError("the compressed data is damaged" + after, path, "copy or write the file again");
+    case End::CutOff:
+        if (yield >= wanted)
+            throw FileError("the compressed data is cut off" + after + ", before its checksum", path,
+                            "copy the file again");
+        break;
+    default:
+        break;
+    }
+    throw FileError("the compressed data ends" + after, path, "copy or write the file again");
 }
 
 void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job) {

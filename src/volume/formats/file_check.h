@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "base/job.h"
 #include "base/text.h"
 #include "volume/formats/byte_source.h"
@@ -19,8 +21,19 @@ std::uint64_t readableFileBytes(const std::string& path);
 /// The first `limit` bytes, fewer where the file is shorter. Throws FileError.
 std::string fileHead(const std::string& path, std::size_t limit);
 
+/// Size of the file that holds the samples, `data`, which the header `header` names; they may be one. Throws FileError
+/// as readableFileBytes(), and one that names both where `data` is missing.
+std::uint64_t dataFileBytes(const std::string& data, const std::string& header);
+
 /// What a file seems to be, for error messages: "a PNG image", "text", "binary data", …
 std::string describeContent(std::string_view head);
+
+/// What is wrong with a file of volume data in a format that no reader knows yet (DICOM, TIFF), by its content; none of
+/// all others, and of those that cannot be read.
+std::optional<FileError> unreadFormat(const std::string& path);
+
+/// What is wrong with a file that is not `expected` ("an NRRD file"), by its first 1024 bytes.
+FileError notOfFormat(const std::string& expected, const std::string& path, std::string_view head);
 
 /// Number of values, product of `sizes`. Throws FileError unless each is in [1, 2^31) and the product times
 /// bytesPerValue stays below 2^63.
@@ -33,14 +46,19 @@ enum class Encoding { Raw, Deflate, Text, Hex };
 void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
                    std::uint64_t stored, const std::string& toDo);
 
-/// Unpacks the deflate stream that begins at byte `start` of a file (gzip, several members too; one of zlib or gzip
-/// where `zlib`) without keeping it. Throws FileError unless it yields at least `wanted` bytes undamaged.
-/// Returns how many there are: all where `toTheEnd`, otherwise those it had to look at.
-std::uint64_t requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
-                              const JobControl& job, bool toTheEnd = false);
+/// Unpacks the deflate stream that begins at byte `start` of a file (gzip, several members too; of zlib or gzip where
+/// `zlib`) without keeping it. Throws FileError unless it yields at least `wanted` bytes whose members have the right
+/// checksum and length, however much longer they are. Throws Cancelled.
+void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
+                     const JobControl& job);
 
-/// Throws FileError unless a stream that was unpacked to its `end` has ended well, with `wanted` bytes or more.
-void requireYield(const std::string& path, std::uint64_t yield, std::uint64_t wanted, InflatedBytes::End end);
+/// Likewise of all that a gzip stream unpacks to, `wanted` bytes or more, behind which nothing may stand in the file
+/// but zeros. Returns how many there are.
+std::uint64_t requireInflatesToEnd(const std::string& path, std::uint64_t start, std::uint64_t wanted,
+                                   const JobControl& job);
+
+/// Throws a FileError that says why a stream, read as far as it goes, does not hold `wanted` sound bytes.
+[[noreturn]] void failToInflate(const std::string& path, const InflatedBytes& bytes, std::uint64_t wanted);
 
 /// Throws FileError unless the text that begins at byte `start` of a file holds `wanted` numbers, between blanks or
 /// commas.

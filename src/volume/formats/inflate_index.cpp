@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostPlaces = 64;
 constexpr std::uint64_t kFirstBetween = 1u << 20;
-constexpr std::size_t kMostFiles = 4;
+constexpr std::size_t kMostFiles = 16; ///< as many variables of packed files as a session is likely to have
 
 /// Reads on from the place that is nearest.
 class IndexedBytes final : public ByteSource {
@@ -80,20 +80,18 @@ void InflateIndex::keep(const InflatedBytes& bytes) {
 void InflateIndex::require(std::uint64_t wanted, const JobControl& job) {
     using End = InflatedBytes::End;
     const std::lock_guard lock(m_mutex);
-    if (m_sound > wanted || (m_ended && m_sound >= wanted)) return;
+    if (m_sound >= wanted) return;
     std::unique_ptr<InflatedBytes> bytes = m_places.empty()
                                                ? std::make_unique<InflatedBytes>(m_path, m_start, m_zlib, job)
-                                               : std::make_unique<InflatedBytes>(m_path, m_places.back(), m_zlib, job);
+                                               : std::make_unique<InflatedBytes>(m_path, m_places.back(), job);
     std::vector<char> unpacked(1u << 18);
-    while (bytes->decoded() <= wanted && bytes->end() == End::None) {
+    while (bytes->soundBytes() < wanted && bytes->end() == End::None) {
         bytes->read(unpacked.data(), unpacked.size());
         const std::uint64_t last = m_places.empty() ? 0 : m_places.back().decoded;
         if (bytes->end() == End::None && bytes->decoded() >= last + m_between) keep(*bytes);
     }
-    const std::uint64_t yield = bytes->decoded();
-    m_sound = std::max(m_sound, yield);
-    m_ended = bytes->end() == End::Whole;
-    if (yield <= wanted) requireYield(m_path, yield, wanted, bytes->end());
+    m_sound = bytes->soundBytes();
+    if (m_sound < wanted) failToInflate(m_path, *bytes, wanted);
 }
 
 std::unique_ptr<InflatedBytes> InflateIndex::from(std::uint64_t decoded, const JobControl& job) const {
@@ -101,7 +99,7 @@ std::unique_ptr<InflatedBytes> InflateIndex::from(std::uint64_t decoded, const J
     const auto after = std::upper_bound(m_places.begin(), m_places.end(), decoded,
                                         [](std::uint64_t at, const auto& place) { return at < place.decoded; });
     if (after == m_places.begin()) return std::make_unique<InflatedBytes>(m_path, m_start, m_zlib, job);
-    return std::make_unique<InflatedBytes>(m_path, *(after - 1), m_zlib, job);
+    return std::make_unique<InflatedBytes>(m_path, *(after - 1), job);
 }
 
 std::unique_ptr<ByteSource> InflateIndex::bytes(const JobControl& job) const {

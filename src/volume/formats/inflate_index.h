@@ -12,13 +12,15 @@
 
 namespace pellucid {
 
-/// Of one stream. What has been unpacked once is known to be sound, and can be reached again from one of at most 64
-/// places (40 kB each): reading a step of a series costs that step and at most 1/32 of the stream. Any thread may call
-/// anything; unpacking for the first time is done by one at a time.
+/// Of one stream. Whether it is sound is known once the checksum of each of its members has been compared, which is
+/// done once, up to the end of the member that is asked for: the whole stream, where it is one member, as it mostly is.
+/// After that any byte can be reached from one of at most 64 places (40 kB each): reading a step of a series costs that
+/// step and at most 1/32 of the stream. Any thread may call anything; unpacking for the first time is done by one at a
+/// time.
 class InflateIndex {
 public:
     /// Of the stream that begins at byte `start` of a file: the same as before, as long as size and time of the file
-    /// are the same. Those of the latest four files are kept.
+    /// are the same. Those of the latest 16 files are kept.
     static std::shared_ptr<InflateIndex> of(const std::string& path, std::uint64_t start, bool zlib);
 
     InflateIndex(std::string path, std::uint64_t start, bool zlib);
@@ -36,9 +38,8 @@ private:
     const std::uint64_t m_start;
     const bool m_zlib;
     mutable std::mutex m_mutex;
-    std::vector<InflatedBytes::Place> m_places; // ascending; what lies before the last one is sound
-    std::uint64_t m_sound = 0;                  // bytes
-    bool m_ended = false;                       // whole, after m_sound bytes
+    std::vector<InflatedBytes::Place> m_places; // ascending
+    std::uint64_t m_sound = 0;                  // bytes, from the first one on
     std::uint64_t m_between;                    // bytes from place to place
 };
 

@@ -54,8 +54,7 @@ MetaHeader parseHeader(const std::string& path) {
         throw FileError("the header does not end within " + describeBytes(kMostHeaderBytes), path,
                         "correct the header, or copy the file again");
     if (header.fields.count("NDims") == 0 && header.fields.count("ObjectType") == 0)
-        throw FileError("this is not a MetaImage file but " + describeContent(head.substr(0, 1024)), path,
-                        "give it the suffix of its own format", Remedy::GiveRawLayout);
+        throw notOfFormat("a MetaImage file", path, std::string_view(head).substr(0, 1024));
     for (const char* name : {"NDims", "DimSize", "ElementType", "ElementDataFile"})
         if (header.get(name).empty())
             throw FileError("the header has no " + std::string(name), path,
@@ -241,7 +240,7 @@ FileLayout checkedLayout(const std::string& path, std::optional<int> step, const
     layout.times = timesIn(header, sizes, path);
     if (!step) return layout;
     const std::uint64_t wanted = valuesUpTo(layout, *step);
-    const std::uint64_t fileBytes = readableFileBytes(layout.dataPath);
+    const std::uint64_t fileBytes = dataFileBytes(layout.dataPath, path);
     const char* toDo = "check DimSize and ElementType in the header, or copy the file again";
     // HeaderSize counts from the beginning of the file that holds the data, even where that is this one.
     const std::int64_t skip = wholeNumber(header, "HeaderSize", 0, path);

@@ -36,17 +36,13 @@ std::vector<unsigned char> headerBytes(const std::string& path) {
 class NiftiHeader {
 public:
     explicit NiftiHeader(const std::string& path) : m_bytes(headerBytes(path)) {
-        const auto foreign = [&](std::string_view sort) {
-            return FileError("this is not a NIfTI file but " + std::string(sort), path,
-                             "give it the suffix of its own format", Remedy::GiveRawLayout);
-        };
         if (m_bytes.size() < kHeaderBytes) {
             const std::string head = fileHead(path, 1024);
             if (head.rfind("\x1f\x8b", 0) == 0)
                 throw FileError("the compressed file holds " + std::to_string(m_bytes.size()) +
                                     " readable bytes, fewer than a NIfTI header",
                                 path, "copy the file again");
-            throw foreign(describeContent(head));
+            throw notOfFormat("a NIfTI file", path, head);
         }
         const auto size = at<std::int32_t>(0);
         m_swapped = size != 348 && size != 540;
@@ -54,7 +50,7 @@ public:
         if (sizeSwapped == 540)
             throw FileError("NIfTI-2 is not supported", path, "convert it to NIfTI-1, MetaImage or NRRD");
         if (sizeSwapped != 348)
-            throw foreign(describeContent({reinterpret_cast<const char*>(m_bytes.data()), m_bytes.size()}));
+            throw notOfFormat("a NIfTI file", path, {reinterpret_cast<const char*>(m_bytes.data()), m_bytes.size()});
         if (std::memcmp(m_bytes.data() + 344, "ni1", 4) == 0)
             throw FileError("this is the header of a .hdr/.img pair", path, "convert it to one .nii file");
         if (std::memcmp(m_bytes.data() + 344, "n+1", 4) != 0)
@@ -186,32 +182,41 @@ std::optional<Placement> fromSform(const NiftiHeader& header) {
     return placement;
 }
 
+/// Whether both say the same but for rounding: a quaternion of single precision may be off by 6e-4, where it turns by
+/// almost half a circle.
 bool agree(const Placement& one, const Placement& other) {
-    constexpr double kRounding = 1e-4;
-    bool same = glm::length(one.origin - other.origin) <= kRounding;
-    for (int a = 0; a < 3; ++a) same = same && glm::length(one.axes[a] - other.axes[a]) <= kRounding;
+    constexpr double kTurn = 1e-3, kStretch = 1e-3, kShift = 1e-2; // the last in voxels
+    const double voxel = std::min({one.spacing.x, one.spacing.y, one.spacing.z});
+    bool same = glm::length(one.origin - other.origin) <= kShift * voxel;
+    for (int a = 0; a < 3; ++a)
+        same = same && glm::length(one.axes[a] - other.axes[a]) <= kTurn &&
+               std::abs(one.spacing[a] - other.spacing[a]) <= kStretch * one.spacing[a];
     return same;
 }
 
-/// The form that ITK takes, too: sform where it speaks of the scanner, stands alone or says the same as qform. Empty
-/// where the header has none: then the grid's own axes are the world's.
-std::optional<Placement> placementIn(const NiftiHeader& header, const Vec3& spacing, const std::string& path) {
+/// sform where the header has one, else qform. Empty where it has neither: then the grid's own axes are the world's.
+std::optional<Placement> placementIn(const NiftiHeader& header, const Vec3& spacing, const std::string& path,
+                                     std::vector<std::string>& notices) {
     const bool hasQform = header.qformCode() > 0, hasSform = header.sformCode() > 0;
-    constexpr int kScanner = 1;
     bool finite = true;
     for (int i = 0; i < 6; ++i) finite = finite && (!hasQform || std::isfinite(header.qform(i)));
     for (int i = 0; i < 12; ++i) finite = finite && (!hasSform || std::isfinite(header.sform(i / 4, i % 4)));
     if (!finite)
         throw FileError("the place of the volume has numbers that are not finite", path,
                         "correct qform and sform in the header");
-    const std::optional<Placement> sform = hasSform ? fromSform(header) : std::nullopt;
-    if (sform && (!hasQform || header.sformCode() == kScanner || agree(*sform, fromQform(header, spacing))))
-        return sform;
-    if (hasQform) return fromQform(header, spacing);
-    if (hasSform)
-        throw FileError("the axes that sform gives lie in one plane", path,
-                        "correct sform, or give qform in the header");
-    return {};
+    std::optional<Placement> qform, sform;
+    if (hasQform) qform = fromQform(header, spacing);
+    if (hasSform) sform = fromSform(header);
+    if (hasSform && !sform) {
+        if (!hasQform)
+            throw FileError("the axes that sform gives lie in one plane", path,
+                            "correct sform, or give qform in the header");
+        notices.emplace_back(
+            "the axes that the header's sform gives lie in one plane: qform says where the volume lies");
+    }
+    if (sform && qform && !agree(*sform, *qform))
+        notices.emplace_back("the header's sform and qform place the volume differently: it lies as sform says");
+    return sform ? sform : qform;
 }
 
 /// Millimetres of the header's unit of length.
@@ -230,7 +235,7 @@ void placeGrid(FileLayout& layout, const NiftiHeader& header, const std::string&
                             path, "correct pixdim in the header");
         layout.spacing[a - 1] = header.pixdim(a);
     }
-    if (const std::optional<Placement> placement = placementIn(header, layout.spacing, path)) {
+    if (const std::optional<Placement> placement = placementIn(header, layout.spacing, path, layout.notices)) {
         layout.frame = Frame::Patient;
         const Vec3 flip{-1, -1, 1}; // our x goes to the left, our y to the back
         for (int a = 0; a < 3; ++a) {

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "base/round_numbers.h"
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
 #include "volume/formats/samples.h"
@@ -35,9 +36,7 @@ struct NrrdHeader {
 
 NrrdHeader parseHeader(const std::string& path) {
     const std::string head = fileHead(path, kMostHeaderBytes);
-    if (head.rfind("NRRD000", 0) != 0)
-        throw FileError("this is not an NRRD file but " + describeContent(head.substr(0, 1024)), path,
-                        "give it the suffix of its own format", Remedy::GiveRawLayout);
+    if (head.rfind("NRRD000", 0) != 0) throw notOfFormat("an NRRD file", path, std::string_view(head).substr(0, 1024));
     NrrdHeader header;
     std::size_t begin = 0;
     for (bool first = true; begin < head.size(); first = false) {
@@ -258,27 +257,51 @@ double numberOfAxis(const std::vector<std::string>& words, std::size_t a) {
     return value;
 }
 
+/// What the header says of its axes one by one, with no direction in space.
+class AxisFields {
+public:
+    AxisFields(const NrrdHeader& header, const std::vector<FileAxis>& axes, const std::string& path)
+        : m_axes(axes), m_spacings(wordsPerAxis(header, "spacings", axes.size(), path)),
+          m_mins(wordsPerAxis(header, "axismins", axes.size(), path)),
+          m_maxs(wordsPerAxis(header, "axismaxs", axes.size(), path)),
+          m_centers(wordsPerAxis(header, "centers", axes.size(), path)) {
+        if (m_centers.empty()) m_centers = wordsPerAxis(header, "centerings", axes.size(), path);
+    }
+
+    bool hasFirst() const { return !m_mins.empty() && !(m_maxs.empty() && m_spacings.empty()); }
+    double min(std::size_t a) const { return numberOfAxis(m_mins, a); }
+    /// From sample to sample as "spacings" says; NaN where it does not.
+    double spacing(std::size_t a) const { return numberOfAxis(m_spacings, a); }
+    const std::vector<std::string>& spacings() const { return m_spacings; }
+    /// From sample to sample as "axis mins" and "axis maxs" say: where samples are nodes they are those of the first
+    /// and the last one, where they are cells, as without a word, of the ends of these. NaN where they do not say.
+    double spread(std::size_t a) const {
+        const auto intervals = static_cast<double>(m_axes[a].size - (isOfNodes(a) ? 1 : 0));
+        return intervals > 0 ? (numberOfAxis(m_maxs, a) - min(a)) / intervals
+                             : std::numeric_limits<double>::quiet_NaN();
+    }
+    /// spacing(), or where there is none spread().
+    double width(std::size_t a) const { return std::isnan(spacing(a)) ? spread(a) : spacing(a); }
+    /// Where the first sample is, by "axis mins".
+    double first(std::size_t a) const { return isOfNodes(a) ? min(a) : min(a) + 0.5 * width(a); }
+
+private:
+    bool isOfNodes(std::size_t a) const { return !m_centers.empty() && lowerCase(m_centers[a]) == "node"; }
+
+    const std::vector<FileAxis>& m_axes;
+    std::vector<std::string> m_spacings, m_mins, m_maxs, m_centers;
+};
+
 /// Without a named space: the first voxel's centre after "axis mins", where each axis in space has one and a width.
-void placeByMins(FileLayout& layout, const NrrdHeader& header, const std::vector<std::size_t>& inSpace,
+void placeByMins(FileLayout& layout, const AxisFields& fields, const std::vector<std::size_t>& inSpace,
                  const std::string& path) {
-    const std::size_t axes = layout.axes.size();
-    const auto mins = wordsPerAxis(header, "axismins", axes, path);
-    const auto maxs = wordsPerAxis(header, "axismaxs", axes, path);
-    const auto spacings = wordsPerAxis(header, "spacings", axes, path);
-    auto centers = wordsPerAxis(header, "centers", axes, path);
-    if (centers.empty()) centers = wordsPerAxis(header, "centerings", axes, path);
-    if (mins.empty() || (maxs.empty() && spacings.empty())) return;
+    if (!fields.hasFirst()) return;
     for (std::size_t i = 0; i < inSpace.size(); ++i) {
-        const std::size_t a = inSpace[i];
-        const bool nodes = !centers.empty() && lowerCase(centers[a]) == "node";
-        const double min = numberOfAxis(mins, a);
-        double width = numberOfAxis(spacings, a);
-        if (std::isnan(width)) width = (numberOfAxis(maxs, a) - min) / static_cast<double>(layout.axes[a].size);
-        const double origin = nodes ? min : min + 0.5 * width;
-        if (!std::isfinite(origin))
-            throw FileError("the header does not tell where axis " + std::to_string(a) + " begins", path,
+        const double first = fields.first(inSpace[i]);
+        if (!std::isfinite(first))
+            throw FileError("the header does not tell where axis " + std::to_string(inSpace[i]) + " begins", path,
                             "correct axis mins and axis maxs");
-        layout.origin[static_cast<int>(i)] = origin;
+        layout.origin[static_cast<int>(i)] = first;
     }
 }
 
@@ -286,7 +309,7 @@ void placeByMins(FileLayout& layout, const NrrdHeader& header, const std::vector
 /// right and is not.
 void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& path) {
     const std::size_t axes = layout.axes.size();
-    const auto spacings = wordsPerAxis(header, "spacings", axes, path);
+    const AxisFields fields(header, layout.axes, path);
     const auto directions = wordsPerAxis(header, "spacedirections", axes, path);
     const std::optional<Vec3> patient = flipOfSpace(header, path);
     const Vec3 flip = patient.value_or(Vec3(1));
@@ -305,16 +328,22 @@ void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& 
             for (const double v : vector) square += v * v;
             const double length = std::sqrt(square);
             layout.spacing[static_cast<int>(i)] = length;
-            if (std::abs(numberOfAxis(spacings, a) - length) > 1e-6 * length)
+            if (std::abs(fields.spacing(a) - length) > 1e-6 * length)
                 throw FileError("the header gives two spacings of axis " + std::to_string(a), path,
                                 "correct spacings or space directions");
             Vec3 direction(0);
             for (int c = 0; c < 3 && static_cast<std::size_t>(c) < vector.size(); ++c)
                 direction[c] = flip[c] * vector[static_cast<std::size_t>(c)] / length;
             layout.directions[static_cast<int>(i)] = cleanDirection(direction);
-        } else if (!spacings.empty()) {
-            text = spacings[a];
-            layout.spacing[static_cast<int>(i)] = numberOfAxis(spacings, a);
+        } else if (!std::isnan(fields.spread(a)) && std::isnan(fields.spacing(a))) {
+            text = plainText(fields.spread(a));
+            layout.spacing[static_cast<int>(i)] = fields.spread(a);
+        } else if (!fields.spacings().empty()) {
+            text = fields.spacings()[a];
+            layout.spacing[static_cast<int>(i)] = fields.spacing(a);
+            if (std::abs(fields.spread(a) - fields.spacing(a)) > 1e-3 * fields.spacing(a))
+                layout.notices.push_back("the header's spacings and axis mins and maxs differ along axis " +
+                                         std::to_string(a) + ": spacings counts");
         }
         const double spacing = layout.spacing[static_cast<int>(i)] *= unit;
         if (!(spacing > 0) || !std::isfinite(spacing))
@@ -323,7 +352,7 @@ void placeGrid(FileLayout& layout, const NrrdHeader& header, const std::string& 
                             path, "correct the header");
     }
     const std::vector<std::string> origin = splitVectors(header.get("spaceorigin"));
-    if (origin.empty() && directions.empty()) placeByMins(layout, header, inSpace, path);
+    if (origin.empty() && directions.empty()) placeByMins(layout, fields, inSpace, path);
     if (origin.empty() || isNone(origin.front())) return;
     const std::vector<double> place = vectorIn(origin.front(), path);
     for (std::size_t c = 0; c < std::min(place.size(), inSpace.size()); ++c)
@@ -354,9 +383,9 @@ std::optional<StepTimes> timesIn(const FileLayout& layout, const NrrdHeader& hea
     if (time == axes) return {};
     const auto directions = wordsPerAxis(header, "spacedirections", axes, path);
     StepTimes times;
-    times.width = numberOfAxis(wordsPerAxis(header, "spacings", axes, path), time);
-    if (const double min = numberOfAxis(wordsPerAxis(header, "axismins", axes, path), time); std::isfinite(min))
-        times.first = min;
+    const AxisFields fields(header, layout.axes, path);
+    times.width = fields.width(time);
+    if (std::isfinite(fields.min(time))) times.first = fields.min(time);
     if (!directions.empty() && !isNone(directions[time])) { // of a space with time as its last axis
         const std::vector<double> vector = vectorIn(directions[time], path);
         const std::vector<std::string> origin = splitVectors(header.get("spaceorigin"));
@@ -446,7 +475,7 @@ FileLayout checkedLayout(const std::string& path, std::optional<int> step, const
     if (!step) return layout;
     const std::uint64_t wanted = valuesUpTo(layout, *step);
     const bool detached = !header.get("datafile").empty();
-    const std::uint64_t fileBytes = readableFileBytes(layout.dataPath);
+    const std::uint64_t fileBytes = dataFileBytes(layout.dataPath, path);
     const std::int64_t lineSkip = wholeNumber(header, "lineskip", 0, path);
     const std::int64_t byteSkip = wholeNumber(header, "byteskip", 0, path);
     if (lineSkip < 0 || byteSkip < -1)
@@ -465,7 +494,7 @@ FileLayout checkedLayout(const std::string& path, std::optional<int> step, const
     if (layout.encoding == Encoding::Text) requireNumbers(layout.dataPath, layout.start, wanted, job);
     if (layout.encoding == Encoding::Deflate && !fromEnd) requireInflated(layout, layout.skip + wanted * bytesPer, job);
     if (layout.encoding == Encoding::Deflate && fromEnd)
-        layout.skip = requireInflates(layout.dataPath, layout.start, false, bytes, job, true) - bytes;
+        layout.skip = requireInflatesToEnd(layout.dataPath, layout.start, bytes, job) - bytes;
     if (layout.encoding == Encoding::Raw && fromEnd) layout.start = fileBytes - bytes;
     if (layout.encoding == Encoding::Raw && !fromEnd && stored > bytes)
         layout.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");

@@ -1,11 +1,11 @@
 // Headerless data: the layout comes from the command line or the import dialog.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
 #include "volume/formats/samples.h"
+#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -40,9 +40,8 @@ std::uint64_t stepBytes(const VolumeSource& source) {
     if (layout.dims.x < 1 || layout.dims.y < 1 || layout.dims.z < 1)
         throw UsageError("a volume has at least one voxel along each axis", path, "correct the layout",
                          Remedy::CorrectRawLayout);
-    for (int a = 0; a < 3; ++a)
-        if (!(layout.spacing[a] > 0) || !std::isfinite(layout.spacing[a]))
-            throw UsageError("the spacing must be positive and finite", path, "correct it", Remedy::GiveSpacing);
+    if (const std::string wrong = geometryProblem(layout.spacing, Vec3(0)); !wrong.empty())
+        throw UsageError(wrong, path, "correct it", Remedy::GiveSpacing);
     const std::int64_t sizes[] = {layout.dims.x, layout.dims.y, layout.dims.z};
     const std::uint64_t bytesPer = bytesPerSample(layout.type);
     return valueCount(path, sizes, bytesPer) * bytesPer;

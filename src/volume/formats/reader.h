@@ -24,7 +24,8 @@ public:
     virtual FileContents describe(const VolumeSource& source, const JobControl& job) const = 0;
     /// Reads source.path (an existing file that is not empty): samples of source.step and source.array, geometry,
     /// source.missing and source.component. The window, title and format are left to the caller. Of a file with several
-    /// steps, nothing behind the one that is read need be there.
+    /// steps, nothing behind the one that is read need be there, unless it is compressed: the checksum stands at the
+    /// end.
     virtual Volume read(const VolumeSource& source, const JobControl& job) const = 0;
 };
 

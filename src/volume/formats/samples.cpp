@@ -18,6 +18,7 @@
 #include "volume/excerpt.h"
 #include "volume/formats/byte_source.h"
 #include "volume/formats/inflate_index.h"
+#include "volume/spacing.h"
 
 namespace pellucid {
 
@@ -54,9 +55,25 @@ auto withType(ValueType type, const Use& use) {
 /// 64-bit integers have no sample type of their own.
 template <class T>
 using KeptType = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, double, T>;
-/// Scaled integers are no integers.
+/// Whether floats tell all scaled values of an integer type apart: their steps are no longer than those of the values.
 template <class T>
-using ScaledType = std::conditional_t<sizeof(T) == 8, double, float>;
+bool floatsTellApart(const ValueScaling& scaling) {
+    const double step = std::abs(scaling.slope), most = std::ldexp(step, 8 * sizeof(T)) + std::abs(scaling.intercept);
+    return most <= std::ldexp(step, std::numeric_limits<float>::digits);
+}
+
+/// Calls use(Kept{}) with the type that values of T are kept in: their own, or scaled, since scaled integers are no
+/// integers, the shortest that keeps them.
+template <class T, class Use>
+void withKeptType(const std::optional<ValueScaling>& scaling, const Use& use) {
+    if (!scaling) return use(KeptType<T>{});
+    if constexpr (sizeof(T) < sizeof(float)) {
+        if (floatsTellApart<T>(*scaling)) return use(float{});
+    } else if constexpr (std::is_same_v<T, float>) {
+        return use(float{});
+    }
+    use(double{});
+}
 
 template <class T>
 SampleType sampleTypeOf() {
@@ -428,7 +445,7 @@ FileContents contentsOf(const FileLayout& layout) {
     contents.dims = selection.dims;
     withType(layout.type, [&](auto zero) {
         using T = decltype(zero);
-        contents.type = layout.scaling ? sampleTypeOf<ScaledType<T>>() : sampleTypeOf<KeptType<T>>();
+        withKeptType<T>(layout.scaling, [&](auto kept) { contents.type = sampleTypeOf<decltype(kept)>(); });
     });
     contents.components = static_cast<int>(std::min(selection.components, kMost));
     contents.steps = static_cast<int>(std::min(selection.steps, kMost));
@@ -456,9 +473,8 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
     const std::string& path = source.path;
     const Selection selection = selectionOf(layout, source.component, source.step);
     const Geometry geometry{selection.dims, layout.spacing, layout.origin, layout.directions, layout.frame};
-    for (int a = 0; a < 3; ++a)
-        if (!(geometry.spacing[a] > 0) || !std::isfinite(geometry.spacing[a]) || !std::isfinite(geometry.origin[a]))
-            throw FileError("spacing must be positive and finite, origin finite", path, "correct the header");
+    if (const std::string wrong = geometryProblem(geometry.spacing, geometry.origin); !wrong.empty())
+        throw FileError(wrong, path, "correct the header, or write it in another unit");
     if (!(std::abs(glm::determinant(geometry.directions)) > 1e-6))
         throw FileError("the directions of the axes lie in one plane", path, "correct the header");
     if (source.component < 0 || static_cast<std::uint64_t>(source.component) >= selection.components)
@@ -492,10 +508,7 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
             read = readAs<T, Kept>(layout, selection, plan, source, job);
         };
         if (std::is_integral_v<T> && sizeof(T) == 8) notices.emplace_back("64-bit integers are kept as 64-bit floats");
-        if (layout.scaling)
-            readTo(ScaledType<T>{});
-        else
-            readTo(KeptType<T>{});
+        withKeptType<T>(layout.scaling, readTo);
     });
     job.report(0.9);
     Volume volume(plan.geometryOf(geometry), std::move(read.samples), source.missing);

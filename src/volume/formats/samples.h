@@ -74,7 +74,7 @@ std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
 std::uint64_t valuesUpTo(const FileLayout& layout, int step);
 
 /// requireInflates() of the layout's stream. Where the file has several steps, layout.index is made, and no byte is
-/// looked at twice as long as the file stays the same.
+/// checked twice as long as the file stays the same.
 void requireInflated(FileLayout& layout, std::uint64_t wanted, const JobControl& job);
 
 /// What the layout says that can be chosen of.

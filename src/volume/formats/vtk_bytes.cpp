@@ -185,12 +185,10 @@ std::size_t ZlibBlocks::read(char* to, std::size_t count) {
         m_unpackedLeft -= piece - m_stream.avail_out;
     }
     // The last block's checksum is looked at with its last byte.
-    if (!m_failed && m_unpackedLeft == 0 && m_block + 1 == m_blocks.size() && !endBlock() &&
-        m_block < m_blocks.size()) {
-        m_failed = true;
-        return done == 0 ? 0 : done - 1;
-    }
-    return done;
+    if (!m_failed && m_unpackedLeft == 0 && m_block + 1 == m_blocks.size())
+        m_failed = !endBlock() && m_block < m_blocks.size();
+    // A block may turn out to be damaged when all that was asked for has come out of it.
+    return m_failed && done == count && count > 0 ? count - 1 : done;
 }
 
 std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job) {

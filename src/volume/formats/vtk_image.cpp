@@ -83,9 +83,7 @@ void checkRoot(const XmlTag& tag, const std::string& type, const std::string& pa
 void checkIsXml(const std::string& path) {
     const std::string head = fileHead(path, 1024);
     const std::size_t begin = head.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-    if (begin == std::string::npos || head[begin] != '<')
-        throw FileError("this is not a VTK XML file but " + describeContent(head), path,
-                        "give it the suffix of its own format", Remedy::GiveRawLayout);
+    if (begin == std::string::npos || head[begin] != '<') throw notOfFormat("a VTK XML file", path, head);
 }
 
 /// The byte behind the "_" that appended data begin with.
