@@ -36,7 +36,7 @@ public:
     Field field(const MeasureInput& input, FieldKind kind, int feature = -1, const JobControl& job = {});
     /// Who hides whom.
     OcclusionMatrix occlusion(const MeasureInput& input, const JobControl& job = {});
-    /// `limits`: one per feature, or empty. The answer is made visible, see makeVisible().
+    /// `limits`: one per feature, or empty.
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                             const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
