@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "optimize/boxed_step.h"
@@ -20,6 +21,7 @@ constexpr int kSpread = 64;                            ///< starts, where it is 
 constexpr std::size_t kRefined = 3;                    ///< of them, that are followed
 constexpr double kLeastSpread = 1e-4, kMostSpread = 3; ///< their optical depths
 constexpr double kContent = 0.5;                       ///< part of a goal below which less F is no gain
+constexpr double kFarStrength = 0.3;                   ///< likewise, that are worth another search
 constexpr double kNearStrength = 0.1;                  ///< ln of coverages that are as good as equal
 constexpr double kShareStep = 0.1;                     ///< of ln τ, for differences of shares
 constexpr double kLogStep = 0.05;                      ///< of ln τ, for differences of coverages
@@ -191,28 +193,29 @@ bool NewtonSearch::isThere(const Place& place, const Weights& weights) const {
            (weights.strength == 0 || place.miss < kNearStrength);
 }
 
-/// Of the places on the volume: what is above the floors, where they count, before what is not; those whose F is good
-/// enough are alike, and the one of the wanted strength is taken.
-NewtonSearch::Place NewtonSearch::bestOf(const Weights& weights) const {
-    const auto rank = [&](const Place& p) {
-        const double f = std::isnan(p.state.objective) ? 1e9 : p.state.objective;
-        return 100 * (weights.floor > 0 && p.lack > kShownLack ? p.lack : 0) + std::max(f, m_goalDistance) +
-               (m_goal ? 1e-4 * std::min(p.miss, 5.0) : 0.1 * std::min(f, m_goalDistance));
-    };
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < m_places.size(); ++i)
-        if (rank(m_places[i]) < rank(m_places[best])) best = i;
-    return m_places[best];
+/// Small is good: what is above the floors, where they count, comes before what is not; where F is good enough places
+/// are alike, and the one nearest to the wanted strength is taken.
+double NewtonSearch::rank(const Place& place, bool floors) const {
+    const double f = std::isnan(place.state.objective) ? 1e9 : place.state.objective;
+    const double goal = goalOf(static_cast<std::size_t>(place.state.level));
+    return 100 * (floors && place.lack > kShownLack ? place.lack : 0) + std::max(f, goal) +
+           (m_goal ? 1e-4 * std::min(place.miss, 5.0) : 0.1 * std::min(f, goal));
+}
+
+/// Of the places on the volume.
+NewtonSearch::Place NewtonSearch::bestOf(bool floors) const {
+    return *std::min_element(m_places.begin(), m_places.end(),
+                             [&](const Place& a, const Place& b) { return rank(a, floors) < rank(b, floors); });
 }
 
 NewtonSearch::Place NewtonSearch::nearest() const {
-    Place best = bestOf({});
+    Place best = bestOf(false);
     // Unless another strength was asked for, nothing that is farther from the targets than the start is an answer.
     return m_options.coverage || best.state.objective <= start().state.objective ? best : start();
 }
 
 NewtonSearch::Place NewtonSearch::visible() const {
-    Place best = bestOf({.floor = 1});
+    Place best = bestOf(true);
     const bool startShows = start().lack <= std::max(best.lack, kShownLack);
     return m_options.coverage || !startShows || best.state.objective <= start().state.objective ? best : start();
 }
@@ -238,8 +241,8 @@ NewtonSearch::Point NewtonSearch::inside(Point x) const {
     return x;
 }
 
-/// The same with all optical depths times one factor, so that the picture has about the wanted strength.
-NewtonSearch::Point NewtonSearch::atStrength(const Point& x) const {
+/// The same with all optical depths times one factor, so that the picture has about the wanted coverage times `part`.
+NewtonSearch::Point NewtonSearch::atStrength(const Point& x, double part) const {
     if (!m_goal) return x;
     std::vector<Point> points{x};
     for (double change = -8; change <= 5; change += 0.5) {
@@ -250,9 +253,10 @@ NewtonSearch::Point NewtonSearch::atStrength(const Point& x) const {
                     std::clamp(opacityAt(logDepth(x[f]) + change), m_limits[f].lowest, m_limits[f].highest);
     }
     const std::vector<Coverage> looks = m_goal->looks(points, PictureGoal::Rays::Some);
+    const auto off = [&](const Coverage& look) { return std::abs(m_goal->excess(look) - std::log(part)); };
     std::size_t best = 0;
     for (std::size_t i = 1; i < points.size(); ++i)
-        if (m_goal->miss(looks[i]) < m_goal->miss(looks[best]) - 0.1) best = i;
+        if (off(looks[i]) < off(looks[best]) - 0.1) best = i;
     return points[best];
 }
 
@@ -356,15 +360,20 @@ std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, cons
 /// Downhill on the level of `at`, until it is there if that goes. `borrowed`: the derivatives are those of a coarser
 /// copy, which will do for as long as they bring F down fast; what is seen on the way mends them.
 NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, bool borrowed) {
-    constexpr int kFailures = 3, kSlowMoves = 4, kStrengthMoves = 1;
+    constexpr int kFailures = 3, kSlowMoves = 4;
+    constexpr double kStronger = 0.85; // of the distance from the wanted strength that a move leaves which is for that
     constexpr double kSlow = 0.96; // of the score that a move leaves
     constexpr double kFast = 0.1;  // likewise
     const auto level = static_cast<std::size_t>(at.place.state.level);
     double caution = 1;
-    int failures = 0, slow = 0, forStrength = 0;
+    int failures = 0, slow = 0;
+    double miss = std::numeric_limits<double>::infinity(); // where shares were met before
     bool known = true; // the derivatives at at.place
     while (!isThere(at.place, weights) && mayMove(level) && failures < kFailures && slow < kSlowMoves) {
-        if (isThere(at.place, {weights.floor, 0}) && ++forStrength > kStrengthMoves) break;
+        if (isThere(at.place, {weights.floor, 0})) {
+            if (at.place.miss > kStronger * miss) break;
+            miss = at.place.miss;
+        }
         m_job.throwIfStopped();
         if (!known) at = linearize(level, at.place.state.opacity);
         known = true;
@@ -411,10 +420,18 @@ std::vector<NewtonSearch::Weights> NewtonSearch::phases(bool floors) const {
     return {{0, 0.05}, {0, 0.005}, {0, 5e-4}};
 }
 
+/// Where a feature has become solid its derivatives are tiny, and it stays so. In a faint picture shares go with
+/// opacities, and the way from there to a stronger one is short.
+std::vector<NewtonSearch::Point> NewtonSearch::startsFor(const Point& x) const {
+    constexpr double kFainter = 0.3;
+    if (!m_goal) return {x};
+    return {atStrength(x, 1), atStrength(x, kFainter)};
+}
+
 /// The best of `starts`, followed downhill on the coarsest copy and from there to finer ones, but for the volume.
 NewtonSearch::Place NewtonSearch::onCopies(const std::vector<Point>& starts, bool floors) {
     const std::vector<Weights> weights = phases(floors);
-    const auto better = [&](const Place& a, const Place& b) { return isBetter(a, b, weights.back()); };
+    const auto better = [&](const Place& a, const Place& b) { return rank(a, floors) < rank(b, floors); };
     const auto down = [&](Linear at, bool borrowed) {
         Place place = at.place;
         for (const Weights& w : weights) {
@@ -550,7 +567,7 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
     const Point& start = starts.front();
     const Point x = inside(start);
     const bool coarse = m_levels.size() > 1;
-    const auto done = [&] { return bestOf({}).state.objective < m_goalDistance || !mayMove(0); };
+    const auto done = [&] { return bestOf(false).state.objective < m_goalDistance || !mayMove(0); };
     const auto down = [&](Linear at) {
         for (const Weights& weights : phases(false)) {
             const Place place = descend(std::move(at), weights);
@@ -560,7 +577,7 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
     };
     std::optional<Linear> first;
     if (coarse && mayMove(0)) {
-        refine(onCopies({atStrength(x)}, false), start, false);
+        refine(onCopies(startsFor(x), false), start, false);
     } else if (x == start && mayMove(0)) { // the first move is one on the volume, and needs the derivatives there
         first = linearize(0, x);
         m_places.push_back(first->place);
@@ -572,10 +589,12 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
     if (starts.size() > 1) evaluate(0, {starts.begin() + 1, starts.end()});
     if (isThere(m_places.front(), {0, m_goal ? 1.0 : 0.0}) || !mayMove(0)) return;
     if (coarse && done()) return;
-    down(first ? std::move(*first) : linearize(0, coarse ? x : atStrength(x)));
+    down(first ? std::move(*first) : linearize(0, coarse ? x : atStrength(x, 1)));
+    const auto isStrong = [&] { return bestOf(false).miss < kFarStrength; };
+    if (m_goal && !coarse && done() && !isStrong() && mayMove(0)) down(linearize(0, startsFor(x).back()));
     for (std::size_t i = 1; i < starts.size() && !done(); ++i) down(linearize(0, starts[i]));
     if (done() || !m_options.restarts) return;
-    for (const Place& p : spread(coarse ? 1 : 0, bestOf({}).state.opacity, {})) {
+    for (const Place& p : spread(coarse ? 1 : 0, bestOf(false).state.opacity, {})) {
         if (done()) return;
         down(linearize(0, p.state.opacity));
     }
@@ -586,10 +605,10 @@ void NewtonSearch::look(const Point& x) { evaluate(0, {x}); }
 void NewtonSearch::toFloors(const std::vector<Point>& starts) {
     if (!m_goal || !mayMove(0)) return;
     std::vector<Point> from;
-    for (const Point& x : starts) from.push_back(atStrength(inside(x)));
+    for (const Point& x : starts) from.push_back(atStrength(inside(x), 1));
     if (m_levels.size() > 1) {
         refine(onCopies(from, true), starts.front(), true);
-        if (bestOf({.floor = 1}).lack <= kShownLack) return;
+        if (bestOf(true).lack <= kShownLack) return;
     }
     const std::vector<Weights> weights = phases(true);
     std::vector<Place> places = evaluate(0, from);

@@ -80,10 +80,12 @@ private:
     double goalOf(std::size_t level) const; ///< F that is good enough
     bool isBetter(const Place& a, const Place& b, const Weights& weights) const;
     const Place& start() const { return m_places.front(); }
-    Place bestOf(const Weights& weights) const;
+    double rank(const Place& place, bool floors) const;
+    Place bestOf(bool floors) const;
     std::vector<Weights> phases(bool floors) const;
     Point inside(Point x) const;
-    Point atStrength(const Point& x) const;
+    Point atStrength(const Point& x, double part) const;
+    std::vector<Point> startsFor(const Point& x) const;
     std::vector<Point> candidates(const Linear& at, const GoalRows& rows, double caution) const;
     Point stepped(const Linear& at, const GoalRows& rows, const Step& step) const;
     Place descend(Linear at, const Weights& weights, bool borrowed = false);

@@ -331,12 +331,13 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     };
     /// Becomes the answer.
     const auto take = [&](const NewtonSearch::Place& place) {
-        const auto same = std::find_if(result.history.rbegin(), result.history.rend(), [&](const OptimizeState& s) {
-            return s.level == 0 && s.opacity == place.state.opacity;
-        });
-        if (same == result.history.rend()) arrive(place.state);
-        const auto from = same == result.history.rend() ? result.history.rbegin() : same;
-        result.best = static_cast<std::size_t>(result.history.rend() - from) - 1;
+        std::size_t i = result.history.size();
+        while (i > 0 && !(result.history[i - 1].level == 0 && result.history[i - 1].opacity == place.state.opacity)) --i;
+        if (i == 0) {
+            arrive(place.state);
+            i = result.history.size();
+        }
+        result.best = i - 1;
     };
     std::optional<PictureGoal> goal;
     if (problem.rays && problem.rays->rays() > 0)
