@@ -159,6 +159,7 @@ Answer run(const Options& o, Progress& progress) {
     const auto tell = [&](const OptimizeState& state) {
         progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
     };
+    const auto known = knownAnswers(*scene.session.runs, normalizedTargets(targets, scene.tf.features.size()));
     OptimizeResult result;
     if (o.scene.camera.best) {
         ViewWorkspace views;
@@ -170,7 +171,7 @@ Answer run(const Options& o, Progress& progress) {
         scene.session.camera = scene.camera;
         result = std::move(found.result);
     } else {
-        result = workspace.optimize(input, targets, limits, options, job, tell);
+        result = workspace.optimize(input, targets, limits, options, job, tell, known);
     }
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
@@ -182,9 +183,9 @@ Answer run(const Options& o, Progress& progress) {
     addProfile(json, input.settings);
     if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     std::vector<std::string> remarks;
-    if (result.history[result.best].objective >= options.tolerance) {
+    if (result.history[result.best].objective >= options.tolerance && result.reason != StopReason::Visible) {
         const Verdict verdict =
-            workspace.explain(input, targets, limits, options, result, progress.phase("explaining"));
+            workspace.explain(input, targets, limits, options, result, progress.phase("explaining"), known);
         for (const std::string& sentence : verdict.sentences) text += sentence + "\n";
         json["verdict"] = jsonFromVerdict(verdict, scene.tf);
         remarks = verdict.sentences;

@@ -225,7 +225,8 @@ Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, c
 
 OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
                                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
-                                   const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
+                                   const JobControl& job, const std::function<void(const OptimizeState&)>& watch,
+                                   const std::vector<std::vector<double>>& known) {
     return guarded(
         [&] {
             VisibilityEngine& e = engine(input);
@@ -236,6 +237,7 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             steps.publishedSteps = input.settings.profile == Profile::Published;
             std::vector<std::unique_ptr<VwsFunction>> held;
             OptimizeProblem problem{function, targets, limits};
+            problem.known = known;
             problem.copies = [&] {
                 held = coarserFunctions(input, options, {job.stop, {}});
                 std::vector<const VwsFunction*> copies;

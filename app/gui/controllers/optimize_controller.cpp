@@ -54,7 +54,7 @@ OptimizeController::OptimizeController(Workbench& bench)
                                             [this, task, state, number = move++] { showMove(task, number, state); });
               };
               OptimizeResult result =
-                  workspace.optimize(task.input, task.targets, task.limits, task.options, {job.stop, {}}, watch);
+                  workspace.optimize(task.input, task.targets, task.limits, task.options, {job.stop, {}}, watch, task.known);
               if (result.reason == StopReason::Cancelled) throw Cancelled{};
               return result;
           },
@@ -63,7 +63,7 @@ OptimizeController::OptimizeController(Workbench& bench)
       m_explaining(
           [&workspace = bench.workspace()](const Question& q, const JobControl& job) {
               return workspace.explain(q.task.input, q.task.targets, q.task.limits, q.task.options, q.found,
-                                       {job.stop, {}});
+                                       {job.stop, {}}, q.task.known);
           },
           [this](const Question&, Verdict& verdict) {
               QStringList sentences;
@@ -133,7 +133,8 @@ void OptimizeController::start() {
     m_explaining.cancel();
     const About about = present();
     begin({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
-           *store.session().optimize});
+           *store.session().optimize,
+           knownAnswers(*store.session().runs, normalizedTargets(about.targets, about.targets.size()))});
 }
 
 void OptimizeController::takeExact() {

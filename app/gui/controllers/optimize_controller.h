@@ -70,6 +70,7 @@ private:
         std::vector<double> targets;
         std::vector<OpacityLimits> limits;
         OptimizeOptions options;
+        std::vector<std::vector<double>> known; ///< answers of earlier runs for the same targets
         int number = 0;
         RunStart start() const { return {tf, input.view.camera, input.view.clipping, input.settings, options, limits}; }
     };
