@@ -8,6 +8,7 @@
 #include "parse.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
+#include "session/target_presets.h"
 
 namespace pellucid::cli {
 
@@ -132,6 +133,8 @@ private:
         };
         BenchCase main = caseOf(m_mainTf, scene.tf, m_rows);
         main.nineFeatures = true;
+        for (const TargetPreset preset : {TargetPreset::Equal, TargetPreset::Diagonal, TargetPreset::InsideOut})
+            main.targets.emplace_back(name(preset), presetTargets(preset, scene.tf, *scene.session.goals));
         std::vector<BenchCase> cases{std::move(main)};
         if (!m_options.scene.tf.spec) {
             const std::set<BenchRow> rows = both(m_rows, {BenchRow::Sweep, BenchRow::Jacobian, BenchRow::Optimize});
@@ -192,10 +195,23 @@ private:
         add("refine500_over_render", refined, main(BenchRow::Render, threads), 1, "<= 0.05");
         if (const BenchResult* const optimized = main(BenchRow::Optimize, threads, 8))
             add("optimize_over_sweeps", optimized, sweep8, optimized->extra.at("iterations").get<double>(), "<= 3");
+        if (std::vector<double> sweeps = wholeInSweeps(threads); !sweeps.empty()) {
+            std::sort(sweeps.begin(), sweeps.end());
+            all.push_back({"optimize_whole_median_sweeps", sweeps[sweeps.size() / 2], "<= 4"});
+            all.push_back({"optimize_whole_most_sweeps", sweeps.back(), "<= 6"});
+        }
         add("newton_over_optimize", main(BenchRow::OptimizeNewton, threads), main(BenchRow::Optimize, threads), 1,
             "<= 0.5");
         if (const auto flat = flatness(threads)) all.push_back({"flatness", *flat, "<= 1.25"});
         return all;
+    }
+
+    std::vector<double> wholeInSweeps(int threads) const {
+        std::vector<double> sweeps;
+        for (const BenchResult& r : m_results.rows)
+            if (r.row == BenchRow::OptimizeWhole && r.threads == threads && r.extra.contains("sweeps"))
+                sweeps.push_back(r.extra["sweeps"].get<double>());
+        return sweeps;
     }
 
     /// Largest time per voxel over the smallest, of the cubes; empty where there are not two.
@@ -229,6 +245,10 @@ private:
             if (r.row == BenchRow::Jacobian) label += ", " + std::to_string(*r.features) + " features";
             if (r.row == BenchRow::Optimize || r.row == BenchRow::OptimizeNewton)
                 label += ", " + j["iterations"].dump() + " moves";
+            if (r.row == BenchRow::OptimizeWhole) {
+                label += ", " + j["target"].get<std::string>();
+                if (j.contains("sweeps")) label += ", " + fixedText(j["sweeps"], 1) + " sweeps";
+            }
             table.add({label, r.volume, r.tf.value_or(""), r.engine, std::to_string(r.threads), secondsText(r.seconds),
                        secondsText(r.cpuSeconds), fixedText(j["ns_per_voxel"], 2), fixedText(j["gb_per_s"], 2),
                        fixedText(100 * j["memcpy_share"].get<double>(), 1) + " %"});
@@ -303,7 +323,7 @@ Command addBench(CLI::App& program) {
         *app, "--only", "ROW,...",
         [o](const std::string& text, const std::string& option) { o->only = parseRows(text, option); },
         "only these rows of the table: setup, saliency, saliency-direct, sweep, slices, jacobian, optimize, "
-        "optimize-newton, refine, refine-500, refine-direct, render");
+        "optimize-newton, optimize-whole, refine, refine-500, refine-direct, render");
     addValue(
         *app, "--repeat", "N",
         [o](const std::string& text, const std::string& option) {

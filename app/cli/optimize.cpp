@@ -24,7 +24,7 @@ namespace {
 struct SearchOptions {
     std::optional<SearchMethod> method;
     std::optional<Direction> direction;
-    bool normalize = false, noCoarse = false, noRestarts = false;
+    bool normalize = false, noCoarse = false, noRestarts = false, exactShares = false;
     std::optional<double> b, step, tolerance, coverage;
     std::optional<int> maxIterations;
 
@@ -39,6 +39,7 @@ struct SearchOptions {
         options.step = step.value_or(options.step);
         options.tolerance = tolerance.value_or(options.tolerance);
         options.maxIterations = maxIterations.value_or(options.maxIterations);
+        options.exactShares = exactShares || options.exactShares;
         if (coverage) options.coverage = coverage;
         return options;
     }
@@ -77,10 +78,14 @@ struct Seconds {
     double saliency = 0, search = 0, total = 0;
 };
 
-/// "on target" and invisible do not stand together without this.
-std::string faintLine(const OptimizeResult& r) {
-    if (!r.seen->faint) return {};
-    return (r.converged() ? "on target, but faint: " : "faint: ") + faintText(r) + "\n";
+/// What the answer looks like, where that is not what was asked for.
+std::string seenLines(const OptimizeResult& r) {
+    std::string text;
+    if (const std::string kept = keptText(r); !kept.empty())
+        text += kept + " --exact-shares gives " + (r.reason == StopReason::Visible ? "them" : "these") + ".\n";
+    if (const std::string faint = faintText(r); !faint.empty())
+        text += (r.converged() ? "On target, but faint: " : "Faint: ") + faint + "\n";
+    return text;
 }
 
 /// Those of the session, and over them what is given.
@@ -103,13 +108,10 @@ std::string textOf(const OptimizeResult& r, const std::string& engine, const Sec
         table.add({r.tf.features[i].name, fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
                    fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
                    fixedText(r.seen->coverage.covers[i], 4)});
-    const double coverage = r.seen->coverage.coverage, strongest = r.seen->strongest;
-    return table.text() + "coverage " + fixedText(coverage, 4) +
-           (strongest > coverage ? ", up to " + fixedText(strongest, 4) + " with these shares" : "") + "\n" +
-           faintLine(r) + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
+    return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + "\n" + seenLines(r) + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
            name(r.reason) + " after " + std::to_string(r.iterations()) + " iterations, " +
            (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " on coarser volumes, " : "") +
-           (r.densitySteps() > 0 ? std::to_string(r.densitySteps()) + " steps along equal shares, " : "") +
+           (r.laterSteps() > 0 ? std::to_string(r.laterSteps()) + " more so that it can be seen, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
            secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) + ", total " +
            secondsText(seconds.total) + "\n";
@@ -157,6 +159,7 @@ Answer run(const Options& o, Progress& progress) {
     const auto tell = [&](const OptimizeState& state) {
         progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
     };
+    const auto known = knownAnswers(*scene.session.runs, normalizedTargets(targets, scene.tf.features.size()));
     OptimizeResult result;
     if (o.scene.camera.best) {
         ViewWorkspace views;
@@ -168,7 +171,7 @@ Answer run(const Options& o, Progress& progress) {
         scene.session.camera = scene.camera;
         result = std::move(found.result);
     } else {
-        result = workspace.optimize(input, targets, limits, options, job, tell);
+        result = workspace.optimize(input, targets, limits, options, job, tell, known);
     }
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     result.tf = withShownOpacities(scene.tf, result.history[result.best].opacity);
@@ -180,9 +183,9 @@ Answer run(const Options& o, Progress& progress) {
     addProfile(json, input.settings);
     if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     std::vector<std::string> remarks;
-    if (result.history[result.best].objective >= options.tolerance) {
+    if (result.history[result.best].objective >= options.tolerance && result.reason != StopReason::Visible) {
         const Verdict verdict =
-            workspace.explain(input, targets, limits, options, result, progress.phase("explaining"));
+            workspace.explain(input, targets, limits, options, result, progress.phase("explaining"), known);
         for (const std::string& sentence : verdict.sentences) text += sentence + "\n";
         json["verdict"] = jsonFromVerdict(verdict, scene.tf);
         remarks = verdict.sentences;
@@ -230,7 +233,11 @@ void SearchOptions::add(CLI::App& app) {
     addValue(
         app, "--coverage", "C",
         [this](const std::string& text, const std::string& option) { coverage = parseRealAbove(text, option, 0, 1); },
-        "mean alpha of the picture, moved to at equal shares (default with newton: as strong as they allow)");
+        "mean alpha of the picture, as near as equal shares come to it (default with newton: that of the start, but "
+        "from 0.2 to 0.7)");
+    app.add_flag("--exact-shares", exactShares,
+                 "shares alone count; without it the picture has a coverage of at least 0.2, and a cover of 0.02 of what "
+                 "is wanted");
     addValue(
         app, "--max-iterations", "N",
         [this](const std::string& text, const std::string& option) {

@@ -60,7 +60,7 @@ Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& option
            {"stopped", name(r.reason)},
            {"iterations", r.iterations()},
            {"coarse_iterations", r.coarseIterations()},
-           {"density_steps", r.densitySteps()},
+           {"later_steps", r.laterSteps()},
            {"evaluations", r.evaluations},
            {"spread_starts", r.spreadStarts},
            {"best", r.best},
@@ -79,20 +79,29 @@ Json jsonFromOptimization(const OptimizeResult& r, const OptimizeOptions& option
     return j;
 }
 
+namespace {
+
+Json jsonFromShares(const SeenShares& shares) {
+    return {{"vws", shares.vws},
+            {"opacity", shares.opacity},
+            {"objective", shares.objective},
+            {"coverage", shares.look.coverage},
+            {"covers", shares.look.covers}};
+}
+
+} // namespace
+
 void addSeen(Json& json, const OptimizeResult& r) {
-    json["coverage"] = r.seen->coverage.coverage;
-    json["covers"] = r.seen->coverage.covers;
-    json["strongest_coverage"] = r.seen->strongest;
-    if (!r.seen->faint) return;
-    const Faintness& f = *r.seen->faint;
-    Json& faint = json["faint"] = {
-        {"picture", f.picture}, {"features", f.features}, {"limiting", f.limiting}, {"text", faintText(r)}};
-    if (f.remedy)
-        faint["visible"] = {{"target", f.remedy->shares},
-                            {"vws", f.remedy->vws},
-                            {"opacity", f.remedy->opacity},
-                            {"coverage", f.remedy->coverage.coverage},
-                            {"covers", f.remedy->coverage.covers}};
+    const Seen& seen = *r.seen;
+    json["coverage"] = seen.coverage.coverage;
+    json["covers"] = seen.coverage.covers;
+    if (seen.exact) {
+        json["exact"] = jsonFromShares(*seen.exact);
+        json["exact"]["text"] = keptText(r);
+    }
+    if (!seen.faint && seen.unseen.empty()) return;
+    Json& faint = json["faint"] = {{"picture", seen.faint}, {"features", seen.unseen}, {"text", faintText(r)}};
+    if (seen.visible) faint["visible"] = jsonFromShares(*seen.visible);
 }
 
 Json jsonFromView(const Camera& camera, const Geometry& geometry) {

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "engines/renderer_probe.h"
+#include "render/cpu/cpu_engine.h"
 #include "render/gl/gl_engines.h"
 
 namespace pellucid {
@@ -52,6 +53,12 @@ std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_pt
     default:
         return makeCpuEngine(std::move(volume), quality);
     }
+}
+
+std::unique_ptr<VisibilityEngine> makeCopyEngine(EngineChoice choice, std::shared_ptr<const Volume> volume) {
+    if (choice == EngineChoice::Gl) return makeGlEngine(std::move(volume));
+    if (choice != EngineChoice::Auto) return makeDraftEngine(std::move(volume));
+    return gpuElseCpu<VisibilityEngine>([&] { return makeGlEngine(volume); }, [&] { return makeDraftEngine(volume); });
 }
 
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume) {

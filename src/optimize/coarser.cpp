@@ -76,21 +76,24 @@ WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, co
 
 CoarserVolumes::CoarserVolumes(std::shared_ptr<const Volume> volume, const MakeEngine& make, const JobControl& job)
     : m_full(std::move(volume)) {
+    const auto add = [&](std::shared_ptr<const Volume> copy) {
+        job.throwIfStopped();
+        m_levels.push_back({copy, make(copy), {}});
+    };
+    if (m_full->size() < kSampledFinely) add(m_full);
     const Volume* finer = m_full.get();
     while (finer->size() > kSmallest && m_levels.size() < kMost) {
-        Level level;
-        level.volume = halved(*finer, job);
-        job.throwIfStopped();
-        level.engine = make(level.volume);
-        m_levels.push_back(std::move(level));
+        add(halved(*finer, job));
         finer = m_levels.back().volume.get();
     }
 }
 
 void CoarserVolumes::setWeights(const WeightFields& weights, const JobControl& job) {
+    m_weights = &weights;
     const WeightFields* finer = &weights;
     const Volume* volume = m_full.get();
     for (Level& level : m_levels) {
+        if (level.volume == m_full) continue;
         level.weights = halvedWeights(*finer, *volume, job);
         finer = &level.weights;
         volume = level.volume.get();
@@ -101,7 +104,8 @@ std::vector<std::unique_ptr<VwsFunction>> CoarserVolumes::functions(const View& 
                                                                     const VwsOptions& options) const {
     std::vector<std::unique_ptr<VwsFunction>> all;
     for (const Level& level : m_levels)
-        all.push_back(std::make_unique<EngineVws>(*level.engine, view, base, level.weights, options));
+        all.push_back(std::make_unique<EngineVws>(
+            *level.engine, view, base, level.volume == m_full ? *m_weights : level.weights, options));
     return all;
 }
 

@@ -16,19 +16,22 @@ std::shared_ptr<const Volume> halved(const Volume& volume, const JobControl& job
 /// The weights of halved(volume), of those of the volume: means over the same voxels. Throws Cancelled.
 WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, const JobControl& job = {});
 
-/// The copies of one volume, with an engine and weights each. None of small volumes.
+/// The copies of one volume, with an engine and weights each.
 class CoarserVolumes {
 public:
     using MakeEngine = std::function<std::unique_ptr<VisibilityEngine>(std::shared_ptr<const Volume>)>;
-    /// Halves until there are at most kSmallest voxels. Throws Cancelled, and what `make` does.
+    /// Halves while there are more than kSmallest voxels: far coarser ones mislead. The first copy of a volume that engines sample finely because it
+    /// is small (below kSampledFinely) is the volume itself: what `make` gives is much faster there. Throws Cancelled,
+    /// and what `make` does.
     CoarserVolumes(std::shared_ptr<const Volume> volume, const MakeEngine& make, const JobControl& job = {});
 
-    static constexpr std::size_t kSmallest = 64 * 64 * 64;
-    static constexpr std::size_t kMost = 3; ///< copies
+    static constexpr std::size_t kSampledFinely = 128 * 128 * 128;
+    static constexpr std::size_t kSmallest = 1'500'000;
+    static constexpr std::size_t kMost = 5; ///< copies
 
     std::size_t size() const { return m_levels.size(); }
     const Volume& volume(std::size_t level) const { return *m_levels[level].volume; }
-    /// Those of the volume, which sums are to be weighted by from now on. Throws Cancelled.
+    /// Those of the volume, which sums are to be weighted by from now on; kept as a reference. Throws Cancelled.
     void setWeights(const WeightFields& weights, const JobControl& job = {});
     /// W of each copy, the finest first; they refer to this.
     std::vector<std::unique_ptr<VwsFunction>> functions(const View& view, const TransferFunction& base,
@@ -38,9 +41,10 @@ private:
     struct Level {
         std::shared_ptr<const Volume> volume;
         std::unique_ptr<VisibilityEngine> engine;
-        WeightFields weights;
+        WeightFields weights; ///< empty: those of the volume
     };
     std::shared_ptr<const Volume> m_full;
+    const WeightFields* m_weights = nullptr; ///< of the volume
     std::vector<Level> m_levels;
 };
 

@@ -1,16 +1,27 @@
 #include "optimize/coverage.h"
 
+#include <algorithm>
+
 namespace pellucid {
 
-std::vector<Coverage> coverageOf(const RayBundle& rays, const std::vector<TransferFunction>& tfs) {
+std::vector<char> drawnFeatures(const TransferFunction& tf) {
+    const std::vector<double> opacity = featureOpacities(tf);
+    std::vector<char> drawn;
+    for (std::size_t f = 0; f < opacity.size(); ++f) drawn.push_back(!tf.features[f].hidden && opacity[f] > 0);
+    if (std::none_of(drawn.begin(), drawn.end(), [](char d) { return d; })) drawn.assign(drawn.size(), 1);
+    return drawn;
+}
+
+std::vector<Coverage> coverageOf(const RayBundle& rays, const std::vector<TransferFunction>& tfs,
+                                 const std::vector<char>& wanted, int every) {
     std::vector<Coverage> all;
     all.reserve(tfs.size());
-    for (RayBundle::Appearance& a : rays.appearances(tfs)) all.push_back({a.alpha, std::move(a.covers)});
+    for (RayBundle::Appearance& a : rays.appearances(tfs, wanted, every)) all.push_back({a.alpha, std::move(a.covers)});
     return all;
 }
 
 Coverage coverageOf(const RayBundle& rays, const TransferFunction& tf) {
-    return coverageOf(rays, std::vector<TransferFunction>{tf})[0];
+    return coverageOf(rays, std::vector<TransferFunction>{tf}, drawnFeatures(tf))[0];
 }
 
 } // namespace pellucid

@@ -38,10 +38,10 @@ class Tracer {
 public:
     Tracer(const DensityProblem& problem, const std::vector<double>& start, const JobControl& job)
         : m_problem(problem), m_along(problem.coarse ? *problem.coarse : problem.full), m_depths(problem.limits, start),
-          m_job(job) {}
+          m_drawn(drawnFeatures(withFeatureOpacities(problem.full.base(), start))), m_job(job) {}
 
     const LogDepths& depths() const { return m_depths; }
-    std::vector<OptimizeState> history; ///< objectives still 0
+    const std::vector<char>& drawn() const { return m_drawn; }
     int evaluations = 0;
 
     double coverageAt(const Numbers& y) const { return coveragesAt({y})[0]; }
@@ -49,7 +49,7 @@ public:
         std::vector<TransferFunction> tfs;
         for (const Numbers& y : places) tfs.push_back(withFeatureOpacities(m_problem.full.base(), m_depths.opacity(y)));
         std::vector<double> coverages;
-        for (const auto& a : m_problem.rays.appearances(tfs)) coverages.push_back(a.alpha);
+        for (const auto& a : m_problem.rays.appearances(tfs, m_drawn)) coverages.push_back(a.alpha);
         return coverages;
     }
 
@@ -118,7 +118,6 @@ private:
         m_job.throwIfStopped();
         VwsFunction::Linear linear = m_along.jacobian(m_depths.opacity(y), {m_job.stop, {}});
         ++evaluations;
-        history.push_back({0, linear.vws, m_depths.opacity(y), m_problem.coarse ? m_problem.coarseLevel : 0});
         m_job.report(1 - 1.0 / (1 + evaluations / 8.0));
         return linear;
     }
@@ -189,6 +188,7 @@ private:
     const DensityProblem& m_problem;
     const VwsFunction& m_along;
     const LogDepths m_depths;
+    const std::vector<char> m_drawn; ///< features that the coverage is of
     const JobControl& m_job;
     Numbers m_shares;
 };
@@ -226,101 +226,6 @@ std::vector<Place> spread(const std::vector<Place>& path) {
     }
     return places;
 }
-
-/// The place of a coverage on an ascending path.
-Place placeOf(const std::vector<Place>& path, double coverage) {
-    if (coverage <= path.front().coverage) return path.front();
-    for (std::size_t i = 1; i < path.size(); ++i)
-        if (coverage <= path[i].coverage) {
-            const double low = std::log(std::max(path[i - 1].coverage, 1e-9));
-            const double t = (std::log(coverage) - low) / (std::log(path[i].coverage) - low);
-            return between(path[i - 1], path[i], t);
-        }
-    return path.back();
-}
-
-/// Steps with derivatives that are nearly right, and mended by what steps do (Broyden's update).
-class Corrector {
-public:
-    Corrector(const DensityProblem& problem, Tracer& tracer, const std::vector<double>& shares, const JobControl& job)
-        : m_problem(problem), m_tracer(tracer), m_depths(tracer.depths()), m_shares(shares), m_job(job) {}
-
-    struct Found {
-        Numbers y;
-        std::vector<double> opacity, vws;
-        double objective = 1e9;
-        double miss = 0; ///< |ln| of coverage over the wanted one
-    };
-    std::vector<OptimizeState> history;
-    int evaluations = 0;
-
-    Found evaluated(const std::vector<double>& x) {
-        m_job.throwIfStopped();
-        Found found{m_depths.from(x), x,
-                    m_problem.full.evaluate(std::vector<std::vector<double>>{x}, {m_job.stop, {}})[0], 0, 0};
-        ++evaluations;
-        found.objective = objectiveOf(found.vws, m_shares);
-        history.push_back({0, found.vws, x, 0});
-        return found;
-    }
-
-    /// From `place` to the shares: with `hold`, unknowns at their highest stay there; with `coverage`, to that too.
-    Found correct(const Place& place, bool hold, std::optional<double> coverage) {
-        Rows derivative = place.derivative;
-        std::vector<char> held(place.y.size(), 0);
-        for (std::size_t i = 0; i < held.size(); ++i) held[i] = hold && m_depths.isHighest(place.y, i);
-        Found best, at = evaluated(m_depths.opacity(m_depths.clamped(place.y)));
-        for (int n = 0;; ++n) {
-            Rows rows = derivative;
-            Numbers residual = differences(at.vws, m_shares);
-            if (coverage) addCoverage(at, *coverage, rows, residual);
-            if (quality(at) < quality(best)) best = at;
-            if ((at.objective < kHeld && at.miss < 0.003) || n == kCorrections) break;
-            Numbers lowest, highest;
-            for (std::size_t i = 0; i < at.y.size(); ++i) {
-                lowest.push_back(held[i] ? 0 : std::max(-kMostCorrection, m_depths.lowest()[i] - at.y[i]));
-                highest.push_back(held[i] ? 0 : std::min(kMostCorrection, m_depths.highest()[i] - at.y[i]));
-            }
-            const Numbers d = leastSquaresStep(rows, residual, lowest, highest, kRidge);
-            double square = 0;
-            for (const double v : d) square += v * v;
-            if (square < 1e-16) break;
-            Found next = evaluated(m_depths.opacity(m_depths.clamped(plus(at.y, 1, d))));
-            for (std::size_t r = 0; r < derivative.size(); ++r) {
-                double predicted = 0;
-                for (std::size_t i = 0; i < d.size(); ++i) predicted += derivative[r][i] * d[i];
-                for (std::size_t i = 0; i < d.size(); ++i)
-                    derivative[r][i] += (next.vws[r] - at.vws[r] - predicted) * d[i] / square;
-            }
-            at = std::move(next);
-        }
-        return best;
-    }
-
-private:
-    static double quality(const Found& f) { return std::max(f.objective, 0.1 * f.miss); }
-
-    void addCoverage(Found& at, double coverage, Rows& rows, Numbers& residual) const {
-        constexpr double kDelta = 0.02, kWeight = 0.3;
-        std::vector<Numbers> places{at.y};
-        for (std::size_t i = 0; i < at.y.size(); ++i) {
-            places.push_back(at.y);
-            places.back()[i] += kDelta;
-        }
-        const std::vector<double> c = m_tracer.coveragesAt(places);
-        Numbers row;
-        for (std::size_t i = 0; i < at.y.size(); ++i) row.push_back(kWeight * std::log(c[i + 1] / c[0]) / kDelta);
-        rows.push_back(std::move(row));
-        residual.push_back(kWeight * std::log(c[0] / coverage));
-        at.miss = std::abs(std::log(c[0] / coverage));
-    }
-
-    const DensityProblem& m_problem;
-    Tracer& m_tracer;
-    const LogDepths& m_depths;
-    const std::vector<double>& m_shares;
-    const JobControl& m_job;
-};
 
 } // namespace
 
@@ -414,7 +319,7 @@ DensityCurve densityCurve(const DensityProblem& problem, const std::vector<doubl
 
     std::vector<TransferFunction> tfs;
     for (const Place& p : places) tfs.push_back(withFeatureOpacities(problem.full.base(), depths.opacity(p.y)));
-    const std::vector<Coverage> coverages = coverageOf(problem.rays, tfs);
+    const std::vector<Coverage> coverages = coverageOf(problem.rays, tfs, tracer.drawn());
     std::vector<DensityPoint> all;
     std::size_t best = 0;
     for (std::size_t p = 0; p < places.size(); ++p) {
@@ -430,56 +335,6 @@ DensityCurve densityCurve(const DensityProblem& problem, const std::vector<doubl
             curve.points.push_back(std::move(all[p]));
     job.report(1);
     return curve;
-}
-
-DensityAnswer atDensity(const DensityProblem& problem, const std::vector<double>& targets,
-                        const std::vector<double>& start, std::optional<double> coverage, const JobControl& job) {
-    Tracer tracer(problem, start, job);
-    const LogDepths& depths = tracer.depths();
-    const std::vector<Place> path = tracer.trace(coverage ? 1e-3 : 1);
-    DensityAnswer answer;
-    answer.strongestCoverage = path.back().coverage;
-
-    std::vector<double> shares = targets;
-    Corrector corrector(problem, tracer, shares, job);
-    // Of the start itself: one that is more opaque than LogDepths goes differs from depths.start().
-    Corrector::Found found = corrector.evaluated(start);
-    double allowed = 0.001;
-    if (found.objective >= allowed) { // out of reach: its own shares are the closest
-        shares = found.vws;
-        found.objective = 0;
-        allowed = 0.0005;
-    }
-    const double from =
-        coverage ? std::clamp(*coverage, path.front().coverage, path.back().coverage) : path.back().coverage;
-    const double own = tracer.coverageAt(depths.start());
-    constexpr double kParts[]{1, 0.75, 0.5, 0.25};
-    for (const double part : kParts) {
-        const double wanted = own * std::pow(from / own, part); // nearer to the start where the end is not reached
-        if (path.size() < 2 || !(own > 0)) break;
-        const Place place = placeOf(path, wanted);
-        const bool asked = coverage && part == 1;
-        std::optional<Corrector::Found> next;
-        if (!coverage && part == 1) next = corrector.correct(place, true, {});
-        if (!next || next->objective >= allowed)
-            next = corrector.correct(place, false, asked ? std::optional(wanted) : std::nullopt);
-        if (next->objective < allowed && (coverage || tracer.coverageAt(next->y) > 0.98 * own)) {
-            found = *next;
-            break;
-        }
-    }
-
-    answer.point = {found.opacity, found.vws, objectiveOf(found.vws, targets), {}};
-    answer.point.coverage = coverageOf(problem.rays, withFeatureOpacities(problem.full.base(), answer.point.opacity));
-    if (!coverage) answer.strongestCoverage = answer.point.coverage.coverage;
-    answer.strongestCoverage = std::max(answer.strongestCoverage, answer.point.coverage.coverage);
-    answer.evaluations = tracer.evaluations + corrector.evaluations;
-    answer.history = std::move(tracer.history);
-    answer.history.insert(answer.history.end(), corrector.history.begin(), corrector.history.end());
-    answer.history.push_back({0, answer.point.vws, answer.point.opacity, 0});
-    for (OptimizeState& s : answer.history) s.objective = objectiveOf(s.vws, targets);
-    job.report(1);
-    return answer;
 }
 
 } // namespace pellucid

@@ -44,7 +44,6 @@ struct DensityProblem {
     const VwsFunction* coarse = nullptr;    ///< the same features of a coarser volume: steps are taken there
     const RayBundle& rays;                  ///< of the view
     std::vector<OpacityLimits> limits = {}; ///< one per feature; empty: none has any
-    int coarseLevel = 1;                    ///< of `coarse`, see OptimizeState::level
 };
 
 /// Both ends of the curve through `start`: up to where an opacity meets a bound and shares cannot be held any more, or
@@ -52,20 +51,5 @@ struct DensityProblem {
 /// empty: those of `start`. Features of opacity 0 stay so. Deterministic. Throws as the functions do, Cancelled.
 DensityCurve densityCurve(const DensityProblem& problem, const std::vector<double>& start,
                           const std::vector<double>& shares = {}, const JobControl& job = {});
-
-/// The picture of the curve that is wanted.
-struct DensityAnswer {
-    DensityPoint point;
-    double strongestCoverage = 0;       ///< the largest of the curve
-    std::vector<OptimizeState> history; ///< what was evaluated on the way, `start` not included
-    int evaluations = 0;
-};
-
-/// From `start`, an answer of optimize(), along the curve of equal shares to the wanted coverage, (0,1], or as near as
-/// the curve comes; empty: to the strong end. F from `targets` stays below 0.001 where it is at the start, else within
-/// 0.001 of what it is there. Throws as densityCurve().
-DensityAnswer atDensity(const DensityProblem& problem, const std::vector<double>& targets,
-                        const std::vector<double>& start, std::optional<double> coverage = {},
-                        const JobControl& job = {});
 
 } // namespace pellucid

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "optimize/boxed_step.h"
@@ -12,21 +13,23 @@ namespace {
 
 constexpr double kLeastOpacity = 1e-7;                 ///< of a peak that is wanted: a logarithm has no place for 0
 constexpr double kMostOpacity = 1 - 2e-7;              ///< beyond, extinction is capped (docs/method.md, "Visibility")
-constexpr double kCoarseGoal = 2e-4;                   ///< F on coarser volumes
+constexpr double kCoarseGoal = 2e-3;                   ///< F on coarser volumes
 constexpr double kTinyShare = 1e-3;                    ///< added to shares before their logarithm is taken
 constexpr int kMostCoarseMoves = 40;                   ///< of one descent
 constexpr std::size_t kBatch = 8;                      ///< candidates in one call of the engine
 constexpr int kSpread = 64;                            ///< starts, where it is stuck
 constexpr std::size_t kRefined = 3;                    ///< of them, that are followed
 constexpr double kLeastSpread = 1e-4, kMostSpread = 3; ///< their optical depths
+constexpr double kContent = 0.5;                       ///< part of a goal below which less F is no gain
+constexpr double kFarStrength = 0.3;                   ///< likewise, that are worth another search
+constexpr double kNearStrength = 0.1;                  ///< ln of coverages that are as good as equal
+constexpr double kShareStep = 0.1;                     ///< of ln τ, for differences of shares
+constexpr double kLogStep = 0.05;                      ///< of ln τ, for differences of coverages
 
 double depthOf(double x) { return -std::log1p(-std::clamp(x, kLeastOpacity, kMostOpacity)); }
 double logDepth(double x) { return std::log(depthOf(x)); }
 double logOpacity(double x) { return std::log(std::max(x, kLeastOpacity)); }
-
-bool lower(const OptimizeState& a, const OptimizeState& b) {
-    return a.objective < b.objective || (std::isnan(b.objective) && !std::isnan(a.objective));
-}
+double opacityAt(double logDepth) { return -std::expm1(-std::exp(logDepth)); }
 
 /// The n-th number of the van der Corput sequence to a prime base: dimensions of Halton's lattice.
 double halton(int n, int base) {
@@ -38,28 +41,76 @@ double halton(int n, int base) {
 constexpr int kPrimes[] = {2,  3,  5,  7,  11, 13, 17, 19, 23, 29,  31,  37,  41,  43,  47,  53,
                            59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107, 109, 113, 127, 131};
 
+/// Of the derivatives `d` at x₀, which after the move to x₁ are to say what was seen there (Broyden).
+void mend(std::vector<std::vector<double>>& d, const OptimizeState& from, const OptimizeState& to) {
+    double square = 0;
+    std::vector<double> dx;
+    for (std::size_t j = 0; j < to.opacity.size(); ++j) {
+        dx.push_back(to.opacity[j] - from.opacity[j]);
+        // Opacities of 0.001 and of 0.9 move alike.
+        const double scale = std::max(to.opacity[j], from.opacity[j]);
+        square += scale > 0 ? dx[j] * dx[j] / (scale * scale) : 0;
+    }
+    if (square < 1e-12) return;
+    for (std::size_t i = 0; i < d.size(); ++i) {
+        double seen = to.vws[i] - from.vws[i];
+        for (std::size_t j = 0; j < dx.size(); ++j) seen -= d[i][j] * dx[j];
+        for (std::size_t j = 0; j < dx.size(); ++j) {
+            const double scale = std::max(to.opacity[j], from.opacity[j]);
+            if (scale > 0) d[i][j] += seen * dx[j] / (scale * scale) / square;
+        }
+    }
+}
+
+/// By all that was seen around `at`, the nearest last, so that it counts most.
+void mendBySeen(std::vector<std::vector<double>>& d, const NewtonSearch::Place& at,
+                const std::vector<NewtonSearch::Place>& seen) {
+    constexpr double kFar = 1; // ln of opacities: beyond, derivatives are others
+    std::vector<std::pair<double, const OptimizeState*>> near;
+    for (const auto& place : seen) {
+        double distance = 0;
+        for (std::size_t j = 0; j < at.state.opacity.size(); ++j)
+            if (place.state.opacity[j] != at.state.opacity[j])
+                distance = std::max(distance,
+                                    std::abs(logOpacity(place.state.opacity[j]) - logOpacity(at.state.opacity[j])));
+        if (distance > 0 && distance < kFar) near.emplace_back(distance, &place.state);
+    }
+    std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (const auto& [distance, state] : near) mend(d, at.state, *state);
+}
+
 } // namespace
 
 NewtonSearch::NewtonSearch(const std::vector<const VwsFunction*>& levels, const std::vector<double>& targets,
                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
-                           const JobControl& job, Arrive arrive)
-    : m_levels(levels), m_targets(targets), m_limits(limits), m_options(options), m_job(job),
-      m_arrive(std::move(arrive)), m_goal(std::min(kNewtonGoal, options.tolerance)) {
+                           const PictureGoal* goal, const JobControl& job, Arrive arrive)
+    : m_levels(levels), m_targets(targets), m_limits(limits), m_options(options), m_goal(goal), m_job(job),
+      m_arrive(std::move(arrive)), m_goalDistance(std::min(kNewtonGoal, options.tolerance)) {
     // A target of 0 is met by the lowest opacity, and x is not moved any more.
     for (std::size_t f = 0; f < targets.size(); ++f)
         m_held.push_back(limits[f].locked || targets[f] == 0 || limits[f].lowest == limits[f].highest);
 }
 
-OptimizeState NewtonSearch::stateOf(const std::vector<double>& vws, const Point& x, std::size_t level) const {
-    return {objectiveOf(vws, m_targets), vws, x, static_cast<int>(level)};
+NewtonSearch::Place NewtonSearch::placeOf(const std::vector<double>& vws, const Point& x, std::size_t level,
+                                          Coverage look) const {
+    Place place{{objectiveOf(vws, m_targets), vws, x, static_cast<int>(level)}, std::move(look)};
+    if (!m_goal) return place;
+    place.lack = m_goal->lack(place.look);
+    place.miss = m_goal->miss(place.look);
+    for (const double s : m_goal->shortfalls(place.look)) place.shortfall += s > 0 ? s * s : 0;
+    return place;
 }
 
-std::vector<OptimizeState> NewtonSearch::evaluate(std::size_t level, const std::vector<Point>& candidates) {
+std::vector<NewtonSearch::Place> NewtonSearch::evaluate(std::size_t level, const std::vector<Point>& candidates) {
     const auto vws = m_levels[level]->evaluate(candidates, m_job);
     m_evaluations += static_cast<int>(candidates.size());
-    std::vector<OptimizeState> states;
-    for (std::size_t i = 0; i < candidates.size(); ++i) states.push_back(stateOf(vws[i], candidates[i], level));
-    return states;
+    std::vector<Coverage> looks(candidates.size());
+    if (m_goal) looks = m_goal->looks(candidates, level == 0 ? PictureGoal::Rays::All : PictureGoal::Rays::Some);
+    std::vector<Place> places;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+        places.push_back(placeOf(vws[i], candidates[i], level, std::move(looks[i])));
+    if (level == 0) m_places.insert(m_places.end(), places.begin(), places.end());
+    return places;
 }
 
 NewtonSearch::Linear NewtonSearch::linearize(std::size_t level, const Point& x) {
@@ -68,16 +119,105 @@ NewtonSearch::Linear NewtonSearch::linearize(std::size_t level, const Point& x) 
         if (!m_held[f]) capped[f] = std::min(x[f], kMostOpacity);
     ++m_evaluations;
     VwsFunction::Linear linear = m_levels[level]->jacobian(capped, m_job);
-    return {stateOf(linear.vws, x, level), std::move(linear.derivative)};
+    Coverage look;
+    if (m_goal) look = m_goal->looks({x}, level == 0 ? PictureGoal::Rays::All : PictureGoal::Rays::Some)[0];
+    return {placeOf(linear.vws, x, level, std::move(look)), std::move(linear.derivative)};
+}
+
+NewtonSearch::GoalRows NewtonSearch::goalRows(const Place& at, const Weights& weights) const {
+    GoalRows rows;
+    if (!m_goal || (weights.floor == 0 && weights.strength == 0)) return rows;
+    const std::size_t n = m_targets.size();
+    std::vector<Point> points{at.state.opacity};
+    std::vector<std::size_t> moved;
+    for (std::size_t j = 0; j < n; ++j) {
+        if (m_held[j]) continue;
+        const double y = logDepth(at.state.opacity[j]), forth = opacityAt(y + kLogStep);
+        points.push_back(at.state.opacity);
+        points.back()[j] = forth <= kMostOpacity ? forth : opacityAt(y - kLogStep);
+        moved.push_back(j);
+    }
+    const std::vector<Coverage> looks = m_goal->looks(points, PictureGoal::Rays::Some);
+    std::vector<std::vector<double>> values; // per point: those that count, the strength last
+    const std::vector<double> here = m_goal->shortfalls(looks[0]);
+    for (const Coverage& look : looks) {
+        std::vector<double>& v = values.emplace_back();
+        const std::vector<double> shortfalls = m_goal->shortfalls(look);
+        for (std::size_t k = 0; k < here.size(); ++k)
+            if (weights.floor > 0 && here[k] > 0) v.push_back(weights.floor * shortfalls[k]);
+        if (weights.strength > 0) v.push_back(weights.strength * m_goal->excess(look));
+    }
+    for (std::size_t k = 0; k < values[0].size(); ++k) {
+        rows.residuals.push_back(values[0][k]);
+        std::vector<double>& row = rows.byLogDepth.emplace_back(n, 0.0);
+        for (std::size_t p = 0; p < moved.size(); ++p) {
+            const double change = logDepth(points[p + 1][moved[p]]) - logDepth(at.state.opacity[moved[p]]);
+            if (change != 0) row[moved[p]] = (values[p + 1][k] - values[0][k]) / change;
+        }
+    }
+    return rows;
 }
 
 void NewtonSearch::arrive(const OptimizeState& state) {
     ++(state.level == 0 ? m_moves : m_coarseMoves);
-    m_arrive(state);
+    if (m_places.empty())
+        m_waiting.push_back(state);
+    else
+        m_arrive(state);
 }
 
 bool NewtonSearch::mayMove(std::size_t level) const {
     return level == 0 ? m_moves < m_options.maxIterations : m_coarseMoves < kMostCoarseMoves;
+}
+
+double NewtonSearch::goalOf(std::size_t level) const {
+    return level == 0 ? m_goalDistance : kCoarseGoal;
+}
+
+double NewtonSearch::score(const Place& place, const Weights& weights) const {
+    // What is good enough is not paid for with strength.
+    const double f = std::isnan(place.state.objective)
+                         ? place.state.objective
+                         : std::max(place.state.objective, kContent * goalOf(static_cast<std::size_t>(place.state.level)));
+    return f * f + weights.floor * weights.floor * place.shortfall +
+           weights.strength * weights.strength * place.miss * place.miss;
+}
+
+bool NewtonSearch::isBetter(const Place& a, const Place& b, const Weights& weights) const {
+    const double here = score(a, weights), there = score(b, weights);
+    return here < there || (std::isnan(there) && !std::isnan(here));
+}
+
+bool NewtonSearch::isThere(const Place& place, const Weights& weights) const {
+    return place.state.objective < goalOf(static_cast<std::size_t>(place.state.level)) && (weights.floor == 0 || place.lack < kShownLack) &&
+           (weights.strength == 0 || place.miss < kNearStrength);
+}
+
+/// Small is good: what is above the floors, where they count, comes before what is not; where F is good enough places
+/// are alike, and the one nearest to the wanted strength is taken.
+double NewtonSearch::rank(const Place& place, bool floors) const {
+    const double f = std::isnan(place.state.objective) ? 1e9 : place.state.objective;
+    const double goal = goalOf(static_cast<std::size_t>(place.state.level));
+    return 100 * (floors && place.lack > kShownLack ? place.lack : 0) + std::max(f, goal) +
+           (m_goal ? 1e-4 * std::min(place.miss, 5.0) : 0.1 * std::min(f, goal));
+}
+
+/// Of the places on the volume.
+NewtonSearch::Place NewtonSearch::bestOf(bool floors) const {
+    return *std::min_element(m_places.begin(), m_places.end(),
+                             [&](const Place& a, const Place& b) { return rank(a, floors) < rank(b, floors); });
+}
+
+NewtonSearch::Place NewtonSearch::nearest() const {
+    Place best = bestOf(false);
+    // Unless another strength was asked for, nothing that is farther from the targets than the start is an answer.
+    return m_options.coverage || best.state.objective <= start().state.objective ? best : start();
+}
+
+NewtonSearch::Place NewtonSearch::visible() const {
+    Place best = bestOf(true);
+    const bool startShows = start().lack <= std::max(best.lack, kShownLack);
+    return m_options.coverage || !startShows || best.state.objective <= start().state.objective ? best : start();
 }
 
 /// Where the search begins: targets of 0 at the lowest opacity, wanted features above 0.
@@ -101,18 +241,37 @@ NewtonSearch::Point NewtonSearch::inside(Point x) const {
     return x;
 }
 
-NewtonSearch::Point NewtonSearch::stepped(const Linear& at, const Step& step) const {
+/// The same with all optical depths times one factor, so that the picture has about the wanted coverage times `part`.
+NewtonSearch::Point NewtonSearch::atStrength(const Point& x, double part) const {
+    if (!m_goal) return x;
+    std::vector<Point> points{x};
+    for (double change = -8; change <= 5; change += 0.5) {
+        points.push_back(x);
+        for (std::size_t f = 0; f < x.size(); ++f)
+            if (!m_held[f] && x[f] > 0)
+                points.back()[f] =
+                    std::clamp(opacityAt(logDepth(x[f]) + change), m_limits[f].lowest, m_limits[f].highest);
+    }
+    const std::vector<Coverage> looks = m_goal->looks(points, PictureGoal::Rays::Some);
+    const auto off = [&](const Coverage& look) { return std::abs(m_goal->excess(look) - std::log(part)); };
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+        if (off(looks[i]) < off(looks[best]) - 0.1) best = i;
+    return points[best];
+}
+
+NewtonSearch::Point NewtonSearch::stepped(const Linear& at, const GoalRows& rows, const Step& step) const {
     const std::size_t n = m_targets.size();
     const auto logOf = step.variable == Variable::Depth ? logDepth : logOpacity;
     std::vector<double> byLog(n, 0.0); // dx/dy
     for (std::size_t j = 0; j < n; ++j) {
-        const double x = std::clamp(at.state.opacity[j], kLeastOpacity, kMostOpacity);
+        const double x = std::clamp(at.place.state.opacity[j], kLeastOpacity, kMostOpacity);
         if (!m_held[j]) byLog[j] = step.variable == Variable::Depth ? (1 - x) * depthOf(x) : x;
     }
     Matrix a(n, std::vector<double>(n, 0.0));
     std::vector<double> g(n, 0.0), lowest(n, 0.0), highest(n, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
-        const double w = at.state.vws[i], t = m_targets[i];
+        const double w = at.place.state.vws[i], t = m_targets[i];
         // ln((W + ε)/(t + ε)), weighted by t: linear in y where features do not hide each other.
         const bool ratio = step.residual == Residual::Ratio;
         const double scale = ratio ? 1 / (w + kTinyShare) : 1, weight = ratio ? t + kTinyShare : 1;
@@ -124,17 +283,29 @@ NewtonSearch::Point NewtonSearch::stepped(const Linear& at, const Step& step) co
             for (std::size_t k = 0; k < n; ++k) a[j][k] += d * at.derivative[i][k] * byLog[k] * scale;
         }
     }
+    for (std::size_t r = 0; r < rows.residuals.size(); ++r)
+        for (std::size_t j = 0; j < n; ++j) {
+            if (byLog[j] == 0) continue;
+            // From ln τ to the variable at hand.
+            const auto slope = [&](std::size_t k) {
+                const double x = std::clamp(at.place.state.opacity[k], kLeastOpacity, kMostOpacity);
+                return byLog[k] == 0 ? 0 : rows.byLogDepth[r][k] * byLog[k] / ((1 - x) * depthOf(x));
+            };
+            const double d = slope(j);
+            g[j] += d * rows.residuals[r];
+            for (std::size_t k = 0; k < n; ++k) a[j][k] += d * slope(k);
+        }
     double most = 0;
     for (std::size_t j = 0; j < n; ++j) most = std::max(most, a[j][j]);
     for (std::size_t j = 0; j < n; ++j) {
         a[j][j] += std::max(step.damping * most, 1e-200);
         if (m_held[j]) continue;
-        const double y = logOf(at.state.opacity[j]);
+        const double y = logOf(at.place.state.opacity[j]);
         lowest[j] = std::clamp(logOf(m_limits[j].lowest) - y, -step.reach, 0.0);
         highest[j] = std::clamp(logOf(m_limits[j].highest) - y, 0.0, step.reach);
     }
     const std::vector<double> p = boxedStep(a, g, lowest, highest);
-    Point x = at.state.opacity;
+    Point x = at.place.state.opacity;
     for (std::size_t j = 0; j < n; ++j) {
         if (p[j] == 0) continue;
         const double y = std::exp(logOf(x[j]) + p[j]);
@@ -144,9 +315,12 @@ NewtonSearch::Point NewtonSearch::stepped(const Linear& at, const Step& step) co
     return x;
 }
 
-/// Steps of one batch, the boldest first; those whose shares, as the derivatives foretell them, differ by less than
-/// F/20 are one.
-std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, double caution) const {
+/// Steps of one batch, the boldest first; those whose residuals, as the derivatives foretell them, differ by less than a
+/// twentieth of what they are here count as one.
+std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, const GoalRows& rows,
+                                                          double caution) const {
+    double here = at.place.state.objective * at.place.state.objective;
+    for (const double r : rows.residuals) here += r * r;
     const auto same = [&](const Point& a, const Point& b) {
         for (const Variable variable : {Variable::Depth, Variable::Opacity}) {
             double square = 0;
@@ -154,14 +328,20 @@ std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, doub
                 double w = 0;
                 for (std::size_t j = 0; j < a.size(); ++j) {
                     if (a[j] == b[j]) continue;
-                    const double x = std::clamp(at.state.opacity[j], kLeastOpacity, kMostOpacity);
+                    const double x = std::clamp(at.place.state.opacity[j], kLeastOpacity, kMostOpacity);
                     w += at.derivative[i][j] * (variable == Variable::Depth
                                                     ? (1 - x) * depthOf(x) * (logDepth(a[j]) - logDepth(b[j]))
                                                     : x * (logOpacity(a[j]) - logOpacity(b[j])));
                 }
-                square += w * w;
+                square += w * w / static_cast<double>(a.size());
             }
-            if (std::sqrt(square / static_cast<double>(a.size())) > 0.05 * at.state.objective) return false;
+            for (const auto& row : rows.byLogDepth) {
+                double r = 0;
+                for (std::size_t j = 0; j < a.size(); ++j)
+                    if (a[j] != b[j]) r += row[j] * (logDepth(a[j]) - logDepth(b[j]));
+                square += r * r;
+            }
+            if (square > 0.05 * 0.05 * here) return false;
         }
         return true;
     };
@@ -169,37 +349,45 @@ std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, doub
     for (const auto& [damping, reach] : {std::pair{1e-7, 4.0}, {1e-3, 2.0}, {3e-2, 1.0}, {0.3, 0.4}})
         for (const Variable variable : {Variable::Depth, Variable::Opacity})
             for (const Residual residual : {Residual::Ratio, Residual::Difference}) {
-                const Point x = stepped(at, {variable, residual, damping / caution, reach * caution});
-                if (points.size() < kBatch && x != at.state.opacity &&
+                const Point x = stepped(at, rows, {variable, residual, damping / caution, reach * caution});
+                if (points.size() < kBatch && x != at.place.state.opacity &&
                     std::none_of(points.begin(), points.end(), [&](const Point& p) { return same(p, x); }))
                     points.push_back(x);
             }
     return points;
 }
 
-/// Downhill on the level of `at`, to below `goal` if that goes. `borrowed`: the derivatives are those of a coarser copy,
-/// which will do for as long as they bring F down fast.
-OptimizeState NewtonSearch::descend(Linear at, double goal, bool borrowed) {
+/// Downhill on the level of `at`, until it is there if that goes. `borrowed`: the derivatives are those of a coarser
+/// copy, which will do for as long as they bring F down fast; what is seen on the way mends them.
+NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, bool borrowed) {
     constexpr int kFailures = 3, kSlowMoves = 4;
-    constexpr double kSlow = 0.98; // of F that a move leaves
-    constexpr double kFast = 0.3;  // likewise
-    const auto level = static_cast<std::size_t>(at.state.level);
+    constexpr double kStronger = 0.85; // of the distance from the wanted strength that a move leaves which is for that
+    constexpr double kSlow = 0.96; // of the score that a move leaves
+    constexpr double kFast = 0.1;  // likewise
+    const auto level = static_cast<std::size_t>(at.place.state.level);
     double caution = 1;
     int failures = 0, slow = 0;
-    bool known = true; // the derivatives at at.state
-    while (at.state.objective >= goal && mayMove(level) && failures < kFailures && slow < kSlowMoves) {
+    double miss = std::numeric_limits<double>::infinity(); // where shares were met before
+    bool known = true; // the derivatives at at.place
+    while (!isThere(at.place, weights) && mayMove(level) && failures < kFailures && slow < kSlowMoves) {
+        if (isThere(at.place, {weights.floor, 0})) {
+            if (at.place.miss > kStronger * miss) break;
+            miss = at.place.miss;
+        }
         m_job.throwIfStopped();
-        if (!known) at = linearize(level, at.state.opacity);
+        if (!known) at = linearize(level, at.place.state.opacity);
         known = true;
-        const std::vector<Point> points = candidates(at, caution);
+        const std::vector<Point> points = candidates(at, goalRows(at.place, weights), caution);
         if (points.empty() && borrowed) {
             known = borrowed = false;
             continue;
         }
         if (points.empty()) break;
-        std::vector<OptimizeState> states = evaluate(level, points);
-        const auto best = std::min_element(states.begin(), states.end(), lower);
-        if (!lower(*best, at.state)) {
+        std::vector<Place> places = evaluate(level, points);
+        places.reserve(places.size() + 1);
+        const auto best = std::min_element(places.begin(), places.end(),
+                                           [&](const auto& a, const auto& b) { return isBetter(a, b, weights); });
+        if (!isBetter(*best, at.place, weights)) {
             if (borrowed) {
                 known = borrowed = false;
                 continue;
@@ -208,100 +396,228 @@ OptimizeState NewtonSearch::descend(Linear at, double goal, bool borrowed) {
             ++failures;
             continue;
         }
-        borrowed = borrowed && best->objective < kFast * at.state.objective;
-        slow = best->objective > kSlow * at.state.objective ? slow + 1 : 0;
+        const double left = score(*best, weights) / score(at.place, weights);
+        borrowed = borrowed && left < kFast;
+        slow = left > kSlow ? slow + 1 : 0;
         failures = 0;
         caution = std::min(1.0, caution * 3);
-        at.state = std::move(*best);
+        if (borrowed) {
+            places.push_back(at.place);
+            mendBySeen(at.derivative, *best, places);
+        }
+        at.place = *best;
         known = borrowed;
-        arrive(at.state);
+        arrive(at.place.state);
     }
-    return at.state;
+    return at.place;
 }
 
-/// From the end of a descent on a coarse level through finer ones, up to that on the volume.
-OptimizeState NewtonSearch::refined(OptimizeState from) {
-    for (int level = from.level - 1; level >= 0; --level) {
-        const auto here = static_cast<std::size_t>(level);
+/// Weights of the descents one after the other: first all count alike, so that the way is short; then what cannot be had
+/// besides the shares weighs ever less, and the floors ever more.
+std::vector<NewtonSearch::Weights> NewtonSearch::phases(bool floors) const {
+    if (!m_goal) return {{}};
+    if (floors) return {{1, 0.05}, {10, 0.005}, {30, 5e-4}};
+    return {{0, 0.05}, {0, 0.005}, {0, 5e-4}};
+}
+
+/// Where a feature has become solid its derivatives are tiny, and it stays so. In a faint picture shares go with
+/// opacities, and the way from there to a stronger one is short.
+std::vector<NewtonSearch::Point> NewtonSearch::startsFor(const Point& x) const {
+    constexpr double kFainter = 0.3;
+    if (!m_goal) return {x};
+    return {atStrength(x, 1), atStrength(x, kFainter)};
+}
+
+/// The best of `starts`, followed downhill on the coarsest copy and from there to finer ones, but for the volume.
+NewtonSearch::Place NewtonSearch::onCopies(const std::vector<Point>& starts, bool floors) {
+    const std::vector<Weights> weights = phases(floors);
+    const auto better = [&](const Place& a, const Place& b) { return rank(a, floors) < rank(b, floors); };
+    const auto down = [&](Linear at, bool borrowed) {
+        Place place = at.place;
+        for (const Weights& w : weights) {
+            m_coarseMoves = 0;
+            at.place = place;
+            place = descend(borrowed ? at : linearize(static_cast<std::size_t>(place.state.level), place.state.opacity),
+                            w, borrowed);
+            if (isThere(place, {w.floor, 0})) break;
+            borrowed = false;
+        }
+        return place;
+    };
+    std::size_t level = m_levels.size() - 1;
+    std::vector<Place> ends;
+    for (const Point& x : starts) {
+        ends.push_back(down(linearize(level, x), false));
+        if (isThere(ends.back(), weights[0])) break;
+    }
+    Place best = *std::min_element(ends.begin(), ends.end(), better);
+    if (!isThere(best, {weights.back().floor, 0}) && m_options.restarts)
+        for (const Place& p : spread(level, best.state.opacity, weights[0]))
+            if (Place end = down(linearize(level, p.state.opacity), false); better(end, best)) best = std::move(end);
+    while (--level > 0) {
         // W differs little from one level to the next, and its derivatives do, too: those of the copy are cheaper.
-        Linear at = linearize(here + 1, from.opacity);
-        at.state = evaluate(here, {from.opacity})[0];
-        m_coarseMoves = 0;
-        arrive(at.state);
-        from = descend(std::move(at), level == 0 ? m_goal : kCoarseGoal, true);
+        Linear at = linearize(level + 1, best.state.opacity);
+        std::vector<Point> points{best.state.opacity};
+        for (const Point& x : starts) points.push_back(x);
+        std::vector<Place> here = evaluate(level, points);
+        at.place = here[0];
+        arrive(at.place.state);
+        // What does not hold on the finer copy was no hint.
+        const auto first = std::min_element(here.begin(), here.end(), better);
+        best = first == here.begin() ? down(std::move(at), true) : down(linearize(level, first->state.opacity), false);
     }
-    return from;
+    return best;
 }
 
-/// The best of starts spread over all opacities, followed downhill; on the coarsest volume.
-std::vector<OptimizeState> NewtonSearch::spread(const OptimizeState& best) {
-    const std::size_t level = m_levels.size() - 1;
-    const double least = -std::expm1(-kLeastSpread), most = -std::expm1(-kMostSpread);
-    std::vector<OptimizeState> states;
+/// Starts spread over all opacities: the best few of them, on a level.
+std::vector<NewtonSearch::Place> NewtonSearch::spread(std::size_t level, const Point& best, const Weights& weights) {
+    const double least = opacityAt(std::log(kLeastSpread)), most = opacityAt(std::log(kMostSpread));
+    std::vector<Place> places;
     for (int first = 0; first < kSpread; first += static_cast<int>(kBatch)) {
         std::vector<Point> points;
         for (int p = first; p < first + static_cast<int>(kBatch); ++p) {
-            Point x = best.opacity;
+            Point x = best;
             for (std::size_t f = 0; f < x.size(); ++f) {
                 if (m_held[f]) continue;
                 const double lo = logDepth(std::max(m_limits[f].lowest, std::min(least, m_limits[f].highest)));
                 const double hi = std::max(lo, logDepth(std::min(m_limits[f].highest, most)));
-                x[f] = -std::expm1(-std::exp(lo + (hi - lo) * halton(p + 1, kPrimes[f % std::size(kPrimes)])));
-                x[f] = std::clamp(x[f], m_limits[f].lowest, m_limits[f].highest);
+                x[f] = std::clamp(opacityAt(lo + (hi - lo) * halton(p + 1, kPrimes[f % std::size(kPrimes)])),
+                                  m_limits[f].lowest, m_limits[f].highest);
             }
             points.push_back(std::move(x));
         }
-        for (OptimizeState& s : evaluate(level, points)) states.push_back(std::move(s));
+        for (Place& place : evaluate(level, points)) places.push_back(std::move(place));
     }
     m_spreadStarts += kSpread;
-    std::stable_sort(states.begin(), states.end(), lower);
-    std::vector<OptimizeState> ends;
-    for (std::size_t i = 0; i < kRefined && mayMove(level); ++i) {
-        m_coarseMoves = 0;
-        ends.push_back(descend(linearize(level, states[i].opacity), level == 0 ? m_goal : kCoarseGoal));
-        if (ends.back().objective < kCoarseGoal) break;
-    }
-    std::stable_sort(ends.begin(), ends.end(), lower);
-    return ends;
+    std::stable_sort(places.begin(), places.end(),
+                     [&](const auto& a, const auto& b) { return isBetter(a, b, weights); });
+    places.resize(std::min(places.size(), kRefined));
+    return places;
 }
 
-StopReason NewtonSearch::run(const std::vector<double>& start) {
-    const std::size_t coarsest = m_levels.size() - 1;
-    const Point x = inside(start);
-    // Where the first move is one on the volume, it needs the derivatives there.
-    std::optional<Linear> first;
-    if (coarsest == 0 && x == start) first = linearize(0, x);
-    OptimizeState best = first ? first->state : evaluate(0, {start})[0]; // on the volume
-    m_arrive(best);
-
-    const auto done = [&] { return best.objective < m_goal || !mayMove(0); };
-    const auto consider = [&](OptimizeState state) {
-        if (lower(state, best)) best = std::move(state);
-    };
-    bool spreadOut = !m_options.restarts;
-    const auto spreadFrom = [&](const OptimizeState& from) {
-        spreadOut = true;
-        return spread(from);
-    };
-    if (!done() && coarsest > 0) {
-        OptimizeState state = descend(linearize(coarsest, x), kCoarseGoal);
-        if (state.objective >= kCoarseGoal && !spreadOut) {
-            auto ends = spreadFrom(state);
-            if (!ends.empty() && lower(ends[0], state)) state = std::move(ends[0]);
+/// From the end of the copies to the volume. One batch looks there at the start, if that is not known yet, at the end
+/// of the copies, at where the difference of the last two copies says that the volume wants to be, and as far as lanes
+/// are left at what each opacity changes there: these derivatives, or those of the copy, will do for as long as moves
+/// bring F down fast.
+void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
+    const Weights weights = m_goal ? Weights{floors ? 30.0 : 0.0, 2e-3} : Weights{};
+    Linear at = linearize(1, from.state.opacity);
+    std::vector<Point> points;
+    const bool first = m_places.empty();
+    if (first) points.push_back(start);
+    points.push_back(from.state.opacity);
+    if (m_levels.size() > 2) {
+        const std::vector<double> coarser = m_levels[2]->evaluate({&from.state.opacity, 1}, m_job)[0];
+        ++m_evaluations;
+        const GoalRows rows = goalRows(at.place, weights);
+        for (const double part : {1.0, 0.5}) {
+            Linear shifted = at;
+            for (std::size_t i = 0; i < coarser.size(); ++i)
+                shifted.place.state.vws[i] += part * (at.place.state.vws[i] - coarser[i]);
+            points.push_back(stepped(shifted, rows, {Variable::Depth, Residual::Difference, 1e-7, 2.0}));
         }
-        consider(refined(std::move(state)));
-    } else if (!done()) {
-        if (!first) {
-            first = linearize(0, x);
-            arrive(first->state);
-        }
-        consider(descend(std::move(*first), m_goal));
     }
-    if (!done() && !spreadOut)
-        for (OptimizeState& end : spreadFrom(best))
-            if (!done()) consider(refined(std::move(end)));
-    if (best.objective < m_options.tolerance) return StopReason::Converged;
-    return mayMove(0) ? StopReason::NoProgress : StopReason::MaxIterations;
+    const std::size_t base = points.size() - 1;
+    std::vector<std::size_t> free;
+    for (std::size_t j = 0; j < start.size(); ++j)
+        if (!m_held[j]) free.push_back(j);
+    const bool differs = points.size() + free.size() <= kBatch;
+    if (differs)
+        for (const std::size_t j : free) {
+            const Point& x = points[base];
+            const double y = logDepth(x[j]), forth = opacityAt(y + kShareStep);
+            Point moved = x;
+            moved[j] = forth <= std::min(kMostOpacity, m_limits[j].highest)
+                           ? forth
+                           : std::max(opacityAt(y - kShareStep), m_limits[j].lowest);
+            points.push_back(std::move(moved));
+        }
+    std::vector<Place> places = evaluate(0, points);
+    if (first) {
+        begin();
+        places.erase(places.begin());
+    }
+    const auto best = std::min_element(places.begin(), places.end(),
+                                       [&](const auto& a, const auto& b) { return isBetter(a, b, weights); });
+    if (differs) {
+        const OptimizeState& here = places[base - (first ? 1 : 0)].state;
+        for (std::size_t k = 0; k < free.size(); ++k) {
+            const OptimizeState& moved = places[base + 1 - (first ? 1 : 0) + k].state;
+            const double change = moved.opacity[free[k]] - here.opacity[free[k]];
+            for (std::size_t i = 0; change != 0 && i < here.vws.size(); ++i)
+                at.derivative[i][free[k]] = (moved.vws[i] - here.vws[i]) / change;
+        }
+    } else {
+        mendBySeen(at.derivative, *best, places);
+    }
+    at.place = *best;
+    arrive(at.place.state);
+    if (!isBetter(at.place, this->start(), weights)) return; // a hint that does not hold on the volume
+    descend(std::move(at), weights, true);
+}
+
+/// The start is known: what had to wait for it goes into the history behind it.
+void NewtonSearch::begin() {
+    m_arrive(m_places.front().state);
+    for (const OptimizeState& state : m_waiting) m_arrive(state);
+    m_waiting.clear();
+}
+
+void NewtonSearch::toShares(const std::vector<Point>& starts) {
+    const Point& start = starts.front();
+    const Point x = inside(start);
+    const bool coarse = m_levels.size() > 1;
+    const auto done = [&] { return bestOf(false).state.objective < m_goalDistance || !mayMove(0); };
+    const auto down = [&](Linear at) {
+        for (const Weights& weights : phases(false)) {
+            const Place place = descend(std::move(at), weights);
+            if (place.state.objective < m_goalDistance || !mayMove(0)) return;
+            at = linearize(0, place.state.opacity);
+        }
+    };
+    std::optional<Linear> first;
+    if (coarse && mayMove(0)) {
+        refine(onCopies(startsFor(x), false), start, false);
+    } else if (x == start && mayMove(0)) { // the first move is one on the volume, and needs the derivatives there
+        first = linearize(0, x);
+        m_places.push_back(first->place);
+        begin();
+    } else {
+        evaluate(0, {start});
+        begin();
+    }
+    if (starts.size() > 1) evaluate(0, {starts.begin() + 1, starts.end()});
+    if (isThere(m_places.front(), {0, m_goal ? 1.0 : 0.0}) || !mayMove(0)) return;
+    if (coarse && done()) return;
+    down(first ? std::move(*first) : linearize(0, coarse ? x : atStrength(x, 1)));
+    const auto isStrong = [&] { return bestOf(false).miss < kFarStrength; };
+    if (m_goal && !coarse && done() && !isStrong() && mayMove(0)) down(linearize(0, startsFor(x).back()));
+    for (std::size_t i = 1; i < starts.size() && !done(); ++i) down(linearize(0, starts[i]));
+    if (done() || !m_options.restarts) return;
+    for (const Place& p : spread(coarse ? 1 : 0, bestOf(false).state.opacity, {})) {
+        if (done()) return;
+        down(linearize(0, p.state.opacity));
+    }
+}
+
+void NewtonSearch::look(const Point& x) { evaluate(0, {x}); }
+
+void NewtonSearch::toFloors(const std::vector<Point>& starts) {
+    if (!m_goal || !mayMove(0)) return;
+    std::vector<Point> from;
+    for (const Point& x : starts) from.push_back(atStrength(inside(x), 1));
+    if (m_levels.size() > 1) {
+        refine(onCopies(from, true), starts.front(), true);
+        if (bestOf(true).lack <= kShownLack) return;
+    }
+    const std::vector<Weights> weights = phases(true);
+    std::vector<Place> places = evaluate(0, from);
+    Place best = *std::min_element(places.begin(), places.end(),
+                                   [&](const auto& a, const auto& b) { return isBetter(a, b, weights.front()); });
+    for (const Weights& w : weights) {
+        if (!mayMove(0)) return;
+        best = descend(linearize(0, best.state.opacity), w);
+    }
 }
 
 } // namespace pellucid

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "optimize/newton.h"
+#include "optimize/picture_goal.h"
 
 namespace pellucid {
 
@@ -272,6 +273,8 @@ const char* name(StopReason reason) {
         return "no-progress";
     case StopReason::Cancelled:
         return "cancelled";
+    case StopReason::Visible:
+        return "visible";
     }
     return "";
 }
@@ -286,20 +289,28 @@ void OptimizeOptions::validate() const {
     if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "optimize", "correct it");
 }
 
-int OptimizeResult::densitySteps() const {
+int OptimizeResult::laterSteps() const {
     return searched == 0 ? 0 : static_cast<int>(history.size() - searched);
 }
 
 int OptimizeResult::iterations() const {
-    const auto full = std::count_if(history.begin(), history.end() - densitySteps(),
+    const auto full = std::count_if(history.begin(), history.end() - laterSteps(),
                                     [](const auto& s) { return s.level == 0; });
     return std::max(0, static_cast<int>(full) - 1);
 }
 
 int OptimizeResult::coarseIterations() const {
-    return static_cast<int>(std::count_if(history.begin(), history.end() - densitySteps(),
+    return static_cast<int>(std::count_if(history.begin(), history.end() - laterSteps(),
                                           [](const auto& s) { return s.level > 0; }));
 }
+
+namespace {
+
+SeenShares sharesOf(const NewtonSearch::Place& place) {
+    return {place.state.opacity, place.state.vws, place.state.objective, place.look};
+}
+
+} // namespace
 
 OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& options, const JobControl& job,
                         const std::function<void(const OptimizeState&)>& watch) {
@@ -309,7 +320,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     result.tf = function.base();
     result.targets = normalizedTargets(problem.targets, function.featureCount());
     const std::vector<OpacityLimits> limits = fullLimits(function, problem.limits);
-    Search search(function, result.targets, limits, options, job);
+    const std::vector<double> start = within(limits, featureOpacities(function.base()));
 
     const auto arrive = [&](const OptimizeState& state) {
         result.history.push_back(state);
@@ -318,17 +329,82 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
         if (watch) watch(result.history.back());
         job.report(options.maxIterations == 0 ? 1.0 : static_cast<double>(result.iterations()) / options.maxIterations);
     };
+    /// Becomes the answer.
+    const auto take = [&](const NewtonSearch::Place& place) {
+        std::size_t i = result.history.size();
+        while (i > 0 && !(result.history[i - 1].level == 0 && result.history[i - 1].opacity == place.state.opacity)) --i;
+        if (i == 0) {
+            arrive(place.state);
+            i = result.history.size();
+        }
+        result.best = i - 1;
+    };
+    std::optional<PictureGoal> goal;
+    if (problem.rays && problem.rays->rays() > 0)
+        goal.emplace(*problem.rays, function.base(), result.targets, limits, start, options.coverage);
+    // That profile looks along the grid and counts moves: its answers stay as they are.
+    const bool moves = options.maxIterations > 0 && !options.publishedSteps;
     std::vector<const VwsFunction*> levels{&function};
-    if (options.coarse) levels.insert(levels.end(), problem.coarser.begin(), problem.coarser.end());
-    NewtonSearch newton(levels, result.targets, limits, options, job, arrive);
+    const auto addCopies = [&] {
+        if (!options.coarse || !moves || levels.size() > 1) return;
+        const auto copies = problem.coarser.empty() && problem.copies ? problem.copies() : problem.coarser;
+        levels.insert(levels.end(), copies.begin(), copies.end());
+    };
+    Search search(function, result.targets, limits, options, job);
+    NewtonSearch newton(levels, result.targets, limits, options, goal && moves ? &*goal : nullptr, job, arrive);
+    const bool isNewton = options.method == SearchMethod::Newton;
     try {
-        const std::vector<double> start = within(limits, featureOpacities(function.base()));
-        if (options.method == SearchMethod::Newton) {
-            result.reason = newton.run(start);
+        NewtonSearch::Place nearest;
+        if (isNewton) {
+            addCopies();
+            std::vector<std::vector<double>> starts{start};
+            for (const auto& x : problem.known)
+                if (x.size() == start.size()) starts.push_back(within(limits, x));
+            newton.toShares(starts);
+            nearest = newton.nearest();
         } else {
             arrive(search.evaluate({start})[0]);
             result.reason = descend(search, result.history, result.best, options, job, arrive);
+            result.searched = result.history.size();
+            nearest.state = result.history[result.best];
+            if (goal && moves) {
+                if (options.coverage) {
+                    addCopies();
+                    newton.toShares({nearest.state.opacity});
+                } else {
+                    newton.look(nearest.state.opacity);
+                }
+                nearest = newton.nearest();
+            }
         }
+        take(nearest);
+        if (goal) result.seen = goal->seen(moves ? nearest.look : goal->looks({nearest.state.opacity})[0]);
+        if (goal && moves && nearest.lack > kShownLack) {
+            addCopies();
+            newton.toFloors({nearest.state.opacity, start});
+            const NewtonSearch::Place visible = newton.visible();
+            if (visible.lack < nearest.lack - kShownLack) {
+                if (options.exactShares) {
+                    result.seen->visible = sharesOf(visible);
+                    take(nearest);
+                } else {
+                    take(visible);
+                    result.seen = goal->seen(visible.look);
+                    result.seen->exact = sharesOf(nearest);
+                }
+            } else {
+                take(nearest);
+            }
+        }
+        const double objective = result.history[result.best].objective;
+        const bool isKept = result.seen && result.seen->exact && result.seen->exact->objective < options.tolerance;
+        if (objective < options.tolerance)
+            result.reason = StopReason::Converged;
+        else if (isKept)
+            result.reason = StopReason::Visible;
+        else if (isNewton)
+            result.reason = newton.mayMove() ? StopReason::NoProgress : StopReason::MaxIterations;
+        if (result.searched == result.history.size()) result.searched = 0;
     } catch (const Cancelled&) {
         result.reason = StopReason::Cancelled;
     }

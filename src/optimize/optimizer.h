@@ -34,9 +34,10 @@ enum class StopReason {
     Converged, ///< F < tolerance
     MaxIterations,
     NoProgress, ///< a search has not bettered its best F for several moves, or no step moves any opacity
-    Cancelled
+    Cancelled,
+    Visible ///< F < tolerance is to be had, but not with a picture in which everything wanted can be seen
 };
-const char* name(StopReason reason); ///< "converged", "max-iterations", "no-progress", "cancelled"
+const char* name(StopReason reason); ///< "converged", "max-iterations", "no-progress", "cancelled", "visible"
 
 struct OptimizeOptions {
     SearchMethod method = SearchMethod::Newton;
@@ -48,9 +49,11 @@ struct OptimizeOptions {
     int maxIterations = 200; ///< moves on the volume, ≥ 0
     bool coarse = true;      ///< Newton: the first moves on coarser volumes, where the problem has some
     bool restarts = true;    ///< Newton: where it is stuck it tries starts spread over all opacities
-    /// Mean alpha that is wanted of the picture, (0, 1]; empty: with Newton as strong as shares allow, else as it
-    /// comes.
+    /// Mean alpha that is wanted of the picture, (0, 1]; empty: with Newton that of the start, within
+    /// [kFaintCoverage, kMostCoverage], else as it comes.
     std::optional<double> coverage = {};
+    /// Shares are met even where nothing can be seen of them; false: coverage and covers have floors (picture_goal.h).
+    bool exactShares = false;
     /// Line and Parallel: the lengths 1, 2, 4 and 8 base steps (docs/method.md, "The published profile"). Follows from
     /// the profile and is kept in no session.
     bool publishedSteps = false;
@@ -79,17 +82,17 @@ struct OptimizeResult {
     std::vector<double> targets;        ///< normalised
     std::vector<OptimizeState> history; ///< the start, then each move
     std::size_t best = 0;               ///< index into history of `tf`, a state of level 0
-    /// How many states of the history the search has made; those behind them came after it, along equal shares
-    /// (makeVisible()). 0: all.
+    /// How many states of the history the search has made; those behind them came after it, so that the picture can be
+    /// seen. 0: all.
     std::size_t searched = 0;
     int evaluations = 0;                ///< of W, on any level
     int spreadStarts = 0;               ///< Newton: starts tried all over the opacities, because it was stuck
     StopReason reason = StopReason::MaxIterations;
-    std::optional<Seen> seen = {}; ///< of `tf`: of those who ask for it (visible_answer.h)
+    std::optional<Seen> seen = {}; ///< of `tf`; where the problem has rays
 
     int iterations() const;       ///< moves of the search on the volume
     int coarseIterations() const; ///< its states on coarser ones
-    int densitySteps() const;     ///< states after the search, along equal shares
+    int laterSteps() const;       ///< states after the search
     bool converged() const { return reason == StopReason::Converged; }
 };
 
@@ -100,6 +103,12 @@ struct OptimizeProblem {
     std::vector<OpacityLimits> limits = {}; ///< one per feature; empty: none has any
     /// The same features of ever coarser volumes; W is nearly that of `function`, and costs less.
     std::vector<const VwsFunction*> coarser = {};
+    /// Makes them where `coarser` is empty, when they are first needed; may be empty, too.
+    std::function<std::vector<const VwsFunction*>()> copies = {};
+    /// Of the function's view and features: what pictures look like. Null: shares are all that counts.
+    const RayBundle* rays = nullptr;
+    /// Opacities that earlier searches have come to: Newton looks at them, too, so that it never ends farther away.
+    std::vector<std::vector<double>> known = {};
 };
 
 /// `watch` is called after the start and each move, on the calling thread. Cancelling through `job` returns what is

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "base/parallel.h"
 #include "render/ray_box.h"
@@ -22,31 +21,62 @@ constexpr double kLeastStep = 0.5; // d0
 constexpr double kMeets = 0.5;     // d0 of path through a feature
 constexpr double kSolid = 0.95, kEmpty = 0.05;
 
-int binOf(double s) { return std::min(static_cast<int>(s * kBins), kBins - 1); }
 double intensityOf(int bin) { return (bin + 0.5) / kBins; }
 
-/// Trilinear, of intensities; empty where more than half of it is invalid.
+/// Trilinear, of intensities: their bin; −1 where more than half of it is invalid.
 template <class Values>
-std::optional<double> intensityAt(const Volume& volume, const Values& values, const Vec3& voxel) {
-    const Interpolated met = interpolateValid(
-        [&](std::size_t i) { return volume.intensityOfValue(static_cast<double>(values[i])); }, volume.dims(), voxel);
-    if (met.validShare < 0.5) return {};
-    return std::min(met.value, 1.0);
-}
+class BinSampler {
+public:
+    BinSampler(const Volume& volume, const Values& values)
+        : m_volume(volume), m_values(values), m_dims(volume.dims()), m_lo(volume.range().lo),
+          m_perSpan(1 / (volume.range().hi - volume.range().lo)),
+          m_simple(volume.invalidCount() == 0 && std::isfinite(m_perSpan) && m_perSpan > 0) {}
+
+    int at(const Vec3& voxel) const {
+        if (!m_simple) {
+            const Interpolated met = interpolateValid(
+                [&](std::size_t i) { return m_volume.intensityOfValue(static_cast<double>(m_values[i])); }, m_dims,
+                voxel);
+            return met.validShare < 0.5 ? -1 : binOf(met.value);
+        }
+        const TrilinearCell cell(m_dims, voxel);
+        const std::size_t sx = cell.step[0], sy = cell.step[1], sz = cell.step[2];
+        const double fx = cell.fraction[0], fy = cell.fraction[1], fz = cell.fraction[2];
+        const auto value = [&](std::size_t offset) {
+            return std::clamp((static_cast<double>(m_values[cell.corner + offset]) - m_lo) * m_perSpan, 0.0, 1.0);
+        };
+        const auto along = [&](std::size_t o) {
+            const double first = value(o);
+            return first + fx * (value(o + sx) - first);
+        };
+        const double lower = along(0), higher = along(sz);
+        const double near = lower + fy * (along(sy) - lower), far = higher + fy * (along(sz + sy) - higher);
+        return binOf(near + fz * (far - near));
+    }
+
+private:
+    static int binOf(double s) { return std::min(static_cast<int>(s * kBins), kBins - 1); }
+
+    const Volume& m_volume;
+    const Values& m_values;
+    Int3 m_dims;
+    double m_lo, m_perSpan;
+    bool m_simple; ///< all are valid, and the range is one that can be divided by
+};
 
 } // namespace
 
 RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const View& view, int pixels,
                      const JobControl& job)
     : m_features(tf.features.size()) {
-    const TfSampler sampler(tf);
+    const TfSampler opacities(tf);
     std::vector<char> kept; // what can be opaque
     for (int bin = 0; bin < kBins; ++bin) {
         const double s = intensityOf(bin);
         const int feature = featureAt(tf.features, s);
         const bool outside = feature < 0;
         m_slotOfBin.push_back(outside ? static_cast<int>(m_features) : feature);
-        kept.push_back(outside ? sampler.opacity(s) > 0 : !tf.features[static_cast<std::size_t>(feature)].hidden);
+        kept.push_back(outside ? opacities.opacity(s) > 0 : !tf.features[static_cast<std::size_t>(feature)].hidden);
     }
     const Geometry& geometry = volume.geometry();
     const double d0 = geometry.d0();
@@ -57,6 +87,7 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
     std::vector<std::vector<std::uint16_t>> rows(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
     std::visit(
         [&](const auto& samples) {
+            const BinSampler sampler(volume, samples);
             parallelFor(static_cast<std::size_t>(pixels), [&](std::size_t row) {
                 job.throwIfStopped();
                 for (int column = 0; column < pixels; ++column) {
@@ -70,9 +101,9 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
                     // as their thickness says.
                     const double first = static_cast<double>(hashOf(column, static_cast<int>(row), 0, 1) % 1024) / 1024;
                     for (double t = inside.enter + first * step; t < inside.exit; t += step)
-                        if (const auto s = intensityAt(volume, samples, ray.origin + t * ray.direction))
-                            if (const int bin = binOf(*s); kept[static_cast<std::size_t>(bin)])
-                                rows[pixel].push_back(static_cast<std::uint16_t>(bin));
+                        if (const int bin = sampler.at(ray.origin + t * ray.direction);
+                            bin >= 0 && kept[static_cast<std::size_t>(bin)])
+                            rows[pixel].push_back(static_cast<std::uint16_t>(bin));
                 }
             });
         },
@@ -97,9 +128,17 @@ int RayBundle::raysOf(int feature) const {
     return count;
 }
 
-std::vector<RayBundle::Appearance> RayBundle::appearances(const std::vector<TransferFunction>& tfs) const {
+std::vector<RayBundle::Appearance> RayBundle::appearances(const std::vector<TransferFunction>& tfs,
+                                                          const std::vector<char>& wanted, int every) const {
     std::vector<Appearance> all(tfs.size());
-    const auto rayCount = static_cast<std::size_t>(rays());
+    const auto stride = static_cast<std::size_t>(every);
+    const std::size_t rayCount = (static_cast<std::size_t>(rays()) + stride - 1) / stride;
+    const auto counts = [&](std::size_t ray) { // towards alpha
+        if (wanted.empty()) return true;
+        for (std::size_t f = 0; f < m_features; ++f)
+            if (wanted[f] && m_met[ray * m_features + f]) return true;
+        return false;
+    };
     for (std::size_t first = 0; first < tfs.size(); first += kLanes) {
         const std::size_t lanes = std::min<std::size_t>(kLanes, tfs.size() - first);
         std::vector<std::array<float, kLanes>> opacity(kBins, std::array<float, kLanes>{});
@@ -112,15 +151,19 @@ std::vector<RayBundle::Appearance> RayBundle::appearances(const std::vector<Tran
         // A slot per block of rays, added in order: the same bits for any number of threads.
         struct Sums {
             std::vector<std::array<double, kLanes>> features;
-            std::array<double, kLanes> alpha{}, translucent{};
+            std::vector<int> met;
+            std::array<double, kLanes> alpha{}, allAlpha{}, translucent{};
+            int counted = 0;
         };
         constexpr std::size_t kBlock = 128;
         std::vector<Sums> blocks((rayCount + kBlock - 1) / kBlock);
         parallelFor(blocks.size(), [&](std::size_t b) {
             Sums& sums = blocks[b];
             sums.features.assign(m_features, {});
+            sums.met.assign(m_features, 0);
             std::vector<std::array<float, kLanes>> parts(m_features + 1);
-            for (std::size_t ray = b * kBlock; ray < std::min(rayCount, (b + 1) * kBlock); ++ray) {
+            for (std::size_t n = b * kBlock; n < std::min(rayCount, (b + 1) * kBlock); ++n) {
+                const std::size_t ray = n * stride;
                 parts.assign(m_features + 1, {});
                 std::array<float, kLanes> light;
                 light.fill(1.0f);
@@ -133,30 +176,43 @@ std::vector<RayBundle::Appearance> RayBundle::appearances(const std::vector<Tran
                         light[lane] -= v;
                     }
                 }
+                const bool counted = counts(ray);
+                sums.counted += counted;
+                for (std::size_t f = 0; f < m_features; ++f) sums.met[f] += m_met[ray * m_features + f];
                 for (std::size_t lane = 0; lane < kLanes; ++lane) {
                     for (std::size_t f = 0; f < m_features; ++f)
                         sums.features[f][lane] += static_cast<double>(parts[f][lane]);
                     const double alpha = 1.0 - static_cast<double>(light[lane]);
+                    sums.allAlpha[lane] += alpha;
+                    if (!counted) continue;
                     sums.alpha[lane] += alpha;
                     sums.translucent[lane] += alpha > kEmpty && alpha < kSolid;
                 }
             }
         });
+        std::vector<int> met(m_features, 0);
+        int counted = 0;
+        for (const Sums& sums : blocks) {
+            counted += sums.counted;
+            for (std::size_t f = 0; f < m_features; ++f) met[f] += sums.met[f];
+        }
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             Appearance& a = all[first + lane];
             a.covers.assign(m_features, 0.0);
+            double alphaOfAll = 0;
             for (const Sums& sums : blocks) {
                 for (std::size_t f = 0; f < m_features; ++f) a.covers[f] += sums.features[f][lane];
+                alphaOfAll += sums.allAlpha[lane];
                 a.alpha += sums.alpha[lane];
                 a.translucent += sums.translucent[lane];
             }
             a.shares.assign(m_features, 0.0);
             for (std::size_t f = 0; f < m_features; ++f) {
-                if (a.alpha > 0) a.shares[f] = a.covers[f] / a.alpha;
-                a.covers[f] /= std::max(1, raysOf(static_cast<int>(f)));
+                if (alphaOfAll > 0) a.shares[f] = a.covers[f] / alphaOfAll;
+                a.covers[f] /= std::max(1, met[f]);
             }
-            a.alpha /= std::max<double>(1, static_cast<double>(rayCount));
-            a.translucent /= std::max<double>(1, static_cast<double>(rayCount));
+            a.alpha /= std::max(1, counted);
+            a.translucent /= std::max(1, counted);
         }
     }
     return all;

@@ -23,11 +23,13 @@ public:
     struct Appearance {
         std::vector<double> covers; ///< part of the alpha that a feature has, mean over the rays that meet it, [0,1]
         std::vector<double> shares; ///< of all alpha, that of each feature, sum ≤ 1: FV (4.5) along these rays
-        double alpha = 0;           ///< mean over the rays that meet any feature, [0,1]
+        double alpha = 0;           ///< mean over the rays that meet a wanted feature, [0,1]
         double translucent = 0;     ///< part of those rays whose alpha lies in (0.05, 0.95)
     };
-    /// Of each of `tfs`, in their order.
-    std::vector<Appearance> appearances(const std::vector<TransferFunction>& tfs) const;
+    /// Of each of `tfs`, in their order. `wanted`: per feature; empty: all are. `every`: of so many rays one is looked
+    /// at, for estimates that take a part of the time.
+    std::vector<Appearance> appearances(const std::vector<TransferFunction>& tfs,
+                                        const std::vector<char>& wanted = {}, int every = 1) const;
 
     int rays() const { return static_cast<int>(m_begins.size()) - 1; } ///< that meet any feature
     /// Whether a ray meets a feature: passes through it for at least half of d0.

@@ -1,5 +1,7 @@
 #include "optimize/visibility_words.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -7,11 +9,37 @@ namespace pellucid {
 
 namespace {
 
+constexpr double kSameShares = 0.005; ///< F below which shares read alike in per cent
+
 /// 'a', 'b' and 'c'
 std::string namesOf(const TransferFunction& tf, const std::vector<std::size_t>& features) {
     std::string text;
     for (std::size_t i = 0; i < features.size(); ++i)
         text += (i == 0 ? "" : i + 1 == features.size() ? " and " : ", ") + ("'" + tf.features[features[i]].name + "'");
+    return text;
+}
+
+/// 33 %, 33 % and 33 %
+std::string sharesText(const std::vector<double>& shares) {
+    std::string text;
+    for (std::size_t f = 0; f < shares.size(); ++f)
+        text += (f == 0 ? "" : f + 1 == shares.size() ? " and " : ", ") + percentText(shares[f]);
+    return text;
+}
+
+/// "the picture is 0.4 % opaque, and 'f3' adds 0.1 % where it is"
+std::string thinness(const TransferFunction& tf, const std::vector<double>& targets, const Coverage& look) {
+    std::vector<std::size_t> unseen;
+    double most = 0;
+    for (std::size_t f = 0; f < targets.size(); ++f)
+        if (targets[f] > 0 && look.covers[f] < kFaintCover) {
+            unseen.push_back(f);
+            most = std::max(most, look.covers[f]);
+        }
+    std::string text = "the picture is " + percentText(look.coverage) + " opaque";
+    if (!unseen.empty())
+        text += ", and " + namesOf(tf, unseen) + (unseen.size() == 1 ? " adds " : " add at most ") + percentText(most) +
+                (unseen.size() == 1 ? " where it is" : " where they are");
     return text;
 }
 
@@ -24,32 +52,23 @@ std::string percentText(double share) {
     return text;
 }
 
-std::string faintText(const TransferFunction& tf, const Faintness& faint, double strongest) {
-    std::string text;
-    if (faint.picture)
-        text = "the picture has " + percentText(strongest) + " of alpha" + (faint.searched ? " at most" : "");
-    if (!faint.features.empty())
-        text += (text.empty() ? "" : ", and ") + namesOf(tf, faint.features) +
-                (faint.features.size() == 1 ? " has" : " have") + " less than " + percentText(kFaintCover) +
-                (faint.features.size() == 1 ? " where it is seen" : " where they are seen");
-    if (!faint.searched) return text + "."; // what could be had instead nobody knows
-    if (!faint.limiting.empty())
-        text += ", because " + namesOf(tf, faint.limiting) + " cannot become more opaque and more of " +
-                "anything else would take from " + (faint.limiting.size() == 1 ? "its share" : "their shares");
-    text += ". ";
-    if (!faint.remedy) return text + "No shares close to these were found that would be visible.";
-    const Faintness::Remedy& remedy = *faint.remedy;
-    text += "Shares of ";
-    for (std::size_t f = 0; f < remedy.shares.size(); ++f) text += (f == 0 ? "" : ", ") + percentText(remedy.shares[f]);
-    text += " would show it: " + percentText(remedy.coverage.coverage) + " of alpha";
-    for (const std::size_t f : faint.features)
-        text += ", '" + tf.features[f].name + "' " + percentText(remedy.coverage.covers[f]);
-    return text + ".";
+std::string keptText(const OptimizeResult& result) {
+    if (!result.seen || !result.seen->exact) return {};
+    const SeenShares& exact = *result.seen->exact;
+    const bool isExact = exact.objective < kSameShares;
+    return "Asked for " + sharesText(result.targets) + "; kept " + sharesText(result.history[result.best].vws) +
+           ", so that all of it can be seen: " + (isExact ? "with the shares asked for " : "nearer to these shares ") +
+           thinness(result.tf, result.targets, exact.look) + ".";
 }
 
 std::string faintText(const OptimizeResult& result) {
-    if (!result.seen || !result.seen->faint) return {};
-    return faintText(result.tf, *result.seen->faint, result.seen->strongest);
+    if (!result.seen || (!result.seen->faint && result.seen->unseen.empty())) return {};
+    std::string text = thinness(result.tf, result.targets, result.seen->coverage);
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (!result.seen->visible) return text + ".";
+    const SeenShares& visible = *result.seen->visible;
+    return text + ". Shares of " + sharesText(visible.vws) + " would show it: the picture would be " +
+           percentText(visible.look.coverage) + " opaque.";
 }
 
 } // namespace pellucid

@@ -1,4 +1,4 @@
-// Shares that can be met and not be seen, in words.
+// What of an answer can be seen, in words.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace pellucid {
 
-/// Two sentences, the first without a capital: what is faint and why; which shares would be visible. `strongest`: the
-/// coverage of the strongest picture with the present shares.
-std::string faintText(const TransferFunction& tf, const Faintness& faint, double strongest);
+/// One sentence, where the answer keeps the picture visible instead of the shares that were asked for: what was asked,
+/// what was kept, and what the picture would be otherwise. Empty elsewhere.
+std::string keptText(const OptimizeResult& result);
 
-/// The same of an answer; empty where it is not faint.
+/// What of the answer cannot be seen, and which shares would show it; empty where it can be.
 std::string faintText(const OptimizeResult& result);
 
 /// "12 %"; below 10 % "1.2 %", below 0.1 % "< 0.1 %".

@@ -94,6 +94,7 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const ReportRequest&
         rows.emplace_back("Step", shortText(o.step));
         if (o.direction == Direction::Gradient) rows.emplace_back("b", shortText(o.b));
     }
+    rows.emplace_back("Exact shares", yesNo(o.exactShares));
     if (o.coverage) rows.emplace_back("Wanted coverage", shortText(*o.coverage));
     if (request.run.evaluations > 0) rows.emplace_back("Evaluations of W", std::to_string(request.run.evaluations));
     if (request.run.seconds > 0) rows.emplace_back("Time", shortText(request.run.seconds) + " s");

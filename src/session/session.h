@@ -236,6 +236,9 @@ struct Run {
 };
 /// The record of an optimization.
 Run runOf(const OptimizeResult& result, RunStart start);
+/// The answers of `runs` for these targets (shares, one per feature): where another search may begin, since whoever has
+/// come near once must not be told that nothing is nearer.
+std::vector<std::vector<double>> knownAnswers(const std::vector<Run>& runs, const std::vector<double>& targets);
 
 /// A value: copies share their parts, so that they cost next to nothing, and comparing parts tells what has changed.
 struct Session {

@@ -486,6 +486,7 @@ json fromOptimize(const OptimizeOptions& o) {
            {"tolerance", o.tolerance},
            {"coarse", o.coarse},
            {"restarts", o.restarts},
+           {"exact_shares", o.exactShares},
            {"max_iterations", o.maxIterations}};
     if (o.coverage) j["coverage"] = *o.coverage;
     return j;
@@ -499,6 +500,7 @@ OptimizeOptions toOptimize(const JsonValue& j) {
     if (j.has("b")) o.b = j["b"].number();
     if (j.has("coarse")) o.coarse = j["coarse"].boolean();
     if (j.has("restarts")) o.restarts = j["restarts"].boolean();
+    if (j.has("exact_shares")) o.exactShares = j["exact_shares"].boolean();
     if (j.has("coverage")) o.coverage = j["coverage"].number();
     if (j.has("normalize")) o.normalize = j["normalize"].boolean();
     if (j.has("step")) o.step = j["step"].number();

@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "engines/engines.h"
-#include "optimize/visible_answer.h"
 #include "render/memory_needs.h"
 #include "render/published_engine.h"
 #include "saliency/published_saliency.h"
@@ -104,7 +103,7 @@ const CoarserVolumes& Workspace::coarser(const MeasureInput& input, const JobCon
         m_coarser = std::make_unique<CoarserVolumes>(
             input.volume,
             [&](std::shared_ptr<const Volume> volume) {
-                return makeEngine(settings.engine, std::move(volume), settings.quality);
+                return makeCopyEngine(settings.engine, std::move(volume));
             },
             job);
         m_coarserWeighted = false;
@@ -129,11 +128,11 @@ auto guarded(const Work& work, const Release& release) {
     }
 }
 
-/// The curve is followed on the second copy, where there is one: each has an eighth of the voxels of the one before.
+/// The curve is followed on the second copy, where there is one.
 DensityProblem densityProblem(const VwsFunction& full, const std::vector<std::unique_ptr<VwsFunction>>& coarser,
                               const RayBundle& rays, const std::vector<OpacityLimits>& limits) {
     const std::size_t level = std::min<std::size_t>(coarser.size(), 2);
-    return {full, level == 0 ? nullptr : coarser[level - 1].get(), rays, limits, static_cast<int>(level)};
+    return {full, level == 0 ? nullptr : coarser[level - 1].get(), rays, limits};
 }
 
 } // namespace
@@ -181,7 +180,7 @@ OcclusionMatrix Workspace::occlusion(const MeasureInput& input, const JobControl
 std::vector<std::unique_ptr<VwsFunction>>
 Workspace::coarserFunctions(const MeasureInput& input, const OptimizeOptions& options, const JobControl& job) {
     // The published profile has one slice per voxel plane: a coarser volume is another problem.
-    if ((options.method != SearchMethod::Newton && !options.coverage) || !options.coarse ||
+    if (options.maxIterations == 0 || !options.coarse ||
         input.settings.profile != Profile::Default)
         return {};
     return coarser(input, job).functions(input.view, input.tf, input.settings.vws);
@@ -226,7 +225,8 @@ Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, c
 
 OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<double>& targets,
                                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
-                                   const JobControl& job, const std::function<void(const OptimizeState&)>& watch) {
+                                   const JobControl& job, const std::function<void(const OptimizeState&)>& watch,
+                                   const std::vector<std::vector<double>>& known) {
     return guarded(
         [&] {
             VisibilityEngine& e = engine(input);
@@ -235,14 +235,17 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
-            const auto held = coarserFunctions(input, options, job);
+            std::vector<std::unique_ptr<VwsFunction>> held;
             OptimizeProblem problem{function, targets, limits};
-            for (const auto& level : held) problem.coarser.push_back(level.get());
+            problem.known = known;
+            problem.copies = [&] {
+                held = coarserFunctions(input, options, {job.stop, {}});
+                std::vector<const VwsFunction*> copies;
+                for (const auto& level : held) copies.push_back(level.get());
+                return copies;
+            };
+            problem.rays = &rays(input, {job.stop, {}});
             OptimizeResult result = pellucid::optimize(problem, steps, job, watch);
-            // That profile looks along the grid and counts moves; its answer stays as it is.
-            if (steps.publishedSteps) steps.maxIterations = 0;
-            makeVisible(result, densityProblem(function, held, rays(input, {job.stop, {}}), limits), steps,
-                        {job.stop, {}}, watch);
             m_seconds.visibility = secondsSince(start);
             return result;
         },

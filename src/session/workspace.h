@@ -36,16 +36,18 @@ public:
     Field field(const MeasureInput& input, FieldKind kind, int feature = -1, const JobControl& job = {});
     /// Who hides whom.
     OcclusionMatrix occlusion(const MeasureInput& input, const JobControl& job = {});
-    /// `limits`: one per feature, or empty. The answer is made visible, see makeVisible().
+    /// `limits`: one per feature, or empty. `known`: opacities that other searches have come to.
     OptimizeResult optimize(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
-                            const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {});
+                            const JobControl& job = {}, const std::function<void(const OptimizeState&)>& watch = {},
+                            const std::vector<std::vector<double>>& known = {});
 
     /// Why the answer of optimize() of this input is not on target, and what would help. Where another method, or more
-    /// moves, could find a better one, that is looked for first. Throws as measure() does.
+    /// moves, could find a better one, that is looked for first, from `known` opacities too. Throws as measure() does.
     Verdict explain(const MeasureInput& input, const std::vector<double>& targets,
                     const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
-                    const OptimizeResult& found, const JobControl& job = {});
+                    const OptimizeResult& found, const JobControl& job = {},
+                    const std::vector<std::vector<double>>& known = {});
 
     /// The same from nearby, as shares alone want it: no other picture's strength is looked for. `coarse`: on the copy
     /// of half the resolution and nothing else, where there is one.

@@ -6,8 +6,9 @@ namespace pellucid {
 class WorkspaceTools final : public VerdictTools {
 public:
     WorkspaceTools(Workspace& workspace, const MeasureInput& input, const std::vector<double>& targets,
-                   const OptimizeOptions& options)
-        : m_workspace(workspace), m_input(input), m_targets(targets), m_options(options) {
+                   const OptimizeOptions& options, std::vector<std::vector<double>> known)
+        : m_workspace(workspace), m_input(input), m_targets(targets), m_options(options),
+          m_known(std::move(known)) {
         // What the method at hand reaches, in as many moves as it may, says nothing of what can be reached.
         m_options.method = SearchMethod::Newton;
         m_options.restarts = true;
@@ -28,6 +29,7 @@ public:
         const std::size_t first = rough && functions.size() > 1 ? 1 : 0;
         OptimizeProblem search{*functions[first], m_targets, problem.limits};
         for (std::size_t i = first + 1; i < functions.size(); ++i) search.coarser.push_back(functions[i].get());
+        search.known = m_known;
         OptimizeResult result = optimize(search, m_options, job);
         if (result.reason == StopReason::Cancelled) throw Cancelled{};
         return result;
@@ -54,18 +56,33 @@ private:
     MeasureInput m_input;
     std::vector<double> m_targets;
     OptimizeOptions m_options;
+    std::vector<std::vector<double>> m_known;
 };
 
 Verdict Workspace::explain(const MeasureInput& input, const std::vector<double>& targets,
                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
-                           const OptimizeResult& found, const JobControl& job) {
+                           const OptimizeResult& found, const JobControl& job,
+                           const std::vector<std::vector<double>>& known) {
     const ReachProblem problem{input.view, input.tf, limits};
+    // What keeps the picture visible says nothing of what shares can be reached.
+    OptimizeResult nearest = found;
+    if (found.seen && found.seen->exact) {
+        const SeenShares& exact = *found.seen->exact;
+        nearest.history.push_back({exact.objective, exact.vws, exact.opacity, 0});
+        nearest.best = nearest.history.size() - 1;
+    }
     // Only this search ends where nothing is nearer; of others, and of one that was stopped, nobody knows.
     const bool isGlobal =
         options.method == SearchMethod::Newton && options.restarts && found.reason == StopReason::NoProgress;
     try {
-        WorkspaceTools tools(*this, input, targets, options);
-        const OptimizeResult nearest = isGlobal ? found : tools.solve(problem, false, job);
+        std::vector<std::vector<double>> starts = known;
+        starts.push_back(nearest.history[nearest.best].opacity);
+        WorkspaceTools tools(*this, input, targets, options, std::move(starts));
+        if (!isGlobal || !known.empty()) {
+            OptimizeResult other = tools.solve(problem, false, job);
+            if (other.history[other.best].objective < nearest.history[nearest.best].objective)
+                nearest = std::move(other);
+        }
         // The published profile has views of its own.
         return pellucid::explain(tools, problem, nearest.targets, nearest,
                                  {options.tolerance, input.settings.profile == Profile::Default}, job);

@@ -186,6 +186,7 @@ OptimizeOptions randomOptimize(Random& random) {
     o.b = random.between(1e-3, 1e3);
     o.coarse = random.chance(0.5);
     o.restarts = random.chance(0.5);
+    o.exactShares = random.chance(0.5);
     if (random.chance(0.5)) o.coverage = random.between(1e-3, 1);
     o.normalize = random.chance(0.5);
     o.step = random.between(1e-9, 10);

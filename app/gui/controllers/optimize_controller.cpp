@@ -27,6 +27,8 @@ QString sayOf(const OptimizeResult& result, int restarts) {
                           .arg(fixed4(best.objective), fixed4(result.history.front().objective),
                                counted(result.iterations(), QObject::tr("move"), QObject::tr("moves")));
     if (restarts > 0) figures += QObject::tr("; restarted from the new view");
+    if (const std::string kept = keptText(result); !kept.empty())
+        return QStringLiteral("%1 (%2)").arg(QString::fromStdString(kept), figures);
     if (const std::string faint = faintText(result); !faint.empty()) // not without what makes it visible
         return QObject::tr("%1: %2 (%3)")
             .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
@@ -52,7 +54,7 @@ OptimizeController::OptimizeController(Workbench& bench)
                                             [this, task, state, number = move++] { showMove(task, number, state); });
               };
               OptimizeResult result =
-                  workspace.optimize(task.input, task.targets, task.limits, task.options, {job.stop, {}}, watch);
+                  workspace.optimize(task.input, task.targets, task.limits, task.options, {job.stop, {}}, watch, task.known);
               if (result.reason == StopReason::Cancelled) throw Cancelled{};
               return result;
           },
@@ -61,7 +63,7 @@ OptimizeController::OptimizeController(Workbench& bench)
       m_explaining(
           [&workspace = bench.workspace()](const Question& q, const JobControl& job) {
               return workspace.explain(q.task.input, q.task.targets, q.task.limits, q.task.options, q.found,
-                                       {job.stop, {}});
+                                       {job.stop, {}}, q.task.known);
           },
           [this](const Question&, Verdict& verdict) {
               QStringList sentences;
@@ -131,10 +133,18 @@ void OptimizeController::start() {
     m_explaining.cancel();
     const About about = present();
     begin({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
-           *store.session().optimize});
+           *store.session().optimize,
+           knownAnswers(*store.session().runs, normalizedTargets(about.targets, about.targets.size()))});
+}
+
+void OptimizeController::takeExact() {
+    if (!hasExact() || isRunning()) return;
+    const TransferFunction tf = withShownOpacities(m_bench.scene().tf, m_exact);
+    m_bench.store().edit(tr("Exact shares"), {}, [&](Session& session) { session.setTf(tf); });
 }
 
 void OptimizeController::begin(Task task) {
+    m_exact.clear();
     m_move = -1;
     m_firstObjective = m_objective = 0;
     m_opacity.clear();
@@ -202,8 +212,9 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     // It is true of what it was computed from.
     if (!(present() == About{input, task.targets}))
         return say(tr("Something has changed since it began; nothing is known of what is there now."));
+    if (result.seen && result.seen->exact) m_exact = result.seen->exact->opacity;
     say(sayOf(result, m_restarts));
-    if (best.objective < task.options.tolerance) return;
+    if (best.objective < task.options.tolerance || result.reason == StopReason::Visible) return;
     m_question = Question{task, result};
     m_question->task.input = input;
     askWhy();

@@ -47,6 +47,10 @@ public:
     /// state any more.
     const QString& message() const { return m_message; }
     void say(const QString& text);
+    /// Whether the latest run kept the picture visible instead of the shares asked for, which takeExact() puts in its
+    /// place, as a step of its own. True for as long as its message is.
+    bool hasExact() const { return !m_exact.empty() && !m_message.isEmpty(); }
+    void takeExact();
 
 Q_SIGNALS:
     void runningChanged();
@@ -66,6 +70,7 @@ private:
         std::vector<double> targets;
         std::vector<OpacityLimits> limits;
         OptimizeOptions options;
+        std::vector<std::vector<double>> known; ///< answers of earlier runs for the same targets
         int number = 0;
         RunStart start() const { return {tf, input.view.camera, input.view.clipping, input.settings, options, limits}; }
     };
@@ -87,6 +92,7 @@ private:
     About m_about;
     Task m_task;                   ///< the latest
     std::vector<double> m_opacity; ///< of its latest move; empty before
+    std::vector<double> m_exact;   ///< opacities of the exact shares, where its answer has others
     int m_number = 0;              ///< of the latest run: answers of others are dropped
     int m_move = -1, m_restarts = 0;
     double m_objective = 0, m_firstObjective = 0;

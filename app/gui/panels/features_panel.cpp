@@ -236,6 +236,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     m_message->setObjectName("panelMessage");
     m_message->setWordWrap(true);
+    connect(m_message, &QLabel::linkActivated, this, [this] { m_bench.optimizing().takeExact(); });
     makeFaint(*m_message);
 
     auto* choices = new QGridLayout;
@@ -478,8 +479,11 @@ void FeaturesPanel::followRun() {
 }
 
 void FeaturesPanel::showMessage() {
-    const QString& text = m_bench.optimizing().message();
-    m_message->setText(text);
+    const OptimizeController& optimizing = m_bench.optimizing();
+    const QString& text = optimizing.message();
+    const QString link = QStringLiteral(" <a href=\"exact\">%1</a>").arg(tr("Use the exact shares"));
+    m_message->setTextFormat(optimizing.hasExact() ? Qt::RichText : Qt::PlainText);
+    m_message->setText(optimizing.hasExact() ? text.toHtmlEscaped() + link : text);
     m_message->setVisible(!text.isEmpty());
 }
 

@@ -166,6 +166,10 @@ void SettingsPanel::addOptimization(QFormLayout& form) {
     check("coarseCheck", tr("&Coarse to fine"),
           tr("Newton: the first moves on coarser copies of the volume, the last on the volume itself"),
           &OptimizeOptions::coarse, [isStepped] { return !isStepped(); });
+    check("exactSharesCheck", tr("E&xact shares"),
+          tr("The shares asked for, even where the picture becomes too faint to see. Otherwise it stays at least 20 % "
+             "opaque,\nand what is wanted adds at least 2 % where it is"),
+          &OptimizeOptions::exactShares);
 }
 
 void SettingsPanel::addMeasuring(QFormLayout& form) {
