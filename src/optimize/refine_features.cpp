@@ -57,12 +57,6 @@ std::vector<double> densityOf(const Histogram& histogram) {
 
 std::vector<double> ones(const TransferFunction& tf) { return std::vector<double>(tf.pointsWithEnds().size(), 1.0); }
 
-bool hasFixedOpacity(const TransferFunction& tf, const Feature& f) {
-    return std::any_of(tf.points.begin(), tf.points.end(), [&](const ControlPoint& p) {
-        return p.fixed && p.opacity > 0 && p.x >= f.a && p.x <= f.b;
-    });
-}
-
 std::size_t indexOfLeast(const std::vector<double>& values) {
     return static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
 }
@@ -192,6 +186,24 @@ bool movesFeatures(const TransferFunction& tf) {
     return false;
 }
 
+bool isHeld(const TransferFunction& tf, const Feature& feature) {
+    return std::any_of(tf.points.begin(), tf.points.end(), [&](const ControlPoint& p) {
+        return p.fixed && p.opacity > 0 && p.x >= feature.a && p.x <= feature.b;
+    });
+}
+
+std::vector<RefineEdge> refineEdges(const TransferFunction& tf) {
+    std::vector<RefineEdge> edges;
+    if (movesFeatures(tf)) {
+        for (const Feature& f : tf.features) edges.push_back({f.a, f.b, !f.hidden && !isHeld(tf, f)});
+        return edges;
+    }
+    const std::vector<ControlPoint> points = tf.pointsWithEnds();
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+        edges.push_back({points[i].x, points[i + 1].x, !points[i].fixed || !points[i + 1].fixed});
+    return edges;
+}
+
 std::vector<double> opacityParts(const Histogram& histogram, const TransferFunction& tf) {
     return integrals(densityOf(histogram), tf, ones(tf));
 }
@@ -234,7 +246,7 @@ FeatureLine::FeatureLine(const Histogram& histogram, const TransferFunction& tf,
     information = integrals(significance, full, ones(full));
     amount = integrals(densityOf(histogram), full, ones(full));
     for (std::size_t f = 0; f < peak.size(); ++f)
-        movable.push_back(amount[f] > 0 && !tf.features[f].hidden && !hasFixedOpacity(tf, tf.features[f]));
+        movable.push_back(amount[f] > 0 && !tf.features[f].hidden && !isHeld(tf, tf.features[f]));
     if (meant) weight[*meant] = 0;
 }
 

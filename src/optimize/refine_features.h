@@ -14,6 +14,16 @@ namespace pellucid {
 /// transparent. No tents and no ramp of one feature.
 bool movesFeatures(const TransferFunction& tf);
 
+/// Whether a control point of the feature is fixed above 0: then it does not move as a whole.
+bool isHeld(const TransferFunction& tf, const Feature& feature);
+
+/// What an edge of refinement spans: as many as edgeWeights() has.
+struct RefineEdge {
+    double a = 0, b = 1;         ///< intensities
+    bool participates = true;    ///< something of it can move
+};
+std::vector<RefineEdge> refineEdges(const TransferFunction& tf);
+
 /// The feature that a priority means: the one that holds the intensity, else the nearest by its interval; of a region
 /// the one whose colours are nearest, on average over its voxels. Empty without a priority or where no feature can be
 /// told.

@@ -117,11 +117,6 @@ bool hasVoxels(const Histogram& histogram, const Feature& f) {
     return false;
 }
 
-bool isFixed(const TransferFunction& tf, const Feature& f) {
-    return std::any_of(tf.points.begin(), tf.points.end(),
-                       [&](const ControlPoint& p) { return p.fixed && p.opacity > 0 && p.x >= f.a && p.x <= f.b; });
-}
-
 std::string percent(double gain) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g %%", 100 * std::abs(gain - 1));
@@ -169,7 +164,7 @@ std::optional<PriorityOutcome> priorityOutcome(const Histogram& histogram, const
             outcome.text = "No voxel has a value of " + name + ", so there is nothing to bring out: choose another value.";
             return outcome;
         }
-        if (isFixed(before, f)) {
+        if (isHeld(before, f)) {
             outcome.text = name + " has a fixed control point and keeps its opacity: release the point to bring it out.";
             return outcome;
         }
