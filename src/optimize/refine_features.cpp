@@ -176,7 +176,8 @@ std::vector<double> exactPeaks(const FeatureLine& line, const RefineOptions& opt
 
 } // namespace
 
-bool movesFeatures(const TransferFunction& tf) {
+bool movesFeatures(const TransferFunction& tf, const RefineOptions& options) {
+    if (options.method == RefineMethod::Exact && options.priority.any() && tf.features.size() > 1) return true;
     for (const Feature& f : tf.features)
         for (const Feature& g : tf.features)
             if (f.b == g.a && f.a < g.a) {
@@ -192,9 +193,9 @@ bool isHeld(const TransferFunction& tf, const Feature& feature) {
     });
 }
 
-std::vector<RefineEdge> refineEdges(const TransferFunction& tf) {
+std::vector<RefineEdge> refineEdges(const TransferFunction& tf, const RefineOptions& options) {
     std::vector<RefineEdge> edges;
-    if (movesFeatures(tf)) {
+    if (movesFeatures(tf, options)) {
         for (const Feature& f : tf.features) edges.push_back({f.a, f.b, !f.hidden && !isHeld(tf, f)});
         return edges;
     }
@@ -232,7 +233,7 @@ std::optional<std::size_t> prioritizedFeature(const Histogram& histogram, const 
 }
 
 TransferFunction withOpacitiesOf(const TransferFunction& tf, const TransferFunction& refined) {
-    if (movesFeatures(tf)) return withFeatureOpacities(tf, featureOpacities(refined));
+    if (refined.points.size() != tf.points.size()) return withFeatureOpacities(tf, featureOpacities(refined));
     TransferFunction result = tf;
     for (std::size_t i = 0; i < tf.points.size(); ++i) result.points[i].opacity = refined.points[i].opacity;
     return result;

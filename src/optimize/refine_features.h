@@ -11,18 +11,19 @@
 namespace pellucid {
 
 /// Whether refinement moves the features of `tf` as wholes, not its points: two of them meet where one is not
-/// transparent. No tents and no ramp of one feature.
-bool movesFeatures(const TransferFunction& tf);
+/// transparent, as no tents do; or Exact is to bring out one of several.
+bool movesFeatures(const TransferFunction& tf, const RefineOptions& options = {});
 
 /// Whether a control point of the feature is fixed above 0: then it does not move as a whole.
 bool isHeld(const TransferFunction& tf, const Feature& feature);
 
-/// What an edge of refinement spans: as many as edgeWeights() has.
+/// What an edge of refinement spans.
 struct RefineEdge {
-    double a = 0, b = 1;         ///< intensities
-    bool participates = true;    ///< something of it can move
+    double a = 0, b = 1;      ///< intensities
+    bool participates = true; ///< something of it can move
 };
-std::vector<RefineEdge> refineEdges(const TransferFunction& tf);
+/// As many as refine() has of `tf`; as edgeWeights() has where there are no options.
+std::vector<RefineEdge> refineEdges(const TransferFunction& tf, const RefineOptions& options = {});
 
 /// The feature that a priority means: the one that holds the intensity, else the nearest by its interval; of a region
 /// the one whose colours are nearest, on average over its voxels. Empty without a priority or where no feature can be

@@ -128,10 +128,11 @@ std::string reasonOf(const PriorityOutcome& outcome, const Other& other) {
     const double least = std::min(outcome.valueGain, outcome.partGain);
     if (least < 1 - kSame)
         return "Refinement lowered " + outcome.name + " by " + percent(least) +
-               ": even as a priority its part of the curve carries more information than others, and evening out takes "
-               "from what carries most.";
-    return "Refinement raised " + other.name + " more than " + outcome.name +
-           ", because it carries less information, and evening out raises what carries least.";
+               ": its values carry so much information that evening out takes from them even where they are prioritized.";
+    if (other.gain > least * (1 + kSame))
+        return "Refinement raised " + other.name + " more than " + outcome.name + ": " + other.name +
+               " carries less information, and evening out raises what carries least.";
+    return outcome.name + " gained no more than " + other.name + ".";
 }
 
 RefineMethod otherThan(RefineMethod method) {
@@ -182,10 +183,10 @@ std::optional<PriorityOutcome> priorityOutcome(const Histogram& histogram, const
     Other unused;
     const bool helps = figuresOf(histogram, before, again(by), *chosen, unused).gained;
     outcome.text = why + (helps ? std::string(" The method ") +
-                                      (by.method == RefineMethod::Exact ? "Exact" : "Greedy") + " brings it out."
+                                      (by.method == RefineMethod::Exact ? "Exact" : "Greedy") + " brings " + name + " out."
                           : before.opacity(chosen->x) >= 1 - kSame
                               ? " Lower the others by hand, or choose another value."
-                              : " Raise it by hand: refinement keeps fixed points.");
+                              : " Raise it by hand, and fix its control points before you refine the others.");
     return outcome;
 }
 

@@ -84,7 +84,13 @@ void tryOut(const Histogram& h, const TransferFunction& tf, const RayBundle& ray
     const auto outcome = priorityOutcome(h, tf, after, options, again);
     REQUIRE(outcome);
     const auto chosen = prioritizedFeature(h, tf, options.priority);
-    REQUIRE(chosen);
+    if (!chosen) { // no feature has a voxel
+        ++tally.cases;
+        ++tally.said;
+        CHECK_FALSE(outcome->gained);
+        CHECK(outcome->text.find("nothing to bring out") != std::string::npos);
+        return;
+    }
     double x = 0;
     if (options.priority.intensity) {
         x = *options.priority.intensity;
@@ -178,7 +184,86 @@ void tryVolume(const std::string& name, const Volume& data) {
     }
 }
 
+/// Two features that meet at 0.4, where α is 0.1: "soft" of 0.1 all over [0.2, 0.4), "hard" up to 0.5 on [0.4, 0.8).
+TransferFunction softAndHard() {
+    TransferFunction tf;
+    tf.points = {{0.2, 0.1, {1, 0, 0}, false, {}},
+                 {0.4, 0.1, {1, 0, 0}, false, {}},
+                 {0.5, 0.5, {0, 0, 1}, false, {}},
+                 {0.8, 0.5, {0, 0, 1}, false, {}}};
+    tf.features = {{"soft", 0.2, 0.4, {1, 0, 0}, {}}, {"hard", 0.4, 0.8, {0, 0, 1}, {}}};
+    return tf;
+}
+
+/// Every intensity as often as any other.
+Histogram even() {
+    Histogram h;
+    h.counts.assign(256, 4);
+    h.total = 1024;
+    return h;
+}
+
+std::string sentenceFor(const Histogram& h, const TransferFunction& tf, double x) {
+    RefineOptions options;
+    options.priority.intensity = x;
+    const RefineAgain again = [&](const RefineOptions& by) { return refine(h, tf, by).tf; };
+    return priorityOutcome(h, tf, again(options), options, again)->text;
+}
+
 } // namespace
+
+TEST_CASE("features that share a border point move as wholes toward the one that is chosen", "[refine][features]") {
+    // Σ α·p is ∫ α dx here: soft 0.2 · 0.1 = 0.02, hard 0.1 · (0.1 + 0.5) / 2 + 0.3 · 0.5 = 0.18. Hard gives up three
+    // quarters of it, 0.135, by which soft, 0.2 long, rises by 0.675 to 0.775.
+    const TransferFunction tf = softAndHard();
+    CHECK(movesFeatures(tf));
+    CHECK_FALSE(movesFeatures(tents(4)));
+    CHECK_FALSE(movesFeatures(ramp(4)));
+    for (const RefineMethod method : {RefineMethod::Greedy, RefineMethod::Exact}) {
+        INFO(name(method));
+        RefineOptions options;
+        options.method = method;
+        options.priority.intensity = 0.3;
+        const RefineResult r = refine(even(), tf, options);
+        CHECK(featureOpacities(r.tf)[0] == Approx(0.775).margin(1e-6));
+        CHECK(featureOpacities(r.tf)[1] == Approx(0.125).margin(1e-6));
+        CHECK(r.tf.opacity(0.3) == Approx(0.775).margin(1e-6));
+        CHECK(r.tf.opacity(0.4) == Approx(0.025).margin(1e-6)); // a quarter of 0.1, from the border on
+        CHECK(r.edgesBefore.size() == 2);
+        CHECK(r.energyMovableAfter < r.energyMovableBefore);
+        // Hard can rise to 1 only: by 0.18 · (1 / 0.5 − 1) = 0.18, more than the 0.015 that soft may give, so that it gets
+        // these: × 195 / 180.
+        options.priority.intensity = 0.6;
+        const RefineResult other = refine(even(), tf, options);
+        CHECK(featureOpacities(other.tf)[0] == Approx(0.025).margin(1e-6));
+        CHECK(featureOpacities(other.tf)[1] == Approx(0.5 * 195 / 180).margin(1e-6));
+        CHECK(r.iterations > 0);
+    }
+    // Nothing chosen: what common and what rare features have changes hands, Σ α·p stays.
+    const RefineResult all = refine(even(), tf);
+    const auto parts = opacityParts(even(), all.tf);
+    CHECK(parts[0] + parts[1] == Approx(0.2).margin(1e-9));
+    CHECK(all.edgesAfter == edgeWeights(even(), all.tf));
+}
+
+TEST_CASE("a sentence says why what was chosen cannot gain", "[refine][outcome]") {
+    TransferFunction tf = softAndHard();
+    CHECK(sentenceFor(even(), tf, 0.3).empty());
+    CHECK(sentenceFor(even(), tf, 0.95) ==
+          "No feature holds the value 0.95; the nearest is hard. Add a feature there to bring the value out.");
+    tf.features[0].hidden = true;
+    CHECK(sentenceFor(even(), tf, 0.3) == "soft is hidden and cannot be brought out: show it first.");
+    tf = softAndHard();
+    tf.points[0].fixed = true;
+    CHECK(sentenceFor(even(), tf, 0.3) ==
+          "soft has a fixed control point and keeps its opacity: release the point to bring it out.");
+    tf = softAndHard();
+    Histogram h = even();
+    for (std::size_t b = 0; b < 128; ++b) h.counts[b] = 0; // up to 0.5
+    h.total = 512;
+    CHECK(sentenceFor(h, tf, 0.3) ==
+          "No voxel has a value of soft, so there is nothing to bring out: choose another value.");
+}
 
 TEST_CASE("what is chosen gains on all others under every sample, or a sentence says why not", "[refine][outcome]") {
     for (const SampleInfo& sample : samples()) tryVolume(sample.name, makeSample(sample.name, 48));

@@ -404,7 +404,7 @@ void RefinePanel::showOutcome() {
     const std::vector<double> weights =
         now != nullptr ? now->result.edgesAfter
                        : edgeWeights(*scene.histogram, scene.tf, m_bench.refining().options().priority);
-    const std::vector<RefineEdge> edges = refineEdges(now != nullptr ? now->start : scene.tf);
+    const std::vector<RefineEdge> edges = now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
     const TfSampler sampler(scene.tf);
     const double span = scene.volume->range().hi - scene.volume->range().lo;
     const auto value = [&](double x) { return numberText(scene.volume->valueOfIntensity(x), span); };
