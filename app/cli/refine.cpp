@@ -5,7 +5,10 @@
 #include <functional>
 
 #include "commands.h"
+#include "optimize/coverage.h"
 #include "optimize/drawn_colors.h"
+#include "optimize/refine_features.h"
+#include "optimize/refine_outcome.h"
 #include "optimize/refine_words.h"
 #include "optimize/region_colors.h"
 #include "output_files.h"
@@ -153,25 +156,41 @@ std::string textOfComparison(const RefineComparison& c) {
            " % less energy than greedy at the same total opacity";
 }
 
+/// What the command says of a refinement beside its figures.
+struct Remarks {
+    std::optional<PriorityOutcome> outcome;
+    std::optional<Darkening> dark;
+};
+
 std::string textOf(const RefineOptions& options, const TransferFunction& before, const RefineResult& r,
-                   const RefineComparison& comparison, const Json& priority, double seconds) {
+                   const RefineComparison& comparison, const Json& priority, const Remarks& remarks, double seconds) {
     const auto change = [](double from, double to) {
         const std::string share = from > 0 ? " (" + fixedText(100 * (to / from - 1), 1) + " %)" : "";
         return plainText(from) + " -> " + plainText(to) + share;
     };
     Table points({"point", "intensity", "opacity before", "after", "fixed"});
-    for (std::size_t i = 0; i < r.tf.points.size(); ++i)
-        points.add({std::to_string(i + 1), fixedText(r.tf.points[i].x, 4), fixedText(before.points[i].opacity, 4),
-                    fixedText(r.tf.points[i].opacity, 4), r.tf.points[i].fixed ? "yes" : "no"});
-    return listing({{"changes", changeText(opacityChanges(before, r.tf))},
-                    {"priority", textOfPriority(priority)},
-                    {"method", name(options.method)},
-                    {"iterations", std::to_string(r.iterations)},
-                    {"energy", change(r.energyBefore, r.energyAfter)},
-                    {"energy of movable edges", change(r.energyMovableBefore, r.energyMovableAfter)},
-                    {"methods", textOfComparison(comparison)},
-                    {"time", secondsText(seconds)}}) +
-           points.text();
+    // Features that have moved as wholes may have steps at their ends that were not there before.
+    const bool same = r.tf.points.size() == before.points.size();
+    for (std::size_t i = 0; i < r.tf.points.size(); ++i) {
+        const ControlPoint& p = r.tf.points[i];
+        points.add({std::to_string(i + 1), fixedText(p.x, 4),
+                    fixedText(same ? before.points[i].opacity : before.opacity(p.x), 4), fixedText(p.opacity, 4),
+                    p.fixed ? "yes" : "no"});
+    }
+    std::vector<std::pair<std::string, std::string>> rows{
+        {"changes", changeText(opacityChanges(before, r.tf))},
+        {"priority", textOfPriority(priority)},
+        {"method", name(options.method)},
+        {"moves", movesFeatures(before, options) ? "features as wholes" : "control points"},
+        {"iterations", std::to_string(r.iterations)},
+        {"energy", change(r.energyBefore, r.energyAfter)},
+        {"energy of movable edges", change(r.energyMovableBefore, r.energyMovableAfter)},
+        {"methods", textOfComparison(comparison)},
+        {"time", secondsText(seconds)}};
+    std::string text = listing(rows);
+    if (remarks.outcome && !remarks.outcome->gained) text += remarks.outcome->text + "\n";
+    if (remarks.dark) text += darkeningText(*remarks.dark) + "\n";
+    return text + points.text();
 }
 
 /// Without the priority.
@@ -201,10 +220,21 @@ Answer run(const Options& o, Progress& progress) {
     const RefineComparison comparison = compareMethods(
         histogram, options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get()),
         options, job);
+    Remarks remarks;
+    const RefineAgain again = [&](const RefineOptions& by) {
+        return refineAsDrawn(histogram, tf, *scene.volume, scene.colors.get(), by, job).tf;
+    };
+    remarks.outcome = priorityOutcome(
+        histogram, options.priority.region.empty() ? tf : withDrawnColors(tf, *scene.volume, scene.colors.get()),
+        result.tf, options, again);
+    const MeasureInput seen = measureInput(scene);
+    const RayBundle rays(*scene.volume, tf, seen.view, kCoverageRays, progress.phase("coverage"));
+    remarks.dark = darkeningOf(rays, histogram, tf, result.tf, options, again);
     if (o.outTf) writeTf(result.tf, *o.outTf);
     Json json = jsonFromRefinement(tf, result, options.method, comparison, priority);
+    addRemarks(json, remarks.outcome, remarks.dark);
     if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
-    return {textOf(options, tf, result, comparison, priority, seconds), std::move(json), opened.notices(), {}};
+    return {textOf(options, tf, result, comparison, priority, remarks, seconds), std::move(json), opened.notices(), {}};
 }
 
 void addPriority(CLI::App& app, const std::shared_ptr<Options>& o) {

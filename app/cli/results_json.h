@@ -3,6 +3,7 @@
 
 #include "optimize/optimizer.h"
 #include "optimize/refine.h"
+#include "optimize/refine_outcome.h"
 #include "optimize/verdict.h"
 #include "output.h"
 #include "render/camera.h"
@@ -13,6 +14,8 @@ namespace pellucid::cli {
 /// `before`: the transfer function that was refined. `priority`: an object that says what was asked for.
 Json jsonFromRefinement(const TransferFunction& before, const RefineResult& result, RefineMethod method,
                         const RefineComparison& comparison, Json priority);
+/// "chosen": what became of what a priority chose; "darkening": where the picture gets dark. Null where there is none.
+void addRemarks(Json& json, const std::optional<PriorityOutcome>& outcome, const std::optional<Darkening>& dark);
 /// What limits, what would help, who hides whom; features by their names in `tf`.
 Json jsonFromVerdict(const Verdict& verdict, const TransferFunction& tf);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "optimize/refine_features.h"
 
 namespace pellucid {
 
@@ -83,7 +84,7 @@ RefineResult refineAsDrawn(const Histogram& histogram, const TransferFunction& t
                            const VoxelColors* colors, const RefineOptions& options, const JobControl& job) {
     if (colors == nullptr || options.priority.region.empty()) return refine(histogram, tf, options, job);
     RefineResult result = refine(histogram, withDrawnColors(tf, volume, colors), options, job);
-    for (std::size_t i = 0; i < result.tf.points.size(); ++i) result.tf.points[i].color = tf.points[i].color;
+    result.tf = withOpacitiesOf(tf, result.tf);
     return result;
 }
 

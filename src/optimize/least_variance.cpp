@@ -97,7 +97,9 @@ public:
     ActiveSets(const LeastVariance& problem, Vector start, const JobControl& job)
         : m_problem(problem), m_job(job), m_hessian(hessianOf(problem)), m_x(std::move(start)), m_held(m_x.size()) {
         for (std::size_t v = 0; v < m_x.size(); ++v)
-            m_held[v] = m_x[v] <= 0 ? Held::Lower : m_x[v] >= 1 ? Held::Upper : Held::Free;
+            m_held[v] = m_x[v] <= problem.bounds.low(v)    ? Held::Lower
+                        : m_x[v] >= problem.bounds.high(v) ? Held::Upper
+                                                           : Held::Free;
         for (std::size_t v = 0; v < m_x.size(); ++v) m_largest = std::max(m_largest, m_hessian[v][v]);
     }
 
@@ -204,21 +206,25 @@ private:
         }
     }
 
+    double roomOf(std::size_t v, bool upward) const {
+        return upward ? m_problem.bounds.high(v) - m_x[v] : m_x[v] - m_problem.bounds.low(v);
+    }
+
     /// Goes as far as bounds allow; false where that is nowhere and nothing stands in the way.
     bool advance(const std::vector<std::size_t>& free, const Vector& step, double noStep) {
         double longest = 0, share = 1;
         for (std::size_t i = 0; i < free.size(); ++i) {
             longest = std::max(longest, std::abs(step[i]));
-            const double room = step[i] > 0 ? 1 - m_x[free[i]] : m_x[free[i]];
+            const double room = roomOf(free[i], step[i] > 0);
             if (std::abs(step[i]) > noStep && room < share * std::abs(step[i])) share = room / std::abs(step[i]);
         }
         if (longest <= noStep) return false;
         bool met = false;
         for (std::size_t i = 0; i < free.size(); ++i) {
             const std::size_t v = free[i];
-            const double room = step[i] > 0 ? 1 - m_x[v] : m_x[v];
+            const double room = roomOf(v, step[i] > 0);
             if (std::abs(step[i]) > noStep && room <= share * std::abs(step[i])) {
-                m_x[v] = step[i] > 0 ? 1 : 0;
+                m_x[v] = step[i] > 0 ? m_problem.bounds.high(v) : m_problem.bounds.low(v);
                 m_held[v] = step[i] > 0 ? Held::Upper : Held::Lower;
                 met = true;
             } else {
@@ -241,16 +247,22 @@ private:
 
 } // namespace
 
-std::vector<double> nearestOfTotal(std::vector<double> x, double total) {
-    if (total <= 0 || total >= static_cast<double>(x.size())) return Vector(x.size(), total <= 0 ? 0.0 : 1.0);
+std::vector<double> nearestOfTotal(std::vector<double> x, double total, const VariableBounds& bounds) {
+    Vector low(x.size()), high(x.size());
+    for (std::size_t v = 0; v < x.size(); ++v) {
+        low[v] = bounds.low(v);
+        high[v] = bounds.high(v);
+    }
+    if (total <= sumOf(low)) return low;
+    if (total >= sumOf(high)) return high;
     const auto shifted = [&](double by) {
         Vector y = x;
-        for (double& v : y) v = std::clamp(v + by, 0.0, 1.0);
+        for (std::size_t v = 0; v < y.size(); ++v) y[v] = std::clamp(y[v] + by, low[v], high[v]);
         return y;
     };
-    for (double& v : x) v = std::clamp(v, 0.0, 1.0);
+    x = shifted(0);
     if (sumOf(x) == total) return x;
-    double lo = -1, hi = 1; // every x is 0 at the one and 1 at the other
+    double lo = -1, hi = 1; // every x is at its lower bound at the one and at its upper one at the other
     for (int i = 0; i < 100 && lo < hi; ++i) {
         const double middle = lo + (hi - lo) / 2;
         (sumOf(shifted(middle)) < total ? lo : hi) = middle;
@@ -259,7 +271,7 @@ std::vector<double> nearestOfTotal(std::vector<double> x, double total) {
 }
 
 LeastVarianceAnswer solve(const LeastVariance& problem, const std::vector<double>& start, const JobControl& job) {
-    const Vector first = nearestOfTotal(start, problem.total);
+    const Vector first = nearestOfTotal(start, problem.total, problem.bounds);
     LeastVarianceAnswer answer{first, energyAt(problem, first), 0, 0};
     double largest = 0;
     for (const Vector& row : problem.rows)

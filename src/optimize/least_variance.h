@@ -9,12 +9,20 @@
 
 namespace pellucid {
 
-/// Minimises Σ (e_i − ē)², e = A x + b, subject to 0 ≤ x ≤ 1 and Σ x = total.
+/// Bounds of each variable, 0 ≤ lower ≤ upper ≤ 1; empty: 0 and 1 for all.
+struct VariableBounds {
+    std::vector<double> lower, upper;
+    double low(std::size_t v) const { return lower.empty() ? 0 : lower[v]; }
+    double high(std::size_t v) const { return upper.empty() ? 1 : upper[v]; }
+};
+
+/// Minimises Σ (e_i − ē)², e = A x + b, subject to the bounds of x and Σ x = total.
 struct LeastVariance {
     std::size_t variables = 0;
     std::vector<std::vector<double>> rows; ///< A, one row of `variables` numbers per e_i
     std::vector<double> constants;         ///< b
-    double total = 0;                      ///< clamped to [0, variables]
+    double total = 0;                      ///< clamped to what the bounds allow
+    VariableBounds bounds;
 };
 
 struct LeastVarianceAnswer {
@@ -22,7 +30,7 @@ struct LeastVarianceAnswer {
     double energy = 0;
     int steps = 0; ///< linear systems solved
     /// Largest violation of the optimality conditions, by the largest element of AᵀA: there is a λ with gradient + λ =
-    /// 0 for 0 < x < 1, ≥ 0 where x = 0, ≤ 0 where x = 1. Energies within the least one plus about its square.
+    /// 0 between the bounds, ≥ 0 at the lower, ≤ 0 at the upper one. Energies within the least one plus about its square.
     double residual = 0;
 };
 
@@ -31,7 +39,7 @@ struct LeastVarianceAnswer {
 /// Throws Cancelled.
 LeastVarianceAnswer solve(const LeastVariance& problem, const std::vector<double>& start, const JobControl& job = {});
 
-/// The nearest x with 0 ≤ x ≤ 1 and Σ x = total (clamped to what is possible).
-std::vector<double> nearestOfTotal(std::vector<double> x, double total);
+/// The nearest x within the bounds and with Σ x = total (clamped to what is possible).
+std::vector<double> nearestOfTotal(std::vector<double> x, double total, const VariableBounds& bounds = {});
 
 } // namespace pellucid

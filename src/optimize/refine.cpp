@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "optimize/refine_edges.h"
+#include "optimize/refine_features.h"
 
 namespace pellucid {
 
@@ -93,6 +94,7 @@ void RefineOptions::validate() const {
 
 std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf,
                                 const RefinePriority& priority) {
+    if (movesFeatures(tf)) return FeatureLine(histogram, tf, priority).weights();
     return EdgeLine(histogram, tf, priority).weights();
 }
 
@@ -108,6 +110,7 @@ double movableOpacity(const TransferFunction& tf) {
 RefineResult refine(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
                     const JobControl& job) {
     options.validate();
+    if (movesFeatures(tf, options)) return refineFeatures(histogram, tf, options, job);
     return options.method == RefineMethod::Exact ? refineExact(histogram, tf, options, job)
                                                  : refineGreedy(histogram, tf, options, job);
 }
@@ -118,8 +121,12 @@ RefineComparison compareMethods(const Histogram& histogram, const TransferFuncti
     by.method = RefineMethod::Greedy;
     const RefineResult greedy = refine(histogram, tf, by, job);
     by.method = RefineMethod::Exact;
-    by.total = movableOpacity(greedy.tf);
-    const RefineResult exact = refine(histogram, greedy.tf, by, job); // from there, so that it is never worse
+    const bool features = movesFeatures(tf); // both of what greedy moves
+    by.total = features ? FeatureLine(histogram, greedy.tf, options.priority).movableAmount()
+                        : movableOpacity(greedy.tf);
+    // From there, so that it is never worse.
+    const RefineResult exact =
+        (features ? refineFeatures : refineExact)(histogram, greedy.tf, by, job);
     return {*by.total, greedy.energyMovableAfter, exact.energyMovableAfter, exact.tf};
 }
 

@@ -6,13 +6,6 @@
 
 namespace pellucid {
 
-namespace {
-
-constexpr double kLargestStepRatio =
-    16; ///< of a derived step_up to step_down, where the raised end weighs next to nothing
-
-} // namespace
-
 std::vector<double> informationOf(const Histogram& histogram) {
     std::vector<double> g;
     g.reserve(histogram.counts.size());

@@ -9,6 +9,9 @@
 
 namespace pellucid {
 
+/// Of a derived step up to the step down, where what is raised weighs next to nothing.
+inline constexpr double kLargestStepRatio = 16;
+
 /// −p ln p of each bin: significance per unit of opacity (3.2).
 std::vector<double> informationOf(const Histogram& histogram);
 

@@ -37,10 +37,6 @@ std::string shortNumber(double value) {
     return (value < 0 ? "−" : "") + std::string(text);
 }
 
-std::string placeName(const TransferFunction& tf, double x) {
-    return "at " + shortNumber(tf.range ? tf.range->lo + x * (tf.range->hi - tf.range->lo) : x);
-}
-
 /// How much was changed, whatever the direction: |ln(after/before)|.
 double sizeOf(const OpacityChange& c) {
     const bool was = c.before > kNone, is = c.after > kNone;
@@ -63,17 +59,22 @@ std::string wordsOf(const OpacityChange& c) {
 
 } // namespace
 
+std::string valueName(const TransferFunction& tf, double x) {
+    return shortNumber(tf.range ? tf.range->lo + x * (tf.range->hi - tf.range->lo) : x);
+}
+
 std::vector<OpacityChange> opacityChanges(const TransferFunction& before, const TransferFunction& after) {
-    PELLUCID_CHECK(before.features.size() == after.features.size() && before.points.size() == after.points.size());
+    PELLUCID_CHECK(before.features.size() == after.features.size());
     std::vector<OpacityChange> changes;
     if (before.features.size() >= 2) {
         for (const Feature& f : before.features)
             changes.push_back({f.name, meanOpacity(before, f.a, f.b), meanOpacity(after, f.a, f.b)});
         return changes;
     }
+    PELLUCID_CHECK(before.points.size() == after.points.size());
     for (std::size_t i = 0; i < before.points.size(); ++i) {
         const ControlPoint& p = before.points[i];
-        if (!p.fixed) changes.push_back({placeName(before, p.x), p.opacity, after.points[i].opacity});
+        if (!p.fixed) changes.push_back({"at " + valueName(before, p.x), p.opacity, after.points[i].opacity});
     }
     return changes;
 }

@@ -11,6 +11,7 @@
 #include "engines/engines.h"
 #include "optimize/drawn_colors.h"
 #include "optimize/log_depths.h"
+#include "optimize/refine_features.h"
 #include "optimize/region_colors.h"
 #include "optimize/tracking.h"
 #include "render/color_difference.h"
@@ -274,6 +275,12 @@ TransferFunction writtenFor(const TransferFunction& tf, const ValueRange& window
 
 /// What pulls an answer back toward where it came from: the minimum of |x − x₁|² + λ|x − x₀|².
 TransferFunction pulledBack(const TransferFunction& before, TransferFunction after, double coherence) {
+    if (movesFeatures(before)) { // which may have got steps at their ends
+        const std::vector<double> was = featureOpacities(before);
+        std::vector<double> peaks = featureOpacities(after);
+        for (std::size_t f = 0; f < peaks.size(); ++f) peaks[f] = (peaks[f] + coherence * was[f]) / (1 + coherence);
+        return withFeatureOpacities(before, peaks);
+    }
     for (std::size_t i = 0; i < after.points.size() && i < before.points.size(); ++i) {
         double& x = after.points[i].opacity;
         x = (x + coherence * before.points[i].opacity) / (1 + coherence);

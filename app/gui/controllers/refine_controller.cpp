@@ -6,7 +6,9 @@
 #include <QScopedValueRollback>
 
 #include "controllers/optimize_controller.h"
+#include "optimize/coverage.h"
 #include "optimize/drawn_colors.h"
+#include "optimize/refine_features.h"
 #include "optimize/refine_words.h"
 #include "optimize/region_colors.h"
 #include "picture_pair.h"
@@ -48,13 +50,32 @@ std::vector<std::size_t> heldPoints(const TransferFunction& before, const Transf
     return held.size() == movable ? std::vector<std::size_t>() : held;
 }
 
+/// liveStart() where features move as wholes: the others keep the mean opacity of all voxels.
+TransferFunction liveStartOfFeatures(const Histogram& histogram, const TransferFunction& before,
+                                     TransferFunction start) {
+    if (before.features.size() != start.features.size()) return start;
+    const std::vector<double> was = opacityParts(histogram, before), is = opacityParts(histogram, start);
+    double given = 0, others = 0;
+    for (std::size_t f = 0; f < is.size(); ++f) (isHeld(start, start.features[f]) ? given : others) += is[f];
+    for (std::size_t f = 0; f < is.size(); ++f)
+        if (isHeld(start, start.features[f])) given -= was[f];
+    if (!(others > 0)) return start;
+    const double factor = std::clamp((others - given) / others, 1 / kMostGivenWay, kMostGivenWay);
+    std::vector<double> peaks = featureOpacities(start);
+    for (std::size_t f = 0; f < peaks.size(); ++f)
+        if (!isHeld(start, start.features[f])) peaks[f] = std::min(1.0, factor * peaks[f]);
+    return withFeatureOpacities(start, peaks);
+}
+
 /// What live refinement of an edit starts from: held points are fixed, and the others have given way, or filled up, so
 /// that the total opacity is as it was; equal steps up and down keep it.
-TransferFunction liveStart(const TransferFunction& before, const TransferFunction& after,
+TransferFunction liveStart(const Histogram& histogram, const TransferFunction& before, const TransferFunction& after,
                            const std::vector<std::size_t>& held) {
     TransferFunction start = after;
     for (const std::size_t i : held) start.points[i].fixed = true;
-    if (held.empty() || before.points.size() != after.points.size()) return start;
+    if (held.empty()) return start;
+    if (movesFeatures(after)) return liveStartOfFeatures(histogram, before, std::move(start));
+    if (before.points.size() != after.points.size()) return start;
     double given = 0, others = 0;
     for (const std::size_t i : held) given += after.points[i].opacity - before.points[i].opacity;
     for (const ControlPoint& point : start.points)
@@ -96,6 +117,24 @@ RefineController::RefineController(Workbench& bench)
               if (m_colors.size() > kMostRegions) m_colors.pop_front();
               m_pending.reset();
               refineForRegion(look);
+          }),
+      m_examine(
+          [](const Examined& task, const JobControl& job) -> std::optional<Darkening> {
+              const Scene& scene = task.scene;
+              const Refinement& r = task.refinement;
+              const RayBundle rays(*scene.volume, r.before, measureInput(scene).view, kCoverageRays, job);
+              return darkeningOf(rays, *scene.histogram, r.before, r.after, r.options, [&](const RefineOptions& by) {
+                  return withOpacitiesOf(
+                      r.before,
+                      refineAsDrawn(*scene.histogram, r.start, *scene.volume, scene.colors.get(), by, job).tf);
+              });
+          },
+          [this](const Examined& task, std::optional<Darkening>& dark) {
+              if (!dark) return;
+              for (Refinement& r : m_kept)
+                  if (r.volume == task.refinement.volume && r.after == task.refinement.after) r.dark = dark;
+              say(QString::fromStdString(darkeningText(*dark)));
+              Q_EMIT refined();
           }) {
     bench.store().setConsequence(
         [this](const Scene& before, const Scene& after, Session& session) { return follow(before, after, session); });
@@ -111,10 +150,12 @@ RefineController::RefineController(Workbench& bench)
         if (m_bench.store().isPreviewing()) return;
         m_latestIsPreview = false;
         m_dragStart.reset(); // whoever has ended the preview has ended the drag
+        examine();
     });
     connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume) {
             m_look.cancel();
+            m_examine.cancel();
             m_dragStart.reset();
             m_renderer->release();
             std::erase_if(m_kept, [&](const Refinement& r) { return r.volume != after.volume; });
@@ -240,11 +281,20 @@ TransferFunction RefineController::startOfPriority() const {
 
 Refinement RefineController::refineFrom(const TransferFunction& before, const TransferFunction& start,
                                         const Scene& scene, RefineOptions options) const {
-    Refinement r{scene.volume, before, {}, start, std::move(options), {}, {}};
+    Refinement r{scene.volume, before, {}, start, std::move(options), {}, {}, {}, {}};
     // A few milliseconds, of the histogram alone: no reason to go to another thread.
-    r.result = refineAsDrawn(*scene.histogram, r.start, *scene.volume, scene.colors.get(), r.options);
-    r.after = r.result.tf;
-    for (std::size_t i = 0; i < r.after.points.size(); ++i) r.after.points[i].fixed = before.points[i].fixed;
+    const auto refineBy = [&](const RefineOptions& by) {
+        return refineAsDrawn(*scene.histogram, r.start, *scene.volume, scene.colors.get(), by);
+    };
+    r.result = refineBy(r.options);
+    r.after = withOpacitiesOf(before, r.result.tf);
+    const auto outcome = priorityOutcome(*scene.histogram,
+                                         r.options.priority.region.empty()
+                                             ? before
+                                             : withDrawnColors(before, *scene.volume, scene.colors.get()),
+                                         r.after, r.options,
+                                         [&](const RefineOptions& by) { return refineBy(by).tf; });
+    if (outcome) r.shortfall = QString::fromStdString(outcome->text);
     r.words = QString::fromStdString(changeText(opacityChanges(r.before, r.after)));
     return r;
 }
@@ -262,10 +312,50 @@ void RefineController::say(const QString& text) {
 }
 
 void RefineController::sayRefined(const Refinement& refinement) {
-    if (refinement.after == refinement.before) return say(tr("Refinement found nothing to improve."));
-    say(tr("Refined: %1; %2.")
-            .arg(refinement.words,
-                 evennessText(refinement.result.energyMovableBefore, refinement.result.energyMovableAfter)));
+    QString text = tr("Refinement found nothing to improve.");
+    if (!(refinement.after == refinement.before))
+        text = tr("Refined: %1; %2.")
+                   .arg(refinement.words,
+                        evennessText(refinement.result.energyMovableBefore, refinement.result.energyMovableAfter));
+    if (!refinement.shortfall.isEmpty()) text += ' ' + refinement.shortfall;
+    say(text);
+}
+
+void RefineController::examine() {
+    const Refinement* now = current();
+    if (now == nullptr || !m_bench.scene().histogram || m_examined == now->after) return;
+    m_examined = now->after;
+    m_examine.start({m_bench.scene(), *now}, tr("the picture of the refinement"));
+}
+
+void RefineController::takeHelp() {
+    const Refinement* now = current();
+    if (!isReady() || now == nullptr || !now->dark || now->dark->help == Darkening::Help::None) return;
+    const bool exact = now->dark->help == Darkening::Help::Exact;
+    const int iterations = now->dark->iterations;
+    RefineOptions by = now->options;
+    if (exact)
+        by.method = RefineMethod::Exact;
+    else
+        by.maxIterations = iterations;
+    try {
+        Refinement r = refineFrom(now->before, now->start, m_bench.scene(), by);
+        const QScopedValueRollback quiet(m_quiet, true);
+        keep(r);
+        m_bench.store().edit(tr("Refine, not as dark"), {}, [&](Session& session) {
+            session.refine.edit([&](RefineSettings& s) {
+                if (exact)
+                    s.method = RefineMethod::Exact;
+                else
+                    s.maxIterations = iterations;
+            });
+            session.setTf(r.after);
+            session.addRun(runOf(r));
+        });
+        sayRefined(r);
+    } catch (const Error& error) {
+        m_bench.showError(tr("Refinement failed"), error);
+    }
 }
 
 void RefineController::refine() {
@@ -435,7 +525,7 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
         RefineOptions by = settings.options();
         by.priority = *priority;
         const auto held = edited ? heldPoints(before.tf, after.tf) : std::vector<std::size_t>();
-        Refinement r = refineFrom(after.tf, liveStart(before.tf, after.tf, held), after, by);
+        Refinement r = refineFrom(after.tf, liveStart(*after.histogram, before.tf, after.tf, held), after, by);
         if (r.after == r.before) return {};
         session.setTf(r.after);
         keep(std::move(r));

@@ -11,7 +11,7 @@
 
 #include "jobs/job.h"
 #include "kept_renderer.h"
-#include "optimize/refine.h"
+#include "optimize/refine_outcome.h"
 #include "session/scene.h"
 
 namespace pellucid::gui {
@@ -25,7 +25,9 @@ struct Refinement {
     TransferFunction start; ///< `before`; of a live one with what the edit holds fixed, and the others given way
     RefineOptions options;  ///< with what was prioritized
     RefineResult result;
-    QString words; ///< "air −40 %, enamel × 3"
+    QString words;     ///< "air −40 %, enamel × 3"
+    QString shortfall; ///< why what was prioritized did not gain on all others, and what helps; empty where it did
+    std::optional<Darkening> dark; ///< looked for after the edit is done
 };
 
 /// Settings and priority are those of Session::refine. Every refinement is one undo step; a live one is part of the
@@ -42,6 +44,8 @@ public:
     void addActions();
 
     void refine(); ///< with the present settings and priority
+    /// In place of current(), whose picture is dark: what Darkening::help says, from the same start.
+    void takeHelp();
 
     /// Prioritizes intensity x, [0,1], and refines for it. Steps with the same `mergeKey` in a row become one.
     void prioritize(double x, const QString& mergeKey = {});
@@ -85,6 +89,11 @@ private:
         ImageRegion region;
         QString text;
     };
+    /// A refinement, and all that tells whether its picture is dark.
+    struct Examined {
+        Scene scene;
+        Refinement refinement;
+    };
 
     QString follow(const Scene& before, const Scene& after, Session& session);
     bool isReady() const;
@@ -100,6 +109,7 @@ private:
     void refineForRegion(const Look& look);
     void sayRefined(const Refinement& refinement);
     void say(const QString& text);
+    void examine(); ///< whether the picture of current() is dark
 
     Workbench& m_bench;
     std::deque<Refinement> m_kept;  ///< the latest last
@@ -112,7 +122,9 @@ private:
     QSize m_viewSize{4, 3};
     bool m_ghost = true;
     std::shared_ptr<KeptRenderer> m_renderer;
-    Job<Look, std::vector<RegionColor>> m_look; // last: it ends before the rest goes
+    std::optional<TransferFunction> m_examined;  ///< what examine() has looked at last
+    Job<Look, std::vector<RegionColor>> m_look; // last: they end before the rest goes
+    Job<Examined, std::optional<Darkening>> m_examine;
 };
 
 /// How much smaller the variance of the edge weights (3.4) has become, in words.

@@ -21,6 +21,7 @@
 
 #include "number_box.h"
 #include "number_text.h"
+#include "optimize/refine_features.h"
 #include "panel.h"
 #include "panels/scrolled.h"
 #include "theme.h"
@@ -171,8 +172,8 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
       m_auto(new QCheckBox(tr("auto"), this)), m_ghost(new QCheckBox(tr("&Ghost of the curve"), this)),
       m_priority(new QLabel(this)), m_nothing(new QToolButton(this)), m_method(new QComboBox(this)),
       m_down(new QDoubleSpinBox(this)), m_up(new QDoubleSpinBox(this)), m_limit(new QSpinBox(this)),
-      m_words(new QLabel(this)), m_figures(new QLabel(this)), m_comparison(new QLabel(this)),
-      m_edges(new EdgeBars(this)), m_plot(new EnergyPlot(this)),
+      m_words(new QLabel(this)), m_note(new QLabel(this)), m_figures(new QLabel(this)), m_comparison(new QLabel(this)),
+      m_help(new QPushButton(this)), m_edges(new EdgeBars(this)), m_plot(new EnergyPlot(this)),
       m_compare([](const Comparing& task,
                    const JobControl& job) { return compareMethods(*task.histogram, task.start, task.options, job); },
                 [this](const Comparing&, RefineComparison& answer) {
@@ -229,7 +230,7 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     m_plot->setObjectName("refineCurve");
     m_plot->setToolTip(tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
     const std::pair<QLabel*, const char*> labels[] = {
-        {m_words, "refineWords"}, {m_figures, "refineFigures"}, {m_comparison, "refineComparison"}};
+        {m_words, "refineWords"}, {m_note, "refineNote"}, {m_figures, "refineFigures"}, {m_comparison, "refineComparison"}};
     for (const auto& [label, name] : labels) {
         label->setObjectName(name);
         label->setWordWrap(true);
@@ -282,6 +283,8 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     form->addRow(tr("Step up"), up);
     form->addRow(tr("At most"), m_limit);
     column->addWidget(m_words);
+    column->addWidget(m_note);
+    column->addWidget(m_help);
     column->addWidget(m_figures);
     column->addWidget(m_edges);
     column->addWidget(m_plot);
@@ -302,6 +305,8 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     triggers(m_pair, "sideBySideAction");
     triggers(m_ghost, "ghostAction");
     triggers(m_nothing, "prioritizeNothingAction");
+    m_help->setObjectName("refineHelpButton");
+    connect(m_help, &QPushButton::clicked, this, [this] { m_bench.refining().takeHelp(); });
     connect(m_method, &QComboBox::activated, this, &RefinePanel::editSettings);
     connect(m_auto, &QCheckBox::clicked, this, &RefinePanel::editSettings);
     connect(m_limit, &QSpinBox::valueChanged, this, &RefinePanel::editSettings);
@@ -390,6 +395,7 @@ void RefinePanel::showOutcome() {
         m_edges->setBars({});
         m_plot->setCurve({}, 0, true);
         m_words->clear();
+        showNote(nullptr);
         m_figures->clear();
         return;
     }
@@ -398,21 +404,22 @@ void RefinePanel::showOutcome() {
     const std::vector<double> weights =
         now != nullptr ? now->result.edgesAfter
                        : edgeWeights(*scene.histogram, scene.tf, m_bench.refining().options().priority);
-    const std::vector<ControlPoint> points = scene.tf.pointsWithEnds();
+    const std::vector<RefineEdge> edges = now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
     const TfSampler sampler(scene.tf);
     const double span = scene.volume->range().hi - scene.volume->range().lo;
     const auto value = [&](double x) { return numberText(scene.volume->valueOfIntensity(x), span); };
     std::vector<EdgeBars::Bar> bars;
-    for (std::size_t i = 0; i < weights.size() && i + 1 < points.size(); ++i) {
+    for (std::size_t i = 0; i < weights.size() && i < edges.size(); ++i) {
         EdgeBars::Bar bar;
         bar.weight = weights[i];
         if (now != nullptr) bar.before = now->result.edgesBefore[i];
-        bar.color = colorFromRgb(sampler.color((points[i].x + points[i + 1].x) / 2));
-        bar.participates = !points[i].fixed || !points[i + 1].fixed;
-        bar.text = tr("values %1 to %2").arg(value(points[i].x), value(points[i + 1].x));
+        bar.color = colorFromRgb(sampler.color((edges[i].a + edges[i].b) / 2));
+        bar.participates = edges[i].participates;
+        bar.text = tr("values %1 to %2").arg(value(edges[i].a), value(edges[i].b));
         bars.push_back(std::move(bar));
     }
     m_edges->setBars(std::move(bars));
+    showNote(any);
     m_words->setEnabled(now != nullptr);
     m_figures->setEnabled(now != nullptr);
     if (any == nullptr) {
@@ -432,6 +439,20 @@ void RefinePanel::showOutcome() {
             .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")));
     m_plot->setCurve(result.energyCurve, result.iterations, now != nullptr);
     if (now != nullptr) m_wait.start();
+}
+
+void RefinePanel::showNote(const Refinement* refinement) {
+    QStringList sentences;
+    const std::optional<Darkening> dark = refinement != nullptr ? refinement->dark : std::nullopt;
+    if (refinement != nullptr && !refinement->shortfall.isEmpty()) sentences.append(refinement->shortfall);
+    if (dark) sentences.append(QString::fromStdString(darkeningText(*dark)));
+    m_note->setText(sentences.join(' '));
+    m_note->setVisible(!sentences.isEmpty());
+    m_help->setVisible(dark && dark->help != Darkening::Help::None);
+    if (!dark) return;
+    m_help->setText(dark->help == Darkening::Help::Exact ? tr("Refine by Exact instead")
+                                                         : tr("Stop after %L1 iterations instead").arg(dark->iterations));
+    m_help->setEnabled(refinement == m_bench.refining().current() && !m_bench.isReadOnly());
 }
 
 void RefinePanel::compare() {

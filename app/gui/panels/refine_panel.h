@@ -84,6 +84,7 @@ private:
     void showSettings();
     void showPriority();
     void showOutcome();
+    void showNote(const Refinement* refinement); ///< null: there is none
     void compare();
 
     Workbench& m_bench;
@@ -94,7 +95,8 @@ private:
     QComboBox* m_method;
     QDoubleSpinBox *m_down, *m_up;
     QSpinBox* m_limit;
-    QLabel *m_words, *m_figures, *m_comparison;
+    QLabel *m_words, *m_note, *m_figures, *m_comparison;
+    QPushButton* m_help; ///< what keeps the picture from getting dark
     EdgeBars* m_edges;
     EnergyPlot* m_plot;
     bool m_showing = false; ///< the boxes show, they do not edit
