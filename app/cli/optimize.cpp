@@ -95,12 +95,12 @@ std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
     return limits;
 }
 
-std::string textOf(const OptimizeResult& r, const std::string& engine, const Seconds& seconds) {
+std::string textOf(const OptimizeResult& r, const std::vector<std::string>& names, const std::string& engine, const Seconds& seconds) {
     Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after", "cover"});
     const OptimizeState& start = r.history.front();
     const OptimizeState& best = r.history[r.best];
     for (std::size_t i = 0; i < r.targets.size(); ++i)
-        table.add({r.tf.features[i].name, fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
+        table.add({names[i], fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
                    fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
                    fixedText(r.seen->coverage.covers[i], 4)});
     const double coverage = r.seen->coverage.coverage, strongest = r.seen->strongest;
@@ -142,9 +142,8 @@ Answer run(const Options& o, Progress& progress) {
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
     Scene scene = opened.scene;
-    const std::vector<double> named = o.targets ? o.targets->of(scene) : scene.targets();
-    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
-    const std::vector<double> targets = shownShares(scene.tf, named);
+    std::vector<std::string> notices = opened.notices();
+    const std::vector<double> targets = sharesOf(o.targets ? o.targets->of(scene) : scene.targets(), scene, notices);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
     const std::vector<OpacityLimits> limits = limitsOf(o, scene);
     MeasureInput input = measureInput(scene);
@@ -175,8 +174,9 @@ Answer run(const Options& o, Progress& progress) {
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
     if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
-    std::string text = textOf(result, engine + profileText(input.settings), seconds);
+    std::string text = textOf(result, namesWithEmpty(scene.tf, *scene.histogram), engine + profileText(input.settings), seconds);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
+    json["empty"] = emptyFeatures(scene.tf, *scene.histogram);
     addProfile(json, input.settings);
     if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     std::vector<std::string> remarks;
@@ -192,7 +192,7 @@ Answer run(const Options& o, Progress& progress) {
         text += "view " + fixedText(angles.azimuth, 1) + "," + fixedText(angles.elevation, 1) + " degrees\n";
         json.update(jsonFromView(input.view.camera, input.volume->geometry()));
     }
-    Answer answer{std::move(text), std::move(json), opened.notices(), failureOf(o, options, result)};
+    Answer answer{std::move(text), std::move(json), std::move(notices), failureOf(o, options, result)};
     RunStart start = runStartOf(scene, options);
     start.limits = limits;
     o.report.write(scene, std::move(start), result, seconds.search, std::move(remarks), workspace, progress, answer);

@@ -5,13 +5,13 @@
 #include "commands.h"
 #include "image_io/image_file.h"
 #include "optimize/space_picture.h"
+#include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "session/space_inputs.h"
-#include "tf/shown_tf.h"
 
 namespace pellucid::cli {
 
@@ -74,7 +74,8 @@ void check(const Options& o) {
         throw UsageError("without a session there are no runs", "--paths", "name methods, or give --session FILE");
 }
 
-ParameterAxes axesOf(const Options& o, const TransferFunction& tf, const std::vector<double>& targets) {
+ParameterAxes axesOf(const Options& o, const Scene& scene, const std::vector<double>& targets) {
+    const TransferFunction tf = scene.wantedTf();
     ParameterAxes axes = o.axes;
     if (!o.features) {
         axes.features = atOption("--tf", [&] { return defaultAxes(tf, targets); });
@@ -82,6 +83,9 @@ ParameterAxes axesOf(const Options& o, const TransferFunction& tf, const std::ve
     }
     for (const std::string& one : *o.features) {
         const std::size_t f = parseFeature(one, "--features", tf);
+        if (scene.isEmpty(f))
+            throw UsageError("the feature '" + one + "' is empty: no voxel has its values", "--features",
+                             "choose others");
         if (tf.features[f].hidden)
             throw UsageError("the feature '" + one + "' is hidden", "--features", "choose others");
         axes.features.push_back(f);
@@ -178,10 +182,9 @@ Answer run(const Options& o, Progress& progress) {
     check(o);
     const Opened opened = resolve(o.scene, progress, {toMeasure("sampling"), true});
     const Scene& scene = opened.scene;
-    const std::vector<double> named = o.targets.value_or(scene.targets());
-    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
-    const std::vector<double> targets = shownShares(scene.tf, named);
-    const ParameterAxes axes = axesOf(o, scene.tf, targets);
+    std::vector<std::string> notices = opened.notices();
+    const std::vector<double> targets = sharesOf(o.targets.value_or(scene.targets()), scene, notices);
+    const ParameterAxes axes = axesOf(o, scene, targets);
     const std::vector<std::string> names = namesOf(scene.tf);
     SpaceView view;
     view.shown = o.show == "F" ? kObjective : static_cast<int>(parseFeature(o.show, "--show", scene.tf));
@@ -233,7 +236,11 @@ Answer run(const Options& o, Progress& progress) {
     json["paths"] = std::move(pathsJson);
     json["files"] = files;
     json["seconds"] = {{"sampling", seconds}, {"total", total.seconds()}};
-    return {textOf(space, names, factor, view.paths, files, seconds), std::move(json), opened.notices(), {}};
+    json["empty"] = emptyFeatures(scene.tf, *scene.histogram);
+    return {textOf(space, namesWithEmpty(scene.tf, *scene.histogram), factor, view.paths, files, seconds),
+            std::move(json),
+            std::move(notices),
+            {}};
 }
 
 } // namespace

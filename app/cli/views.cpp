@@ -2,6 +2,7 @@
 #include "base/atomic_file.h"
 #include "commands.h"
 #include "image_io/image_file.h"
+#include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -11,7 +12,6 @@
 #include "results_json.h"
 #include "session/view_workspace.h"
 #include "tf/color_maps.h"
-#include "tf/shown_tf.h"
 
 namespace pellucid::cli {
 
@@ -30,16 +30,14 @@ struct Options {
 
 bool isTable(const std::string& path) { return path.ends_with(".csv"); }
 
-ViewMetric metricOf(const Options& o, const Scene& scene) {
+ViewMetric metricOf(const Options& o, const Scene& scene, std::vector<std::string>& notices) {
     ViewMetric metric;
     if (o.feature) {
         metric.figure = o.figure;
         metric.feature = parseFeature(*o.feature, "--feature", scene.tf);
         return metric;
     }
-    const std::vector<double> named = o.targets.value_or(scene.targets());
-    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
-    metric.targets = normalizedTargets(shownShares(scene.tf, named), scene.tf.features.size());
+    metric.targets = sharesOf(o.targets.value_or(scene.targets()), scene, notices);
     return metric;
 }
 
@@ -145,7 +143,8 @@ Answer run(const Options& o, Progress& progress) {
         throw UsageError("views are judged by one figure", "--target and --feature", "leave one out");
     const Opened opened = resolve(o.scene, progress, {toMeasure("measuring"), true});
     const Scene& scene = opened.scene;
-    const ViewMetric metric = metricOf(o, scene);
+    std::vector<std::string> notices = opened.notices();
+    const ViewMetric metric = metricOf(o, scene, notices);
     const MeasureInput input = measureInput(scene);
     Workspace workspace;
     ViewWorkspace views;
@@ -169,7 +168,7 @@ Answer run(const Options& o, Progress& progress) {
     if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     return {textOf(metric, feature, best, input.volume->geometry(), engine, seconds),
             std::move(json),
-            opened.notices(),
+            std::move(notices),
             {}};
 }
 
