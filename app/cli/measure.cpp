@@ -60,8 +60,8 @@ std::string textOf(const Scene& scene, const Measures& m, const Matrices& matric
            secondsText(seconds.total) + "\n";
 }
 
-Json jsonOf(const Scene& scene, const Measures& m, const Matrices& matrices,
-            const std::string& engine, const Seconds& seconds) {
+Json jsonOf(const Scene& scene, const Measures& m, const Matrices& matrices, const std::string& engine,
+            const Seconds& seconds) {
     const TransferFunction& tf = scene.tf;
     Json features = Json::array();
     for (std::size_t i = 0; i < tf.features.size(); ++i) {

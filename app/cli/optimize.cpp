@@ -95,13 +95,14 @@ std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
     return limits;
 }
 
-std::string textOf(const OptimizeResult& r, const std::vector<std::string>& names, const std::string& engine, const Seconds& seconds) {
+std::string textOf(const OptimizeResult& r, const std::vector<std::string>& names, const std::string& engine,
+                   const Seconds& seconds) {
     Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after", "cover"});
     const OptimizeState& start = r.history.front();
     const OptimizeState& best = r.history[r.best];
     for (std::size_t i = 0; i < r.targets.size(); ++i)
-        table.add({names[i], fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
-                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
+        table.add({names[i], fixedText(r.targets[i], 4), fixedText(start.vws[i], 4), fixedText(best.vws[i], 4),
+                   fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
                    fixedText(r.seen->coverage.covers[i], 4)});
     const double coverage = r.seen->coverage.coverage, strongest = r.seen->strongest;
     return table.text() + "coverage " + fixedText(coverage, 4) +
@@ -174,7 +175,8 @@ Answer run(const Options& o, Progress& progress) {
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
     if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
-    std::string text = textOf(result, namesWithEmpty(scene.tf, *scene.histogram), engine + profileText(input.settings), seconds);
+    std::string text =
+        textOf(result, namesWithEmpty(scene.tf, *scene.histogram), engine + profileText(input.settings), seconds);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
     json["empty"] = emptyFeatures(scene.tf, *scene.histogram);
     addProfile(json, input.settings);

@@ -159,9 +159,8 @@ void Sequence::prepareKey() {
     });
     if (m_o.tolerance) session.optimize.edit([&](OptimizeOptions& options) { options.tolerance = *m_o.tolerance; });
     if (m_o.targets) {
-        const std::vector<double> targets = atOption("--target", [&] {
-            return normalizedTargets(m_o.targets->of(m_scene), m_scene.tf.features.size());
-        });
+        const std::vector<double> targets = atOption(
+            "--target", [&] { return normalizedTargets(m_o.targets->of(m_scene), m_scene.tf.features.size()); });
         session.targetKeys.set({});
         // A number for a feature that is empty here is for later frames; words say nothing of it.
         const TransferFunction named = m_o.targets->numbers.empty() ? m_scene.wantedTf() : m_scene.tf;
@@ -473,11 +472,10 @@ Answer Sequence::run(const Opened& opened) {
     answer.notices.insert(answer.notices.end(), m_notices.begin(), m_notices.end());
     answer.json["seconds"] = {{"key", m_keySeconds}, {"total", total.seconds()}};
     if (m_o.requireConverged && dynamic.above > 0)
-        answer.failure =
-            Error("the targets were not reached in " + framesOf(dynamic.above, dynamic.frames) + " (objective up to " +
-                      plainText(dynamic.worstObjective) + " in frame " + std::to_string(dynamic.worst) +
-                      ", wanted below " + plainText(tolerance) + ")",
-                  name(settings().mode), "lower --coherence, raise --tolerance, or choose other targets");
+        answer.failure = Error("the targets were not reached in " + framesOf(dynamic.above, dynamic.frames) +
+                                   " (objective up to " + plainText(dynamic.worstObjective) + " in frame " +
+                                   std::to_string(dynamic.worst) + ", wanted below " + plainText(tolerance) + ")",
+                               name(settings().mode), "lower --coherence, raise --tolerance, or choose other targets");
     return answer;
 }
 
@@ -520,8 +518,8 @@ Command addSequence(CLI::App& program) {
             o->coherence = text == "inf" ? std::numeric_limits<double>::infinity() : parseReal(text, option, 0, 1e6);
         },
         "how much jumps of the transfer function are held back: 0 not at all, inf: as static; with optimize opacities "
-        "change as little over the whole series as a distance of L/100 from the targets on average (RMS) allows; the "
-        "first frame's give way too, but for a key of a session (default: the session's, else 2 with optimize)");
+        "change as little over the whole series as a distance of L/100 from the targets on average (RMS) allows "
+        "(default: the session's, else 2 with optimize)");
     addValue(
         *app, "--tolerance", "F",
         [o](const std::string& text, const std::string& option) { o->tolerance = parseRealAbove(text, option, 0, 1); },

@@ -236,7 +236,7 @@ void Session::setTf(TransferFunction tf) {
     if (there != keys.end() && *there->second == tf && sameIdentities(*there->second, tf)) return;
     keys[key] = Part<TransferFunction>(std::move(tf));
     all.front().track.adapted.erase(key); // of another key; until it is made anew, what was set is shown
-    variables = std::move(all); // not edit(): equal features may have become other ones
+    variables = std::move(all);           // not edit(): equal features may have become other ones
 }
 
 void Session::identifyFeatures() {

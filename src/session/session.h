@@ -39,7 +39,7 @@ struct AdaptedTf {
 /// The transfer function of a variable over time.
 struct TfTrack {
     std::map<int, Part<TransferFunction>> keys; ///< key frame → transfer function, in the data units of its `range`
-    std::map<int, AdaptedTf> adapted; ///< what AdaptSettings made of them, for frames from the first key on
+    std::map<int, AdaptedTf> adapted;           ///< what AdaptSettings made of them, for frames from the first key on
 
     /// By hand: between two keys with the same points and features halfway from the one to the other, else the latest
     /// key that is not after `frame`, else the first. Null where there are no keys.

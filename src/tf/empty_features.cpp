@@ -37,8 +37,8 @@ std::string emptyTargetText(const TransferFunction& tf, const Histogram& histogr
     std::string list;
     for (std::size_t i = 0; i < names.size(); ++i)
         list += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
-    return list + (names.size() == 1 ? " has no voxel: its target counts as 0"
-                                     : " have no voxels: their targets count as 0");
+    return list +
+           (names.size() == 1 ? " has no voxel: its target counts as 0" : " have no voxels: their targets count as 0");
 }
 
 } // namespace pellucid

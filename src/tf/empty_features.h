@@ -19,8 +19,8 @@ std::vector<bool> emptyFeatures(const TransferFunction& tf, const Histogram& his
 /// Names of the features as tables list them: "low", "low (empty)".
 std::vector<std::string> namesWithEmpty(const TransferFunction& tf, const Histogram& histogram);
 
-/// `tf` with its empty features hidden: in what becomes of targets, both are the same. Not to be drawn: the opacities of
-/// features beside them would change.
+/// `tf` with its empty features hidden: in what becomes of targets, both are the same. Not to be drawn: the opacities
+/// of features beside them would change.
 TransferFunction withEmptyHidden(TransferFunction tf, const Histogram& histogram);
 
 /// "'low' has no voxel, so that its target counts as 0", of those that have no voxel and one of `targets` (one per

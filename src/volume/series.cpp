@@ -225,7 +225,9 @@ void addFile(SeriesListing& listing, const VolumeSource& given, const std::strin
 std::string SeriesListing::fileOf(int frame) const {
     const auto f = static_cast<std::size_t>(frame);
     const VolumeSource& source = frames.at(f).source;
-    const auto holds = [&](std::size_t other) { return other < frames.size() && frames[other].source.path == source.path; };
+    const auto holds = [&](std::size_t other) {
+        return other < frames.size() && frames[other].source.path == source.path;
+    };
     const bool several = (f > 0 && holds(f - 1)) || holds(f + 1);
     return (source.isSample() ? source.path : fs::path(source.path).filename().string()) +
            (several ? ", step " + std::to_string(source.step) : "");

@@ -68,7 +68,7 @@ TEST_CASE("sequence optimizes every frame and compares with the static transfer 
         const json& one = j["frames"][static_cast<std::size_t>(f)];
         CHECK(one["frame"] == f);
         CHECK(one["objective"] <= 1e-3); // what tracking goes below; the first one is optimized
-        CHECK(one.contains("moves")); // the first one's, too, which starts where it was optimized to
+        CHECK(one.contains("moves"));    // the first one's, too, which starts where it was optimized to
         CHECK(one.contains("flicker") == (f > 0));
         most = std::max(most, one["static"]["objective"].get<double>());
         const std::string stem = "o/frame_000" + std::to_string(f);

@@ -492,7 +492,7 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
         INFO("frame " << f);
         CHECK(curves.runs[0].frames[static_cast<std::size_t>(f)].objective < 0.02);
         CHECK(curves.runs[1].frames[static_cast<std::size_t>(f)].objective > 0.02); // nobody has optimized the key
-        if (f == 0) continue; // nothing is before it
+        if (f == 0) continue;                                                       // nothing is before it
         CHECK(*curves.runs[1].frames[static_cast<std::size_t>(f)].flicker == 0);
         CHECK(*curves.runs[0].frames[static_cast<std::size_t>(f)].flicker > 0);
     }

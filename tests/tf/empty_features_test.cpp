@@ -29,8 +29,7 @@ TEST_CASE("a feature has a voxel where one of its intensities occurs, however na
     CHECK_FALSE(hasVoxel(between(0.51, 0.99), h));
     CHECK(hasVoxel(between(0.99, 1), h)); // but of the last one it is
     // Beyond the window values count at its ends, as in pictures and figures; what is not valid does not count.
-    const Histogram cut = makeHistogram(
-        lineOf(std::vector<float>{-5, 0.5f, 9, NAN, INFINITY}).withRange({0, 1}));
+    const Histogram cut = makeHistogram(lineOf(std::vector<float>{-5, 0.5f, 9, NAN, INFINITY}).withRange({0, 1}));
     CHECK(hasVoxel(between(0, 0.001), cut));
     CHECK(hasVoxel(between(0.999, 1), cut));
     CHECK_FALSE(hasVoxel(between(0.001, 0.499), cut));
@@ -53,7 +52,8 @@ TEST_CASE("empty features are told by name, and count as hidden where targets ar
 }
 
 TEST_CASE("no feature without a voxel is proposed", "[empty][proposal]") {
-    // Signed, as a t-map: to −3 on one side, to 12 on the other. The window is symmetric, and half way to −12 is nothing.
+    // Signed, as a t-map: to −3 on one side, to 12 on the other. The window is symmetric, and half way to −12 is
+    // nothing.
     std::vector<float> values(40 * 40 * 40);
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double x = std::sin(12.9898 * static_cast<double>(i)) * 43758.5453;
@@ -71,6 +71,6 @@ TEST_CASE("no feature without a voxel is proposed", "[empty][proposal]") {
         CHECK(hasVoxel(f, seen));
     }
     CHECK(p.features.size() == p.tf.features.size());
-    CHECK(p.features.size() < 4);                 // of four, the strongest negative one is not there
-    CHECK(p.features.back().hi == p.window.hi);   // the strongest positive one is
+    CHECK(p.features.size() < 4);               // of four, the strongest negative one is not there
+    CHECK(p.features.back().hi == p.window.hi); // the strongest positive one is
 }

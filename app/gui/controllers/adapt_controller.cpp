@@ -291,9 +291,7 @@ void AdaptController::finish(const Scene& basis, Answer& answer) {
     if (answer.made && !store.isPreviewing()) {
         const AdaptedFrame& made = *answer.made;
         // Where something has changed meanwhile its fingerprint is another one, and it will be made again.
-        store.amend([&](Session& session) {
-            session = withAdapted(std::move(session), made.frame, made.forTrack());
-        });
+        store.amend([&](Session& session) { session = withAdapted(std::move(session), made.frame, made.forTrack()); });
         ++m_progress.done;
     }
     if (answer.smoothed && !store.isPreviewing()) {

@@ -145,7 +145,8 @@ QVariant FeaturesModel::headerData(int section, Qt::Orientation orientation, int
 Qt::ItemFlags FeaturesModel::flags(const QModelIndex& index) const {
     Qt::ItemFlags flags = QAbstractTableModel::flags(index);
     if (!index.isValid() || m_readOnly) return flags;
-    if (index.column() == Target && m_store.scene().wantedTf().features.at(static_cast<std::size_t>(index.row())).hidden)
+    if (index.column() == Target &&
+        m_store.scene().wantedTf().features.at(static_cast<std::size_t>(index.row())).hidden)
         return flags;
     if (index.column() == Eye || index.column() == Name || index.column() == Opacity || index.column() == Target)
         flags |= Qt::ItemIsEditable;

@@ -50,9 +50,9 @@ PanelInfo temporalPanel() {
 }
 
 TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_shown(new QComboBox(this)), m_overGaps(new QCheckBox(tr("Flicker over gaps"), this)), m_words(new QLabel(this)),
-      m_readOut(new QLabel(this)), m_measure(new QToolButton(this)), m_export(new QToolButton(this)),
-      m_progress(new QProgressBar(this)),
+    : QWidget(parent), m_bench(bench), m_shown(new QComboBox(this)),
+      m_overGaps(new QCheckBox(tr("Flicker over gaps"), this)), m_words(new QLabel(this)), m_readOut(new QLabel(this)),
+      m_measure(new QToolButton(this)), m_export(new QToolButton(this)), m_progress(new QProgressBar(this)),
       m_job(
           [this](const Task& task, const JobControl& job) {
               Known known = task.known;
@@ -128,8 +128,9 @@ TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
     m_progress->setTextVisible(false);
     m_words->setObjectName("temporalWords");
     m_words->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    m_words->setToolTip(tr("Over the frames that are known: root mean square of F, the largest F and its frame, how many frames are\n"
-                           "not on target, and mean flicker"));
+    m_words->setToolTip(
+        tr("Over the frames that are known: root mean square of F, the largest F and its frame, how many frames are\n"
+           "not on target, and mean flicker"));
     m_readOut->setObjectName("temporalReadOut");
     m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
     m_readOut->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);

@@ -34,7 +34,7 @@ public:
     bool isMeasuring() const { return m_job.isRunning(); }
     /// Of all frames that are known as they are now.
     TemporalCurves curves() const;
-    int knownCount() const; ///< frames that curves() has
+    int knownCount() const;  ///< frames that curves() has
     bool isOverGaps() const; ///< flicker is told after missing or broken frames, too
 
     /// Writes what is known, by the suffix: .csv, .png or .svg. Errors are shown.

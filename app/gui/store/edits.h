@@ -28,8 +28,9 @@ inline std::vector<double> targetsWith(const Scene& scene, int feature, double v
 inline void previewTarget(SessionStore& store, int feature, double value, const QString& text) {
     const Scene& from = store.committed();
     const std::vector<double> targets = targetsWith(from, feature, value);
-    store.preview(text,
-                  [&, tf = from.wantedTf()](Session& session) { session.goals.set(withTargets(*session.goals, tf, targets)); });
+    store.preview(text, [&, tf = from.wantedTf()](Session& session) {
+        session.goals.set(withTargets(*session.goals, tf, targets));
+    });
 }
 inline void editTarget(SessionStore& store, int feature, double value, const QString& text,
                        const QString& mergeKey = {}) {
