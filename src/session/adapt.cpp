@@ -559,7 +559,11 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
         }
         allowed += model.distance * model.distance;
     }
-    const std::vector<std::vector<double>> found = smoothed(models, quiet);
+    std::vector<std::vector<double>> found;
+    if (models.size() > 1)
+        found = smoothed(models, quiet);
+    else
+        found = {models.front().opacity}; // a frame alone jumps nowhere
 
     // Models are not exact: as far of the way as the distance allows.
     constexpr std::array<double, 7> kParts{1, 0.97, 0.93, 0.88, 0.8, 0.6, 0.3};
