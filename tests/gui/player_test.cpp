@@ -7,6 +7,7 @@
 
 #include <QAction>
 #include <QApplication>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDockWidget>
 #include <QLabel>
@@ -520,6 +521,33 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     w.document().setCamera(camera);
     CHECK(panel.knownCount() == 0);
     CHECK(w.child<QWidget>("temporalDynamic").grab().toImage() != drawn);
+}
+
+TEST_CASE("behind a broken frame there is no flicker unless it is asked for", "[player]") {
+    SeriesWindow w(BallOptions{.broken = 2});
+    w.waitUntilKnown();
+    w.child<QComboBox>("adaptMode").setCurrentIndex(1);
+    Q_EMIT w.child<QComboBox>("adaptMode").activated(1);
+    w.settle();
+    w.child<QAction>("temporalAction").trigger();
+    auto& panel = *w.window.findChild<TemporalPanel*>();
+    const auto measured = [&] {
+        if (panel.knownCount() < 6) w.child<QToolButton>("temporalMeasure").click();
+        REQUIRE(waitFor([&] { return panel.knownCount() == 6; }));
+        return panel.curves().runs[0].frames;
+    };
+    const auto frames = measured();
+    CHECK_FALSE(frames[2].problem.empty());
+    for (std::size_t f : {0, 2, 3}) CHECK_FALSE(frames[f].flicker);
+    for (std::size_t f : {1, 4, 5}) CHECK(frames[f].flicker);
+    CHECK(frames[3].file == "ball_3.raw");
+    w.child<QCheckBox>("temporalOverGaps").click();
+    CHECK(panel.isOverGaps());
+    const auto over = measured();
+    CHECK(over[3].flicker);
+    CHECK(over[4].flicker == frames[4].flicker);
+    w.child<QCheckBox>("temporalOverGaps").click();
+    CHECK_FALSE(measured()[3].flicker);
 }
 
 TEST_CASE("a session with a series comes back at its frame", "[player]") {

@@ -10,6 +10,7 @@
 #include "jobs/job.h"
 #include "report/temporal_curves.h"
 
+class QCheckBox;
 class QComboBox;
 class QGridLayout;
 class QLabel;
