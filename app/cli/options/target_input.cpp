@@ -1,6 +1,8 @@
 #include "options/target_input.h"
 
+#include "optimize/objective.h"
 #include "parse.h"
+#include "tf/shown_tf.h"
 
 namespace pellucid::cli {
 
@@ -34,6 +36,12 @@ std::vector<double> TargetInput::of(const Scene& scene) const {
     if (scene.tf.features[feature].hidden)
         throw UsageError("the feature '" + *only + "' is hidden", "--target", "show it first");
     return targetsForOne(scene.tf, goals, feature);
+}
+
+std::vector<double> targetsOf(const std::optional<TargetInput>& given, const Scene& scene) {
+    const std::vector<double> named = given ? given->of(scene) : scene.targets();
+    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
+    return shownShares(scene.tf, named);
 }
 
 } // namespace pellucid::cli

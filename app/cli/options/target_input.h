@@ -22,6 +22,10 @@ struct TargetInput {
     std::vector<double> of(const Scene& scene) const;
 };
 
+/// What the visible features of a scene are wanted to show, as shownShares() gives it: of what was given, else of the
+/// scene's own targets. Throws UsageError where these are not one number for each feature.
+std::vector<double> targetsOf(const std::optional<TargetInput>& given, const Scene& scene);
+
 inline constexpr const char* kTargetForms = "T1,T2,...|equal|diagonal|inside-out|only:NAME";
 
 } // namespace pellucid::cli
