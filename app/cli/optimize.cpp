@@ -136,15 +136,13 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
-    if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputFiles(o.scene));
-    o.report.check(o.scene);
+    o.report.check();
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
     Scene scene = opened.scene;
     std::vector<std::string> notices = opened.notices();
-    const std::vector<double> targets = sharesOf(o.targets ? o.targets->of(scene) : scene.targets(), scene, notices);
+    const std::vector<double> targets = targetsOf(o.targets, scene, notices);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
     const std::vector<OpacityLimits> limits = limitsOf(o, scene);
     MeasureInput input = measureInput(scene);
@@ -264,12 +262,12 @@ Command addOptimize(CLI::App& program) {
     addRepeated(
         *app, "--lock", "NAME", [o](const std::string& text, const std::string&) { o->locked.push_back(text); },
         "keep the opacity of this feature as it is");
-    addValue(
-        *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
+    addOutputFile(
+        *app, "--out-tf", "FILE", [o](const std::string& path) { o->outTf = path; },
         "write the optimized transfer function (the best one seen)");
     o->report.add(*app);
-    addValue(
-        *app, "--out-camera", "FILE", [o](const std::string& text, const std::string&) { o->outCamera = text; },
+    addOutputFile(
+        *app, "--out-camera", "FILE", [o](const std::string& path) { o->outCamera = path; },
         "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where the targets are not reached; the answer is written all the same");

@@ -51,27 +51,36 @@ struct Options {
 
 constexpr double kFramesPerSecond = 10;
 
-std::string fileOf(const Options& o, int frame, const char* suffix) {
+constexpr std::array kCurves{"curves.csv", "curves.svg", "curves.png"};
+constexpr const char *kTfSuffix = ".tf.json", *kPictureSuffix = ".png", *kStaticSuffix = "_static.png"; // of a frame
+
+std::string frameName(int frame, const char* suffix) {
     std::array<char, 32> name{};
     std::snprintf(name.data(), name.size(), "frame_%04d", frame);
-    return (fs::path(o.out) / (std::string(name.data()) + suffix)).string();
+    return std::string(name.data()) + suffix;
 }
-std::string curvesOf(const Options& o, const char* suffix) {
-    return (fs::path(o.out) / (std::string("curves") + suffix)).string();
+std::string inFolder(const Options& o, const std::string& name) { return (fs::path(o.out) / name).string(); }
+std::string fileOf(const Options& o, int frame, const char* suffix) { return inFolder(o, frameName(frame, suffix)); }
+
+/// Before the first of them is written, or worked for.
+void announceFrames(const Options& o, int from, int size) {
+    for (int frame = from; frame < size; ++frame) {
+        addOutputFile(o.out, frameName(frame, kTfSuffix), "--out");
+        if (!o.noPictures) addOutputFile(o.out, frameName(frame, kPictureSuffix), "--out");
+        if (!o.noPictures && o.compare) addOutputFile(o.out, frameName(frame, kStaticSuffix), "--out");
+    }
 }
 
 /// What can be told before the volume is read.
 void check(const Options& o) {
-    const std::array<std::string, 3> names{"curves.csv", "curves.svg", "curves.png"};
-    checkOutputFolder(o.out, "--out", names, inputFiles(o.scene));
+    for (const char* name : kCurves) addOutputFile(o.out, name, "--out");
     if (o.scene.picture.transparent)
         throw UsageError("flicker is of what is seen on a background", "--background transparent", "give a colour");
     if (o.framesPerSecond && !o.movie)
         throw UsageError("--fps is of a film", "--fps", "give --mp4 FILE too, or leave it out");
     if (!o.movie) return;
     if (o.noPictures) throw UsageError("a film is made of the pictures", "--no-pictures", "leave out one of the two");
-    checkOutputFile(*o.movie, "--mp4", inputFiles(o.scene));
-    requireMovieWriter(*o.movie, "--mp4");
+    requireMovieWriter();
 }
 
 /// The frame that is read while others are computed.
@@ -118,6 +127,7 @@ public:
 
 private:
     void prepareKey();
+    void passOver(int frame, const FileError& error);
     void plan(ReadAhead& ahead);
     std::optional<Frame> next(int number);
     void finish(std::vector<Frame>& batch);
@@ -198,6 +208,12 @@ void Sequence::prepareKey() {
     m_keySeconds = watch.seconds();
 }
 
+/// A frame whose own data are sound may want for those of another variable; Opened::notices() tells of both alike.
+void Sequence::passOver(int frame, const FileError& error) {
+    if (m_scene.series->summary(frame).problem.empty())
+        m_scene.series->noteProblem(frame, error.problem() + ", " + error.where());
+}
+
 /// What coherence asks for: all frames forward, then smoothed together.
 void Sequence::plan(ReadAhead& ahead) {
     Session& session = m_scene.session;
@@ -210,6 +226,8 @@ void Sequence::plan(ReadAhead& ahead) {
             AdaptedFrame made = m_adapter.adapt(m_scene, *task, m_workspace, {job.stop, {}});
             session = withAdapted(std::move(session), made.frame, made.forTrack());
             m_planned[made.frame] = std::move(made);
+        } catch (const FileError& error) {
+            passOver(task->frame, error);
         } catch (const Error&) {
             if (series.summary(task->frame).problem.empty()) throw; // not of the frame
         }
@@ -265,11 +283,8 @@ std::optional<Frame> Sequence::next(int number) {
         m_beforeNumber = number;
         return frame;
     } catch (const FileError& error) {
+        passOver(number, error);
         m_broken = brokenFigures(*m_scene.series, number);
-        if (m_scene.series->summary(number).problem.empty()) { // else Opened::notices() tells: here another variable's
-            m_broken.problem = error.problem();
-            m_notices.push_back("frame " + std::to_string(number) + " is passed over: " + error.what());
-        }
         return {};
     }
 }
@@ -289,17 +304,17 @@ void Sequence::finish(std::vector<Frame>& batch) {
             frame.staticFigures = figuresOf(frame.asStatic, nullptr, workspace, job);
             if (frame.before) frame.staticFigures.flicker = 0; // the same transfer function
         }
-        writeTf(frame.scene.tf, fileOf(m_o, frame.number, ".tf.json"));
+        writeTf(frame.scene.tf, fileOf(m_o, frame.number, kTfSuffix));
         if (m_o.noPictures) return;
         const PictureInput picture = m_o.scene.picture.pictureOf(frame.scene);
         const Image image = makeRenderer(frame.scene.session.measure->engine, picture.volume)
                                 ->render(picture.camera, picture.tf, picture.settings, job);
-        writeImage(image, fileOf(m_o, frame.number, ".png"));
+        writeImage(image, fileOf(m_o, frame.number, kPictureSuffix));
         if (!m_o.compare) return;
         const PictureInput still = m_o.scene.picture.pictureOf(frame.asStatic);
         writeImage(makeRenderer(frame.scene.session.measure->engine, still.volume)
                        ->render(still.camera, still.tf, still.settings, job),
-                   fileOf(m_o, frame.number, "_static.png"));
+                   fileOf(m_o, frame.number, kStaticSuffix));
     });
     for (Frame& frame : batch) {
         const FrameFigures& f = frame.figures;
@@ -319,7 +334,7 @@ void Sequence::finish(std::vector<Frame>& batch) {
         m_frames.push_back(std::move(one));
         m_figures.push_back(f);
         if (m_o.compare) m_static.push_back(frame.staticFigures);
-        if (!m_o.noPictures) m_pictures.push_back(fileOf(m_o, frame.number, ".png"));
+        if (!m_o.noPictures) m_pictures.push_back(fileOf(m_o, frame.number, kPictureSuffix));
     }
     batch.clear();
 }
@@ -414,7 +429,7 @@ Json Sequence::json(const SequenceFigures& dynamic, const std::optional<Sequence
     json["worst"] = {{"frame", dynamic.worst}, {"objective", dynamic.worstObjective}};
     json["above_tolerance"] = dynamic.above;
     if (asStatic) json["static"] = {{"rms", asStatic->rms}};
-    json["files"] = {curvesOf(m_o, ".csv"), curvesOf(m_o, ".svg"), curvesOf(m_o, ".png")};
+    for (const char* name : kCurves) json["files"].push_back(inFolder(m_o, name));
     if (m_o.movie) json["files"].push_back(*m_o.movie);
     return json;
 }
@@ -456,9 +471,9 @@ Answer Sequence::run(const Opened& opened) {
     const TemporalCurves all = curves();
     const std::vector<Plot> plots = temporalPlots(all);
     const PlotPage page{.width = 640, .height = 260};
-    writeTextAtomically(curvesOf(m_o, ".csv"), csvOf(all));
-    writeTextAtomically(curvesOf(m_o, ".svg"), svgOf(plots, page));
-    writeImage(imageOf(plots, page), curvesOf(m_o, ".png"));
+    writeTextAtomically(inFolder(m_o, kCurves[0]), csvOf(all));
+    writeTextAtomically(inFolder(m_o, kCurves[1]), svgOf(plots, page));
+    writeImage(imageOf(plots, page), inFolder(m_o, kCurves[2]));
     if (m_o.movie)
         writeMovie(m_pictures, m_o.framesPerSecond.value_or(kFramesPerSecond), *m_o.movie,
                    m_progress.phase("film").stop);
@@ -490,6 +505,7 @@ Answer run(const Options& o, Progress& progress) {
     opened.scene = openScene(inputs, progress.phase("loading"));
     o.scene.tf.applyTo(opened.scene);
     o.scene.picture.applyTo(opened.scene);
+    announceFrames(o, opened.scene.session.frame, opened.scene.series->size());
     return Sequence(o, opened.scene, progress).run(opened);
 }
 
@@ -531,16 +547,16 @@ Command addSequence(CLI::App& program) {
         },
         "begin with this frame of the series (default 0)");
     app->add_flag("--compare", o->compare, "measure and draw every frame under the first one's transfer function, too");
-    addValue(
-        *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },
+    addOutputFolder(
+        *app, "--out", "DIR", [o](const std::string& path) { o->out = path; },
         "write frame_0000.png and frame_0000.tf.json of each frame, curves.csv, curves.svg and curves.png")
         ->required();
     app->add_flag("--flicker-over-gaps", o->overGaps,
                   "tell flicker after missing or broken frames, too, against the frame before the gap");
     app->add_flag("--no-pictures", o->noPictures, "write no pictures of the frames");
-    addValue(
-        *app, "--mp4", "FILE", [o](const std::string& text, const std::string&) { o->movie = text; },
-        "a film of the pictures too, where ffmpeg is installed");
+    addOutputFile(
+        *app, "--mp4", "FILE", [o](const std::string& path) { o->movie = path; },
+        "a film of the pictures too, where ffmpeg is installed", checkMovieSuffix);
     addValue(
         *app, "--fps", "N",
         [o](const std::string& text, const std::string& option) {

@@ -21,7 +21,7 @@ using Figure = ViewMetric::Figure;
 
 struct Options {
     SceneOptions scene;
-    std::optional<std::vector<double>> targets;
+    std::optional<TargetInput> targets;
     std::optional<std::string> feature;
     Figure figure = Figure::Vws; ///< of `feature`
     int count = kSphereViews;
@@ -37,7 +37,7 @@ ViewMetric metricOf(const Options& o, const Scene& scene, std::vector<std::strin
         metric.feature = parseFeature(*o.feature, "--feature", scene.tf);
         return metric;
     }
-    metric.targets = sharesOf(o.targets.value_or(scene.targets()), scene, notices);
+    metric.targets = targetsOf(o.targets, scene, notices);
     return metric;
 }
 
@@ -131,12 +131,6 @@ Json jsonOf(const ViewMetric& metric, const std::string& feature, const BestView
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    const std::vector<std::string> inputs = inputFiles(o.scene);
-    if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputs);
-    if (o.map) {
-        checkOutputFile(*o.map, "--map", inputs);
-        if (!isTable(*o.map)) atOption("--map", [&] { return checkImageSuffix(*o.map), 0; });
-    }
     if (!o.targets && !o.feature && !o.scene.session.file)
         throw UsageError("--target or --feature is required", "pellucid-cli views", "see pellucid-cli views --help");
     if (o.targets && o.feature)
@@ -179,9 +173,9 @@ Command addViews(CLI::App& program) {
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
     addValue(
-        *app, "--target", "T1,T2,...",
-        [o](const std::string& text, const std::string& option) { o->targets = parseTargets(text, option); },
-        "the distance F from these shares, one number for each feature; scaled to sum 1 (default: the session's)");
+        *app, "--target", kTargetForms,
+        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        "the distance F from these shares, as in optimize (default: the session's)");
     addValue(
         *app, "--feature", "NAME", [o](const std::string& text, const std::string&) { o->feature = text; },
         "how much of this feature is seen");
@@ -199,12 +193,15 @@ Command addViews(CLI::App& program) {
             o->count = static_cast<int>(parseInteger(text, option, 16, kMostSphereViews));
         },
         "directions, 16 to " + std::to_string(kMostSphereViews) + " (default " + std::to_string(kSphereViews) + ")");
-    addValue(
-        *app, "--out-camera", "FILE", [o](const std::string& text, const std::string&) { o->outCamera = text; },
+    addOutputFile(
+        *app, "--out-camera", "FILE", [o](const std::string& path) { o->outCamera = path; },
         "write the best view's camera");
-    addValue(
-        *app, "--map", "FILE", [o](const std::string& text, const std::string&) { o->map = text; },
-        "write the map: a table (.csv) or a picture, azimuth to the right and elevation up, the better the brighter");
+    addOutputFile(
+        *app, "--map", "FILE", [o](const std::string& path) { o->map = path; },
+        "write the map: a table (.csv) or a picture, azimuth to the right and elevation up, the better the brighter",
+        [](const std::string& path) {
+            if (!isTable(path)) atOption("--map", [&] { return checkImageSuffix(path), 0; });
+        });
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

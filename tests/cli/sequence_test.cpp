@@ -223,6 +223,34 @@ TEST_CASE("where more files are missing than there are, gaps are gaps all the sa
     CHECK(j["frames"][3]["file"] == "f40.raw");
 }
 
+TEST_CASE("a broken frame of another variable is reported with its number and left out", "[cli][sequence]") {
+    const Series w;
+    for (int f = 0; f < kFrames; ++f) w.write("y0" + std::to_string(f) + ".raw", layers(kFrames - f));
+    w.write("y02.raw", "short");
+    const Words variable{"--variable", "y=y%02d.raw", "--no-pictures", "--out", "o"};
+    // Whatever follows the frames: none, one frame from the other, and all of them smoothed together.
+    for (const Words& mode : {Words{"--mode", "static"}, Words{"--mode", "refine"},
+                              Words{"--mode", "optimize", "--target", "1,1,1", "--coherence", "0"},
+                              Words{"--mode", "optimize", "--target", "1,1,1", "--coherence", "2"}})
+        // The volatility over two frames wants frame 2 at frames 2 and 3.
+        for (const auto& [channels, broken] :
+             {std::pair<std::string, std::vector<int>>{"brightness=y", {2}}, {"saturation=volatility:y:2", {2, 3}}}) {
+            const Outcome r = w.run(kSeries + variable + mode + Words{"--hsb", channels, "--json"});
+            INFO(mode[1] << " " << channels << ": " << r.err);
+            REQUIRE(r.status == 0);
+            const json j = json::parse(r.out);
+            REQUIRE(j["frames"].size() == static_cast<std::size_t>(kFrames) - broken.size());
+            REQUIRE(j["broken"].size() == broken.size());
+            for (std::size_t i = 0; i < broken.size(); ++i) {
+                CHECK(j["broken"][i]["frame"] == broken[i]);
+                CHECK(j["broken"][i]["problem"].get<std::string>().find("y02.raw") != std::string::npos);
+                const std::string number = std::to_string(broken[i]);
+                CHECK(r.err.find("frame " + number + " (f0" + number + ") is passed over: ") != std::string::npos);
+            }
+            CHECK(j["frames"].back()["frame"] == kFrames - 1);
+        }
+}
+
 TEST_CASE("sequence writes the same on one thread and on two", "[cli][sequence]") {
     const Series w;
     for (const char* threads : {"1", "2"}) {

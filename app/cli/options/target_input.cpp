@@ -1,5 +1,6 @@
 #include "options/target_input.h"
 
+#include "optimize/objective.h"
 #include "parse.h"
 #include "tf/shown_tf.h"
 
@@ -41,12 +42,13 @@ std::vector<double> TargetInput::of(const Scene& scene) const {
     return targetsForOne(tf, goals, feature);
 }
 
-std::vector<double> sharesOf(const std::vector<double>& named, const Scene& scene, std::vector<std::string>& notices) {
-    const std::vector<double> targets =
-        atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
-    if (const std::string text = emptyTargetText(scene.tf, *scene.histogram, targets); !text.empty())
+std::vector<double> targetsOf(const std::optional<TargetInput>& given, const Scene& scene,
+                              std::vector<std::string>& notices) {
+    const std::vector<double> named = given ? given->of(scene) : scene.targets();
+    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
+    if (const std::string text = emptyTargetText(scene.tf, *scene.histogram, named); !text.empty())
         notices.push_back(text);
-    return shownShares(scene.wantedTf(), targets);
+    return shownShares(scene.wantedTf(), named);
 }
 
 } // namespace pellucid::cli

@@ -22,9 +22,11 @@ struct TargetInput {
     std::vector<double> of(const Scene& scene) const;
 };
 
-/// `named`, one number for each feature, as shares: 0 of hidden and of empty features, sum 1. `notices` gets a sentence
-/// where an empty one was given a number. Throws UsageError where these are no targets.
-std::vector<double> sharesOf(const std::vector<double>& named, const Scene& scene, std::vector<std::string>& notices);
+/// What the features of a scene are wanted to show: of what was given, else of the scene's own targets; 0 of hidden and
+/// of empty features, which the others divide. `notices` gets a sentence where an empty one was given a number. Throws
+/// UsageError where these are not one number for each feature.
+std::vector<double> targetsOf(const std::optional<TargetInput>& given, const Scene& scene,
+                              std::vector<std::string>& notices);
 
 inline constexpr const char* kTargetForms = "T1,T2,...|equal|diagonal|inside-out|only:NAME";
 
