@@ -107,21 +107,17 @@ std::vector<Output> outputsOf(const std::vector<FieldKind>& kinds, const std::ve
     return outputs;
 }
 
-std::vector<std::string> filesOf(const std::vector<Output>& outputs) {
-    std::vector<std::string> files;
-    for (const Output& output : outputs) files.push_back(output.file);
-    return files;
-}
-
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
     const std::vector<FieldKind> kinds =
         o.kinds.empty() ? std::vector<FieldKind>(kUsual.begin(), kUsual.end()) : o.kinds;
-    checkOutputFolder(o.out, "--out", filesOf(outputsOf(kinds, {}, {})), inputFiles(o.scene));
+    const auto announce = [&](const Output& output) { addOutputFile(o.out, output.file, "--out"); };
+    for (const Output& output : outputsOf(kinds, {}, {})) announce(output);
     const Opened opened = resolve(o.scene, progress, {toWriteFields(), true});
     const MeasureInput input = measureInput(opened.scene);
     const std::vector<Output> outputs = outputsOf(kinds, featuresOf(o, input.tf), input.tf);
-    if (!o.features.empty()) checkOutputFolder(o.out, "--out", filesOf(outputs), inputFiles(o.scene));
+    for (const Output& output : outputs)
+        if (output.feature >= 0) announce(output);
     Workspace workspace;
     const std::string engineName = prepare(workspace, input, progress).engine;
     const WeightFields& weights = workspace.weights(input);
@@ -169,8 +165,8 @@ Command addFields(CLI::App& program) {
         "Writes visibility, saliency and each voxel's share of the VWS as NRRD files (float32, the volume's grid)");
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
-    addValue(
-        *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },
+    addOutputFolder(
+        *app, "--out", "DIR", [o](const std::string& path) { o->out = path; },
         "folder for visibility.nrrd, saliency_brightness.nrrd, saliency_saturation.nrrd, vws.nrrd; made where missing")
         ->required();
     addRepeated(

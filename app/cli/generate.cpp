@@ -37,7 +37,7 @@ std::string fileOf(const std::string& out, int frame) {
 }
 
 Answer run(const Options& o, Progress& progress) {
-    requireFileName(o.out, "--out");
+    if (o.out.empty()) throw UsageError("the file name is empty", "--out", "name the file to write");
     checkSuffix(o.out);
     const SampleInfo& info = sampleInfo(o.name);
     if (o.frames && *o.frames > info.frames)
@@ -45,7 +45,7 @@ Answer run(const Options& o, Progress& progress) {
                          "give 1 to " + std::to_string(info.frames));
     std::vector<std::string> files;
     for (int f = 0; f < o.frames.value_or(1); ++f) files.push_back(o.frames ? fileOf(o.out, f) : o.out);
-    for (const std::string& file : files) checkOutputFile(file, "--out");
+    for (const std::string& file : files) addOutputFile(file, "--out");
     const JobControl job = progress.phase("generating");
     std::uintmax_t bytes = 0;
     std::optional<Volume> volume;

@@ -15,6 +15,7 @@
 #include "command_line.h"
 #include "commands.h"
 #include "interrupt.h"
+#include "output_files.h"
 #include "parse.h"
 
 namespace pellucid::cli {
@@ -198,6 +199,7 @@ int runCommand(const Command& command, const CommonOptions& common) {
 
 int run(const std::vector<std::string>& arguments) {
     keepCommandLine(arguments);
+    watchCallFiles();
     CLI::App program("Pellucid on the command line: measures and shapes what a volume rendering shows.", kProgram);
     program.set_version_flag("--version", std::string(kProgram) + " " + PELLUCID_VERSION, "print the version");
     program.require_subcommand(1);

@@ -39,12 +39,14 @@ std::string textOf(const TransferFunction& tf, const std::optional<Matrix>& matr
     return table.text();
 }
 
-std::string textOf(const TransferFunction& tf, const Measures& m, const Matrices& matrices, const std::string& engine,
+std::string textOf(const Scene& scene, const Measures& m, const Matrices& matrices, const std::string& engine,
                    const Seconds& seconds) {
+    const TransferFunction& tf = scene.tf;
+    const std::vector<std::string> names = namesWithEmpty(tf, *scene.histogram);
     Table table({"feature", "intensities", "opacity", "visibility", "VWS", "brightness", "saturation", "cover"});
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];
-        table.add({tf.features[i].name, fixedText(tf.features[i].a, 3) + " .. " + fixedText(tf.features[i].b, 3),
+        table.add({names[i], fixedText(tf.features[i].a, 3) + " .. " + fixedText(tf.features[i].b, 3),
                    fixedText(m.opacities[i], 4), fixedText(f.visibility, 4), fixedText(f.vws, 4),
                    fixedText(f.vwsBrightness, 4), fixedText(f.vwsSaturation, 4), fixedText(m.coverage->covers[i], 4)});
     }
@@ -58,13 +60,15 @@ std::string textOf(const TransferFunction& tf, const Measures& m, const Matrices
            secondsText(seconds.total) + "\n";
 }
 
-Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m, const Matrices& matrices,
-            const std::string& engine, const Seconds& seconds) {
+Json jsonOf(const Scene& scene, const Measures& m, const Matrices& matrices, const std::string& engine,
+            const Seconds& seconds) {
+    const TransferFunction& tf = scene.tf;
     Json features = Json::array();
     for (std::size_t i = 0; i < tf.features.size(); ++i) {
         const FeatureMeasures& f = m.features[i];
         features.push_back({{"name", tf.features[i].name},
                             {"range", {tf.features[i].a, tf.features[i].b}},
+                            {"empty", scene.isEmpty(i)},
                             {"opacity", m.opacities[i]},
                             {"visibility", f.visibility},
                             {"vws", f.vws},
@@ -74,7 +78,7 @@ Json jsonOf(const Volume& volume, const TransferFunction& tf, const Measures& m,
     }
     Json json{{"command", "measure"},
               {"engine", engine},
-              {"volume", jsonFromVolume(volume)},
+              {"volume", jsonFromVolume(*scene.volume)},
               {"features", features},
               {"coverage", m.coverage->coverage},
               {"visibility_histogram", m.visibilityHistogram}};
@@ -105,10 +109,10 @@ Answer run(const Options& o, Progress& progress) {
     }
     if (o.occlusion) matrices.occlusion = workspace.occlusion(input, progress.phase("occlusion"));
     seconds.total = total.seconds();
-    Json json = jsonOf(*input.volume, input.tf, m, matrices, engine, seconds);
+    Json json = jsonOf(opened.scene, m, matrices, engine, seconds);
     addProfile(json, input.settings);
     if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
-    return {textOf(input.tf, m, matrices, engine + profileText(input.settings), seconds),
+    return {textOf(opened.scene, m, matrices, engine + profileText(input.settings), seconds),
             std::move(json),
             opened.notices(),
             {}};

@@ -13,6 +13,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_watch.h"
 #include "output.h"
 #include "parse.h"
 
@@ -43,13 +44,27 @@ std::string quoted(const std::string& name) {
     return text + "'";
 }
 
-/// Files that go when this does.
-struct Scratch {
-    std::vector<std::string> files;
+/// A new folder beside `path`, which goes with all that is in it when this does.
+class Scratch {
+public:
+    explicit Scratch(const fs::path& path) {
+        std::string name =
+            ((path.has_parent_path() ? path.parent_path() : fs::path(".")) / ".pellucid-XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr)
+            throw FileError("no folder can be made beside it", path.string(), "check permissions and space");
+        m_folder = name;
+    }
     ~Scratch() {
         std::error_code none;
-        for (const std::string& file : files) fs::remove(file, none);
+        fs::remove_all(m_folder, none);
     }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+
+    std::string file(const char* name) const { return (m_folder / name).string(); }
+
+private:
+    fs::path m_folder;
 };
 
 /// Runs it, its messages into `log`; the exit status, −1 where it was ended by a signal. Throws Cancelled.
@@ -87,23 +102,29 @@ int runProgram(const std::vector<std::string>& arguments, const std::string& log
 
 } // namespace
 
-void requireMovieWriter(const std::string& path, const std::string& option) {
+void checkMovieSuffix(const std::string& path) {
     if (fs::path(path).extension() != ".mp4")
-        throw UsageError("'" + path + "' does not end in .mp4", option, "give a name such as film.mp4");
+        throw UsageError("'" + path + "' does not end in .mp4", "--mp4", "give a name such as film.mp4");
+}
+
+void requireMovieWriter() {
     if (findProgram().empty())
-        throw Error("ffmpeg is not installed", option,
+        throw Error("ffmpeg is not installed", "--mp4",
                     "install it, or leave the option out: the pictures of all frames are written without it, too");
 }
 
 void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond, const std::string& path,
                 const std::stop_token& stop) {
     if (pictures.empty()) return;
-    const Scratch scratch{{path + ".list", path + ".log", path + ".part.mp4"}};
+    tellOfWriting(path);
+    const Scratch scratch(path);
+    const std::string pictureList = scratch.file("pictures.txt"), log = scratch.file("log.txt"),
+                      film = scratch.file("film.mp4");
     std::string list = "ffconcat version 1.0\n";
     const std::string duration = "duration " + plainText(1 / framesPerSecond) + "\n";
     for (const std::string& picture : pictures)
         list += "file " + quoted(fs::absolute(picture).string()) + "\n" + duration;
-    writeTextAtomically(scratch.files[0], list);
+    writeTextAtomically(pictureList, list);
     const int status = runProgram({findProgram(),
                                    "-nostdin",
                                    "-y",
@@ -114,7 +135,7 @@ void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond
                                    "-safe",
                                    "0",
                                    "-i",
-                                   scratch.files[0],
+                                   pictureList,
                                    "-r",
                                    plainText(framesPerSecond),
                                    "-vf",
@@ -125,14 +146,14 @@ void writeMovie(const std::vector<std::string>& pictures, double framesPerSecond
                                    "18",
                                    "-pix_fmt",
                                    "yuv420p",
-                                   scratch.files[2]},
-                                  scratch.files[1], stop);
+                                   film},
+                                  log, stop);
     std::error_code failed;
-    if (status == 0 && fs::is_regular_file(scratch.files[2])) {
-        fs::rename(scratch.files[2], path, failed);
+    if (status == 0 && fs::is_regular_file(film)) {
+        fs::rename(film, path, failed);
         if (!failed) return;
     }
-    std::string said = fs::exists(scratch.files[1]) ? readText(scratch.files[1]) : "";
+    std::string said = fs::exists(log) ? readText(log) : "";
     said = oneLine(said.substr(0, 300));
     throw Error("ffmpeg failed" + (said.empty() ? std::string() : ": " + said), path,
                 "the pictures are there; make the film by hand, or check that ffmpeg has libx264");

@@ -7,8 +7,8 @@
 
 namespace pellucid::cli {
 
-/// Throws Error where there is no ffmpeg in PATH, UsageError where `path` does not end in .mp4.
-void requireMovieWriter(const std::string& path, const std::string& option);
+void checkMovieSuffix(const std::string& path); ///< throws UsageError where it does not end in .mp4
+void requireMovieWriter();                      ///< throws Error where there is no ffmpeg in PATH
 
 /// H.264 in `path`, `framesPerSecond` pictures a second; a line is added to pictures of odd sizes. The film is whole or
 /// absent. Throws Error with what ffmpeg says where it fails, Cancelled.

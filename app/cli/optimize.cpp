@@ -100,13 +100,14 @@ std::vector<OpacityLimits> limitsOf(const Options& o, const Scene& scene) {
     return limits;
 }
 
-std::string textOf(const OptimizeResult& r, const std::string& engine, const Seconds& seconds) {
+std::string textOf(const OptimizeResult& r, const std::vector<std::string>& names, const std::string& engine,
+                   const Seconds& seconds) {
     Table table({"feature", "target", "VWS before", "VWS after", "opacity before", "opacity after", "cover"});
     const OptimizeState& start = r.history.front();
     const OptimizeState& best = r.history[r.best];
     for (std::size_t i = 0; i < r.targets.size(); ++i)
-        table.add({r.tf.features[i].name, fixedText(r.targets[i], 4), fixedText(start.vws[i], 4),
-                   fixedText(best.vws[i], 4), fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
+        table.add({names[i], fixedText(r.targets[i], 4), fixedText(start.vws[i], 4), fixedText(best.vws[i], 4),
+                   fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
                    fixedText(r.seen->coverage.covers[i], 4)});
     return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + "\n" + seenLines(r) + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
            name(r.reason) + " after " + std::to_string(r.iterations()) + " iterations, " +
@@ -137,16 +138,13 @@ std::optional<Error> failureOf(const Options& o, const OptimizeOptions& options,
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
-    if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputFiles(o.scene));
-    o.report.check(o.scene);
+    o.report.check();
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli optimize", "see pellucid-cli optimize --help");
     const Opened opened = resolve(o.scene, progress, {toMeasure("optimizing"), true});
     Scene scene = opened.scene;
-    const std::vector<double> named = o.targets ? o.targets->of(scene) : scene.targets();
-    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
-    const std::vector<double> targets = shownShares(scene.tf, named);
+    std::vector<std::string> notices = opened.notices();
+    const std::vector<double> targets = targetsOf(o.targets, scene, notices);
     const OptimizeOptions options = o.search.over(*scene.session.optimize);
     const std::vector<OpacityLimits> limits = limitsOf(o, scene);
     MeasureInput input = measureInput(scene);
@@ -178,8 +176,10 @@ Answer run(const Options& o, Progress& progress) {
     const Seconds seconds{saliencySeconds, workspace.seconds().visibility, total.seconds()};
     if (o.outTf) writeTf(result.tf, *o.outTf);
     if (o.outCamera) writeCamera(input.view.camera, *o.outCamera);
-    std::string text = textOf(result, engine + profileText(input.settings), seconds);
+    std::string text =
+        textOf(result, namesWithEmpty(scene.tf, *scene.histogram), engine + profileText(input.settings), seconds);
     Json json = jsonOf(result, options, *input.volume, engine, seconds);
+    json["empty"] = emptyFeatures(scene.tf, *scene.histogram);
     addProfile(json, input.settings);
     if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     std::vector<std::string> remarks;
@@ -195,7 +195,7 @@ Answer run(const Options& o, Progress& progress) {
         text += "view " + fixedText(angles.azimuth, 1) + "," + fixedText(angles.elevation, 1) + " degrees\n";
         json.update(jsonFromView(input.view.camera, input.volume->geometry()));
     }
-    Answer answer{std::move(text), std::move(json), opened.notices(), failureOf(o, options, result)};
+    Answer answer{std::move(text), std::move(json), std::move(notices), failureOf(o, options, result)};
     RunStart start = runStartOf(scene, options);
     start.limits = limits;
     o.report.write(scene, std::move(start), result, seconds.search, std::move(remarks), workspace, progress, answer);
@@ -269,12 +269,12 @@ Command addOptimize(CLI::App& program) {
     addRepeated(
         *app, "--lock", "NAME", [o](const std::string& text, const std::string&) { o->locked.push_back(text); },
         "keep the opacity of this feature as it is");
-    addValue(
-        *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
+    addOutputFile(
+        *app, "--out-tf", "FILE", [o](const std::string& path) { o->outTf = path; },
         "write the optimized transfer function (the best one seen)");
     o->report.add(*app);
-    addValue(
-        *app, "--out-camera", "FILE", [o](const std::string& text, const std::string&) { o->outCamera = text; },
+    addOutputFile(
+        *app, "--out-camera", "FILE", [o](const std::string& path) { o->outCamera = path; },
         "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,
                   "exit status 1 where the targets are not reached; the answer is written all the same");

@@ -1,6 +1,5 @@
 #include "optimize_report.h"
 
-#include <array>
 #include <filesystem>
 
 #include "base/atomic_file.h"
@@ -27,8 +26,8 @@ void writeCurves(const Run& run, const std::string& path) {
 } // namespace
 
 void ReportOptions::add(CLI::App& app) {
-    addValue(
-        app, "--report", "DIR", [this](const std::string& text, const std::string&) { folder = text; },
+    addOutputFolder(
+        app, "--report", "DIR", [this](const std::string& path) { folder = path; },
         "write report.html, one self-contained page (pictures before and after, bars, curves, how alike the moves "
         "look, "
         "settings, this command), and curves.csv");
@@ -36,25 +35,21 @@ void ReportOptions::add(CLI::App& app) {
         app, "--report-size", "WxH",
         [this](const std::string& text, const std::string& option) { size = parseImageSize(text, option); },
         "pixels of the report's pictures (default 512x512)");
-    addValue(
-        app, "--curves", "FILE", [this](const std::string& text, const std::string&) { curves = text; },
-        "write distance, VWS and opacities over the moves: .csv or .svg");
+    addOutputFile(
+        app, "--curves", "FILE", [this](const std::string& path) { curves = path; },
+        "write distance, VWS and opacities over the moves: .csv or .svg",
+        [](const std::string& path) {
+            const std::string suffix = fs::path(path).extension().string();
+            if (suffix != ".csv" && suffix != ".svg")
+                throw UsageError("curves are written as .csv or .svg", path, "give one of these suffixes");
+        });
 }
 
-void ReportOptions::check(const SceneOptions& scene) const {
+void ReportOptions::check() const {
     if (size && !folder)
         throw UsageError("--report-size is the size of a report's pictures", "--report-size", "give --report DIR too");
-    if (curves) {
-        requireFileName(*curves, "--curves");
-        const std::string suffix = fs::path(*curves).extension().string();
-        if (suffix != ".csv" && suffix != ".svg")
-            throw UsageError("curves are written as .csv or .svg", *curves, "give one of these suffixes");
-        checkOutputFile(*curves, "--curves", inputFiles(scene));
-    }
-    if (folder) {
-        const std::array<std::string, 2> names{kReportFile, kCurvesFile};
-        checkOutputFolder(*folder, "--report", names, inputFiles(scene));
-    }
+    if (!folder) return;
+    for (const char* file : {kReportFile, kCurvesFile}) addOutputFile(*folder, file, "--report");
 }
 
 void ReportOptions::write(const Scene& scene, RunStart start, const OptimizeResult& result, double seconds,

@@ -17,8 +17,8 @@ struct ReportOptions {
     std::optional<ImageSize> size; ///< of the two large pictures
 
     void add(CLI::App& app);
-    /// What can be told before the work: throws UsageError and FileError.
-    void check(const SceneOptions& scene) const;
+    /// What can be told before the work, and announces the files of the folder: throws UsageError and FileError.
+    void check() const;
     /// Draws, measures and writes what was asked for, and tells of it in `answer`. `scene` is that of the start,
     /// `seconds` those of the search, `remarks` sentences about the result.
     void write(const Scene& scene, RunStart start, const OptimizeResult& result, double seconds,

@@ -1,12 +1,18 @@
 #include "output_files.h"
 
 #include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
 
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_watch.h"
 #include "output.h"
+#include "parse.h"
 
 namespace pellucid::cli {
 
@@ -14,59 +20,168 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// One file may have many names: links, "./" and "../" before it. Only regular files are overwritten; a terminal may
-/// well be both ends of a command.
-bool isSameFile(const std::string& output, const std::string& input) {
+/// What a file is known by, beside its name: where the name leads, and its number on the disk.
+struct Identity {
+    std::string place;                                  ///< empty: no file that counts
+    std::optional<std::pair<dev_t, ino_t>> onDisk = {}; ///< of a file that is there
+};
+
+Identity identityOf(const std::string& path) {
     std::error_code ec;
-    return fs::is_regular_file(output, ec) && fs::equivalent(output, input, ec);
-}
-
-void requireNoInput(const std::string& output, std::span<const std::string> inputs) {
-    for (const std::string& input : inputs)
-        if (isSameFile(output, input))
-            throw UsageError("the output would overwrite the input",
-                             output == input ? output : output + ", which is " + input, "choose another name");
-}
-
-} // namespace
-
-std::vector<std::string> inputFiles(const SceneOptions& options) {
-    std::vector<std::string> notices;
-    const SceneInputs inputs = inputsOf(options, {}, notices);
-    std::vector<std::string> files = filesOf(inputs.session.variable().source);
-    if (const GroundView& ground = *inputs.session.ground; !ground.path.empty()) {
-        VolumeSource source;
-        source.path = ground.path;
-        source.raw = ground.raw;
-        for (const std::string& file : filesOf(source)) files.push_back(file);
+    const fs::path target = behindLinks(path);
+    struct stat status {};
+    Identity identity;
+    if (stat(target.c_str(), &status) == 0) {
+        if (!S_ISREG(status.st_mode)) return {};
+        identity.onDisk.emplace(status.st_dev, status.st_ino);
     }
-    for (const auto& file : {options.session.file, options.tf.spec, options.camera.file})
-        if (file) files.push_back(*file);
-    return files;
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    identity.place = (fs::weakly_canonical(fs::absolute(folder, ec), ec) / target.filename()).string();
+    return ec ? Identity{} : identity;
 }
 
-void requireFileName(const std::string& path, const std::string& option) {
-    if (path.empty()) throw UsageError("the file name is empty", option, "name the file to write");
+/// Files with what is known of each.
+template <class What>
+class FileSet {
+public:
+    const What* find(const Identity& file) const {
+        if (const auto found = m_byPlace.find(file.place); found != m_byPlace.end()) return &found->second;
+        if (!file.onDisk) return nullptr;
+        const auto found = m_onDisk.find(*file.onDisk);
+        return found == m_onDisk.end() ? nullptr : &m_byPlace.at(found->second);
+    }
+    void add(const Identity& file, What what) {
+        m_byPlace.emplace(file.place, std::move(what));
+        if (file.onDisk) m_onDisk.emplace(*file.onDisk, file.place);
+    }
+    /// What was there gives way to a new file, and its number may become another one's.
+    void forgetOnDisk(const std::string& place) {
+        std::erase_if(m_onDisk, [&](const auto& entry) { return entry.second == place; });
+    }
+
+private:
+    std::map<std::string, What> m_byPlace;
+    std::map<std::pair<dev_t, ino_t>, std::string> m_onDisk;
+};
+
+class CallFiles {
+public:
+    void addInput(const std::string& path) {
+        const Identity file = identityOf(path);
+        if (!file.onDisk) return; // what is not there cannot be harmed
+        const std::lock_guard lock(m_mutex);
+        if (m_inputs.find(file) != nullptr) return;
+        if (const Output* output = m_outputs.find(file); output != nullptr && !m_written.contains(file.place))
+            throw overwrites(output->path, path);
+        m_inputs.add(file, path);
+    }
+
+    void addOutput(const std::string& path, const std::string& option) {
+        const Identity file = identityOf(path);
+        if (file.place.empty()) return;
+        const std::lock_guard lock(m_mutex);
+        add(file, {path, option});
+    }
+
+    /// Unannounced ones too. Each is written once.
+    void write(const std::string& path) {
+        const Identity file = identityOf(path);
+        if (file.place.empty()) return;
+        const std::lock_guard lock(m_mutex);
+        const Output* known = m_outputs.find(file);
+        if (known == nullptr)
+            add(file, {path, ""});
+        else if (m_written.contains(file.place))
+            throw sameFile(*known, {path, ""});
+        m_written.insert(file.place);
+        m_outputs.forgetOnDisk(file.place);
+    }
+
+private:
+    struct Output {
+        std::string path, option;
+        std::string text() const { return option.empty() ? path : option + " " + path; }
+    };
+
+    static UsageError overwrites(const std::string& output, const std::string& input) {
+        return {"the output would overwrite the input", output == input ? output : output + ", which is " + input,
+                "choose another name"};
+    }
+    static UsageError sameFile(const Output& a, const Output& b) {
+        return {"two outputs would be the same file", a.text() + " and " + b.text(), "choose another name for one"};
+    }
+
+    void add(const Identity& file, const Output& output) {
+        if (const std::string* input = m_inputs.find(file)) throw overwrites(output.path, *input);
+        if (const Output* other = m_outputs.find(file)) throw sameFile(*other, output);
+        m_outputs.add(file, output);
+    }
+
+    std::mutex m_mutex;
+    FileSet<std::string> m_inputs; ///< the names that they were given
+    FileSet<Output> m_outputs;
+    std::set<std::string> m_written; ///< places
+};
+
+CallFiles& callFiles() {
+    static CallFiles s_files;
+    return s_files;
 }
 
-void checkOutputFile(const std::string& path, const std::string& option, std::span<const std::string> inputs) {
-    requireFileName(path, option);
-    requireWritable(path);
-    requireNoInput(path, inputs);
-}
-
-void checkOutputFolder(const std::string& path, const std::string& option, std::span<const std::string> fileNames,
-                       std::span<const std::string> inputs) {
+void requireFolder(const std::string& path, const std::string& option) {
     if (path.empty()) throw UsageError("the folder name is empty", option, "name the folder to write to");
     std::error_code ec;
-    if (fs::is_directory(path, ec)) {
-        for (const std::string& name : fileNames) checkOutputFile((fs::path(path) / name).string(), option, inputs);
-        return;
-    }
+    if (fs::is_directory(path, ec)) return;
     const fs::path folder = fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path();
     if (fs::exists(fs::symlink_status(folder, ec))) // a link that leads nowhere too
         throw FileError("a file has the folder's name", path, "choose another name");
     requireWritable(folder.string());
+}
+
+} // namespace
+
+void watchCallFiles() {
+    watchFiles({[](const std::string& path) { callFiles().addInput(path); },
+                [](const std::string& path) { callFiles().write(path); }});
+}
+
+void addInputFile(const std::string& path) { callFiles().addInput(path); }
+
+void addOutputFile(const std::string& path, const std::string& option) {
+    requireWritable(path);
+    callFiles().addOutput(path, option);
+}
+
+void addOutputFile(const std::string& folder, const std::string& file, const std::string& option) {
+    const std::string path = (fs::path(folder) / file).string();
+    std::error_code ec;
+    if (fs::is_directory(folder, ec)) requireWritable(path); // else it is made for them
+    callFiles().addOutput(path, option);
+}
+
+CLI::Option* addOutputFile(CLI::App& app, const std::string& name, const std::string& valueName,
+                           const std::function<void(const std::string&)>& take, const std::string& help,
+                           const std::function<void(const std::string&)>& check) {
+    return addValue(
+        app, name, valueName,
+        [take, check](const std::string& path, const std::string& option) {
+            if (path.empty()) throw UsageError("the file name is empty", option, "name the file to write");
+            if (check) check(path);
+            addOutputFile(path, option);
+            take(path);
+        },
+        help);
+}
+
+CLI::Option* addOutputFolder(CLI::App& app, const std::string& name, const std::string& valueName,
+                             const std::function<void(const std::string&)>& take, const std::string& help) {
+    return addValue(
+        app, name, valueName,
+        [take](const std::string& path, const std::string& option) {
+            requireFolder(path, option);
+            take(path);
+        },
+        help);
 }
 
 void writeCamera(const Camera& camera, const std::string& path) {

@@ -1,25 +1,41 @@
-// Where a command writes: checked before any work is done.
+// All files of one call, what it reads and what it writes: no output is one of the inputs, and no two are one file.
+//
+// Nobody has to remember to ask. An output is an option made by addOutputFile() or addOutputFolder(); an input is what
+// the session names (inputsOf()), and whatever is opened. watchCallFiles() sees every file that is read or written
+// besides: one that no option announced is checked then, before it is opened.
 #pragma once
 
-#include <span>
+#include <functional>
 #include <string>
-#include <vector>
 
-#include "resolve.h"
+#include <CLI/CLI.hpp>
+
+#include "render/camera.h"
 
 namespace pellucid::cli {
 
-/// The files that a command reads, those of its session too. Throws as inputsOf() does.
-std::vector<std::string> inputFiles(const SceneOptions& options);
+/// Begins to watch; main() does, before it parses.
+void watchCallFiles();
 
-void requireFileName(const std::string& path, const std::string& option); ///< throws UsageError where it is empty
+/// Files are the same whatever name leads there: links, hard links, "./" and "../". Only regular files count, and names
+/// that nothing has yet: a terminal may well be both ends of a command. From any thread.
+///
+/// Throws UsageError where the file is announced as an output.
+void addInputFile(const std::string& path);
+/// Throws UsageError where it is an input or another output, FileError where it cannot be written. `option` says in
+/// messages what asked for it.
+void addOutputFile(const std::string& path, const std::string& option);
+/// The same of a file in the folder of an addOutputFolder().
+void addOutputFile(const std::string& folder, const std::string& file, const std::string& option);
 
-/// A file to be written: throws where that cannot work, and UsageError where it is one of the inputs by whatever name.
-void checkOutputFile(const std::string& path, const std::string& option, std::span<const std::string> inputs = {});
-
-/// The same for files in a folder, which is made where it is missing.
-void checkOutputFolder(const std::string& path, const std::string& option, std::span<const std::string> fileNames,
-                       std::span<const std::string> inputs);
+/// Adds an option that names a file to be written, which `take` stores. It is announced when the command line is read;
+/// before that `check` may refuse the name, such as its suffix.
+CLI::Option* addOutputFile(CLI::App& app, const std::string& name, const std::string& valueName,
+                           const std::function<void(const std::string& path)>& take, const std::string& help,
+                           const std::function<void(const std::string& path)>& check = {});
+/// The same of a folder, which may be missing: its files are announced as soon as their names are known.
+CLI::Option* addOutputFolder(CLI::App& app, const std::string& name, const std::string& valueName,
+                             const std::function<void(const std::string& path)>& take, const std::string& help);
 
 /// *.camera.json. Throws FileError.
 void writeCamera(const Camera& camera, const std::string& path);

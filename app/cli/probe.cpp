@@ -42,13 +42,16 @@ bool looksLikePixel(const std::string& text) {
            text.find_first_not_of("0123456789,") == std::string::npos;
 }
 
-std::string textOf(const RayProbe& p, const TransferFunction& tf, const Volume& volume) {
+std::string textOf(const RayProbe& p, const Scene& scene) {
+    const TransferFunction& tf = scene.tf;
+    const Volume& volume = *scene.volume;
+    const std::vector<std::string> names = namesWithEmpty(tf, *scene.histogram);
     if (!p.hit) return "the ray meets nothing of the volume\n";
     const auto percent = [&](double share) { return fixedText(100 * share, 1) + " %"; };
     Table table({"feature", "of the pixel", "of its alpha"});
     const auto ofAlpha = [&](double share) { return p.alpha > 0 ? percent(share / p.alpha) : std::string("-"); };
     for (std::size_t f = 0; f < tf.features.size(); ++f)
-        table.add({tf.features[f].name, percent(p.shares[f]), ofAlpha(p.shares[f])});
+        table.add({names[f], percent(p.shares[f]), ofAlpha(p.shares[f])});
     table.add({"(no feature)", percent(p.rest), ofAlpha(p.rest)});
     std::vector<std::pair<std::string, std::string>> lines{
         {"alpha", fixedText(p.alpha, 4) + ", colour " + hexFromRgb(p.color)},
@@ -64,8 +67,9 @@ std::string textOf(const RayProbe& p, const TransferFunction& tf, const Volume& 
     return listing(lines) + table.text();
 }
 
-Json jsonOf(const RayProbe& p, const TransferFunction& tf, const Volume& volume, const Int3& pixel,
-            const ImageSize& size) {
+Json jsonOf(const RayProbe& p, const Scene& scene, const Int3& pixel, const ImageSize& size) {
+    const TransferFunction& tf = scene.tf;
+    const Volume& volume = *scene.volume;
     Json json{{"command", "probe"},
               {"volume", jsonFromVolume(volume)},
               {"pixel", {pixel.x, pixel.y}},
@@ -76,7 +80,10 @@ Json jsonOf(const RayProbe& p, const TransferFunction& tf, const Volume& volume,
               {"features", Json::array()}};
     for (std::size_t f = 0; f < tf.features.size(); ++f) {
         const Feature& feature = tf.features[f];
-        json["features"].push_back({{"name", feature.name}, {"range", {feature.a, feature.b}}, {"share", p.shares[f]}});
+        json["features"].push_back({{"name", feature.name},
+                                    {"range", {feature.a, feature.b}},
+                                    {"empty", scene.isEmpty(f)},
+                                    {"share", p.shares[f]}});
     }
     if (!p.hit) return json;
     json["entry"] = jsonFromVector(p.entry);
@@ -121,10 +128,7 @@ Answer run(const Options& given, Progress& progress) {
     const PictureInput picture = o.scene.picture.pictureOf(opened.scene);
     const RayProbe p = probe(*picture.volume, picture.tf, {picture.camera, picture.settings.clipping}, pixel.x + 0.5,
                              pixel.y + 0.5, size.width, size.height, picture.settings.onlyFeature);
-    return {textOf(p, picture.tf, *picture.volume),
-            jsonOf(p, picture.tf, *picture.volume, pixel, size),
-            opened.notices(),
-            {}};
+    return {textOf(p, opened.scene), jsonOf(p, opened.scene, pixel, size), opened.notices(), {}};
 }
 
 } // namespace

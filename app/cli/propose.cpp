@@ -66,7 +66,6 @@ Json jsonOf(const Proposal& p, double seconds) {
 }
 
 Answer run(const Options& o, Progress& progress) {
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
     Opened opened = resolve(o.scene, progress, {.use = {}, .byEngine = false, .needsTf = false});
     const Stopwatch looking;
     const Volume& volume = *opened.scene.volume;
@@ -87,8 +86,8 @@ Command addPropose(CLI::App& program) {
     o->scene.volume.add(*app);
     o->scene.variables.add(*app);
     o->scene.session.add(*app);
-    addValue(
-        *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
+    addOutputFile(
+        *app, "--out-tf", "FILE", [o](const std::string& path) { o->outTf = path; },
         "write the proposed transfer function");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

@@ -69,7 +69,6 @@ PixelRectangle parseRectangle(const std::string& text, const std::string& option
 
 /// What can be told before the volume is read.
 void check(const Options& o) {
-    if (o.outTf) checkOutputFile(*o.outTf, "--out-tf", inputFiles(o.scene));
     if ((o.intensity ? 1 : 0) + (o.hue ? 1 : 0) + (o.region ? 1 : 0) > 1)
         throw UsageError("more than one priority is given", "--intensity, --hue and --region", "leave one of them");
     const ImageSize size = o.size.value_or(ImageSize{});
@@ -319,8 +318,8 @@ Command addRefine(CLI::App& program) {
             }
         },
         "leave the control point at this intensity (0 to 1) as it is");
-    addValue(
-        *app, "--out-tf", "FILE", [o](const std::string& text, const std::string&) { o->outTf = text; },
+    addOutputFile(
+        *app, "--out-tf", "FILE", [o](const std::string& path) { o->outTf = path; },
         "write the refined transfer function");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

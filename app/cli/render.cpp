@@ -51,12 +51,9 @@ bool isJpeg(const std::string& path) {
 
 /// What can be told before the volume is read.
 void check(const Options& o) {
-    requireFileName(o.out, "--out");
-    checkImageSuffix(o.out);
     if (o.scene.picture.transparent && isJpeg(o.out))
         throw UsageError("a JPEG file holds no transparency", "--background transparent",
                          "write a PNG, TIFF or EXR file");
-    checkOutputFile(o.out, "--out", inputFiles(o.scene));
     o.slice.check();
     if (o.slice.at && o.annotate.any())
         throw UsageError("a slice has no frame of reference", "--annotate", "leave it out");
@@ -207,9 +204,9 @@ Command addRender(CLI::App& program) {
     o->scene.camera.add(*app);
     o->scene.clip.add(*app);
     o->scene.engine.add(*app, "high: samples at half the distance along each ray (unless --step is given)");
-    addValue(
-        *app, "--out", "FILE", [o](const std::string& text, const std::string&) { o->out = text; },
-        "the picture to write: .png, .tif, .exr or .jpg")
+    addOutputFile(
+        *app, "--out", "FILE", [o](const std::string& path) { o->out = path; },
+        "the picture to write: .png, .tif, .exr or .jpg", checkImageSuffix)
         ->required();
     o->scene.picture.add(*app);
     o->scene.ground.add(*app);

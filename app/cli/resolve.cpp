@@ -1,6 +1,8 @@
 #include "resolve.h"
 
+#include "output_files.h"
 #include "render/memory_needs.h"
+#include "session/scene_data.h"
 
 namespace pellucid::cli {
 
@@ -42,6 +44,8 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
             inputs.then = byReference(work.use);
         if (const auto notice = profileNotice(settings, options.camera)) notices.push_back(*notice);
     }
+    // Frames are read later, but that no output replaces one of them is known before any work.
+    for (const std::string& file : filesOf(inputs.session)) addInputFile(file);
     if (!work.needsTf) inputs.start = SceneInputs::Start::Tents;
     return inputs;
 }

@@ -43,7 +43,7 @@ struct Options {
     std::optional<TargetInput> targets;
     std::optional<double> tolerance;
     std::optional<int> from;
-    bool compare = false, requireConverged = false, noPictures = false;
+    bool compare = false, requireConverged = false, noPictures = false, overGaps = false;
     std::string out;
     std::optional<double> framesPerSecond;
     std::optional<std::string> movie;
@@ -51,27 +51,36 @@ struct Options {
 
 constexpr double kFramesPerSecond = 10;
 
-std::string fileOf(const Options& o, int frame, const char* suffix) {
+constexpr std::array kCurves{"curves.csv", "curves.svg", "curves.png"};
+constexpr const char *kTfSuffix = ".tf.json", *kPictureSuffix = ".png", *kStaticSuffix = "_static.png"; // of a frame
+
+std::string frameName(int frame, const char* suffix) {
     std::array<char, 32> name{};
     std::snprintf(name.data(), name.size(), "frame_%04d", frame);
-    return (fs::path(o.out) / (std::string(name.data()) + suffix)).string();
+    return std::string(name.data()) + suffix;
 }
-std::string curvesOf(const Options& o, const char* suffix) {
-    return (fs::path(o.out) / (std::string("curves") + suffix)).string();
+std::string inFolder(const Options& o, const std::string& name) { return (fs::path(o.out) / name).string(); }
+std::string fileOf(const Options& o, int frame, const char* suffix) { return inFolder(o, frameName(frame, suffix)); }
+
+/// Before the first of them is written, or worked for.
+void announceFrames(const Options& o, int from, int size) {
+    for (int frame = from; frame < size; ++frame) {
+        addOutputFile(o.out, frameName(frame, kTfSuffix), "--out");
+        if (!o.noPictures) addOutputFile(o.out, frameName(frame, kPictureSuffix), "--out");
+        if (!o.noPictures && o.compare) addOutputFile(o.out, frameName(frame, kStaticSuffix), "--out");
+    }
 }
 
 /// What can be told before the volume is read.
 void check(const Options& o) {
-    const std::array<std::string, 3> names{"curves.csv", "curves.svg", "curves.png"};
-    checkOutputFolder(o.out, "--out", names, inputFiles(o.scene));
+    for (const char* name : kCurves) addOutputFile(o.out, name, "--out");
     if (o.scene.picture.transparent)
         throw UsageError("flicker is of what is seen on a background", "--background transparent", "give a colour");
     if (o.framesPerSecond && !o.movie)
         throw UsageError("--fps is of a film", "--fps", "give --mp4 FILE too, or leave it out");
     if (!o.movie) return;
     if (o.noPictures) throw UsageError("a film is made of the pictures", "--no-pictures", "leave out one of the two");
-    checkOutputFile(*o.movie, "--mp4", inputFiles(o.scene));
-    requireMovieWriter(*o.movie, "--mp4");
+    requireMovieWriter();
 }
 
 /// The frame that is read while others are computed.
@@ -104,7 +113,7 @@ struct Frame {
     int number = 0;
     std::string problem;
     Scene scene, asStatic;                  ///< the second one with --compare
-    std::optional<TransferFunction> before; ///< of the frame before
+    std::optional<TransferFunction> before; ///< of the frame that flicker compares it with
     std::optional<AdaptedFrame> made;
     FrameFigures figures, staticFigures;
 };
@@ -118,11 +127,11 @@ public:
 
 private:
     void prepareKey();
-    void setKey(const TransferFunction& tf); ///< of the start frame
+    void passOver(int frame, const FileError& error);
     void plan(ReadAhead& ahead);
     std::optional<Frame> next(int number);
     void finish(std::vector<Frame>& batch);
-    void tellMissed();
+    void tellMissed(const SequenceFigures& figures);
     TemporalCurves curves() const;
     std::string text(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
     Json json(const SequenceFigures& dynamic, const std::optional<SequenceFigures>& asStatic) const;
@@ -132,16 +141,18 @@ private:
     const Options& m_o;
     Scene m_scene; ///< of the start frame; its session has all transfer functions that there are so far
     Progress& m_progress;
-    int m_start = 0, m_keyMoves = -1;
+    int m_start = 0;
     double m_keySeconds = 0;
     Workspace m_workspace;
     std::vector<Workspace> m_sideBySide;
     FrameAdapter m_adapter;
     TransferFunction m_fixed;                          ///< of the start frame, as static
     std::optional<TransferFunction> m_before, m_chain; ///< of the frame before; what the next one starts from
+    int m_beforeNumber = -1;                           ///< of m_before
     std::map<int, AdaptedFrame> m_planned;             ///< of plan(), by frame: the session has what is drawn
     std::vector<FrameFigures> m_figures, m_static;
-    FrameFigures m_broken; ///< of the latest frame that next() could not read
+    std::vector<int> m_afterGaps; ///< frames whose flicker is not told
+    FrameFigures m_broken;        ///< of the latest frame that next() could not read
     std::vector<std::string> m_notices;
     std::vector<Json> m_frames;
     std::vector<std::string> m_pictures;
@@ -158,29 +169,30 @@ void Sequence::prepareKey() {
     });
     if (m_o.tolerance) session.optimize.edit([&](OptimizeOptions& options) { options.tolerance = *m_o.tolerance; });
     if (m_o.targets) {
-        const std::vector<double> named = m_o.targets->of(m_scene);
-        const std::vector<double> targets =
-            atOption("--target", [&] { return normalizedTargets(named, m_scene.tf.features.size()); });
+        const std::vector<double> targets = atOption(
+            "--target", [&] { return normalizedTargets(m_o.targets->of(m_scene), m_scene.tf.features.size()); });
         session.targetKeys.set({});
-        session.goals.set(withTargets(*session.goals, m_scene.tf, targets));
+        // A number for a feature that is empty here is for later frames; words say nothing of it.
+        const TransferFunction named = m_o.targets->numbers.empty() ? m_scene.wantedTf() : m_scene.tf;
+        session.goals.set(withTargets(*session.goals, named, targets));
         JobControl job = m_progress.phase("optimizing");
         job.progress = nullptr;
         int moves = -1;
         const OptimizeResult result = m_workspace.optimize(
-            measureInput(m_scene), shownShares(m_scene.tf, targets), limitsOf(m_scene.tf, *session.goals),
+            measureInput(m_scene), shownShares(m_scene.wantedTf(), targets), limitsOf(m_scene.tf, *session.goals),
             *session.optimize, job, [&](const OptimizeState& state) {
                 m_progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
             });
         if (result.reason == StopReason::Cancelled) throw Cancelled{};
         m_scene.tf = withShownOpacities(m_scene.tf, result.history[result.best].opacity);
-        m_keyMoves = result.iterations();
     }
     session.variables.edit([&](std::vector<Variable>& all) { // what is before the start frame is not asked for
         TfTrack& track = all.front().track;
         track.keys.erase(track.keys.begin(), track.keys.lower_bound(m_start));
     });
     m_fixed = m_scene.tf;
-    setKey(m_fixed);
+    session.variables.edit(
+        [&](std::vector<Variable>& all) { all.front().track.keys[m_start] = Part<TransferFunction>(m_fixed); });
     // Figures of all frames stand in the same columns.
     const auto features = [](const TransferFunction& tf) {
         std::vector<std::pair<FeatureId, std::string>> all;
@@ -196,12 +208,13 @@ void Sequence::prepareKey() {
     m_keySeconds = watch.seconds();
 }
 
-void Sequence::setKey(const TransferFunction& tf) {
-    m_scene.session.variables.edit(
-        [&](std::vector<Variable>& all) { all.front().track.keys[m_start] = Part<TransferFunction>(tf); });
+/// A frame whose own data are sound may want for those of another variable; Opened::notices() tells of both alike.
+void Sequence::passOver(int frame, const FileError& error) {
+    if (m_scene.series->summary(frame).problem.empty())
+        m_scene.series->noteProblem(frame, error.problem() + ", " + error.where());
 }
 
-/// What coherence asks for: all frames forward, then smoothed together. A start frame that no hand has made gives way.
+/// What coherence asks for: all frames forward, then smoothed together.
 void Sequence::plan(ReadAhead& ahead) {
     Session& session = m_scene.session;
     const TimeSeries& series = *m_scene.series;
@@ -213,19 +226,18 @@ void Sequence::plan(ReadAhead& ahead) {
             AdaptedFrame made = m_adapter.adapt(m_scene, *task, m_workspace, {job.stop, {}});
             session = withAdapted(std::move(session), made.frame, made.forTrack());
             m_planned[made.frame] = std::move(made);
+        } catch (const FileError& error) {
+            passOver(task->frame, error);
         } catch (const Error&) {
             if (series.summary(task->frame).problem.empty()) throw; // not of the frame
         }
         job.report((task->frame - m_start) / static_cast<double>(series.size() - m_start));
     }
-    std::optional<TransferFunction> start;
     const JobControl smoothing = m_progress.phase("smoothing");
     while (const auto task = nextToSmooth(session, series)) {
         try {
-            const bool keyMoves = task->key == m_start && m_o.targets;
-            const SmoothedFrames smooth = m_adapter.smooth(m_scene, *task, keyMoves, m_workspace, smoothing);
+            const SmoothedFrames smooth = m_adapter.smooth(m_scene, *task, m_workspace, smoothing);
             session = withSmoothed(std::move(session), smooth);
-            if (keyMoves) start = smooth.tfs.at(m_start);
             for (const int frame : task->frames) {
                 AdaptedFrame& made = m_planned[frame];
                 ++made.moves;
@@ -235,7 +247,6 @@ void Sequence::plan(ReadAhead& ahead) {
             if (const auto again = nextToSmooth(session, series); again && again->basis == task->basis) throw;
         }
     }
-    if (start) setKey(*start);
 }
 
 /// The frame with its transfer function, ready to be drawn and measured; empty where it is broken.
@@ -249,10 +260,9 @@ std::optional<Frame> Sequence::next(int number) {
         if (settings().mode == Mode::Static || smooths(settings())) {
             tf = *m_scene.session.tfAt(number);
             if (const auto planned = m_planned.find(number); planned != m_planned.end()) frame.made = planned->second;
-        } else if (track.keys.contains(number) || !m_chain) {
-            tf = *track.keys.at(track.keyBefore(number));
-            m_chain = tf; // broken or not, what follows begins here
         } else {
+            // Broken or not, what follows a key begins there.
+            if (track.keys.contains(number) || !m_chain) m_chain = *track.keys.at(track.keyBefore(number));
             AdaptTask task{number, track.keyBefore(number), *m_chain, {}};
             task.basis = fingerprintOf(m_scene.session, *m_scene.series, number, *m_chain);
             const auto known = track.adapted.find(number); // a session brings some
@@ -265,15 +275,16 @@ std::optional<Frame> Sequence::next(int number) {
         }
         frame.scene = sceneAt(m_scene, number, tf, job);
         if (m_o.compare) frame.asStatic = sceneAt(frame.scene, number, m_fixed, job);
-        frame.before = m_before;
+        if (m_before && (m_o.overGaps || neighbourBefore(*m_scene.series, number, false) == m_beforeNumber))
+            frame.before = m_before;
+        else if (m_before)
+            m_afterGaps.push_back(number);
         m_before = m_chain = frame.scene.tf;
+        m_beforeNumber = number;
         return frame;
     } catch (const FileError& error) {
+        passOver(number, error);
         m_broken = brokenFigures(*m_scene.series, number);
-        if (m_scene.series->summary(number).problem.empty()) { // else Opened::notices() tells: here another variable's
-            m_broken.problem = error.problem();
-            m_notices.push_back("frame " + std::to_string(number) + " is passed over: " + error.what());
-        }
         return {};
     }
 }
@@ -293,23 +304,23 @@ void Sequence::finish(std::vector<Frame>& batch) {
             frame.staticFigures = figuresOf(frame.asStatic, nullptr, workspace, job);
             if (frame.before) frame.staticFigures.flicker = 0; // the same transfer function
         }
-        writeTf(frame.scene.tf, fileOf(m_o, frame.number, ".tf.json"));
+        writeTf(frame.scene.tf, fileOf(m_o, frame.number, kTfSuffix));
         if (m_o.noPictures) return;
         const PictureInput picture = m_o.scene.picture.pictureOf(frame.scene);
         const Image image = makeRenderer(frame.scene.session.measure->engine, picture.volume)
                                 ->render(picture.camera, picture.tf, picture.settings, job);
-        writeImage(image, fileOf(m_o, frame.number, ".png"));
+        writeImage(image, fileOf(m_o, frame.number, kPictureSuffix));
         if (!m_o.compare) return;
         const PictureInput still = m_o.scene.picture.pictureOf(frame.asStatic);
         writeImage(makeRenderer(frame.scene.session.measure->engine, still.volume)
                        ->render(still.camera, still.tf, still.settings, job),
-                   fileOf(m_o, frame.number, "_static.png"));
+                   fileOf(m_o, frame.number, kStaticSuffix));
     });
     for (Frame& frame : batch) {
         const FrameFigures& f = frame.figures;
         Json one{{"frame", f.frame},           {"time", f.time},       {"vws", f.vws},
                  {"visibility", f.visibility}, {"opacity", f.opacity}, {"target", f.targets},
-                 {"objective", f.objective}};
+                 {"empty", f.empty},           {"file", f.file},       {"objective", f.objective}};
         if (f.flicker) one["flicker"] = *f.flicker;
         if (f.moves) {
             one["moves"] = *f.moves;
@@ -323,7 +334,7 @@ void Sequence::finish(std::vector<Frame>& batch) {
         m_frames.push_back(std::move(one));
         m_figures.push_back(f);
         if (m_o.compare) m_static.push_back(frame.staticFigures);
-        if (!m_o.noPictures) m_pictures.push_back(fileOf(m_o, frame.number, ".png"));
+        if (!m_o.noPictures) m_pictures.push_back(fileOf(m_o, frame.number, kPictureSuffix));
     }
     batch.clear();
 }
@@ -339,28 +350,40 @@ TemporalCurves Sequence::curves() const {
     return curves;
 }
 
-/// Where targets were not reached, and why where that can be seen.
-void Sequence::tellMissed() {
-    if (settings().mode != Mode::Optimize || std::isinf(settings().usedCoherence())) return;
+std::string framesOf(int some, int all) {
+    return std::to_string(some) + " of " + std::to_string(all) + (all == 1 ? " frame" : " frames");
+}
+
+/// Where targets were not reached, and why where that can be seen; what has no target; what has no flicker.
+void Sequence::tellMissed(const SequenceFigures& figures) {
+    const bool isAimed = settings().mode == Mode::Optimize || m_o.targets;
     const double tolerance = m_scene.session.optimize->tolerance;
-    int missed = 0;
-    std::vector<int> unseen(m_scene.tf.features.size(), 0);
-    double worst = 0;
-    for (const FrameFigures& f : m_figures) {
-        if (!f.problem.empty() || f.objective < 2 * tolerance) continue; // coherence may stray for a moment
-        ++missed;
-        worst = std::max(worst, f.objective);
-        for (std::size_t i = 0; i < unseen.size() && i < f.vws.size(); ++i)
-            unseen[i] += f.targets[i] > 0 && f.vws[i] < 1e-6 ? 1 : 0;
-    }
-    if (missed == 0) return;
-    m_notices.push_back(std::to_string(missed) + " of " + std::to_string(m_frames.size()) +
-                        " frames are far from the targets (distance up to " + plainText(worst) + ")");
-    for (std::size_t i = 0; i < unseen.size(); ++i)
-        if (unseen[i] > 0)
-            m_notices.push_back("nothing of '" + m_scene.tf.features[i].name + "' is seen in " +
-                                std::to_string(unseen[i]) +
+    const std::vector<Feature>& features = m_scene.tf.features;
+    std::vector<int> unseen(features.size(), 0), empty(features.size(), 0);
+    for (const FrameFigures& f : m_figures)
+        for (std::size_t i = 0; i < features.size() && f.problem.empty(); ++i) {
+            unseen[i] += !(f.objective < tolerance) && f.targets[i] > 0 && f.vws[i] < 1e-6 ? 1 : 0;
+            empty[i] += f.empty[i] ? 1 : 0;
+        }
+    if (isAimed && figures.above > 0)
+        m_notices.push_back(framesOf(figures.above, figures.frames) +
+                            (figures.above == 1 ? " is not on target (F below " : " are not on target (F below ") +
+                            plainText(tolerance) + "); the farthest is frame " + std::to_string(figures.worst) +
+                            ", F = " + plainText(figures.worstObjective));
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        if (isAimed && unseen[i] > 0)
+            m_notices.push_back("nothing of '" + features[i].name + "' is seen in " + std::to_string(unseen[i]) +
                                 " of them: choose a range (--range) or features that all frames have");
+        if (empty[i] > 0)
+            m_notices.push_back("'" + features[i].name + "' is empty in " + framesOf(empty[i], figures.frames) +
+                                ": no voxel has its values, and it has no target there");
+    }
+    if (!m_afterGaps.empty())
+        m_notices.push_back(
+            "frame " + std::to_string(m_afterGaps.front()) +
+            (m_afterGaps.size() > 1 ? " and " + std::to_string(m_afterGaps.size() - 1) + " more follow" : " follows") +
+            " a gap in the series, so that no flicker is told of " + (m_afterGaps.size() > 1 ? "them" : "it") +
+            " (--flicker-over-gaps compares with the frame before the gap)");
 }
 
 std::string coherenceText(double coherence) { return std::isinf(coherence) ? "infinite" : plainText(coherence); }
@@ -373,7 +396,8 @@ std::string Sequence::text(const SequenceFigures& dynamic, const std::optional<S
                    f.moves ? fixedText(f.seconds, 3) : "-"});
     std::string text = table.text() + name(settings().mode);
     if (settings().mode != Mode::Static) text += ", coherence " + coherenceText(settings().usedCoherence());
-    text += ": RMS of F " + fixedText(dynamic.rms, 4) + ", flicker " + fixedText(dynamic.flicker, 3) + " on average";
+    text += ": RMS of F " + fixedText(dynamic.rms, 4) + " (largest " + fixedText(dynamic.worstObjective, 4) +
+            ", frame " + std::to_string(dynamic.worst) + "), flicker " + fixedText(dynamic.flicker, 3) + " on average";
     if (settings().mode != Mode::Static)
         text += ", " + fixedText(dynamic.moves, 2) + " moves and " + secondsText(dynamic.seconds) + " a frame";
     text += "\n";
@@ -402,8 +426,10 @@ Json Sequence::json(const SequenceFigures& dynamic, const std::optional<Sequence
     for (const FrameFigures& f : m_figures)
         if (!f.problem.empty()) json["broken"].push_back({{"frame", f.frame}, {"problem", f.problem}});
     json["mean"] = jsonFromFigures(dynamic);
+    json["worst"] = {{"frame", dynamic.worst}, {"objective", dynamic.worstObjective}};
+    json["above_tolerance"] = dynamic.above;
     if (asStatic) json["static"] = {{"rms", asStatic->rms}};
-    json["files"] = {curvesOf(m_o, ".csv"), curvesOf(m_o, ".svg"), curvesOf(m_o, ".png")};
+    for (const char* name : kCurves) json["files"].push_back(inFolder(m_o, name));
     if (m_o.movie) json["files"].push_back(*m_o.movie);
     return json;
 }
@@ -445,35 +471,26 @@ Answer Sequence::run(const Opened& opened) {
     const TemporalCurves all = curves();
     const std::vector<Plot> plots = temporalPlots(all);
     const PlotPage page{.width = 640, .height = 260};
-    writeTextAtomically(curvesOf(m_o, ".csv"), csvOf(all));
-    writeTextAtomically(curvesOf(m_o, ".svg"), svgOf(plots, page));
-    writeImage(imageOf(plots, page), curvesOf(m_o, ".png"));
+    writeTextAtomically(inFolder(m_o, kCurves[0]), csvOf(all));
+    writeTextAtomically(inFolder(m_o, kCurves[1]), svgOf(plots, page));
+    writeImage(imageOf(plots, page), inFolder(m_o, kCurves[2]));
     if (m_o.movie)
         writeMovie(m_pictures, m_o.framesPerSecond.value_or(kFramesPerSecond), *m_o.movie,
                    m_progress.phase("film").stop);
 
-    const SequenceFigures dynamic = summaryOf(m_figures);
+    const double tolerance = m_scene.session.optimize->tolerance;
+    const SequenceFigures dynamic = summaryOf(m_figures, tolerance);
     std::optional<SequenceFigures> asStatic;
-    if (m_o.compare) asStatic = summaryOf(m_static);
-    tellMissed();
+    if (m_o.compare) asStatic = summaryOf(m_static, tolerance);
+    tellMissed(dynamic);
     Answer answer{text(dynamic, asStatic), json(dynamic, asStatic), opened.notices(), {}};
     answer.notices.insert(answer.notices.end(), m_notices.begin(), m_notices.end());
     answer.json["seconds"] = {{"key", m_keySeconds}, {"total", total.seconds()}};
-    if (m_o.requireConverged) {
-        const double tolerance = m_scene.session.optimize->tolerance;
-        int missed = 0;
-        double worst = 0;
-        for (const FrameFigures& f : m_figures)
-            if (f.problem.empty() && !(f.objective < tolerance)) {
-                ++missed;
-                worst = std::max(worst, f.objective);
-            }
-        if (missed > 0)
-            answer.failure = Error(
-                "the targets were not reached in " + std::to_string(missed) + " of " + std::to_string(dynamic.frames) +
-                    " frames (objective up to " + plainText(worst) + ", wanted below " + plainText(tolerance) + ")",
-                name(settings().mode), "lower --coherence, raise --tolerance, or choose other targets");
-    }
+    if (m_o.requireConverged && dynamic.above > 0)
+        answer.failure = Error("the targets were not reached in " + framesOf(dynamic.above, dynamic.frames) +
+                                   " (objective up to " + plainText(dynamic.worstObjective) + " in frame " +
+                                   std::to_string(dynamic.worst) + ", wanted below " + plainText(tolerance) + ")",
+                               name(settings().mode), "lower --coherence, raise --tolerance, or choose other targets");
     return answer;
 }
 
@@ -488,6 +505,7 @@ Answer run(const Options& o, Progress& progress) {
     opened.scene = openScene(inputs, progress.phase("loading"));
     o.scene.tf.applyTo(opened.scene);
     o.scene.picture.applyTo(opened.scene);
+    announceFrames(o, opened.scene.session.frame, opened.scene.series->size());
     return Sequence(o, opened.scene, progress).run(opened);
 }
 
@@ -516,8 +534,8 @@ Command addSequence(CLI::App& program) {
             o->coherence = text == "inf" ? std::numeric_limits<double>::infinity() : parseReal(text, option, 0, 1e6);
         },
         "how much jumps of the transfer function are held back: 0 not at all, inf: as static; with optimize opacities "
-        "change as little over the whole series as a distance of L/100 from the targets on average (RMS) allows; the "
-        "first frame's give way too, but for a key of a session (default: the session's, else 2 with optimize)");
+        "change as little over the whole series as a distance of L/100 from the targets on average (RMS) allows "
+        "(default: the session's, else 2 with optimize)");
     addValue(
         *app, "--tolerance", "F",
         [o](const std::string& text, const std::string& option) { o->tolerance = parseRealAbove(text, option, 0, 1); },
@@ -529,14 +547,16 @@ Command addSequence(CLI::App& program) {
         },
         "begin with this frame of the series (default 0)");
     app->add_flag("--compare", o->compare, "measure and draw every frame under the first one's transfer function, too");
-    addValue(
-        *app, "--out", "DIR", [o](const std::string& text, const std::string&) { o->out = text; },
+    addOutputFolder(
+        *app, "--out", "DIR", [o](const std::string& path) { o->out = path; },
         "write frame_0000.png and frame_0000.tf.json of each frame, curves.csv, curves.svg and curves.png")
         ->required();
+    app->add_flag("--flicker-over-gaps", o->overGaps,
+                  "tell flicker after missing or broken frames, too, against the frame before the gap");
     app->add_flag("--no-pictures", o->noPictures, "write no pictures of the frames");
-    addValue(
-        *app, "--mp4", "FILE", [o](const std::string& text, const std::string&) { o->movie = text; },
-        "a film of the pictures too, where ffmpeg is installed");
+    addOutputFile(
+        *app, "--mp4", "FILE", [o](const std::string& path) { o->movie = path; },
+        "a film of the pictures too, where ffmpeg is installed", checkMovieSuffix);
     addValue(
         *app, "--fps", "N",
         [o](const std::string& text, const std::string& option) {

@@ -5,13 +5,13 @@
 #include "commands.h"
 #include "image_io/image_file.h"
 #include "optimize/space_picture.h"
+#include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
 #include "render/memory_needs.h"
 #include "resolve.h"
 #include "session/space_inputs.h"
-#include "tf/shown_tf.h"
 
 namespace pellucid::cli {
 
@@ -19,7 +19,7 @@ namespace {
 
 struct Options {
     SceneOptions scene;
-    std::optional<std::vector<double>> targets;
+    std::optional<TargetInput> targets;
     std::optional<std::vector<std::string>> features;
     ParameterAxes axes;
     std::optional<int> reduce; ///< empty: automatic
@@ -60,21 +60,14 @@ void parsePaths(const std::string& text, const std::string& option, Options& o) 
 
 /// What can be told before the volume is read.
 void check(const Options& o) {
-    const auto inputs = inputFiles(o.scene);
-    if (o.out) {
-        requireFileName(*o.out, "--out");
-        checkImageSuffix(*o.out);
-        checkOutputFile(*o.out, "--out", inputs);
-    }
-    if (o.save) checkOutputFile(*o.save, "--save", inputs);
-    if (o.csv) checkOutputFile(*o.csv, "--csv", inputs);
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli space", "see pellucid-cli space --help");
     if (o.runs && !o.scene.session.file)
         throw UsageError("without a session there are no runs", "--paths", "name methods, or give --session FILE");
 }
 
-ParameterAxes axesOf(const Options& o, const TransferFunction& tf, const std::vector<double>& targets) {
+ParameterAxes axesOf(const Options& o, const Scene& scene, const std::vector<double>& targets) {
+    const TransferFunction tf = scene.wantedTf();
     ParameterAxes axes = o.axes;
     if (!o.features) {
         axes.features = atOption("--tf", [&] { return defaultAxes(tf, targets); });
@@ -82,6 +75,9 @@ ParameterAxes axesOf(const Options& o, const TransferFunction& tf, const std::ve
     }
     for (const std::string& one : *o.features) {
         const std::size_t f = parseFeature(one, "--features", tf);
+        if (scene.isEmpty(f))
+            throw UsageError("the feature '" + one + "' is empty: no voxel has its values", "--features",
+                             "choose others");
         if (tf.features[f].hidden)
             throw UsageError("the feature '" + one + "' is hidden", "--features", "choose others");
         axes.features.push_back(f);
@@ -178,10 +174,9 @@ Answer run(const Options& o, Progress& progress) {
     check(o);
     const Opened opened = resolve(o.scene, progress, {toMeasure("sampling"), true});
     const Scene& scene = opened.scene;
-    const std::vector<double> named = o.targets.value_or(scene.targets());
-    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
-    const std::vector<double> targets = shownShares(scene.tf, named);
-    const ParameterAxes axes = axesOf(o, scene.tf, targets);
+    std::vector<std::string> notices = opened.notices();
+    const std::vector<double> targets = targetsOf(o.targets, scene, notices);
+    const ParameterAxes axes = axesOf(o, scene, targets);
     const std::vector<std::string> names = namesOf(scene.tf);
     SpaceView view;
     view.shown = o.show == "F" ? kObjective : static_cast<int>(parseFeature(o.show, "--show", scene.tf));
@@ -233,7 +228,11 @@ Answer run(const Options& o, Progress& progress) {
     json["paths"] = std::move(pathsJson);
     json["files"] = files;
     json["seconds"] = {{"sampling", seconds}, {"total", total.seconds()}};
-    return {textOf(space, names, factor, view.paths, files, seconds), std::move(json), opened.notices(), {}};
+    json["empty"] = emptyFeatures(scene.tf, *scene.histogram);
+    return {textOf(space, namesWithEmpty(scene.tf, *scene.histogram), factor, view.paths, files, seconds),
+            std::move(json),
+            std::move(notices),
+            {}};
 }
 
 } // namespace
@@ -244,9 +243,9 @@ Command addSpace(CLI::App& program) {
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
     addValue(
-        *app, "--target", "T1,T2,...",
-        [o](const std::string& text, const std::string& option) { o->targets = parseReals(text, option); },
-        "one number for each feature, from 0 on; scaled to sum 1; required unless a session has targets");
+        *app, "--target", kTargetForms,
+        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        "shares of attention, as in optimize; required unless a session has targets");
     addValue(
         *app, "--features", "A,B[,C]",
         [o](const std::string& text, const std::string& option) {
@@ -288,9 +287,10 @@ Command addSpace(CLI::App& program) {
         [o](const std::string& text, const std::string& option) { parsePaths(text, option, *o); },
         "draw the ways of these methods from the present opacities: newton, parallel, line, fixed; and runs: those of "
         "the session");
-    addValue(
-        *app, "--out", "FILE", [o](const std::string& text, const std::string&) { o->out = text; },
-        "the picture to write: of three features a volume with its axes, of two a heat map; .png, .tif, .exr or .jpg");
+    addOutputFile(
+        *app, "--out", "FILE", [o](const std::string& path) { o->out = path; },
+        "the picture to write: of three features a volume with its axes, of two a heat map; .png, .tif, .exr or .jpg",
+        checkImageSuffix);
     addValue(
         *app, "--size", "WxH",
         [o](const std::string& text, const std::string& option) { o->size = parseImageSize(text, option); },
@@ -303,11 +303,11 @@ Command addSpace(CLI::App& program) {
         *app, "--space-view", "AZIMUTH,ELEVATION[,ZOOM]",
         [o](const std::string& text, const std::string& option) { o->view = parseSpaceView(text, option); },
         "from where the volume of three features is seen, degrees (default 35,25); --view is that of the figures");
-    addValue(
-        *app, "--save", "FILE", [o](const std::string& text, const std::string&) { o->save = text; },
+    addOutputFile(
+        *app, "--save", "FILE", [o](const std::string& path) { o->save = path; },
         "write the samples of what is shown (NRRD, float32; positions along the axes from 0 to 1)");
-    addValue(
-        *app, "--csv", "FILE", [o](const std::string& text, const std::string&) { o->csv = text; },
+    addOutputFile(
+        *app, "--csv", "FILE", [o](const std::string& path) { o->csv = path; },
         "write every sample: opacities, VWS of each feature, F");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }

@@ -2,6 +2,7 @@
 #include "base/atomic_file.h"
 #include "commands.h"
 #include "image_io/image_file.h"
+#include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
@@ -11,7 +12,6 @@
 #include "results_json.h"
 #include "session/view_workspace.h"
 #include "tf/color_maps.h"
-#include "tf/shown_tf.h"
 
 namespace pellucid::cli {
 
@@ -21,7 +21,7 @@ using Figure = ViewMetric::Figure;
 
 struct Options {
     SceneOptions scene;
-    std::optional<std::vector<double>> targets;
+    std::optional<TargetInput> targets;
     std::optional<std::string> feature;
     Figure figure = Figure::Vws; ///< of `feature`
     int count = kSphereViews;
@@ -30,16 +30,14 @@ struct Options {
 
 bool isTable(const std::string& path) { return path.ends_with(".csv"); }
 
-ViewMetric metricOf(const Options& o, const Scene& scene) {
+ViewMetric metricOf(const Options& o, const Scene& scene, std::vector<std::string>& notices) {
     ViewMetric metric;
     if (o.feature) {
         metric.figure = o.figure;
         metric.feature = parseFeature(*o.feature, "--feature", scene.tf);
         return metric;
     }
-    const std::vector<double> named = o.targets.value_or(scene.targets());
-    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
-    metric.targets = normalizedTargets(shownShares(scene.tf, named), scene.tf.features.size());
+    metric.targets = targetsOf(o.targets, scene, notices);
     return metric;
 }
 
@@ -133,19 +131,14 @@ Json jsonOf(const ViewMetric& metric, const std::string& feature, const BestView
 
 Answer run(const Options& o, Progress& progress) {
     const Stopwatch total;
-    const std::vector<std::string> inputs = inputFiles(o.scene);
-    if (o.outCamera) checkOutputFile(*o.outCamera, "--out-camera", inputs);
-    if (o.map) {
-        checkOutputFile(*o.map, "--map", inputs);
-        if (!isTable(*o.map)) atOption("--map", [&] { return checkImageSuffix(*o.map), 0; });
-    }
     if (!o.targets && !o.feature && !o.scene.session.file)
         throw UsageError("--target or --feature is required", "pellucid-cli views", "see pellucid-cli views --help");
     if (o.targets && o.feature)
         throw UsageError("views are judged by one figure", "--target and --feature", "leave one out");
     const Opened opened = resolve(o.scene, progress, {toMeasure("measuring"), true});
     const Scene& scene = opened.scene;
-    const ViewMetric metric = metricOf(o, scene);
+    std::vector<std::string> notices = opened.notices();
+    const ViewMetric metric = metricOf(o, scene, notices);
     const MeasureInput input = measureInput(scene);
     Workspace workspace;
     ViewWorkspace views;
@@ -169,7 +162,7 @@ Answer run(const Options& o, Progress& progress) {
     if (Json mapping = jsonFromMapping(scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     return {textOf(metric, feature, best, input.volume->geometry(), engine, seconds),
             std::move(json),
-            opened.notices(),
+            std::move(notices),
             {}};
 }
 
@@ -180,9 +173,9 @@ Command addViews(CLI::App& program) {
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
     addValue(
-        *app, "--target", "T1,T2,...",
-        [o](const std::string& text, const std::string& option) { o->targets = parseTargets(text, option); },
-        "the distance F from these shares, one number for each feature; scaled to sum 1 (default: the session's)");
+        *app, "--target", kTargetForms,
+        [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
+        "the distance F from these shares, as in optimize (default: the session's)");
     addValue(
         *app, "--feature", "NAME", [o](const std::string& text, const std::string&) { o->feature = text; },
         "how much of this feature is seen");
@@ -200,12 +193,15 @@ Command addViews(CLI::App& program) {
             o->count = static_cast<int>(parseInteger(text, option, 16, kMostSphereViews));
         },
         "directions, 16 to " + std::to_string(kMostSphereViews) + " (default " + std::to_string(kSphereViews) + ")");
-    addValue(
-        *app, "--out-camera", "FILE", [o](const std::string& text, const std::string&) { o->outCamera = text; },
+    addOutputFile(
+        *app, "--out-camera", "FILE", [o](const std::string& path) { o->outCamera = path; },
         "write the best view's camera");
-    addValue(
-        *app, "--map", "FILE", [o](const std::string& text, const std::string&) { o->map = text; },
-        "write the map: a table (.csv) or a picture, azimuth to the right and elevation up, the better the brighter");
+    addOutputFile(
+        *app, "--map", "FILE", [o](const std::string& path) { o->map = path; },
+        "write the map: a table (.csv) or a picture, azimuth to the right and elevation up, the better the brighter",
+        [](const std::string& path) {
+            if (!isTable(path)) atOption("--map", [&] { return checkImageSuffix(path), 0; });
+        });
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

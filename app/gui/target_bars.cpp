@@ -91,6 +91,10 @@ bool TargetBars::isHidden(int feature) const {
     return m_store.scene().tf.features.at(static_cast<std::size_t>(feature)).hidden;
 }
 
+bool TargetBars::hasTarget(int feature) const {
+    return !isHidden(feature) && !m_store.scene().isEmpty(static_cast<std::size_t>(feature));
+}
+
 bool TargetBars::isLocked(int feature) const {
     const FeatureGoals& goals = *m_store.session().goals;
     const auto goal = goals.find(m_store.scene().tf.features.at(static_cast<std::size_t>(feature)).id);
@@ -98,7 +102,7 @@ bool TargetBars::isLocked(int feature) const {
 }
 
 bool TargetBars::canEdit(int feature) const {
-    return !m_readOnly && feature >= 0 && feature < count() && !isHidden(feature);
+    return !m_readOnly && feature >= 0 && feature < count() && hasTarget(feature);
 }
 
 void TargetBars::setCurrentFeature(int feature) {
@@ -167,6 +171,10 @@ void TargetBars::toggleLock(int feature) {
 }
 
 void TargetBars::typeTarget(int feature, const QString& text) {
+    if (!m_readOnly && !isHidden(feature) && !hasTarget(feature)) {
+        const QPoint below = targetRect(feature).bottomLeft().toPoint();
+        QToolTip::showText(mapToGlobal(below), emptyFeatureText(m_store.scene(), feature), this);
+    }
     if (!canEdit(feature)) return;
     m_store.commit();
     choose(feature);
@@ -348,7 +356,8 @@ QString TargetBars::tip(int feature) const {
         text += tr("\nVWS %1 = %2 by brightness + %3 by saturation\nvisibility %4")
                     .arg(share(now.vws), share(now.vws * b), share(now.vws * (1 - b)), share(now.visibility));
     }
-    if (!isHidden(feature)) text += tr(", target %1").arg(share(m_store.scene().targets()[f]));
+    if (m_store.scene().isEmpty(f)) return text + "\n" + emptyFeatureText(m_store.scene(), feature);
+    if (hasTarget(feature)) text += tr(", target %1").arg(share(m_store.scene().targets()[f]));
     return text +
            tr("\n\nThick bar: VWS, the feature's share of what catches the eye (0 to 1); striped: by saturation\n"
               "Thin bar: its visibility, the share of the picture that it makes (0 to 1)\n"
@@ -393,12 +402,12 @@ void TargetBars::paintRow(QPainter& painter, int i, const QFont& small, double t
         painter.drawRoundedRect(row.adjusted(3, 1, -3, -1), 4, 4);
     }
     QColor color = colorFromRgb(feature.color);
-    if (feature.hidden) color.setAlphaF(0.35F);
+    if (!hasTarget(i)) color.setAlphaF(0.35F);
     painter.setPen(Qt::NoPen);
     painter.setBrush(color);
     painter.drawRoundedRect(QRectF(10, track.center().y() - 5, 10, 10), 2, 2);
     painter.setFont(font());
-    painter.setPen(feature.hidden ? theme::kFaint : theme::kText);
+    painter.setPen(hasTarget(i) ? theme::kText : theme::kFaint);
     painter.drawText(
         QRectF(26, row.top(), kName - 32, row.height()), Qt::AlignVCenter | Qt::AlignLeft,
         QFontMetricsF(font()).elidedText(QString::fromStdString(feature.name), Qt::ElideRight, kName - 32));
@@ -441,7 +450,7 @@ void TargetBars::paintRow(QPainter& painter, int i, const QFont& small, double t
         painter.setPen(theme::kFaint);
         painter.drawText(now.translated(0, half), Qt::AlignRight | Qt::AlignVCenter, share(m.visibility));
     }
-    if (feature.hidden) { // it is aimed at nothing
+    if (!hasTarget(i)) { // it is aimed at nothing
         painter.setPen(theme::kFaint);
         painter.drawText(number, Qt::AlignRight | Qt::AlignVCenter, QStringLiteral("–"));
         return;

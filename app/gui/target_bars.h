@@ -63,6 +63,7 @@ private:
     int featureAtPosition(const QPointF& position) const;
     double shareAt(double pixelX) const;
     bool isHidden(int feature) const;
+    bool hasTarget(int feature) const; ///< it is neither hidden nor empty
     bool isLocked(int feature) const;
     bool canEdit(int feature) const;
     void choose(int feature);

@@ -653,7 +653,9 @@ QString TfCanvas::readout() const {
     }
     if (const int feature = featureAt(tf().features, *x); feature >= 0) {
         const Feature& f = tf().features[static_cast<std::size_t>(feature)];
-        parts << (f.hidden ? tr("%1 (hidden)").arg(QString::fromStdString(f.name)) : QString::fromStdString(f.name));
+        const QString name = QString::fromStdString(f.name);
+        const bool empty = scene.isEmpty(static_cast<std::size_t>(feature));
+        parts << (f.hidden ? tr("%1 (hidden)").arg(name) : empty ? tr("%1 (empty)").arg(name) : name);
     }
     return parts.join(QStringLiteral("  ·  "));
 }

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/file_watch.h"
 #include "base/text.h"
 
 namespace pellucid {
@@ -78,15 +79,14 @@ bool isWrittenDirectly(fs::file_type type) {
     return type != fs::file_type::not_found && type != fs::file_type::regular;
 }
 
-/// Where a link leads, so that it stays a link; what it leads to need not exist.
-fs::path behindLinks(fs::path path) {
+} // namespace
+
+std::filesystem::path behindLinks(std::filesystem::path path) {
     std::error_code ec;
     for (int links = 0; links < 40 && fs::is_symlink(path, ec); ++links)
         path = path.parent_path() / fs::read_symlink(path, ec); // an absolute one replaces all before it
     return path;
 }
-
-} // namespace
 
 OutputFile::~OutputFile() {
     if (m_descriptor >= 0) ::close(m_descriptor);
@@ -129,6 +129,7 @@ void requireWritable(const std::string& path) {
 
 void writeAtomically(const std::string& path, const std::function<void(OutputFile&)>& write) {
     requireWritable(path);
+    tellOfWriting(path);
     if (isWrittenDirectly(typeOf(path))) {
         OutputFile file(uninterrupted([&] { return open(path.c_str(), O_WRONLY | O_CLOEXEC); }), path);
         if (file.m_descriptor < 0) throw cannotWrite(path, errno);
@@ -170,6 +171,7 @@ void writeTextAtomically(const std::string& path, std::string_view text) {
 }
 
 std::string readText(const std::string& path, std::size_t mostBytes) {
+    tellOfReading(path);
     const auto cannotRead = [&](int error) {
         if (error == ENOENT || error == ENOTDIR) return FileError("no such file", path, "check the name");
         if (error == EISDIR) return FileError("this is a folder, not a file", path, "name a file in it");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -36,6 +37,9 @@ private:
 void writeAtomically(const std::string& path, const std::function<void(OutputFile&)>& write);
 void writeBytesAtomically(const std::string& path, std::span<const unsigned char> bytes);
 void writeTextAtomically(const std::string& path, std::string_view text);
+
+/// Where a link leads, so that it stays a link; what it leads to need not exist.
+std::filesystem::path behindLinks(std::filesystem::path path);
 
 /// Throws FileError, as far as that can be told beforehand, where writeAtomically() would.
 void requireWritable(const std::string& path);

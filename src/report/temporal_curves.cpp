@@ -178,15 +178,15 @@ std::vector<Plot> temporalPlots(const TemporalCurves& curves) {
 }
 
 std::string csvOf(const TemporalCurves& curves) {
-    std::string csv = "run,frame,time,F,flicker,moves,seconds";
+    std::string csv = "run,frame,file,time,F,flicker,moves,seconds";
     for (const std::string& feature : curves.features)
         for (const char* what : {"VWS ", "target ", "FV ", "opacity "}) csv += "," + csvField(what + feature);
     csv += ",problem\n";
     for (const TemporalRun& run : curves.runs)
         for (const FrameFigures& f : run.frames) {
             const bool known = f.problem.empty();
-            csv += csvField(run.name) + "," + std::to_string(f.frame) + "," + number(f.time) + "," +
-                   (known ? number(f.objective) : "") + "," + (f.flicker ? number(*f.flicker) : "") + "," +
+            csv += csvField(run.name) + "," + std::to_string(f.frame) + "," + csvField(f.file) + "," + number(f.time) +
+                   "," + (known ? number(f.objective) : "") + "," + (f.flicker ? number(*f.flicker) : "") + "," +
                    (f.moves ? std::to_string(*f.moves) : "") + "," + (f.moves ? number(f.seconds) : "");
             for (std::size_t i = 0; i < curves.features.size(); ++i)
                 for (const std::vector<double>* values : {&f.vws, &f.targets, &f.visibility, &f.opacity})

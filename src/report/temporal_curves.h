@@ -39,7 +39,7 @@ Plot temporalFlickerPlot(const TemporalCurves& curves);
 /// All of them: VWS of each run with a common axis, F, flicker, then FV and opacities of each run.
 std::vector<Plot> temporalPlots(const TemporalCurves& curves);
 
-/// A line per frame of each run: run, frame, time, F, flicker, moves, seconds, then for each feature its VWS, its
+/// A line per frame of each run: run, frame, file, time, F, flicker, moves, seconds, then for each feature its VWS, its
 /// target, its FV and its opacity, and why the frame could not be read. What is not known is empty. Numbers with all
 /// their digits.
 std::string csvOf(const TemporalCurves& curves);

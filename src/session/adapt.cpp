@@ -168,6 +168,7 @@ public:
         if (m_session.hsb->on) hash.add(static_cast<long long>(frame));
         addTf(hash, previous);
         const TfTrack& track = m_session.variable().track;
+        hash.add(static_cast<long long>(track.keys.contains(frame))); // nothing holds back a first frame
         if (const int key = track.keyBefore(frame); m_needsKey && key >= 0) {
             addTf(hash, *track.keys.at(key));
             addSource(hash, m_series.listing().frames[static_cast<std::size_t>(m_series.nearest(key))].source);
@@ -208,7 +209,7 @@ void visitFrames(const Session& session, const TimeSeries& series, const Visit& 
         const auto next = track.keys.upper_bound(key);
         const int end = next == track.keys.end() ? series.size() : std::min(next->first, series.size());
         std::shared_ptr<const TransferFunction> previous = track.keys.at(key).shared();
-        for (int frame = key + 1; frame < end; ++frame) {
+        for (int frame = key; frame < end; ++frame) {
             if (!series.summary(frame).problem.empty()) continue;
             std::optional<AdaptTask> task;
             bool fresh = false;
@@ -230,6 +231,12 @@ struct Stretch {
     bool isSmooth = true;  ///< what was smoothed is of the present ones
 };
 
+/// What the frames from this key on begin with: what was made for its own frame, where that can be read, else the key.
+const TransferFunction& startOf(const TfTrack& track, int key) {
+    const auto made = track.adapted.find(key);
+    return made == track.adapted.end() ? *track.keys.at(key) : *made->second.tf;
+}
+
 /// In the order of nextToAdapt().
 std::vector<Stretch> stretchesOf(const Session& session, const TimeSeries& series) {
     std::vector<Stretch> stretches;
@@ -239,7 +246,7 @@ std::vector<Stretch> stretchesOf(const Session& session, const TimeSeries& serie
             stretches.emplace_back().task.key = task->key;
             bases.emplace_back();
         }
-        Stretch& stretch = stretches.back(); // the first frame after a key has a task
+        Stretch& stretch = stretches.back(); // the first frame from a key on has a task
         ++stretch.all;
         if (!fresh) return true;
         ++stretch.done;
@@ -259,7 +266,7 @@ std::vector<Stretch> stretchesOf(const Session& session, const TimeSeries& serie
         for (const std::string& basis : bases[i]) hash.add(basis);
         addTf(hash, *track.adapted.at(stretch.task.frames.back()).tf); // those before it are in the next one's basis
         if (const auto next = track.keys.upper_bound(stretch.task.key); next != track.keys.end())
-            addTf(hash, *next->second);
+            addTf(hash, startOf(track, next->first));
         stretch.task.basis = hash.text();
         if (track.keys.at(stretch.task.key)->features.empty()) continue; // nothing was optimized
         for (const int frame : stretch.task.frames)
@@ -413,7 +420,6 @@ Scene sceneAt(const Scene& basis, int frame, const TransferFunction& tf, const J
     if (basis.series->varies() && frame != basis.session.frame) // with histogram and codes
         basis.series->show(frame, windowOf(session.variable(), *basis.series, job), job);
     Scene scene = resolve(std::move(session), basis, {}, job);
-    if (!scene.histogram) scene.histogram = std::make_shared<const Histogram>(makeHistogram(*scene.volume));
     scene.tf = writtenFor(tf, scene.volume->range());
     return scene;
 }
@@ -444,6 +450,9 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
     const Stopwatch watch;
     const JobControl quiet{job.stop, {}};
     const AdaptSettings& settings = *basis.session.adapt;
+    // Nothing is before a first frame that it could differ from.
+    const double coherence =
+        task.frame == task.key && !std::isinf(settings.usedCoherence()) ? 0 : settings.usedCoherence();
     AdaptedFrame made;
     made.frame = task.frame;
     made.basis = task.basis;
@@ -454,10 +463,10 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         RefineOptions options = basis.session.refine->options();
         options.priority = priority;
         made.tf = scene.tf;
-        if (!std::isinf(settings.usedCoherence())) {
+        if (!std::isinf(coherence)) {
             const RefineResult result =
                 refineAsDrawn(*scene.histogram, scene.tf, *scene.volume, scene.colors.get(), options, quiet);
-            made.tf = pulledBack(scene.tf, result.tf, settings.usedCoherence());
+            made.tf = pulledBack(scene.tf, result.tf, coherence);
             made.energy = result.energyMovableAfter;
             made.moves = result.iterations;
         }
@@ -504,28 +513,25 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
     return made;
 }
 
-SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, bool keyMoves, Workspace& workspace,
+SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, Workspace& workspace,
                                     const JobControl& job) {
     const Stopwatch watch;
     const JobControl quiet{job.stop, {}};
     const AdaptSettings& settings = *basis.session.adapt;
     const TfTrack& track = basis.session.variable().track;
     const TimeSeries& series = *basis.series;
-    std::vector<int> frames{task.key};
-    std::vector<TransferFunction> tfs{*track.keys.at(task.key)};
-    for (const int frame : task.frames) {
-        frames.push_back(frame);
-        tfs.push_back(*track.adapted.at(frame).tf);
-    }
+    std::vector<int> frames = task.frames;
+    std::vector<TransferFunction> tfs;
+    for (const int frame : frames) tfs.push_back(*track.adapted.at(frame).tf);
     const auto next = track.keys.upper_bound(task.key);
     const bool hasNext = next != track.keys.end() && next->first < series.size() &&
                          next->second->features.size() == tfs.front().features.size() &&
                          series.summary(next->first).problem.empty();
     if (hasNext) {
         frames.push_back(next->first);
-        tfs.push_back(*next->second);
+        tfs.push_back(startOf(track, next->first));
     }
-    const auto stays = [&](std::size_t i) { return (i == 0 && !keyMoves) || (hasNext && i + 1 == frames.size()); };
+    const auto stays = [&](std::size_t i) { return hasNext && i + 1 == frames.size(); };
     const auto withFunction = [&](std::size_t i, const auto& use) {
         const Scene scene = sceneAt(basis, frames[i], tfs[i], quiet);
         tfs[i] = scene.tf;
@@ -540,26 +546,31 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
         job.throwIfStopped();
         job.report(0.5 * static_cast<double>(i) / static_cast<double>(frames.size()));
         FrameModel& model = models[i];
-        const auto adapted = track.adapted.find(frames[i]);
-        const auto known = m_models.find(frames[i]);
-        if (adapted != track.adapted.end() && known != m_models.end() &&
-            known->second.basis == modelBasis(tfs[i], adapted->second.basis)) {
-            model = known->second.model;
-        } else if (i == 0 && stays(i)) { // a jump is seen where it goes to
+        model.stays = stays(i);
+        const TransferFunction& before = i == 0 ? *track.keys.at(task.key) : tfs[i - 1];
+        if (model.stays) { // what a jump to it would be is all that counts
+            const Scene scene = sceneAt(basis, frames[i], before, quiet);
             model.opacity = featureOpacities(shownTf(tfs[i]));
+            model.metric = pictureMetric(scene, quiet);
+            continue;
+        }
+        const std::string of = modelBasis(tfs[i], track.adapted.at(frames[i]).basis);
+        if (const auto known = m_models.find(frames[i]); known != m_models.end() && known->second.basis == of) {
+            model = known->second.model;
         } else {
-            Matrix metric = pictureMetric(sceneAt(basis, frames[i], tfs[i == 0 ? 0 : i - 1], quiet), quiet);
+            Matrix metric = pictureMetric(sceneAt(basis, frames[i], before, quiet), quiet);
             withFunction(i, [&](const Scene& scene, const EngineVws& function) {
                 model = modelOf(scene, function, featureOpacities(function.base()), settings, std::move(metric), quiet);
             });
-            if (adapted != track.adapted.end())
-                m_models[frames[i]] = {modelBasis(tfs[i], adapted->second.basis), model};
+            m_models[frames[i]] = {of, model};
         }
-        model.stays = stays(i);
-        if (model.stays) continue;
         allowed += model.distance * model.distance;
     }
-    const std::vector<std::vector<double>> found = smoothed(models, quiet);
+    std::vector<std::vector<double>> found;
+    if (models.size() > 1)
+        found = smoothed(models, quiet);
+    else
+        found = {models.front().opacity}; // a frame alone jumps nowhere
 
     // Models are not exact: as far of the way as the distance allows.
     constexpr std::array<double, 7> kParts{1, 0.97, 0.93, 0.88, 0.8, 0.6, 0.3};
@@ -587,8 +598,7 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
         if (!stays(i)) {
             smoothed.tfs[frames[i]] =
                 withShownOpacities(tfs[i], part < kParts.size() ? ways[i][part] : models[i].opacity);
-            if (const auto from = track.adapted.find(frames[i]); from != track.adapted.end())
-                smoothed.from[frames[i]] = from->second.basis;
+            smoothed.from[frames[i]] = track.adapted.at(frames[i]).basis;
         }
     smoothed.seconds = watch.seconds();
     return smoothed;
@@ -616,8 +626,10 @@ FrameFigures figuresOf(const Scene& scene, const TransferFunction* before, Works
                        const JobControl& job) {
     FrameFigures figures;
     figures.frame = scene.session.frame;
+    figures.file = scene.series->listing().fileOf(figures.frame);
     figures.time = scene.series->listing().frames[static_cast<std::size_t>(figures.frame)].time;
     figures.targets = scene.targets();
+    figures.empty = emptyFeatures(scene.tf, *scene.histogram);
     const Measures measures = workspace.measure(measureInput(scene), {job.stop, {}});
     for (const FeatureMeasures& feature : measures.features) {
         figures.vws.push_back(feature.vws);
@@ -643,13 +655,24 @@ FrameFigures figuresOf(const Scene& scene, const TransferFunction* before, Works
 FrameFigures brokenFigures(const TimeSeries& series, int frame) {
     FrameFigures figures;
     figures.frame = frame;
+    figures.file = series.listing().fileOf(frame);
     figures.time = series.listing().frames[static_cast<std::size_t>(frame)].time;
     figures.problem = series.summary(frame).problem;
     if (figures.problem.empty()) figures.problem = "it cannot be read";
     return figures;
 }
 
-SequenceFigures summaryOf(const std::vector<FrameFigures>& frames) {
+int neighbourBefore(const TimeSeries& series, int frame, bool overGaps) {
+    int before = frame - 1;
+    if (!overGaps && series.listing().frames.at(static_cast<std::size_t>(frame)).afterGap) return -1;
+    while (before >= 0 && !series.summary(before).problem.empty()) {
+        if (!overGaps) return -1;
+        --before;
+    }
+    return before;
+}
+
+SequenceFigures summaryOf(const std::vector<FrameFigures>& frames, double tolerance) {
     SequenceFigures sums;
     int flickers = 0, made = 0;
     for (const FrameFigures& f : frames) {
@@ -659,6 +682,11 @@ SequenceFigures summaryOf(const std::vector<FrameFigures>& frames) {
         }
         ++sums.frames;
         sums.rms += f.objective * f.objective;
+        sums.above += f.objective < tolerance ? 0 : 1;
+        if (sums.worst < 0 || f.objective > sums.worstObjective) {
+            sums.worst = f.frame;
+            sums.worstObjective = f.objective;
+        }
         if (f.flicker) {
             sums.flicker += *f.flicker;
             ++flickers;

@@ -15,8 +15,8 @@ namespace pellucid {
 /// A transfer function that is to be made, from that of the frame before.
 struct AdaptTask {
     int frame = 0;
-    int key = 0;               ///< the key frame that it goes back to
-    TransferFunction previous; ///< what it starts from: that of the frame before, or of the key
+    int key = 0;               ///< the key frame that it goes back to; its own where it is that
+    TransferFunction previous; ///< what it starts from: that of the frame before, or the key
     std::string basis;         ///< fingerprintOf() of these
 };
 
@@ -44,11 +44,11 @@ AdaptProgress adaptProgress(const Session& session, const TimeSeries& series);
 /// Whether frames are smoothed together: in the mode Optimize with a coherence between 0 and infinity.
 bool smooths(const AdaptSettings& settings);
 
-/// Frames from one key to the next, or to the end, whose transfer functions are to be smoothed together.
+/// Frames from one key up to the next, or to the end, whose transfer functions are to be smoothed together.
 struct SmoothTask {
     int key = 0;
     std::vector<int> frames; ///< those with a transfer function that is not stale, and no other between
-    std::string basis;       ///< fingerprint of all these transfer functions, the next key's included
+    std::string basis;       ///< fingerprint of all these transfer functions, that at the next key included
 };
 
 /// Where smooths(): the first such frames that have all been made and are not smoothed, or from other transfer
@@ -75,7 +75,7 @@ struct AdaptedFrame {
 /// What came out of a SmoothTask.
 struct SmoothedFrames {
     std::map<int, TransferFunction> tfs; ///< by frame
-    std::map<int, std::string> from;     ///< fingerprints of what they came from, by frame; a key has none
+    std::map<int, std::string> from;     ///< fingerprints of what they came from, by frame
     std::string basis;                   ///< that of the task
     double seconds = 0;                  ///< of all frames together, reading included
 };
@@ -89,11 +89,10 @@ public:
     /// Workspace::measure() does.
     AdaptedFrame adapt(const Scene& basis, const AdaptTask& task, Workspace& workspace, const JobControl& job = {});
 
-    /// The transfer functions of these frames, and the key's where `keyMoves`, with as little change from frame to
-    /// frame as the distance of the coherence allows on average. Reads the frames, those adapted here before only once.
+    /// The transfer functions of these frames with as little change from frame to frame as the distance of the
+    /// coherence allows on average; that at the next key stays. Reads the frames, those adapted here before only once.
     /// Throws FileError where one is broken (it is known as such then), Cancelled, and as Workspace::measure() does.
-    SmoothedFrames smooth(const Scene& basis, const SmoothTask& task, bool keyMoves, Workspace& workspace,
-                          const JobControl& job = {});
+    SmoothedFrames smooth(const Scene& basis, const SmoothTask& task, Workspace& workspace, const JobControl& job = {});
 
 private:
     struct Known {
@@ -109,24 +108,29 @@ private:
 
 /// The session with that transfer function in its track.
 Session withAdapted(Session session, int frame, AdaptedTf adapted);
-/// The session with those that were smoothed beside those that they came from, where these are still there; a key
-/// stays as it is.
+/// The session with those that were smoothed beside those that they came from, where these are still there.
 Session withSmoothed(Session session, const SmoothedFrames& smoothed);
 
 /// What a frame shows under a transfer function.
 struct FrameFigures {
     int frame = 0;
+    std::string file;               ///< see SeriesListing::fileOf()
     double time = 0;                ///< see SeriesFrame
     std::string problem;            ///< why it could not be read: the rest is empty then
     std::vector<double> vws;        ///< W, per feature
     std::vector<double> visibility; ///< FV
     std::vector<double> opacity;    ///< of the peaks
     std::vector<double> targets;    ///< shares
+    std::vector<bool> empty;        ///< whether the frame has no voxel of it
     double objective = 0;           ///< F
-    std::optional<double> flicker;  ///< mean ΔE to the same frame under the transfer function of the frame before it
+    std::optional<double> flicker;  ///< mean ΔE to the same frame under the transfer function of neighbourBefore()
     std::optional<int> moves;       ///< that its transfer function took; empty: none was made for it
     double seconds = 0;             ///< likewise, reading included
 };
+
+/// The frame that flicker of `frame` compares it with: the one before, where it can be read as far as is known and no
+/// number is missing between the two; with `overGaps` the nearest before it that can be read. −1: none.
+int neighbourBefore(const TimeSeries& series, int frame, bool overGaps);
 
 inline constexpr int kFlickerSize = 256; ///< pixels of the side of the pictures that flicker is measured on
 
@@ -142,7 +146,10 @@ FrameFigures brokenFigures(const TimeSeries& series, int frame);
 struct SequenceFigures {
     double rms = 0, flicker = 0, moves = 0, seconds = 0;
     int frames = 0, broken = 0;
+    int worst = -1;            ///< the frame of the largest F, the first of several; −1: none could be read
+    double worstObjective = 0; ///< that F
+    int above = 0;             ///< frames with F not below the tolerance
 };
-SequenceFigures summaryOf(const std::vector<FrameFigures>& frames);
+SequenceFigures summaryOf(const std::vector<FrameFigures>& frames, double tolerance = OptimizeOptions{}.tolerance);
 
 } // namespace pellucid

@@ -39,13 +39,17 @@ double scaleOf(const ValueRange& heights, double boxHeight) {
 
 } // namespace
 
-Ground readGround(const GroundView& view, const Geometry& box, const JobControl& job) {
+VolumeSource sourceOf(const GroundView& view) {
     VolumeSource source;
     source.path = view.path;
     source.raw = view.raw;
     source.missing = view.missing;
     source.then = {"a ground of", sizeof(float)};
-    const Volume file = loadVolume(source, job);
+    return source;
+}
+
+Ground readGround(const GroundView& view, const Geometry& box, const JobControl& job) {
+    const Volume file = loadVolume(sourceOf(view), job);
     const auto [alongX, alongY] = axesOf(file.dims(), view.path);
     if (!file.hasValidVoxels())
         throw FileError("no height is a number", view.path, "give a file with a layer of heights");

@@ -14,6 +14,9 @@ namespace pellucid {
 /// one layer along every axis, UsageError for an unknown colour map, and as loadVolume() does.
 Ground readGround(const GroundView& view, const Geometry& box, const JobControl& job = {});
 
+/// What its heights are read from, which may be a sample.
+VolumeSource sourceOf(const GroundView& view);
+
 /// Gives the heights the colours and relief of `view`. Throws UsageError for an unknown colour map.
 void dressGround(Ground& ground, const GroundView& view);
 

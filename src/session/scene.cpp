@@ -172,6 +172,7 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     if (sameSeries) scene.unit = basis.unit;
     followTargetKeys(scene.session, basis);
     proposeStart(scene, job);
+    if (!scene.histogram) scene.histogram = std::make_shared<const Histogram>(makeHistogram(*scene.volume));
     if (sameWindow && !scene.proposal && scene.session.tf() == basis.session.tf()) {
         scene.tf = basis.tf; // the very same
     } else {
@@ -282,8 +283,6 @@ void prepareToShow(Scene& scene, const JobControl& job) {
         scene.unit = scene.proposal ? scene.proposal->unit
                                     : unitOf(recogniseKind(*scene.data, surveyVoxels(*scene.data, stop), stop).kind);
     }
-    job.throwIfStopped();
-    if (!scene.histogram) scene.histogram = std::make_shared<const Histogram>(makeHistogram(*scene.volume));
     job.throwIfStopped();
     if (!scene.codes) scene.codes = sharedIntensityGrid(*scene.volume);
 }

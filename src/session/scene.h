@@ -11,6 +11,7 @@
 #include "render/ground.h"
 #include "render/standard_view.h"
 #include "session/session.h"
+#include "tf/empty_features.h"
 #include "tf/proposal.h"
 #include "volume/histogram.h"
 #include "volume/intensity_grid.h"
@@ -27,8 +28,9 @@ struct Scene {
     std::shared_ptr<const Volume> volume;       ///< the same through the variable's window
     TransferFunction tf;                        ///< of the present frame, written for the window
     Camera camera;                              ///< the session's, else the home view
-    std::shared_ptr<const Histogram> histogram; ///< 256 bins of `volume`; null before prepareToShow()
-    std::shared_ptr<const IntensityGrid> codes; ///< of `volume`, kept for those who draw and measure; likewise
+    std::shared_ptr<const Histogram> histogram; ///< 256 bins of `volume`; null likewise
+    std::shared_ptr<const IntensityGrid> codes; ///< of `volume`, kept for those who draw and measure; null before
+                                                ///< prepareToShow()
     std::optional<std::string> unit;            ///< of the data: "HU", "" where unknown; empty before prepareToShow()
     std::shared_ptr<TimeSeries> series;         ///< of the variable that is drawn, one frame or many; null like `data`
     /// Of the other variables that channels name, and of those that derived ones are made of, by their names.
@@ -38,8 +40,12 @@ struct Scene {
     std::shared_ptr<const Ground> ground;      ///< null: none
     std::shared_ptr<const Proposal> proposal; ///< where this resolving proposed window and transfer function; else null
 
-    /// Wanted shares of the features, in their order; 0 of hidden ones.
-    std::vector<double> targets() const { return targetsOf(tf, *session.goals); }
+    /// `tf` for all that has to do with targets: features without a voxel in this frame are hidden, too.
+    TransferFunction wantedTf() const { return histogram ? withEmptyHidden(tf, *histogram) : tf; }
+    /// Wanted shares of the features, in their order; 0 of hidden and of empty ones.
+    std::vector<double> targets() const { return targetsOf(wantedTf(), *session.goals); }
+    /// Whether the frame has no voxel of this feature, an index in tf.features.
+    bool isEmpty(std::size_t feature) const { return histogram && !hasVoxel(tf.features.at(feature), *histogram); }
     /// Index in tf.features of the feature that is drawn alone; −1: all are.
     int onlyFeature() const;
     /// Index of the feature whose field is drawn, −1: of all.

@@ -17,6 +17,18 @@ bool sameData(const std::vector<Variable>& a, const std::vector<Variable>& b) {
     });
 }
 
+std::vector<std::string> filesOf(const Session& session) {
+    std::vector<std::string> files;
+    const auto add = [&](const VolumeSource& source) {
+        if (source.path.empty()) return;
+        for (std::string& file : filesOf(source)) files.push_back(std::move(file));
+    };
+    for (const Variable& variable : *session.variables)
+        if (!variable.derivation) add(variable.source);
+    add(sourceOf(*session.ground));
+    return files;
+}
+
 ValueRange windowOf(const Variable& variable, TimeSeries& series, const JobControl& job) {
     return variable.window ? *variable.window : series.range(job);
 }

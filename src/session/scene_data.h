@@ -14,6 +14,9 @@ bool sameOrigin(const Variable& a, const Variable& b);
 /// The same variables in the same order through the same windows, whatever their transfer functions are.
 bool sameData(const std::vector<Variable>& a, const std::vector<Variable>& b);
 
+/// The files that a session's data are in: those of its variables and of its ground, as filesOf(VolumeSource) says.
+std::vector<std::string> filesOf(const Session& session);
+
 /// The window of the variable that `series` has the values of: its own, or all values.
 ValueRange windowOf(const Variable& variable, TimeSeries& series, const JobControl& job = {});
 

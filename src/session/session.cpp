@@ -72,6 +72,19 @@ RefineOptions RefineSettings::options() const {
     return options;
 }
 
+bool HsbMapping::isKeptBy(const HsbMapping& later) const {
+    HsbMapping same = *this;
+    const auto keep = [](const std::string& now, const std::string& was, std::optional<double>& scale,
+                         const std::optional<double>& next) {
+        if (now != was || !scale) scale = next; // of another variable it means nothing
+    };
+    keep(saturation, found.saturation, same.found.a, later.found.a);
+    keep(brightness, found.brightness, same.found.b, later.found.b);
+    same.found.saturation = later.found.saturation;
+    same.found.brightness = later.found.brightness;
+    return same == later;
+}
+
 void checkFieldColorMap(const std::string& name) {
     if (name == kFeatureColorMap) return;
     try {
@@ -95,7 +108,7 @@ std::shared_ptr<const TransferFunction> Session::tfAt(int at) const {
     if (adapt->mode == AdaptSettings::Mode::Static || track.keys.empty()) return track.at(at);
     const int key = track.keyBefore(at);
     const auto next = track.adapted.upper_bound(at);
-    if (next != track.adapted.begin() && std::prev(next)->first > key) return std::prev(next)->second.shown().shared();
+    if (next != track.adapted.begin() && std::prev(next)->first >= key) return std::prev(next)->second.shown().shared();
     return track.keys.at(key).shared();
 }
 
@@ -222,7 +235,8 @@ void Session::setTf(TransferFunction tf) {
     const auto there = keys.find(key);
     if (there != keys.end() && *there->second == tf && sameIdentities(*there->second, tf)) return;
     keys[key] = Part<TransferFunction>(std::move(tf));
-    variables = std::move(all); // not edit(): equal features may have become other ones
+    all.front().track.adapted.erase(key); // of another key; until it is made anew, what was set is shown
+    variables = std::move(all);           // not edit(): equal features may have become other ones
 }
 
 void Session::identifyFeatures() {

@@ -39,7 +39,7 @@ struct AdaptedTf {
 /// The transfer function of a variable over time.
 struct TfTrack {
     std::map<int, Part<TransferFunction>> keys; ///< key frame → transfer function, in the data units of its `range`
-    std::map<int, AdaptedTf> adapted; ///< what AdaptSettings made of them, for other frames than those of keys
+    std::map<int, AdaptedTf> adapted;           ///< what AdaptSettings made of them, for frames from the first key on
 
     /// By hand: between two keys with the same points and features halfway from the one to the other, else the latest
     /// key that is not after `frame`, else the first. Null where there are no keys.
@@ -53,7 +53,8 @@ struct TfTrack {
 /// time").
 inline constexpr double kUsualCoherence = 2;
 
-/// How transfer functions follow the frames of a series (docs/method.md, "Transfer functions over time").
+/// How transfer functions follow the frames of a series (docs/method.md, "Transfer functions over time"). A key is what
+/// frames begin with: where transfer functions follow, that of its own frame is made of it, too.
 struct AdaptSettings {
     enum class Mode {
         Static,  ///< keys alone
@@ -99,6 +100,9 @@ struct HsbMapping {
         bool operator==(const Found&) const = default;
     };
     Found found = {};
+    /// Whether `later` is the same decision, and has found again what this one had found: frames are compared under it.
+    /// What this one had not, it may have found since.
+    bool isKeptBy(const HsbMapping& later) const;
     bool operator==(const HsbMapping&) const = default;
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/round_numbers.h"
+#include "tf/empty_features.h"
 #include "tf/first_opacities.h"
 #include "tf/palette.h"
 #include "tf/value_classes.h"
@@ -183,9 +184,25 @@ TransferFunction trapezoids(const Evidence& e, const std::vector<Part>& parts, c
     return tf;
 }
 
+/// Parts that no voxel belongs to are nothing to look at. A survey that saw something of each has told; else all voxels
+/// are asked. Where nothing is valid all parts stay.
+void dropEmpty(std::vector<Part>& parts, const Evidence& e) {
+    const std::vector<FeatureExtent> seen = extentsOf(e.survey, e.window, rangesOf(parts));
+    if (std::all_of(seen.begin(), seen.end(), [](const FeatureExtent& extent) { return extent.share > 0; })) return;
+    if (!e.data.hasValidVoxels()) return;
+    const Histogram histogram = makeHistogram(e.data.withRange(e.window));
+    std::erase_if(parts, [&](const Part& p) {
+        Feature feature;
+        feature.a = e.intensity(p.feature.lo);
+        feature.b = e.intensity(p.feature.hi);
+        return !hasVoxel(feature, histogram);
+    });
+}
+
 /// Shares, depths, opacities and the transfer function of `parts`. Covers of 0 are chosen here.
 void finish(Proposal& result, const Evidence& e, std::vector<Part> parts) {
     std::erase_if(parts, [](const Part& p) { return !(p.feature.lo < p.feature.hi); });
+    dropEmpty(parts, e);
     const std::vector<FeatureExtent> extents = extentsOf(e.survey, e.window, rangesOf(parts));
     const std::vector<double> inside = insideOf(extents), covers = coversOf(extents, result.background.has_value());
     std::vector<double> opacities;

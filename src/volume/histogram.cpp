@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "volume/intensity_grid.h"
 
 namespace pellucid {
 
@@ -14,16 +15,22 @@ Histogram makeHistogram(const Volume& volume, int bins) {
     const std::size_t plane = volume.size() / slices;
     constexpr std::size_t kPieces = 32; // few, since each piece carries its own bins
     const std::size_t pieces = std::min(kPieces, slices);
+    const IntensityCoder coder(volume);
+    const std::size_t codes = static_cast<std::size_t>(coder.maxCode()) + 1;
     std::vector<std::vector<std::uint64_t>> partial(pieces);
+    std::vector<std::vector<std::uint8_t>> occurs(pieces); // by code
     std::visit(
         [&](const auto& values) {
             parallelFor(pieces, [&](std::size_t p) {
                 auto& counts = partial[p];
                 counts.assign(static_cast<std::size_t>(bins), 0);
+                occurs[p].assign(codes, 0);
                 const std::size_t end = plane * (slices * (p + 1) / pieces);
                 for (std::size_t i = plane * (slices * p / pieces); i < end; ++i) {
                     const double s = volume.intensityOfValue(static_cast<double>(values[i]));
-                    if (!std::isnan(s)) ++counts[static_cast<std::size_t>(histogramBin(s, bins))];
+                    if (std::isnan(s)) continue;
+                    ++counts[static_cast<std::size_t>(histogramBin(s, bins))];
+                    occurs[p][coder.code(s)] = 1;
                 }
             });
         },
@@ -33,6 +40,10 @@ Histogram makeHistogram(const Volume& volume, int bins) {
     for (const auto& counts : partial)
         for (std::size_t b = 0; b < counts.size(); ++b) histogram.counts[b] += counts[b];
     for (const std::uint64_t c : histogram.counts) histogram.total += c;
+    histogram.maxCode = coder.maxCode();
+    for (std::size_t code = 0; code < codes; ++code)
+        if (std::any_of(occurs.begin(), occurs.end(), [&](const auto& piece) { return piece[code] != 0; }))
+            histogram.codes.push_back(static_cast<std::uint16_t>(code));
     return histogram;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "base/round_numbers.h"
 #include "base/text.h"
@@ -86,11 +87,12 @@ std::vector<std::string> ofOneSuffix(std::vector<std::string> paths, bool anySuf
 /// What the source names, in order, with the names of missing files between numbered ones.
 struct FileList {
     std::vector<std::string> paths;
+    std::set<std::size_t> afterGap; ///< indices of paths before which numbers are missing
     std::vector<std::string> notices;
     std::string title;
 };
 
-/// Puts the names that are missing between numbered ones where they belong.
+/// Puts the names that are missing between numbered ones where they belong, unless there are too many.
 void fillGaps(FileList& list, const std::optional<NumberedName>& pattern) {
     std::optional<NumberedNames> numbered = pattern ? numberedBy(*pattern, list.paths) : numberedNames(list.paths);
     if (!numbered || numbered->numbers.size() < 3) return;
@@ -108,6 +110,8 @@ void fillGaps(FileList& list, const std::optional<NumberedName>& pattern) {
     }
     if (missing > numbers.size()) {
         list.notices.push_back("the numbers of the files have gaps: " + std::to_string(missing) + " are not there");
+        for (std::size_t i = 1; i < numbers.size(); ++i)
+            if (numbers[i] - numbers[i - 1] > step) list.afterGap.insert(i);
         return;
     }
     std::vector<std::string> paths, gone;
@@ -222,6 +226,17 @@ void addFile(SeriesListing& listing, const VolumeSource& given, const std::strin
 
 } // namespace
 
+std::string SeriesListing::fileOf(int frame) const {
+    const auto f = static_cast<std::size_t>(frame);
+    const VolumeSource& source = frames.at(f).source;
+    const auto holds = [&](std::size_t other) {
+        return other < frames.size() && frames[other].source.path == source.path;
+    };
+    const bool several = (f > 0 && holds(f - 1)) || holds(f + 1);
+    return (source.isSample() ? source.path : fs::path(source.path).filename().string()) +
+           (several ? ", step " + std::to_string(source.step) : "");
+}
+
 std::string SeriesListing::label(int frame) const {
     const SeriesFrame& f = frames.at(static_cast<std::size_t>(frame));
     if (!hasTimes) return f.name;
@@ -258,9 +273,11 @@ SeriesListing listSeries(const VolumeSource& source, const JobControl& job) {
         listing.notices = std::move(list.notices);
         listing.hasTimes = true;
         alone = list.paths.size() == 1;
-        for (const std::string& path : list.paths) {
+        for (std::size_t i = 0; i < list.paths.size(); ++i) {
             job.throwIfStopped();
-            addFile(listing, source, path, alone, job);
+            const std::size_t first = listing.frames.size();
+            addFile(listing, source, list.paths[i], alone, job);
+            listing.frames[first].afterGap = list.afterGap.contains(i);
         }
         if (!listing.hasTimes) {
             listing.timeUnit.clear();
@@ -270,8 +287,12 @@ SeriesListing listSeries(const VolumeSource& source, const JobControl& job) {
     }
     if (source.frames && !alone) {
         std::vector<SeriesFrame> chosen;
-        for (const int f : selected(static_cast<int>(listing.frames.size()), source.frames, listing.title))
+        std::size_t passed = 0; // frames up to here
+        for (const int f : selected(static_cast<int>(listing.frames.size()), source.frames, listing.title)) {
             chosen.push_back(listing.frames[static_cast<std::size_t>(f)]);
+            for (; passed <= static_cast<std::size_t>(f); ++passed)
+                chosen.back().afterGap = chosen.back().afterGap || listing.frames[passed].afterGap;
+        }
         listing.frames = std::move(chosen);
     }
     return listing;

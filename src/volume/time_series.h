@@ -69,6 +69,8 @@ public:
     void survey(const JobControl& job = {});
     bool isSurveyed() const;
     FrameSummary summary(int frame) const;
+    /// Takes the frame for one that cannot be read until it is read again: it may be sound, and what belongs to it not.
+    void noteProblem(int frame, const std::string& problem);
     /// Voxels of a frame in `bins` equal bins of `window`, from its summary; those beyond count at the ends. Empty
     /// where it is not known.
     std::vector<double> countsIn(int frame, const ValueRange& window, int bins) const;
@@ -96,7 +98,6 @@ private:
     void touch(Entry& entry);
     bool mustWait(int frame) const;
     void note(int frame, const Volume& volume);
-    void noteProblem(int frame, const std::string& problem);
 
     const SeriesListing m_listing;
     const Maker m_make;

@@ -1,13 +1,16 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <sys/stat.h>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_watch.h"
 #include "support/full_disk.h"
 #include "support/temp_folder.h"
 
@@ -109,4 +112,22 @@ TEST_CASE("a text that does not end is not read to its end", "[atomic-file]") {
     const std::string text = readText(folder.path("pipe"));
     writer.join();
     CHECK(text == std::string(200'000, 'y'));
+}
+
+TEST_CASE("who watches sees what is read and written, and may refuse it", "[atomic-file]") {
+    const TempFolder folder;
+    const std::string path = folder.path("a");
+    std::vector<std::string> seen;
+    watchFiles({[&](const std::string& file) { seen.push_back("read " + file); },
+                [&](const std::string& file) {
+                    seen.push_back("write " + file);
+                    if (seen.size() > 2) throw UsageError("once", file, "");
+                }});
+    writeTextAtomically(path, "text");
+    CHECK(readText(path) == "text");
+    CHECK_THROWS_AS(writeTextAtomically(path, "other"), UsageError);
+    watchFiles({});
+    CHECK(seen == std::vector<std::string>{"write " + path, "read " + path, "write " + path});
+    CHECK(readText(path) == "text"); // nobody watches any more
+    CHECK(seen.size() == 3);
 }

@@ -673,6 +673,90 @@ TEST_CASE("optimize goes to the strong end or to a coverage, with the same share
         CHECK(again["features"][f]["cover"].get<double>() == Approx(half["covers"][f].get<double>()).margin(1e-6));
 }
 
+TEST_CASE("a feature without a voxel is said to be empty and has no target", "[cli]") {
+    const Workshop w;
+    // Two nested cubes of 40 and 210 in 0: of quarters of 0 … 255 the second and the third are empty.
+    std::string bytes;
+    for (int k = 0; k < 12; ++k)
+        for (int j = 0; j < 12; ++j)
+            for (int i = 0; i < 12; ++i) {
+                const int depth = std::min({i, j, k, 11 - i, 11 - j, 11 - k});
+                bytes += static_cast<char>(depth < 1 ? 0 : depth < 4 ? 40 : 210);
+            }
+    w.write("v.raw", bytes);
+    const Words about{"v.raw", "--raw", "12,12,12,u8", "--range", "0,255", "--tf", "tents:4:0.3", "--engine", "cpu"};
+    const auto names = [&] {
+        std::vector<std::string> all;
+        for (const json& f : w.json(Words{"measure"} + about)["features"]) all.push_back(f["name"]);
+        return all;
+    }();
+    REQUIRE(names.size() == 4);
+    const std::string empty = names[1] + " (empty)";
+
+    SECTION("measure and probe list it as empty") {
+        const json measured = w.json(Words{"measure"} + about);
+        for (std::size_t f = 0; f < 4; ++f) CHECK(measured["features"][f]["empty"] == (f == 1 || f == 2));
+        CHECK(w.run(Words{"measure"} + about).out.find(empty) != std::string::npos);
+        CHECK(w.run(Words{"probe"} + about + Words{"9,9", "--size", "20x20"}).out.find(empty) != std::string::npos);
+    }
+    SECTION("words skip it") {
+        const json j = w.json(Words{"optimize"} + about + Words{"--target", "equal"});
+        CHECK(j["target"] == json({0.5, 0, 0, 0.5}));
+        CHECK(j["empty"] == json({false, true, true, false}));
+        CHECK(j["converged"] == true);
+        CHECK_FALSE(j.contains("verdict"));
+        if (j.contains("faint"))
+            for (const json& f : j["faint"]["features"]) CHECK((f != 1 && f != 2));
+        const Outcome only = w.run(Words{"optimize"} + about + Words{"--target", "only:" + names[2]});
+        CHECK(only.status == 2);
+        CHECK(only.err.find("is empty: no voxel has its values") != std::string::npos);
+    }
+    SECTION("a number for it is answered with a sentence, and counts as 0") {
+        for (const char* command : {"optimize", "space", "views"}) {
+            INFO(command);
+            const Words more = command == std::string("space")   ? Words{"--samples", "3"}
+                               : command == std::string("views") ? Words{"--count", "20"}
+                                                                 : Words{};
+            const Outcome r = w.run(Words{command} + about + Words{"--target", "1,2,0,3", "--json"} + more);
+            REQUIRE(r.status == 0);
+            CHECK(r.err.find("'" + names[1] + "' has no voxel: its target counts as 0") != std::string::npos);
+            CHECK(json::parse(r.out)["target"] == json({0.25, 0, 0, 0.75}));
+        }
+        const Outcome none = w.run(Words{"optimize"} + about + Words{"--target", "1,0,0,3"});
+        CHECK(none.err.find("no voxel") == std::string::npos);
+        CHECK(none.out.find(empty) != std::string::npos);
+    }
+    SECTION("a verdict has nothing to say of it") {
+        // Locked where it is, the inner cube cannot have what is wanted.
+        const json j =
+            w.json(Words{"optimize"} + about + Words{"--target", "1,4,4,9", "--lock", names[0], "--lock", names[3]});
+        REQUIRE(j["converged"] == false);
+        const std::string verdict = j["verdict"].dump();
+        CHECK(verdict.find(names[1]) == std::string::npos);
+        CHECK(verdict.find(names[2]) == std::string::npos);
+    }
+    SECTION("a series says in how many frames it is empty, and aims at nothing there") {
+        std::string other = bytes; // in the second frame some voxels of the third quarter
+        for (char& c : other)
+            if (c == 40) c = static_cast<char>(150);
+        w.write("s0.raw", bytes);
+        w.write("s1.raw", other);
+        const Words series{"sequence", "s%d.raw",     "--raw",         "12,12,12,u8", "--range", "0,255",
+                           "--tf",     "tents:4:0.3", "--engine",      "cpu",         "--mode",  "optimize",
+                           "--target", "equal",       "--no-pictures", "--out",       "o",       "--json"};
+        const Outcome r = w.run(series);
+        REQUIRE(r.status == 0);
+        const json j = json::parse(r.out);
+        CHECK(j["frames"][0]["target"] == json({0.5, 0, 0, 0.5}));
+        CHECK(j["frames"][0]["empty"] == json({false, true, true, false}));
+        CHECK(j["frames"][1]["empty"] == json({false, true, false, false}));
+        CHECK(j["frames"][1]["target"][1] == 0);
+        CHECK(j["frames"][1]["target"][2] > 0);
+        CHECK(r.err.find("'" + names[1] + "' is empty in 2 of 2 frames") != std::string::npos);
+        CHECK(r.err.find("'" + names[2] + "' is empty in 1 of 2 frames") != std::string::npos);
+    }
+}
+
 TEST_CASE("an unreached target is an error only where it is demanded", "[cli]") {
     const Workshop w;
     std::vector<std::string> arguments{

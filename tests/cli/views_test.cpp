@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -124,6 +126,38 @@ TEST_CASE("views judges by targets, and writes its map as a table and as a pictu
     };
     const auto [best, worst] = std::minmax_element(j["views"].begin(), j["views"].end(), byValue);
     CHECK(brightness(*best) > brightness(*worst) + 0.5f);
+}
+
+TEST_CASE("views and space take targets in the words of optimize", "[cli][views][space]") {
+    const Workshop w;
+    const Words shells{"sample:shells", "--sample-size", "16", "--tf", "tents:3"};
+    // Peaks of tents:3 lie at 1/6, 1/2 and 5/6, as 1 to 3 to 5.
+    const std::vector<std::pair<std::string, std::vector<double>>> cases{{"equal", {1. / 3, 1. / 3, 1. / 3}},
+                                                                         {"diagonal", {1. / 9, 3. / 9, 5. / 9}},
+                                                                         {"inside-out", {5. / 9, 3. / 9, 1. / 9}},
+                                                                         {"only:f2", {0, 1, 0}},
+                                                                         {"1,2,1", {0.25, 0.5, 0.25}}};
+    for (const auto& [words, shares] : cases) {
+        INFO(words);
+        const Words target{"--target", words};
+        for (const json& answer : {w.json(Words{"views"} + shells + target + Words{"--count", "16"}),
+                                   w.json(Words{"space"} + shells + target + Words{"--samples", "2"}),
+                                   w.json(Words{"optimize"} + shells + target + Words{"--max-iterations", "0"})}) {
+            REQUIRE(answer["target"].size() == 3);
+            for (std::size_t f = 0; f < 3; ++f) CHECK(answer["target"][f].get<double>() == Approx(shares[f]));
+        }
+    }
+    for (const std::string command : {"views", "space"})
+        for (const auto& [words, part] :
+             {std::pair<std::string, std::string>{"sideways", "give numbers, equal, diagonal, inside-out or only:NAME"},
+              {"only:f9", "known: 'f1', 'f2', 'f3'"},
+              {"1,2", "2 targets for 3 features"},
+              {"-1,1,1", "--target"}}) {
+            const Outcome outcome = w.run(Words{command} + shells + Words{"--target", words});
+            INFO(command << " " << words << ": " << outcome.err);
+            CHECK(outcome.status == 2);
+            CHECK(outcome.err.find(part) != std::string::npos);
+        }
 }
 
 TEST_CASE("optimize searches view and opacities together", "[cli][views]") {

@@ -7,6 +7,7 @@
 
 #include <QAction>
 #include <QApplication>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDockWidget>
 #include <QLabel>
@@ -387,16 +388,16 @@ TEST_CASE("a click on the palette refines all frames, one from the other", "[pla
     w.settle();
     CHECK(w.document().stepCount() == steps + 1); // what follows in other frames is none
     const TfTrack& track = w.session().variable().track;
-    REQUIRE(track.adapted.size() == 5); // all but the key
+    REQUIRE(track.adapted.size() == 6);
     REQUIRE(w.session().refine->intensity.has_value());
-    CHECK(w.adapting().progress().done == 5);
+    CHECK(w.adapting().progress().done == 6);
     CHECK(w.child<QLabel>("adaptLabel").text() == "made for all frames");
 
     // Each frame's is that of the frame before, refined by its own histogram.
     TransferFunction tf = *track.keys.at(0);
     RefineOptions by = w.session().refine->options();
     by.priority.intensity = w.session().refine->intensity;
-    for (int f = 1; f < 6; ++f) {
+    for (int f = 0; f < 6; ++f) {
         const Volume volume = ball(f).withRange({0, 1});
         tf = refine(makeHistogram(volume), tf, by).tf;
         INFO("frame " << f);
@@ -418,7 +419,7 @@ TEST_CASE("a click on the palette refines all frames, one from the other", "[pla
     CHECK(now.adapted.at(2) == second);
     w.goTo(5);
     CHECK(w.picture() != refined);
-    CHECK(w.adapting().progress().done == 4); // 1, 2, 4, 5
+    CHECK(w.adapting().progress().done == 6); // that of the key, too
     // Undone from another frame.
     w.document().undo();
     w.settle();
@@ -442,14 +443,14 @@ TEST_CASE("with coherence frames are smoothed together, and undo knows nothing o
     REQUIRE(*w.session().adapt->coherence > 0);
     REQUIRE(std::isfinite(*w.session().adapt->coherence));
     const auto track = [&]() -> const TfTrack& { return w.session().variable().track; };
-    REQUIRE(track().adapted.size() == 5);
+    REQUIRE(track().adapted.size() == 6);
     for (const auto& [frame, adapted] : track().adapted) {
         INFO("frame " << frame);
         REQUIRE(adapted.smooth);
         CHECK_FALSE(adapted.smoothBasis.empty());
         CHECK(adapted.smoothBasis == track().adapted.at(1).smoothBasis);
     }
-    CHECK(w.adapting().progress().smooth == 5);
+    CHECK(w.adapting().progress().smooth == 6);
     CHECK(w.child<QLabel>("adaptLabel").text() == "made for all frames");
     CHECK(w.document().stepCount() == steps);
     // What is shown and edited is the smoothed one.
@@ -478,7 +479,7 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     w.adapting().setCoherence(0);
     w.settle();
     CHECK(w.adapting().progress().done == w.adapting().progress().all);
-    REQUIRE(w.session().variable().track.adapted.size() == 5);
+    REQUIRE(w.session().variable().track.adapted.size() == 6);
 
     w.child<QAction>("temporalAction").trigger();
     auto& panel = *w.window.findChild<TemporalPanel*>();
@@ -488,14 +489,19 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     const TemporalCurves curves = panel.curves();
     REQUIRE(curves.runs.size() == 2);
     CHECK(curves.runs[0].name == "optimize");
-    for (int f = 1; f < 6; ++f) {
+    for (int f = 0; f < 6; ++f) {
         INFO("frame " << f);
         CHECK(curves.runs[0].frames[static_cast<std::size_t>(f)].objective < 0.02);
         CHECK(curves.runs[1].frames[static_cast<std::size_t>(f)].objective > 0.02); // nobody has optimized the key
+        if (f == 0) continue;                                                       // nothing is before it
         CHECK(*curves.runs[1].frames[static_cast<std::size_t>(f)].flicker == 0);
         CHECK(*curves.runs[0].frames[static_cast<std::size_t>(f)].flicker > 0);
     }
     CHECK(w.child<QLabel>("temporalWords").text().contains("flicker"));
+    // The worst frame of the static run is told with its number, and how many are not on target.
+    const SequenceFigures still = summaryOf(curves.runs[1].frames);
+    CHECK(w.child<QLabel>("temporalWords").text().contains(QStringLiteral(", frame %1").arg(still.worst)));
+    CHECK(w.child<QLabel>("temporalWords").text().contains(QStringLiteral("%1 not below 0.03").arg(still.above)));
     // The figures of the frame that is shown are those of the curve.
     w.goTo(4);
     REQUIRE(waitFor([&] { return w.bench().results().measuresAreCurrent(); }));
@@ -515,6 +521,33 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     w.document().setCamera(camera);
     CHECK(panel.knownCount() == 0);
     CHECK(w.child<QWidget>("temporalDynamic").grab().toImage() != drawn);
+}
+
+TEST_CASE("behind a broken frame there is no flicker unless it is asked for", "[player]") {
+    SeriesWindow w(BallOptions{.broken = 2});
+    w.waitUntilKnown();
+    w.child<QComboBox>("adaptMode").setCurrentIndex(1);
+    Q_EMIT w.child<QComboBox>("adaptMode").activated(1);
+    w.settle();
+    w.child<QAction>("temporalAction").trigger();
+    auto& panel = *w.window.findChild<TemporalPanel*>();
+    const auto measured = [&] {
+        if (panel.knownCount() < 6) w.child<QToolButton>("temporalMeasure").click();
+        REQUIRE(waitFor([&] { return panel.knownCount() == 6; }));
+        return panel.curves().runs[0].frames;
+    };
+    const auto frames = measured();
+    CHECK_FALSE(frames[2].problem.empty());
+    for (std::size_t f : {0, 2, 3}) CHECK_FALSE(frames[f].flicker);
+    for (std::size_t f : {1, 4, 5}) CHECK(frames[f].flicker);
+    CHECK(frames[3].file == "ball_3.raw");
+    w.child<QCheckBox>("temporalOverGaps").click();
+    CHECK(panel.isOverGaps());
+    const auto over = measured();
+    CHECK(over[3].flicker);
+    CHECK(over[4].flicker == frames[4].flicker);
+    w.child<QCheckBox>("temporalOverGaps").click();
+    CHECK_FALSE(measured()[3].flicker);
 }
 
 TEST_CASE("a session with a series comes back at its frame", "[player]") {

@@ -17,8 +17,10 @@
 #include <QTableView>
 #include <QTimer>
 #include <QToolButton>
+#include <QToolTip>
 
 #include "controllers/live_controller.h"
+#include "models/features_model.h"
 #include "render/camera_motion.h"
 #include "selection.h"
 #include "session/target_presets.h"
@@ -214,6 +216,56 @@ TEST_CASE("thirty-two features have their bars and can be typed into", "[targets
     CHECK(targets[31] == Approx(0.38));
     for (std::size_t i = 0; i < 31; ++i) CHECK(targets[i] == Approx(0.02)); // 0.62 / 31
     CHECK(image(bars) != before);
+}
+
+TEST_CASE("a feature without a voxel is listed as empty, and cannot be aimed at", "[targets]") {
+    OpenWindow w;
+    // Of four tents over the values of the shells the second gets an interval that lies between two of their values.
+    TransferFunction tf = tents(4);
+    const Histogram& seen = w.document().histogram();
+    double a = 0, b = 0; // the widest gap
+    for (std::size_t i = 1; i < seen.codes.size(); ++i)
+        if (const double from = static_cast<double>(seen.codes[i - 1]) / seen.maxCode,
+            to = static_cast<double>(seen.codes[i]) / seen.maxCode;
+            to - from > b - a)
+            a = from, b = to;
+    REQUIRE(b - a > 1e-5);
+    tf.features = {{"below", 0, a, {1, 0, 0}, {}},
+                   {"between", a + (b - a) / 4, b - (b - a) / 4, {0, 1, 0}, {}},
+                   {"above", b, 1, {0, 0, 1}, {}}};
+    w.document().setTf(tf, "Features");
+    w.settle();
+    const Scene& scene = w.bench().scene();
+    REQUIRE(scene.isEmpty(1));
+    REQUIRE_FALSE(scene.isEmpty(0));
+    REQUIRE_FALSE(scene.isEmpty(2));
+    checkTargets(w, {0.5, 0, 0.5});
+    auto& model = *w.child<QTableView>("featuresTable").model();
+    const auto text = [&](int row, int column) { return model.data(model.index(row, column)).toString(); };
+    CHECK(text(0, FeaturesModel::Name) == "below");
+    CHECK(text(1, FeaturesModel::Name) == "between (empty)");
+    CHECK(model.data(model.index(1, FeaturesModel::Name), Qt::EditRole).toString() == "between");
+    CHECK(text(1, FeaturesModel::Target) == QStringLiteral("–"));
+    CHECK(model.data(model.index(1, FeaturesModel::Target), Qt::ToolTipRole).toString().contains("no voxel"));
+    CHECK_FALSE(model.flags(model.index(1, FeaturesModel::Target)).testFlag(Qt::ItemIsEditable));
+    // A number typed for it is answered, and changes nothing.
+    const int steps = w.document().stepCount();
+    TargetBars& bars = barsOf(w);
+    QTest::mouseDClick(&bars, Qt::LeftButton, {}, bars.targetRect(1).center().toPoint());
+    CHECK_FALSE(boxOf(w).isVisible());
+    CHECK(QToolTip::text().contains("between is empty"));
+    CHECK(w.document().stepCount() == steps);
+    // Presets pass over it.
+    w.child<QAction>("targetsDiagonal").trigger();
+    CHECK(w.document().targets()[1] == 0);
+    w.child<QAction>("targetsEqual").trigger();
+    checkTargets(w, {0.5, 0, 0.5});
+    // With voxels it has a target again.
+    tf.features = {
+        {"below", 0, a / 2, {1, 0, 0}, {}}, {"between", a / 2, b, {0, 1, 0}, {}}, {"above", b, 1, {0, 0, 1}, {}}};
+    w.document().setTf(tf, "Wider");
+    CHECK(w.document().targets()[1] > 0);
+    CHECK(text(1, FeaturesModel::Name) == "between");
 }
 
 TEST_CASE("an opacity that is locked or limited is so in an optimization, and is seen in the table", "[targets]") {

@@ -9,6 +9,7 @@
 #include <QComboBox>
 #include <QDockWidget>
 #include <QDoubleSpinBox>
+#include <QFile>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
@@ -19,6 +20,7 @@
 #include <QToolButton>
 #include <QTreeWidget>
 
+#include "controllers/player_controller.h"
 #include "panels/channels_box.h"
 #include "panels/variables_panel.h"
 #include "series_files.h"
@@ -247,6 +249,93 @@ TEST_CASE("frames of volatility, scales and hue change the picture", "[variables
     CHECK(w.child<QDoubleSpinBox>("hsbHueTo").isVisible());
     undo(w);
     CHECK(w.picture() == ten);
+}
+
+TEST_CASE("colours from any variable, at any frame, read each frame once and leave the player in order",
+          "[variables][player]") {
+    const Weather weather;
+    // Beside what moves: a value that is the same everywhere, nothing but NaN, and a series that ends with frame 1.
+    for (int f = 0; f < kFrames; ++f) {
+        writeGrid(weather.folder.filePath(QStringLiteral("flat%1.nrrd").arg(f)), {kSide, kSide, kSide}, 1,
+                  [](const Vec3&) { return 3.0; });
+        writeGrid(weather.folder.filePath(QStringLiteral("void%1.nrrd").arg(f)), {kSide, kSide, kSide}, 1,
+                  [](const Vec3&) { return std::nan(""); });
+    }
+    OpenWindow w;
+    openCloud(w, weather);
+    for (const char* name : {"flat", "void", "rain"}) {
+        Variable variable;
+        variable.name = name;
+        variable.source = weather.series(name);
+        w.opening().editInJob("Add", [variable](Session& s) { addVariable(s, variable); });
+        w.settle();
+    }
+    REQUIRE(sessionOfWindow(w).variables->size() == 4);
+    for (int f = 2; f < kFrames; ++f) QFile::remove(weather.folder.filePath(QStringLiteral("rain%1.nrrd").arg(f)));
+    PlayerController& player = w.bench().player();
+    QSignalSpy read(&player, &PlayerController::heldChanged);
+    const auto rest = [&] { // until no frame comes any more: each is read a few times at most, not for ever
+        w.settle();
+        read.clear();
+        for (int before = -1; before != read.count();) {
+            before = read.count();
+            QTest::qWait(60);
+            REQUIRE(read.count() <= 5 * kFrames);
+        }
+    };
+    for (const char* driver :
+         {"volatility:cloud:10", "difference:cloud:0", "gradient:cloud", "cloud", "flat", "void", "rain"})
+        for (const Channel channel : {Channel::Saturation, Channel::Brightness, Channel::Hue})
+            for (const int frame : {0, 1, kFrames - 1}) {
+                if (driver == std::string("rain") && frame > 1) continue; // it cannot be turned on there
+                INFO(driver << " at frame " << frame << ", channel " << static_cast<int>(channel));
+                w.opening().editData("Start anew", [&](Session& s) {
+                    s.frame = frame;
+                    s.hsb.set({});
+                });
+                rest();
+                w.opening().editInJob("Map", [&](Session& s) {
+                    setChannel(s, channel, driver);
+                    s.hsb.edit([](HsbMapping& mapping) { mapping.on = true; });
+                });
+                rest();
+                REQUIRE(hsbOf(w).on);
+                REQUIRE(sessionOfWindow(w).frame == frame);
+                // Another frame is shown, and the way back leads to the same picture.
+                const auto colors = *w.bench().scene().colors;
+                player.goTo(frame == 0 ? 1 : 0);
+                rest();
+                CHECK(sessionOfWindow(w).frame == (frame == 0 ? 1 : 0));
+                player.goTo(frame);
+                rest();
+                CHECK(sessionOfWindow(w).frame == frame);
+                CHECK(w.bench().scene().colors->rgba == colors.rgba);
+            }
+}
+
+TEST_CASE("with volatility from the first frame on its scale is found where there is some", "[variables][player]") {
+    const Weather weather;
+    OpenWindow w;
+    w.open(weather.series("cloud"));
+    w.settle();
+    w.window.activateWindow();
+    REQUIRE(waitFor([&] { return w.window.isActiveWindow(); }));
+    QTest::keyClick(&w.window, Qt::Key_S, Qt::ShiftModifier);
+    w.settle();
+    REQUIRE(hsbOf(w).on);
+    CHECK(hsbOf(w).saturation == "volatility:cloud:10");
+    CHECK_FALSE(hsbOf(w).found.a); // nothing has changed yet
+    w.bench().player().goTo(1);
+    w.settle();
+    REQUIRE(sessionOfWindow(w).frame == 1);
+    REQUIRE(hsbOf(w).found.a);
+    const double a = *hsbOf(w).found.a;
+    CHECK(w.bench().scene().hsbA == a);
+    w.bench().player().goTo(kFrames - 1);
+    w.settle();
+    REQUIRE(sessionOfWindow(w).frame == kFrames - 1);
+    CHECK(w.bench().scene().hsbA == a); // frames are compared
+    CHECK(w.bench().store().stepCount() == 1);
 }
 
 TEST_CASE("a second variable darkens; swapping it and back gives the same picture", "[variables]") {

@@ -83,7 +83,7 @@ std::vector<SmoothTask> smoothAll(Scene& scene) {
     FrameAdapter adapter;
     std::vector<SmoothTask> tasks;
     while (auto task = nextToSmooth(scene.session, *scene.series)) {
-        scene.session = withSmoothed(std::move(scene.session), adapter.smooth(scene, *task, false, workspace));
+        scene.session = withSmoothed(std::move(scene.session), adapter.smooth(scene, *task, workspace));
         tasks.push_back(std::move(*task));
         REQUIRE(tasks.size() < 10);
     }
@@ -129,24 +129,77 @@ using Ints = std::vector<int>;
 
 } // namespace
 
-TEST_CASE("every frame after the key is adapted once, each from the one before", "[adapt]") {
+TEST_CASE("every frame from the key on is adapted once, each from the one before", "[adapt]") {
     Scene scene = sceneOf(Mode::Optimize, 0);
-    CHECK(firstStale(scene.session, *scene.series) == 1);
-    CHECK(adaptProgress(scene.session, *scene.series).all == kFrames - 1);
+    const TransferFunction key = *scene.session.tf();
+    CHECK(firstStale(scene.session, *scene.series) == 0);
+    CHECK(adaptProgress(scene.session, *scene.series).all == kFrames);
     const auto made = adaptAll(scene);
-    CHECK(framesOf(made) == Ints{1, 2, 3, 4, 5, 6, 7});
+    CHECK(framesOf(made) == Ints{0, 1, 2, 3, 4, 5, 6, 7});
     CHECK_FALSE(nextToAdapt(scene.session, *scene.series));
     CHECK(firstStale(scene.session, *scene.series) == -1);
-    CHECK(adaptProgress(scene.session, *scene.series).done == kFrames - 1);
+    CHECK(adaptProgress(scene.session, *scene.series).done == kFrames);
     for (const AdaptedFrame& f : made) {
         CHECK(*scene.session.tfAt(f.frame) == f.tf);
-        const TransferFunction previous = *scene.session.tfAt(f.frame - 1);
+        const TransferFunction previous = f.frame == 0 ? key : *scene.session.tfAt(f.frame - 1);
         CHECK(f.basis == fingerprintOf(scene.session, *scene.series, f.frame, previous));
     }
     // Static transfer functions are the keys', and nothing is to be made.
     scene.session.adapt.set({Mode::Static, 0});
     CHECK_FALSE(nextToAdapt(scene.session, *scene.series));
-    CHECK(*scene.session.tfAt(5) == *scene.session.tfAt(0));
+    CHECK(*scene.session.tfAt(5) == key);
+    CHECK(*scene.session.tfAt(0) == key); // what a hand has made is still there
+}
+
+TEST_CASE("the frame that a series starts from is made, too", "[adapt]") {
+    SECTION("optimize: it is on target, where the key is not") {
+        for (const double coherence : {0.0, 2.0}) {
+            Scene scene = sceneOf(Mode::Optimize, coherence);
+            const double key = figures(scene).front().objective;
+            CHECK(key > 0.1); // equal opacities: the first layer hides the others
+            adaptAll(scene);
+            smoothAll(scene);
+            const auto made = figures(scene);
+            CHECK(made.front().objective < 0.03); // the tolerance
+            CHECK(summaryOf(made).above == 0);
+        }
+    }
+    SECTION("refine: whatever the coherence, it is the refinement of the key; no later jump makes up for it") {
+        for (const double coherence : {0.0, 4.0}) {
+            Scene scene = sceneOf(Mode::Refine, coherence);
+            const RefineResult alone = refine(*scene.histogram, scene.tf, scene.session.refine->options());
+            REQUIRE(alone.iterations > 0);
+            adaptAll(scene);
+            const TransferFunction first = *scene.session.tfAt(0);
+            REQUIRE(first.points.size() == alone.tf.points.size());
+            for (std::size_t i = 0; i < first.points.size(); ++i)
+                CHECK(first.points[i].opacity == Approx(alone.tf.points[i].opacity));
+        }
+    }
+    SECTION("an edit at it is another start; until that is made anew the edit is shown") {
+        Scene scene = sceneOf(Mode::Refine, 0);
+        adaptAll(scene);
+        const TransferFunction before = *scene.session.tfAt(0), hand = tents(3, 0.4);
+        scene.session.setTf(hand);
+        CHECK(featureOpacities(*scene.session.tfAt(0)) == featureOpacities(hand));
+        adaptAll(scene);
+        CHECK_FALSE(*scene.session.tfAt(0) == before);
+        CHECK(featureOpacities(*scene.session.variable().track.keys.at(0)) == featureOpacities(hand));
+    }
+    SECTION("where it cannot be read the next one starts from the key") {
+        Scene scene = sceneOf(Mode::Optimize, 0);
+        const TransferFunction key = *scene.session.tf();
+        scene.session.variables.edit([&](std::vector<Variable>& all) {
+            all.front().track.keys[3] = withFeatureOpacities(key, {0.3, 0.2, 0.4});
+        });
+        Scene broken = sceneOf(Mode::Optimize, 0, 3);
+        broken.session.variables = scene.session.variables;
+        const auto made = adaptAll(broken);
+        CHECK(framesOf(made) == Ints{0, 1, 2, 4, 5, 6, 7});
+        CHECK(made[3].basis ==
+              fingerprintOf(broken.session, *broken.series, 4, *broken.session.variable().track.keys.at(3)));
+        for (const AdaptedFrame& f : made) CHECK(*f.objective < 0.03);
+    }
 }
 
 TEST_CASE("frames are made anew from the first one that changes", "[adapt]") {
@@ -169,25 +222,25 @@ TEST_CASE("frames are made anew from the first one that changes", "[adapt]") {
         session.frame = 4;
         session.setTf(tents(3, 0.4));
         scene.session = session;
-        CHECK(stale(scene) == Ints{5, 6, 7}); // 4 is made by hand now, 1 to 3 are as they were
+        CHECK(stale(scene) == Ints{4, 5, 6, 7}); // from what a hand has made of 4; 0 to 3 are as they were
     }
     SECTION("the only key") {
         scene.session.setTf(tents(3, 0.25));
-        CHECK(stale(scene) == Ints{1, 2, 3, 4, 5, 6, 7});
+        CHECK(stale(scene) == Ints{0, 1, 2, 3, 4, 5, 6, 7});
     }
     SECTION("the view, limits, coherence and settings of measuring") {
         const Scene before = scene;
         scene.session.camera = homeCamera(scene.volume->geometry(), Projection::Orthographic);
-        CHECK(firstStale(scene.session, *scene.series) == 1);
+        CHECK(firstStale(scene.session, *scene.series) == 0);
         scene = before;
         scene.session.goals.edit([&](FeatureGoals& goals) { goals[key.features[1].id].highest = 0.9; });
-        CHECK(firstStale(scene.session, *scene.series) == 1);
+        CHECK(firstStale(scene.session, *scene.series) == 0);
         scene = before;
         scene.session.adapt.set({Mode::Optimize, 0.5});
-        CHECK(firstStale(scene.session, *scene.series) == 1);
+        CHECK(firstStale(scene.session, *scene.series) == 0);
         scene = before;
         scene.session.measure.edit([](MeasureSettings& m) { m.saliency.sigma = 3; });
-        CHECK(firstStale(scene.session, *scene.series) == 1);
+        CHECK(firstStale(scene.session, *scene.series) == 0);
     }
     SECTION("what plays no part") {
         scene.session.refine.edit([](RefineSettings& r) { r.intensity = 0.5; });
@@ -204,18 +257,18 @@ TEST_CASE("refinement depends on its own settings, not on the view", "[adapt]") 
     scene.session.measure.edit([](MeasureSettings& m) { m.saliency.sigma = 3; });
     CHECK(stale(scene).empty());
     scene.session.refine.edit([](RefineSettings& r) { r.intensity = 0.5; });
-    CHECK(firstStale(scene.session, *scene.series) == 1);
+    CHECK(firstStale(scene.session, *scene.series) == 0);
     adaptAll(scene);
     // A region is of the picture, and that of the view.
     scene.session.refine.edit([](RefineSettings& r) {
         r.intensity.reset();
         r.region = ImageRegion{{{0.3, 0.3}, {0.7, 0.3}, {0.7, 0.7}, {0.3, 0.7}}};
     });
-    CHECK(firstStale(scene.session, *scene.series) == 1);
+    CHECK(firstStale(scene.session, *scene.series) == 0);
     adaptAll(scene);
     CHECK(stale(scene).empty());
     scene.session.camera.reset();
-    CHECK(firstStale(scene.session, *scene.series) == 1);
+    CHECK(firstStale(scene.session, *scene.series) == 0);
 }
 
 TEST_CASE("infinite coherence is a static transfer function", "[adapt]") {
@@ -234,6 +287,7 @@ TEST_CASE("without coherence every frame is on target", "[adapt]") {
     Scene scene = sceneOf(Mode::Optimize, 0);
     optimizeKey(scene);
     const auto made = adaptAll(scene);
+    CHECK(made.front().moves == 0); // it is where it is wanted
     int moves = 0;
     for (const AdaptedFrame& f : made) {
         CHECK(*f.objective <= kTrackGoal);
@@ -241,8 +295,8 @@ TEST_CASE("without coherence every frame is on target", "[adapt]") {
     }
     CHECK(moves <= 2 * (kFrames - 1));
     const auto dynamic = figures(scene);
-    for (std::size_t i = 1; i < dynamic.size(); ++i) // what the adapter said is what is measured
-        CHECK(dynamic[i].objective == Approx(*made[i - 1].objective).margin(1e-7));
+    for (std::size_t i = 0; i < dynamic.size(); ++i) // what the adapter said is what is measured
+        CHECK(dynamic[i].objective == Approx(*made[i].objective).margin(1e-7));
     scene.session.adapt.set({Mode::Static, 0});
     const auto fixed = figures(scene);
     CHECK(summaryOf(dynamic).rms < 0.1 * summaryOf(fixed).rms);
@@ -273,14 +327,12 @@ TEST_CASE("frames are smoothed together once all are made", "[adapt]") {
     const auto tasks = smoothAll(scene);
     REQUIRE(tasks.size() == 1);
     CHECK(tasks[0].key == 0);
-    CHECK(tasks[0].frames == Ints{1, 2, 3, 4, 5, 6, 7});
+    CHECK(tasks[0].frames == Ints{0, 1, 2, 3, 4, 5, 6, 7});
     const AdaptProgress progress = adaptProgress(scene.session, *scene.series);
     CHECK(progress.smooth == progress.all);
-    auto smooth = figures(scene);
+    const auto smooth = figures(scene);
     CHECK(summaryOf(smooth).flicker < 0.95 * summaryOf(forward).flicker); // all borders drift one way
-    smooth.erase(smooth.begin());                                         // the key
     CHECK(summaryOf(smooth).rms <= 0.02);
-    CHECK(*scene.session.tfAt(0) == *scene.session.variable().track.keys.at(0));
     CHECK_FALSE(nextToAdapt(scene.session, *scene.series)); // what they were made of is still there
 
     SECTION("a frame that is made anew is smoothed anew, with all others") {
@@ -349,7 +401,7 @@ TEST_CASE("smoothed transfer functions are put beside those that they came from 
     FrameAdapter adapter;
     const auto task = nextToSmooth(scene.session, *scene.series);
     REQUIRE(task);
-    const SmoothedFrames smooth = adapter.smooth(scene, *task, false, workspace);
+    const SmoothedFrames smooth = adapter.smooth(scene, *task, workspace);
     scene.session.variables.edit([](std::vector<Variable>& all) { all.front().track.adapted.at(3).basis = "other"; });
     const Session put = withSmoothed(scene.session, smooth);
     CHECK(put.variable().track.adapted.at(2).smooth);
@@ -365,10 +417,9 @@ TEST_CASE("smoothing ends at keys and passes over broken frames", "[adapt]") {
     adaptAll(scene);
     const auto tasks = smoothAll(scene);
     REQUIRE(tasks.size() == 2);
-    CHECK(tasks[0].frames == Ints{1, 2});
+    CHECK(tasks[0].frames == Ints{0, 1, 2});
     CHECK(tasks[1].key == 3);
-    CHECK(tasks[1].frames == Ints{4, 5, 7});
-    CHECK(featureOpacities(*scene.session.tfAt(3)) == featureOpacities(second));
+    CHECK(tasks[1].frames == Ints{3, 4, 5, 7});
 
     // Another key changes what lies before it, too: the jump to it counts.
     scene.session.variables.edit([&](std::vector<Variable>& all) {
@@ -389,11 +440,11 @@ TEST_CASE("models of frames that are kept, and those taken anew, give the same",
     }
     const auto task = nextToSmooth(scene.session, *scene.series);
     REQUIRE(task);
-    const SmoothedFrames kept = adapter.smooth(scene, *task, true, workspace);
+    const SmoothedFrames kept = adapter.smooth(scene, *task, workspace);
     Workspace otherWorkspace;
     FrameAdapter other;
-    const SmoothedFrames anew = other.smooth(scene, *task, true, otherWorkspace);
-    REQUIRE(kept.tfs.size() == kFrames); // the key gives way
+    const SmoothedFrames anew = other.smooth(scene, *task, otherWorkspace);
+    REQUIRE(kept.tfs.size() == kFrames); // the first one gives way, too
     REQUIRE(anew.tfs.size() == kFrames);
     for (const auto& [frame, tf] : kept.tfs) {
         const auto x = featureOpacities(tf), y = featureOpacities(anew.tfs.at(frame));
@@ -403,15 +454,21 @@ TEST_CASE("models of frames that are kept, and those taken anew, give the same",
     CHECK(featureOpacities(kept.tfs.at(0)) != featureOpacities(*scene.session.tfAt(0)));
     std::stop_source stop;
     stop.request_stop();
-    CHECK_THROWS_AS(adapter.smooth(scene, *task, true, workspace, {stop.get_token(), {}}), Cancelled);
+    CHECK_THROWS_AS(adapter.smooth(scene, *task, workspace, {stop.get_token(), {}}), Cancelled);
 }
 
 TEST_CASE("coherence pulls a refinement back toward the frame before", "[adapt]") {
     Scene scene = sceneOf(Mode::Refine, 0);
-    const auto task = nextToAdapt(scene.session, *scene.series);
-    REQUIRE(task);
     Workspace workspace;
     FrameAdapter adapter;
+    const auto begin = [&] { // the first frame, which nothing holds back
+        const AdaptedFrame first = adapter.adapt(scene, *nextToAdapt(scene.session, *scene.series), workspace);
+        scene.session = withAdapted(std::move(scene.session), 0, first.forTrack());
+    };
+    begin();
+    const auto task = nextToAdapt(scene.session, *scene.series);
+    REQUIRE(task);
+    REQUIRE(task->frame == 1);
     const AdaptedFrame free = adapter.adapt(scene, *task, workspace);
     const Scene at = sceneAt(scene, 1, task->previous);
     const RefineResult alone = refine(*at.histogram, at.tf, scene.session.refine->options());
@@ -419,6 +476,7 @@ TEST_CASE("coherence pulls a refinement back toward the frame before", "[adapt]"
     CHECK(free.moves == alone.iterations);
     REQUIRE(alone.iterations > 0);
     scene.session.adapt.set({Mode::Refine, 1}); // halfway
+    begin();
     const AdaptedFrame held = adapter.adapt(scene, *nextToAdapt(scene.session, *scene.series), workspace);
     for (std::size_t i = 0; i < held.tf.points.size(); ++i)
         CHECK(held.tf.points[i].opacity == Approx((alone.tf.points[i].opacity + at.tf.points[i].opacity) / 2));
@@ -427,11 +485,11 @@ TEST_CASE("coherence pulls a refinement back toward the frame before", "[adapt]"
 TEST_CASE("a broken frame is passed over", "[adapt]") {
     Scene scene = sceneOf(Mode::Optimize, 0, 3);
     const auto made = adaptAll(scene);
-    CHECK(framesOf(made) == Ints{1, 2, 4, 5, 6, 7});
+    CHECK(framesOf(made) == Ints{0, 1, 2, 4, 5, 6, 7});
     CHECK(scene.series->summary(3).problem == "it ends too early");
     // The next one starts from the last that there is.
-    CHECK(made[2].basis == fingerprintOf(scene.session, *scene.series, 4, made[1].tf));
-    CHECK(adaptProgress(scene.session, *scene.series).all == 6);
+    CHECK(made[3].basis == fingerprintOf(scene.session, *scene.series, 4, made[2].tf));
+    CHECK(adaptProgress(scene.session, *scene.series).all == kFrames - 1);
     CHECK(brokenFigures(*scene.series, 3).problem == "it ends too early");
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "session/scene.h"
 #include "session/target_presets.h"
 #include "tf/shapes.h"
 
@@ -88,4 +89,41 @@ TEST_CASE("a feature's peak is where it is most opaque", "[session][presets]") {
     plateau.b = 0.6;
     const AddedFeature added = withShapeAdded({}, plateau);
     CHECK(peakIntensity(added.tf, 0) == Approx(0.4)); // its middle
+}
+
+TEST_CASE("features without a voxel have no target; it comes back with their voxels", "[session][presets]") {
+    // Frame 0 has the intensities 1/8 and 7/8 alone: tents 1 and 2 are empty there. Frame 1 has all four.
+    SeriesListing listing;
+    listing.declaredRange = ValueRange{0, 1};
+    for (int f = 0; f < 2; ++f) {
+        SeriesFrame frame;
+        frame.source.path = "steps.raw";
+        frame.source.step = f;
+        listing.frames.push_back(frame);
+    }
+    Scene basis;
+    basis.series = std::make_shared<TimeSeries>(listing, [](int frame, const JobControl&) {
+        std::vector<float> values;
+        for (int i = 0; i < 64; ++i)
+            values.push_back(frame == 1 ? (2 * static_cast<float>(i % 4) + 1) / 8 : i % 2 == 0 ? 0.125f : 0.875f);
+        return Volume(Geometry{{4, 4, 4}}, Samples(std::move(values)));
+    });
+    basis.session = sessionOf(listing.frames[0].source);
+    basis.data = basis.series->load(0);
+    basis.volume = std::make_shared<const Volume>(basis.data->withRange({0, 1}));
+    Session session = basis.session;
+    session.setTf(fourTents());
+    session.goals.set(withTargets(*session.goals, *session.tf(), {0.1, 0.2, 0.3, 0.4}));
+    const Scene scene = resolve(session, basis);
+    for (std::size_t f = 0; f < 4; ++f) CHECK(scene.isEmpty(f) == (f == 1 || f == 2));
+    checkShares(scene.targets(), {0.2, 0, 0, 0.8}); // 1 : 4
+    const TransferFunction wanted = scene.wantedTf();
+    checkShares(presetTargets(TargetPreset::Equal, wanted, *session.goals), {0.5, 0, 0, 0.5});
+    checkShares(presetTargets(TargetPreset::Diagonal, wanted, *session.goals), {1 / 8.0, 0, 0, 7 / 8.0});
+    checkShares(presetTargets(TargetPreset::InsideOut, wanted, *session.goals), {0.8, 0, 0, 0.2});
+    checkShares(targetsForOne(wanted, *session.goals, 3), {0, 0, 0, 1});
+    // What is stored for them stays: at another frame they are wanted again.
+    session.goals.set(withTargets(*session.goals, wanted, {0.5, 0, 0, 0.5}));
+    session.frame = 1;
+    checkShares(resolve(session, scene).targets(), {0.5 / 1.5, 0.2 / 1.5, 0.3 / 1.5, 0.5 / 1.5});
 }

@@ -153,6 +153,14 @@ TEST_CASE("a number that is missing between others is a frame that cannot be rea
     CHECK(sparse.frames.size() == 4);
     REQUIRE(sparse.notices.size() == 1);
     CHECK_THAT(sparse.notices[0], Contains("96 are not there"));
+    for (std::size_t f = 0; f < 4; ++f) CHECK(sparse.frames[f].afterGap == (f == 3));
+    CHECK(sparse.fileOf(3) == "e100.nrrd");
+    VolumeSource some = sourceOf(folder.path("e%d.nrrd"));
+    some.frames = FrameRange{0, 3, 3}; // the gap lies between the two, whatever is left out
+    CHECK(listSeries(some).frames[1].afterGap);
+    VolumeSource sample;
+    sample.path = "sample:vortex";
+    CHECK(listSeries(sample).fileOf(2) == "sample:vortex, step 2");
 }
 
 TEST_CASE("of mixed suffixes the most frequent is taken", "[series]") {

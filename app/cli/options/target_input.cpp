@@ -1,6 +1,8 @@
 #include "options/target_input.h"
 
+#include "optimize/objective.h"
 #include "parse.h"
+#include "tf/shown_tf.h"
 
 namespace pellucid::cli {
 
@@ -28,12 +30,25 @@ TargetInput TargetInput::parse(const std::string& text, const std::string& optio
 
 std::vector<double> TargetInput::of(const Scene& scene) const {
     const FeatureGoals& goals = *scene.session.goals;
-    if (preset) return presetTargets(*preset, scene.tf, goals);
+    const TransferFunction tf = scene.wantedTf();
+    if (preset) return presetTargets(*preset, tf, goals);
     if (!only) return numbers;
     const std::size_t feature = parseFeature(*only, "--target", scene.tf);
     if (scene.tf.features[feature].hidden)
         throw UsageError("the feature '" + *only + "' is hidden", "--target", "show it first");
-    return targetsForOne(scene.tf, goals, feature);
+    if (scene.isEmpty(feature))
+        throw UsageError("the feature '" + *only + "' is empty: no voxel has its values", "--target",
+                         "name another one, or move its borders");
+    return targetsForOne(tf, goals, feature);
+}
+
+std::vector<double> targetsOf(const std::optional<TargetInput>& given, const Scene& scene,
+                              std::vector<std::string>& notices) {
+    const std::vector<double> named = given ? given->of(scene) : scene.targets();
+    atOption("--target", [&] { return normalizedTargets(named, scene.tf.features.size()); });
+    if (const std::string text = emptyTargetText(scene.tf, *scene.histogram, named); !text.empty())
+        notices.push_back(text);
+    return shownShares(scene.wantedTf(), named);
 }
 
 } // namespace pellucid::cli

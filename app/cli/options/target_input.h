@@ -22,6 +22,12 @@ struct TargetInput {
     std::vector<double> of(const Scene& scene) const;
 };
 
+/// What the features of a scene are wanted to show: of what was given, else of the scene's own targets; 0 of hidden and
+/// of empty features, which the others divide. `notices` gets a sentence where an empty one was given a number. Throws
+/// UsageError where these are not one number for each feature.
+std::vector<double> targetsOf(const std::optional<TargetInput>& given, const Scene& scene,
+                              std::vector<std::string>& notices);
+
 inline constexpr const char* kTargetForms = "T1,T2,...|equal|diagonal|inside-out|only:NAME";
 
 } // namespace pellucid::cli

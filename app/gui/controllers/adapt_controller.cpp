@@ -39,7 +39,7 @@ AdaptController::AdaptController(Workbench& bench)
               const auto smooth = task ? std::nullopt : nextToSmooth(basis.session, *basis.series);
               try {
                   if (task) answer.made = m_maker.adapter.adapt(basis, *task, m_maker.workspace, {job.stop, {}});
-                  if (smooth) answer.smoothed = m_maker.adapter.smooth(basis, *smooth, false, m_maker.workspace, job);
+                  if (smooth) answer.smoothed = m_maker.adapter.smooth(basis, *smooth, m_maker.workspace, job);
               } catch (const FileError&) {
                   // A frame is broken, which the player says; what can be made without it is looked for.
                   const auto again = nextToAdapt(basis.session, *basis.series);
@@ -291,10 +291,7 @@ void AdaptController::finish(const Scene& basis, Answer& answer) {
     if (answer.made && !store.isPreviewing()) {
         const AdaptedFrame& made = *answer.made;
         // Where something has changed meanwhile its fingerprint is another one, and it will be made again.
-        store.amend([&](Session& session) {
-            const auto& keys = session.variable().track.keys;
-            if (!keys.contains(made.frame)) session = withAdapted(std::move(session), made.frame, made.forTrack());
-        });
+        store.amend([&](Session& session) { session = withAdapted(std::move(session), made.frame, made.forTrack()); });
         ++m_progress.done;
     }
     if (answer.smoothed && !store.isPreviewing()) {

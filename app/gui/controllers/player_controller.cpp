@@ -425,7 +425,7 @@ void PlayerController::follow(const Scene& before, const Scene& after) {
         m_bench.actions().refresh();
     }
     // Another mapping may do without the frame of another variable that could not be read.
-    const bool others = !before.session.hsb.isSame(after.session.hsb) ||
+    const bool others = !before.session.hsb->isKeptBy(*after.session.hsb) ||
                         !sameData(*before.session.variables, *after.session.variables) ||
                         !before.session.ground.isSame(after.session.ground);
     if (others && after.series)

@@ -29,7 +29,7 @@ void setTargets(Workbench& bench, const QString& text, const std::vector<double>
 }
 
 void setPreset(Workbench& bench, const QString& text, TargetPreset preset) {
-    setTargets(bench, text, presetTargets(preset, bench.scene().tf, *bench.scene().session.goals));
+    setTargets(bench, text, presetTargets(preset, bench.scene().wantedTf(), *bench.scene().session.goals));
 }
 
 /// Lowest and highest opacity of a feature.
@@ -76,7 +76,7 @@ void addTargetActions(Workbench& bench) {
     };
     const auto selected = [&bench, editable] {
         const int f = selectedFeature(bench);
-        return editable() && f >= 0 && !bench.scene().tf.features[static_cast<std::size_t>(f)].hidden;
+        return editable() && f >= 0 && !bench.scene().wantedTf().features[static_cast<std::size_t>(f)].hidden;
     };
     const auto add = [&](const char* id, const QString& text, const QString& tip, auto trigger, auto enabled) {
         actions.add({.id = id, .menu = targetMenu(), .text = text, .tip = tip, .trigger = trigger, .enabled = enabled});
@@ -95,7 +95,7 @@ void addTargetActions(Workbench& bench) {
             std::vector<double> vws;
             for (const FeatureMeasures& f : bench.results().measures()->features) vws.push_back(f.vws);
             setTargets(bench, QObject::tr("Targets as now"),
-                       targetsByWeights(bench.scene().tf, *bench.scene().session.goals, vws));
+                       targetsByWeights(bench.scene().wantedTf(), *bench.scene().session.goals, vws));
         },
         [&bench, editable] { return editable() && bench.results().vwsIsCurrent(); });
     add(
@@ -103,7 +103,7 @@ void addTargetActions(Workbench& bench) {
         QObject::tr("All for the selected feature, as far as locked targets leave it"),
         [&bench] {
             setTargets(bench, QObject::tr("Target of one feature"),
-                       targetsForOne(bench.scene().tf, *bench.scene().session.goals,
+                       targetsForOne(bench.scene().wantedTf(), *bench.scene().session.goals,
                                      static_cast<std::size_t>(selectedFeature(bench))));
         },
         selected);
@@ -136,7 +136,7 @@ void addTargetActions(Workbench& bench) {
         "targetsUnlock", QObject::tr("&Unlock all"), QObject::tr("No target is locked; shares stay as they are"),
         [&bench] {
             bench.store().commit();
-            bench.store().edit(QObject::tr("Unlock targets"), {}, [tf = bench.scene().tf](Session& session) {
+            bench.store().edit(QObject::tr("Unlock targets"), {}, [tf = bench.scene().wantedTf()](Session& session) {
                 for (std::size_t i = 0; i < tf.features.size(); ++i)
                     session.goals.set(withTargetLocked(*session.goals, tf, i, false));
             });

@@ -122,7 +122,7 @@ std::optional<ViewSearchController::Question> ViewSearchController::questionOf(F
         question.metric.figure = ViewMetric::Figure::Vws;
         question.metric.feature = static_cast<std::size_t>(judged - features.begin());
     } else {
-        question.metric.targets = normalizedTargets(shownShares(scene.tf, scene.targets()), features.size());
+        question.metric.targets = scene.targets();
     }
     return question;
 }

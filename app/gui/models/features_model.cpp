@@ -59,6 +59,7 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
     if (role == Qt::DecorationRole && index.column() == Name) return colorFromRgb(feature.color);
     if (role == Qt::ToolTipRole) {
         const QString text = headerData(index.column(), Qt::Horizontal, Qt::ToolTipRole).toString();
+        if (scene.isEmpty(f)) return text + "\n" + emptyFeatureText(scene, index.row());
         const OpacityLimits limits = opacityLimits(m_store, index.row());
         if (limits.locked) return text + tr("\nLocked: Optimize leaves its opacity as it is");
         if (limits.lowest > 0 || limits.highest < 1)
@@ -72,7 +73,8 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
     case Eye:
         return role == Qt::EditRole ? QVariant(!feature.hidden) : QVariant();
     case Name:
-        return QString::fromStdString(feature.name);
+        return role == Qt::DisplayRole && scene.isEmpty(f) ? tr("%1 (empty)").arg(QString::fromStdString(feature.name))
+                                                           : QString::fromStdString(feature.name);
     case Range: {
         if (!m_store.hasVolume()) return {};
         const Volume& volume = *scene.volume;
@@ -92,7 +94,7 @@ QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
         number = measures->features[f].vws;
         break;
     case Target:
-        if (feature.hidden && role == Qt::DisplayRole) return QStringLiteral("–");
+        if ((feature.hidden || scene.isEmpty(f)) && role == Qt::DisplayRole) return QStringLiteral("–");
         number = scene.targets().at(f);
         break;
     default:
@@ -143,7 +145,8 @@ QVariant FeaturesModel::headerData(int section, Qt::Orientation orientation, int
 Qt::ItemFlags FeaturesModel::flags(const QModelIndex& index) const {
     Qt::ItemFlags flags = QAbstractTableModel::flags(index);
     if (!index.isValid() || m_readOnly) return flags;
-    if (index.column() == Target && m_store.scene().tf.features.at(static_cast<std::size_t>(index.row())).hidden)
+    if (index.column() == Target &&
+        m_store.scene().wantedTf().features.at(static_cast<std::size_t>(index.row())).hidden)
         return flags;
     if (index.column() == Eye || index.column() == Name || index.column() == Opacity || index.column() == Target)
         flags |= Qt::ItemIsEditable;

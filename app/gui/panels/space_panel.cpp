@@ -213,7 +213,7 @@ SpacePanel::Inputs SpacePanel::inputs() const {
     return inputs;
 }
 
-std::vector<double> SpacePanel::targets() const { return shownShares(m_bench.scene().tf, m_bench.scene().targets()); }
+std::vector<double> SpacePanel::targets() const { return m_bench.scene().targets(); }
 
 bool SpacePanel::isCurrent() const {
     return m_space != nullptr && m_bench.store().hasVolume() && axes().features.size() >= 2 && inputs() == m_inputs;
@@ -232,9 +232,10 @@ void SpacePanel::follow(const Scene& before, const Scene& after) {
 
 void SpacePanel::fillFeatures() {
     const Scene& scene = m_bench.scene();
+    const TransferFunction wanted = scene.wantedTf(); // what is empty changes nothing, whatever its opacity
     std::vector<int> shown;
-    for (std::size_t f = 0; f < scene.tf.features.size(); ++f)
-        if (!scene.tf.features[f].hidden) shown.push_back(static_cast<int>(f));
+    for (std::size_t f = 0; f < wanted.features.size(); ++f)
+        if (!wanted.features[f].hidden) shown.push_back(static_cast<int>(f));
     // As they were chosen, where those are still there; else those of the largest targets.
     std::vector<int> chosen;
     for (const std::size_t f : axes().features) chosen.push_back(static_cast<int>(f));
@@ -244,7 +245,7 @@ void SpacePanel::fillFeatures() {
     if (!kept) {
         chosen.clear();
         if (m_bench.store().hasVolume() && shown.size() >= 2)
-            for (const std::size_t f : defaultAxes(scene.tf, targets())) chosen.push_back(static_cast<int>(f));
+            for (const std::size_t f : defaultAxes(wanted, targets())) chosen.push_back(static_cast<int>(f));
     }
     for (std::size_t a = 0; a < 3; ++a) {
         const QSignalBlocker quiet(m_features[a]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDir>
 #include <QFileDialog>
@@ -49,9 +50,9 @@ PanelInfo temporalPanel() {
 }
 
 TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_shown(new QComboBox(this)), m_words(new QLabel(this)),
-      m_readOut(new QLabel(this)), m_measure(new QToolButton(this)), m_export(new QToolButton(this)),
-      m_progress(new QProgressBar(this)),
+    : QWidget(parent), m_bench(bench), m_shown(new QComboBox(this)),
+      m_overGaps(new QCheckBox(tr("Flicker over gaps"), this)), m_words(new QLabel(this)), m_readOut(new QLabel(this)),
+      m_measure(new QToolButton(this)), m_export(new QToolButton(this)), m_progress(new QProgressBar(this)),
       m_job(
           [this](const Task& task, const JobControl& job) {
               Known known = task.known;
@@ -109,6 +110,13 @@ TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
     m_shown->setToolTip(tr("What the first two plots show of each feature: share of saliency (VWS), visibility (FV),\n"
                            "or the opacity of its peak, of a path of one reference length d0"));
     connect(m_shown, &QComboBox::activated, this, &TemporalPanel::refresh);
+    m_overGaps->setObjectName("temporalOverGaps");
+    m_overGaps->setToolTip(tr("After missing or broken frames, compare with the frame before the gap;\n"
+                              "otherwise no flicker is told there"));
+    connect(m_overGaps, &QCheckBox::toggled, this, [this] {
+        refresh();
+        next();
+    });
     m_measure->setObjectName("temporalMeasure");
     connect(m_measure, &QToolButton::clicked, this, [this] { m_asked ? cancel() : measure(); });
     m_export->setObjectName("temporalExport");
@@ -120,13 +128,16 @@ TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
     m_progress->setTextVisible(false);
     m_words->setObjectName("temporalWords");
     m_words->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    m_words->setToolTip(tr("Root mean square of F, and mean flicker, over the frames that are known"));
+    m_words->setToolTip(
+        tr("Over the frames that are known: root mean square of F, the largest F and its frame, how many frames are\n"
+           "not on target, and mean flicker"));
     m_readOut->setObjectName("temporalReadOut");
     m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
     m_readOut->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     makeFaint(*m_readOut);
     auto* row = new QHBoxLayout;
     row->addWidget(m_shown);
+    row->addWidget(m_overGaps);
     row->addWidget(m_measure);
     row->addWidget(m_progress);
     row->addWidget(m_words, 3);
@@ -166,13 +177,15 @@ TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
     known.window = scene.volume->range();
     known.tf = session.tfAt(frame);
     known.fixedTf = track.at(frame);
-    if (frame > 0) {
-        known.before = session.tfAt(frame - 1);
-        known.fixedBefore = track.at(frame - 1);
+    if (const int before = neighbourBefore(*scene.series, frame, isOverGaps()); before >= 0) {
+        known.before = session.tfAt(before);
+        known.fixedBefore = track.at(before);
     }
     if (known.tf) known.targets = targetsOf(*known.tf, goalsAt(session, frame));
     return task;
 }
+
+bool TemporalPanel::isOverGaps() const { return m_overGaps->isChecked(); }
 
 bool TemporalPanel::isCurrent(const Known& known, const Known& wanted) {
     return known.measure == wanted.measure && known.camera == wanted.camera && known.clipping == wanted.clipping &&
@@ -304,9 +317,14 @@ void TemporalPanel::refresh() {
     } else {
         QStringList words;
         for (const TemporalRun& run : curves().runs) {
-            const SequenceFigures sum = summaryOf(run.frames);
-            words << tr("%1: F %2, flicker %3")
-                         .arg(QString::fromStdString(run.name), shortNumber(sum.rms), shortNumber(sum.flicker));
+            const double tolerance = m_bench.scene().session.optimize->tolerance;
+            const SequenceFigures sum = summaryOf(run.frames, tolerance);
+            if (sum.worst < 0) continue; // no frame could be read
+            const QString above = sum.above == 0 ? QString() : tr(", %L1 not below %2").arg(sum.above).arg(tolerance);
+            words << tr("%1: F %2 (largest %3, frame %4%5), flicker %6")
+                         .arg(QString::fromStdString(run.name), shortNumber(sum.rms), shortNumber(sum.worstObjective))
+                         .arg(sum.worst)
+                         .arg(above, shortNumber(sum.flicker));
         }
         if (known < count) words << tr("%L1 of %L2 frames").arg(known).arg(count);
         m_words->setText(words.join(QStringLiteral("; ")));

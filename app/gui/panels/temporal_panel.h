@@ -10,6 +10,7 @@
 #include "jobs/job.h"
 #include "report/temporal_curves.h"
 
+class QCheckBox;
 class QComboBox;
 class QGridLayout;
 class QLabel;
@@ -34,7 +35,8 @@ public:
     bool isMeasuring() const { return m_job.isRunning(); }
     /// Of all frames that are known as they are now.
     TemporalCurves curves() const;
-    int knownCount() const; ///< frames that curves() has
+    int knownCount() const;  ///< frames that curves() has
+    bool isOverGaps() const; ///< flicker is told after missing or broken frames, too
 
     /// Writes what is known, by the suffix: .csv, .png or .svg. Errors are shown.
     void exportTo(const QString& path);
@@ -54,7 +56,7 @@ private:
         DisplaySettings display;
         ValueRange window;
         std::vector<double> targets;
-        std::shared_ptr<const TransferFunction> tf, before; ///< of the frame, and of the one before it; null: none
+        std::shared_ptr<const TransferFunction> tf, before; ///< of the frame, and of neighbourBefore(); null: none
         std::shared_ptr<const TransferFunction> fixedTf, fixedBefore; ///< likewise, by the keys alone
         FrameFigures dynamic, fixed;
     };
@@ -75,6 +77,7 @@ private:
     Workbench& m_bench;
     std::array<PlotView*, 4> m_plots{};
     QComboBox* m_shown;
+    QCheckBox* m_overGaps;
     QLabel *m_words, *m_readOut;
     QToolButton *m_measure, *m_export;
     QProgressBar* m_progress;

@@ -16,20 +16,21 @@ inline void previewTf(SessionStore& store, const TransferFunction& tf, const QSt
 /// The wanted shares of the features of Scene::tf, in their order.
 inline void editTargets(SessionStore& store, const std::vector<double>& targets, const QString& text,
                         const QString& mergeKey = {}) {
-    store.edit(text, mergeKey, [&, tf = store.scene().tf](Session& session) {
+    store.edit(text, mergeKey, [&, tf = store.scene().wantedTf()](Session& session) {
         session.goals.set(withTargets(*session.goals, tf, targets));
     });
 }
 /// One share; the others divide the rest, but for locked ones.
 inline std::vector<double> targetsWith(const Scene& scene, int feature, double value) {
     return withTarget(scene.targets(), static_cast<std::size_t>(feature), value,
-                      heldTargets(scene.tf, *scene.session.goals));
+                      heldTargets(scene.wantedTf(), *scene.session.goals));
 }
 inline void previewTarget(SessionStore& store, int feature, double value, const QString& text) {
     const Scene& from = store.committed();
     const std::vector<double> targets = targetsWith(from, feature, value);
-    store.preview(text,
-                  [&, tf = from.tf](Session& session) { session.goals.set(withTargets(*session.goals, tf, targets)); });
+    store.preview(text, [&, tf = from.wantedTf()](Session& session) {
+        session.goals.set(withTargets(*session.goals, tf, targets));
+    });
 }
 inline void editTarget(SessionStore& store, int feature, double value, const QString& text,
                        const QString& mergeKey = {}) {
@@ -40,9 +41,14 @@ inline void editTarget(SessionStore& store, int feature, double value, const QSt
 inline void setTargetLocked(SessionStore& store, int feature, bool locked) {
     store.commit();
     store.edit(locked ? QObject::tr("Lock target") : QObject::tr("Unlock target"), {},
-               [&, tf = store.scene().tf](Session& session) {
+               [&, tf = store.scene().wantedTf()](Session& session) {
                    session.goals.set(withTargetLocked(*session.goals, tf, static_cast<std::size_t>(feature), locked));
                });
+}
+/// Why an empty feature has no target.
+inline QString emptyFeatureText(const Scene& scene, int feature) {
+    return QObject::tr("%1 is empty: no voxel has its values. There is nothing to aim at; move its borders.")
+        .arg(QString::fromStdString(scene.tf.features.at(static_cast<std::size_t>(feature)).name));
 }
 /// What an optimization may do to a feature's opacity.
 inline void editOpacityLimits(SessionStore& store, int feature, const OpacityLimits& limits, const QString& text) {

@@ -20,6 +20,7 @@ Session withoutGaze(Session session) {
     if (session.slices->crosshair) session.slices.edit([](SliceViews& s) { s.crosshair.reset(); });
     session.frame = 0;
     session.goals.set(goalsAt(session, 0));
+    if (session.hsb->found != HsbMapping::Found{}) session.hsb.edit([](HsbMapping& mapping) { mapping.found = {}; });
     if (!session.isEmpty() && !session.variable().track.adapted.empty())
         session.variables.edit([](std::vector<Variable>& all) { all.front().track.adapted.clear(); });
     return session;
@@ -114,6 +115,7 @@ Scene SessionStore::movedTo(const Scene& shown, const Scene& from) {
     basis.session.targetKeys = session.targetKeys;
     basis.session.ground = from.session.ground; // one ground lies under all frames
     basis.ground = from.ground;
+    session.hsb = shown.session.hsb; // with scales that were found in this frame
     return resolve(std::move(session), basis);
 }
 
@@ -122,7 +124,7 @@ bool SessionStore::isShownBy(const Scene& shown) const {
     const auto fits = [&](const Scene& scene) {
         Session session = scene.session;
         session.frame = shown.session.frame;
-        return !needsData(session, shown) && session.hsb == shown.session.hsb &&
+        return !needsData(session, shown) && session.hsb->isKeptBy(*shown.session.hsb) &&
                sameData(*session.variables, *shown.session.variables);
     };
     return fits(m_scene) && (!m_committed || fits(*m_committed));

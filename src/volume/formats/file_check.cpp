@@ -7,11 +7,15 @@
 #include <limits>
 #include <utility>
 
+#include "base/error.h"
+#include "base/file_watch.h"
+
 namespace pellucid {
 
 namespace fs = std::filesystem;
 
 std::uint64_t readableFileBytes(const std::string& path) {
+    tellOfReading(path);
     std::error_code ec;
     const fs::file_status status = fs::status(path, ec);
     if (status.type() == fs::file_type::not_found) throw FileError("no such file", path, "check the name");
