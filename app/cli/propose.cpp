@@ -18,7 +18,7 @@ struct Options {
     std::optional<std::string> outTf;
 };
 
-std::string textOf(const Proposal& p, double seconds) {
+std::string textOf(const Proposal& p, const std::vector<double>& targets, double seconds) {
     // As many digits as the window needs: it may be 1e-9 wide about 1.
     const auto number = [&](double value) { return numberText(value, p.window.hi - p.window.lo); };
     const auto range = [&](const ValueRange& r) {
@@ -30,17 +30,17 @@ std::string textOf(const Proposal& p, double seconds) {
                                                            {"time", secondsText(seconds)}};
     for (const std::string& sentence : p.why) lines.emplace_back("why", sentence);
     const std::vector<double> opacities = featureOpacities(p.tf);
-    Table features({"feature", "from", "to", "typical", "share %", "inside", "opacity", "colour"});
+    Table features({"feature", "from", "to", "typical", "share %", "inside", "opacity", "target", "colour"});
     for (std::size_t f = 0; f < p.features.size(); ++f) {
         const ProposedFeature& feature = p.features[f];
         features.add({feature.name, number(feature.lo), number(feature.hi), number(feature.mode),
                       fixedText(100 * feature.share, 2), fixedText(feature.inside, 2), fixedText(opacities[f], 4),
-                      hexFromRgb(p.tf.features[f].color)});
+                      targets.empty() ? "–" : fixedText(targets[f], 3), hexFromRgb(p.tf.features[f].color)});
     }
     return listing(lines) + features.text();
 }
 
-Json jsonOf(const Proposal& p, double seconds) {
+Json jsonOf(const Proposal& p, const std::vector<double>& targets, double seconds) {
     Json json{{"command", "propose"}, {"kind", name(p.kind)}};
     if (!p.unit.empty()) json["unit"] = p.unit;
     json["window"] = jsonFromRange(p.window);
@@ -57,6 +57,7 @@ Json jsonOf(const Proposal& p, double seconds) {
                             {"inside", feature.inside},
                             {"opacity", opacities[f]},
                             {"color", hexFromRgb(p.tf.features[f].color)}});
+        if (!targets.empty()) features.back()["target"] = targets[f];
     }
     json["features"] = features;
     json["why"] = p.why;
@@ -72,10 +73,11 @@ Answer run(const Options& o, Progress& progress) {
     Proposal proposal = propose(volume, progress.phase("looking at the data"));
     const Volume seen = proposal.window == volume.range() ? volume : volume.withRange(proposal.window);
     const View home(homeCamera(volume.geometry(), Projection::Perspective));
-    proposal.tf = withOpacitiesForView(seen, proposal, proposal.tf, home);
+    const FirstSight sight = withOpacitiesForView(seen, proposal, proposal.tf, home);
+    proposal.tf = sight.tf;
     const double seconds = looking.seconds();
     if (o.outTf) writeTf(proposal.tf, *o.outTf);
-    return {textOf(proposal, seconds), jsonOf(proposal, seconds), opened.notices(), {}};
+    return {textOf(proposal, sight.shares, seconds), jsonOf(proposal, sight.shares, seconds), opened.notices(), {}};
 }
 
 } // namespace

@@ -106,27 +106,19 @@ void Actions::build(QMainWindow& window) {
     refresh();
 }
 
-QString Actions::keyTable() const {
-    QString rows;
-    const auto head = [&](const QString& text) {
-        rows += QStringLiteral("<tr><td colspan=2><b>%1</b></td></tr>").arg(text.toHtmlEscaped());
-    };
-    const auto row = [&](const QString& how, const QString& what) {
+QString Actions::keyTable(const QString& text) const {
+    QString rows, place;
+    const auto row = [&](const QString& at, const QString& how, const QString& what) {
+        if (!how.contains(text, Qt::CaseInsensitive) && !what.contains(text, Qt::CaseInsensitive)) return;
+        if (at != place)
+            rows += QStringLiteral("<tr><td colspan=2><b>%1</b></td></tr>").arg((place = at).toHtmlEscaped());
         rows += QStringLiteral("<tr><td>%1&nbsp;&nbsp;</td><td>%2</td></tr>")
                     .arg(how.toHtmlEscaped(), what.toHtmlEscaped());
     };
-    QString place;
-    for (const Gesture& g : m_gestures) {
-        if (g.place != place) head(place = g.place);
-        row(g.how, g.what);
-    }
-    QString group;
-    for (const Entry& e : m_entries) {
-        if (e.spec.keys.isEmpty() || !e.spec.inKeyTable) continue;
-        const QString menu = plain(e.spec.menu.section('/', 0, 0));
-        if (menu != group) head(group = menu);
-        row(keysText(e.spec.keys), plain(e.action->text()));
-    }
+    for (const Gesture& g : m_gestures) row(g.place, g.how, g.what);
+    for (const Entry& e : m_entries)
+        if (!e.spec.keys.isEmpty() && e.spec.inKeyTable)
+            row(plain(e.spec.menu.section('/', 0, 0)), keysText(e.spec.keys), plain(e.action->text()));
     return QStringLiteral("<table cellpadding=2>%1</table>").arg(rows);
 }
 

@@ -53,8 +53,8 @@ public:
     /// A menu of `build()` that somebody fills himself, such as that of recent files.
     QMenu* menu(const QString& path) const;
 
-    /// A table of all keys and gestures as rich text.
-    QString keyTable() const;
+    /// A table of keys and gestures as rich text: all, or those in whose row `text` occurs.
+    QString keyTable(const QString& text = {}) const;
 
 private:
     struct Entry {

@@ -58,9 +58,8 @@ DensitySlider::DensitySlider(Workbench& bench, QWidget* parent)
     m_value->setFixedWidth(m_value->fontMetrics().horizontalAdvance(QStringLiteral("× 00.00")) + 4);
     m_value->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
     m_all->setObjectName("densityAll");
-    m_all->setText(tr("all"));
+    m_all->setText(tr("Scale all"));
     m_all->setCheckable(true);
-    m_all->setAutoRaise(true);
     m_all->setToolTip(tr("Scale all opacities alike instead: the extinction times a factor; the shares change"));
     auto* label = new QLabel(tr("&Density"), this);
     label->setBuddy(m_slider);
@@ -135,6 +134,11 @@ void DensitySlider::take(const Request& request, DensityCurve& curve) {
     m_curve = Known{request, std::move(curve)};
     const std::optional<double> place = placeOf(present());
     if (!place) m_curve.reset(); // the scene has gone on
+    if (place) {
+        m_changing = true;
+        m_bench.store().amend([at = shareOf(*place)](Session& session) { session.density = at; });
+        m_changing = false;
+    }
     // What the mouse holds is where the scene is, wherever it took the slider.
     if (m_slider->isSliderDown() && place && !m_scales) m_offset = valueOf(*place) - m_slider->value();
     rest();
@@ -155,12 +159,14 @@ double DensitySlider::coverageAt(int value) const {
     return low * std::pow(high / low, std::clamp(value, 0, kReach) / static_cast<double>(kReach));
 }
 
-int DensitySlider::valueOf(double coverage) const {
+double DensitySlider::shareOf(double coverage) const {
     const double low = m_curve->curve.faintest().coverage.coverage;
     const double high = m_curve->curve.strongest().coverage.coverage;
-    if (!(high > low)) return kReach;
-    return static_cast<int>(
-        std::lround(kReach * std::clamp(std::log(coverage / low) / std::log(high / low), 0.0, 1.0)));
+    return high > low ? std::clamp(std::log(coverage / low) / std::log(high / low), 0.0, 1.0) : 1;
+}
+
+int DensitySlider::valueOf(double coverage) const {
+    return static_cast<int>(std::lround(kReach * shareOf(coverage)));
 }
 
 void DensitySlider::follow() {
@@ -186,13 +192,17 @@ void DensitySlider::followFactor() {
 void DensitySlider::followCurve() {
     if (!m_curve) return compute();
     const double coverage = coverageAt(m_slider->value() + m_offset);
-    const TransferFunction tf = withShownOpacities(m_curve->about.tf, m_curve->curve.at(coverage));
+    const auto change = [tf = withShownOpacities(m_curve->about.tf, m_curve->curve.at(coverage)),
+                         at = shareOf(coverage)](Session& session) {
+        session.setTf(tf);
+        session.density = at;
+    };
     m_changing = true;
     if (m_slider->isSliderDown()) {
-        previewTf(m_bench.store(), tf, tr("Density"));
+        m_bench.store().preview(tr("Density"), change);
     } else {
         m_bench.store().commit();
-        editTf(m_bench.store(), tf, tr("Density"), QStringLiteral("density at equal shares"));
+        m_bench.store().edit(tr("Density"), QStringLiteral("density at equal shares"), change);
     }
     m_changing = false;
     showCoverage(coverage);
@@ -232,7 +242,9 @@ void DensitySlider::rest() {
         m_slider->setSingleStep(20);
         m_slider->setPageStep(100);
         const std::optional<double> place = m_bench.store().hasVolume() ? placeOf(present()) : std::nullopt;
-        m_slider->setValue(place ? valueOf(*place) : kReach / 2);
+        // Where nobody knows the way from here it stays where the session has left it.
+        const double left = m_bench.scene().session.density.value_or(0.5);
+        m_slider->setValue(place ? valueOf(*place) : static_cast<int>(std::lround(kReach * left)));
         std::optional<double> coverage = place;
         if (measures && measures->coverage && m_bench.results().measuresAreCurrent())
             coverage = measures->coverage->coverage;

@@ -53,7 +53,7 @@ bool has(int argc, char** argv, std::initializer_list<const char*> options) {
 void describe(QCommandLineParser& parser) {
     parser.setApplicationDescription(
         "Shows volumes, measures what catches the eye in them, and finds transfer functions.\n"
-        "Without a FILE it opens on the built-in volume sample:shells.");
+        "Without a FILE it opens on the built-in volume sample:knee.");
     parser.addPositionalArgument(
         "FILE",
         "a volume, or the frames of a series: files, a folder, a pattern (\"f%02d.mhd\", \"f*.mhd\"); sessions and "
@@ -164,7 +164,7 @@ int main(int argc, char** argv) {
     }
     if (parser.isSet("session")) volumes.prepend(parser.value("session"));
     const bool onSample = volumes.isEmpty();
-    if (onSample) volumes << "sample:shells";
+    if (onSample) volumes << "sample:knee";
     const QList<QStringList> documents = documentsOf(volumes, parser.isSet("windows"));
     if (!screenshot.isEmpty() && documents.size() > 1)
         return complain("--screenshot takes one window, " + volumes.join(" ") + ", give one FILE", kUsage);

@@ -6,8 +6,10 @@
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QFileInfo>
+#include <QHBoxLayout>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QScreen>
 #include <QSettings>
 #include <QStatusBar>
 #include <QVBoxLayout>
@@ -19,10 +21,13 @@
 #include "controllers/recovery_controller.h"
 #include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
+#include "dock_space.h"
+#include "keys_dialog.h"
 #include "light_layer.h"
 #include "notice_bar.h"
 #include "panel.h"
 #include "panels/probe_panel.h"
+#include "panels/scrolled.h"
 #include "region_layer.h"
 #include "slice_layer.h"
 #include "status_line.h"
@@ -33,7 +38,7 @@ namespace pellucid::gui {
 MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_bench(std::make_unique<Workbench>(this)),
       m_view(new VolumeView(m_bench->store(), renderer, this, &m_bench->fields())),
-      m_views(new ViewGrid(*m_bench, *m_view, this)) {
+      m_views(new ViewGrid(*m_bench, *m_view, this)), m_row(new QHBoxLayout) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setDockNestingEnabled(true);
@@ -42,7 +47,8 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(0);
     column->addWidget(new NoticeBar(m_bench->notices(), middle));
-    column->addWidget(m_views, 1);
+    m_row->addWidget(m_views, 1);
+    column->addLayout(m_row, 1);
     setCentralWidget(middle);
 
     m_view->overlay().add(std::make_unique<SliceLayer>());
@@ -70,7 +76,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     connect(&m_bench->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
     connect(&m_bench->opening(), &OpenController::busyChanged, this, &MainWindow::updateTitle);
     updateTitle();
-    resize(1280, 800);
+    resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
 }
 
 MainWindow::~MainWindow() {
@@ -85,13 +91,15 @@ MainWindow::~MainWindow() {
 void MainWindow::addPanels() {
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
     Actions& actions = m_bench->actions();
+    auto* const space = new DockSpace(*this);
     bool first = true;
     for (const PanelInfo& panel : panelRegistry()) {
         auto* dock = new QDockWidget(panel.title, this);
         dock->setObjectName(QString(panel.id) + "Dock");
-        dock->setWidget(panel.make(*m_bench, dock));
+        dock->setWidget(new DockScroll(panel.make(*m_bench, dock), panel.area));
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
+        space->watch(*dock);
         if (panel.tabOf != nullptr) {
             auto* beside = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
             tabifyDockWidget(beside, dock);
@@ -99,8 +107,11 @@ void MainWindow::addPanels() {
         }
         if (panel.below != nullptr)
             splitDockWidget(findChild<QDockWidget*>(QString(panel.below) + "Dock"), dock, Qt::Vertical);
-        if (panel.size > 0)
-            resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
+        const QSize most = mostRoom(panel.area, screen()->availableSize());
+        if (panel.size > 0 && panel.area == Qt::BottomDockWidgetArea)
+            resizeDocks({dock}, {std::min(panel.size, most.height())}, Qt::Vertical);
+        else if (panel.size > 0)
+            resizeDocks({dock}, {std::min(panel.size, most.width())}, Qt::Horizontal);
         if (panel.shown)
             connect(dock, &QDockWidget::visibilityChanged, m_bench.get(),
                     [this, shown = panel.shown](bool visible) { shown(*m_bench, visible); });
@@ -111,14 +122,14 @@ void MainWindow::addPanels() {
                      .tip = panel.tip,
                      .trigger =
                          [this, dock] {
-                             dock->setVisible(dock->isHidden());
+                             dock->setVisible(!isInFront(*dock)); // what lies behind a tab is not put away unseen
                              if (dock->isHidden()) return;
-                             dock->raise(); // it may be a tab
+                             dock->raise();
                              // As high as it likes, where it would be much lower.
                              const int wanted = dock->widget()->sizeHint().height();
                              if (dock->widget()->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
                          },
-                     .checked = [dock] { return !dock->isHidden(); },
+                     .checked = [dock] { return isInFront(*dock); },
                      .separatorBefore = std::exchange(first, false)});
         connect(dock, &QDockWidget::visibilityChanged, &actions, &Actions::refresh);
     }
@@ -143,10 +154,7 @@ void MainWindow::addHelpActions() {
                          {volume, tr("Left drag of a clip handle; with Shift"), tr("cut; move the whole slab")},
                          {volume, tr("Esc"), tr("give up a drag")}});
     add("keysAction", tr("&Help"), tr("&Mouse and keys"), QKeySequence("F1"), [this] {
-        QMessageBox box(QMessageBox::NoIcon, tr("Mouse and keys"), m_bench->actions().keyTable(), QMessageBox::Ok,
-                        this);
-        box.setObjectName("keysBox");
-        box.exec();
+        KeysDialog(m_bench->actions(), this).exec();
     });
     add("aboutAction", tr("&Help"), tr("&About Pellucid"), {}, [this] {
         QMessageBox::about(this, tr("About Pellucid"),
@@ -164,7 +172,8 @@ void MainWindow::restoreLayout() {
 
 void MainWindow::welcome() {
     if (!WelcomeCard::isWanted()) return;
-    auto* card = new WelcomeCard(m_view);
+    auto* card = new WelcomeCard(centralWidget());
+    m_row->insertWidget(0, card); // beside the picture, of which it hides nothing
     // Another volume: it is no sample any more, and the first thing to try has been done.
     connect(&m_bench->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
         if (before.series && before.series != after.series) card->dismiss();

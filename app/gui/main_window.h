@@ -9,6 +9,8 @@
 #include "volume_view.h"
 #include "workbench.h"
 
+class QHBoxLayout;
+
 namespace pellucid::gui {
 
 class MainWindow : public QMainWindow {
@@ -23,7 +25,7 @@ public:
 
     /// Size, place and docks as the last window was closed with.
     void restoreLayout();
-    /// A card over the picture, if nobody has dismissed it: for a start on a sample.
+    /// A card beside the picture, if nobody has dismissed it: for a start on a sample.
     void welcome();
     /// The picture is as good as it gets, the figures are of the present state, and nothing is under way.
     bool isSettled() const;
@@ -45,6 +47,7 @@ private:
     std::unique_ptr<Workbench> m_bench;
     VolumeView* m_view;
     ViewGrid* m_views; // with m_view in it
+    QHBoxLayout* m_row; // with m_views in it
 };
 
 } // namespace pellucid::gui

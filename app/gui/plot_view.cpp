@@ -53,7 +53,7 @@ QColor colorOf(PlotInk ink, const Rgb& own, const PlotColors& colors) {
     case PlotInk::Own:
         break;
     }
-    return colorFromRgb(own);
+    return seenOn(colors.ground, colorFromRgb(own));
 }
 
 QPointF pointOf(const Vec2& at) { return {at.x, at.y}; }

@@ -406,6 +406,14 @@ void TargetBars::paintRow(QPainter& painter, int i, const QFont& small, double t
     painter.setPen(Qt::NoPen);
     painter.setBrush(color);
     painter.drawRoundedRect(QRectF(10, track.center().y() - 5, 10, 10), 2, 2);
+    // Colours that are hardly told from what is behind them have an outline.
+    const auto outline = [&painter](const QColor& ground, const QColor& of, const QRectF& box) {
+        if (contrast(ground, of) >= kMarkContrast || box.width() < 1) return;
+        painter.setPen(QPen(seenOn(ground, of), 1));
+        painter.setBrush(Qt::NoBrush);
+        painter.drawRoundedRect(box.adjusted(0.5, 0.5, -0.5, -0.5), 2, 2);
+    };
+    if (!feature.hidden) outline(theme::kWindow, color, QRectF(10, track.center().y() - 5, 10, 10));
     painter.setFont(font());
     painter.setPen(hasTarget(i) ? theme::kText : theme::kFaint);
     painter.drawText(
@@ -439,6 +447,8 @@ void TargetBars::paintRow(QPainter& painter, int i, const QFont& small, double t
         for (double x = saturation.left() - bar.height(); x < saturation.right(); x += 5)
             painter.drawLine(QPointF(x, bar.bottom()), QPointF(x + bar.height(), bar.top()));
         painter.restore();
+        outline(theme::kTrack, color, bar);
+        painter.setPen(Qt::NoPen);
         fill.setAlphaF(static_cast<float>(thinStrength));
         painter.setBrush(fill);
         painter.drawRoundedRect(QRectF(visibility.topLeft(), QSizeF(visibility.width() * m.visibility, kVisibilityBar)),

@@ -1,6 +1,7 @@
 #include "theme.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <QApplication>
@@ -28,7 +29,7 @@ constexpr Colors kDark{.window = 0xff262729,
                        .title = 0xff2e3033,
                        .line = 0xff45474b,
                        .text = 0xffe4e5e7,
-                       .faint = 0xff9a9da3,
+                       .faint = 0xffa3a6ac,
                        .accent = 0xff4c9aff,
                        .track = 0xff1c1d1f,
                        .histogram = 0xff44474c,
@@ -55,8 +56,8 @@ constexpr Colors kLight{.window = 0xfff1f2f3,
                         .curve = 0xff2b2e33,
                         .knob = 0xff3a3d42,
                         .hover = 0x10000000,
-                        .falls = 0xffe08a3c,
-                        .disabled = 0xff96999e,
+                        .falls = 0xffb8651b,
+                        .disabled = 0xff83868c,
                         .shadow = 0xff8a8d92,
                         .notice = 0xfffff3cf,
                         .noticeLine = 0xffdfc878,
@@ -74,7 +75,12 @@ bool systemIsLight() {
     return s_light;
 }
 
-/// Fusion, with check boxes that can be seen on any ground.
+double luminance(const QColor& color) {
+    const auto linear = [](double v) { return v <= 0.03928 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+    return 0.2126 * linear(color.redF()) + 0.7152 * linear(color.greenF()) + 0.0722 * linear(color.blueF());
+}
+
+/// Fusion, with check boxes and buttons that are on which can be told from others on any ground.
 class PlainFusion : public QProxyStyle {
 public:
     PlainFusion() : QProxyStyle(QStyleFactory::create("Fusion")) {}
@@ -87,6 +93,16 @@ public:
 
     void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                        const QWidget* widget) const override {
+        if (element == PE_PanelButtonCommand && option->state.testFlag(State_On) &&
+            option->state.testFlag(State_Enabled)) {
+            painter->save();
+            painter->setRenderHint(QPainter::Antialiasing);
+            painter->setPen(Qt::NoPen);
+            painter->setBrush(option->palette.color(QPalette::Highlight));
+            painter->drawRoundedRect(QRectF(option->rect).adjusted(0.5, 0.5, -0.5, -0.5), 2.5, 2.5);
+            painter->restore();
+            return;
+        }
         if (element != PE_IndicatorCheckBox) return QProxyStyle::drawPrimitive(element, option, painter, widget);
         const bool enabled = option->state.testFlag(State_Enabled), on = option->state.testFlag(State_On);
         const QRectF box = QRectF(option->rect).adjusted(1.5, 1.5, -1.5, -1.5);
@@ -106,6 +122,24 @@ public:
             painter->drawPolyline(QPolygonF{at(0.22, 0.52), at(0.43, 0.73), at(0.78, 0.28)});
         }
         painter->restore();
+    }
+
+    void drawControl(ControlElement element, const QStyleOption* option, QPainter* painter,
+                     const QWidget* widget) const override {
+        const bool on = option->state.testFlag(State_On) && option->state.testFlag(State_Enabled);
+        if (const auto* button = qstyleoption_cast<const QStyleOptionToolButton*>(option);
+            on && button != nullptr && element == CE_ToolButtonLabel) {
+            QStyleOptionToolButton lit(*button);
+            lit.palette.setColor(QPalette::ButtonText, lit.palette.color(QPalette::HighlightedText));
+            return QProxyStyle::drawControl(element, &lit, painter, widget);
+        }
+        if (const auto* button = qstyleoption_cast<const QStyleOptionButton*>(option);
+            on && button != nullptr && element == CE_PushButtonLabel) {
+            QStyleOptionButton lit(*button);
+            lit.palette.setColor(QPalette::ButtonText, lit.palette.color(QPalette::HighlightedText));
+            return QProxyStyle::drawControl(element, &lit, painter, widget);
+        }
+        QProxyStyle::drawControl(element, option, painter, widget);
     }
 };
 
@@ -202,6 +236,28 @@ std::optional<Theme> themeFromName(std::string_view text) {
     for (const Theme theme : {Theme::Dark, Theme::Light, Theme::System})
         if (text == name(theme)) return theme;
     return {};
+}
+
+double contrast(const QColor& a, const QColor& b) {
+    const double x = luminance(a), y = luminance(b);
+    return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
+}
+
+QColor seenOn(const QColor& ground, const QColor& color, double least) {
+    if (contrast(color, ground) >= least) return color;
+    // The shortest way to black or white, whichever stands out from the ground.
+    const QColor end = luminance(ground) > 0.18 ? Qt::black : Qt::white;
+    const auto toward = [&](float t) {
+        return QColor::fromRgbF(color.redF() + t * (end.redF() - color.redF()),
+                                color.greenF() + t * (end.greenF() - color.greenF()),
+                                color.blueF() + t * (end.blueF() - color.blueF()), color.alphaF());
+    };
+    float low = 0, high = 1;
+    for (int i = 0; i < 12; ++i) {
+        const float middle = (low + high) / 2;
+        (contrast(toward(middle), ground) >= least ? high : low) = middle;
+    }
+    return toward(high);
 }
 
 void makeFaint(QLabel& label) { label.setForegroundRole(QPalette::PlaceholderText); }

@@ -38,6 +38,13 @@ Theme appliedTheme();
 const char* name(Theme theme); ///< "dark", "light", "system"
 std::optional<Theme> themeFromName(std::string_view name);
 
+/// Of relative luminances, WCAG 2.1: from 1 (the same) to 21.
+double contrast(const QColor& a, const QColor& b);
+inline constexpr double kTextContrast = 4.5, kMarkContrast = 3; ///< least of texts, of lines and other marks (WCAG AA)
+/// `color`, or the nearest darker or lighter one of its hue that has `least` of contrast to `ground`: for colours that
+/// the user or the data choose, such as those of features.
+QColor seenOn(const QColor& ground, const QColor& color, double least = kMarkContrast);
+
 /// For a remark beside what matters: the label's text is kFaint in every theme.
 void makeFaint(QLabel& label);
 

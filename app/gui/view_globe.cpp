@@ -203,8 +203,9 @@ void ViewGlobe::paintLegend(QPainter& painter) const {
     painter.setFont(font);
     painter.setPen(m_current ? theme::kText : theme::kFaint);
     const QRectF words(all.left(), bar.bottom(), all.width(), all.bottom() - bar.bottom());
-    painter.drawText(words, Qt::AlignLeft | Qt::AlignVCenter, QString::number(m_worst, 'f', 3));
-    painter.drawText(words, Qt::AlignRight | Qt::AlignVCenter, QString::number(m_best, 'f', 3));
+    const auto about = [](double value) { return QStringLiteral("≈ %1").arg(value, 0, 'f', 2); };
+    painter.drawText(words, Qt::AlignLeft | Qt::AlignVCenter, about(m_worst));
+    painter.drawText(words, Qt::AlignRight | Qt::AlignVCenter, about(m_best));
     const QString name = m_map.metric.figure == ViewMetric::Figure::Objective ? tr("F") : tr("VWS");
     painter.drawText(words, Qt::AlignCenter, name);
 }

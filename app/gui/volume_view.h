@@ -41,7 +41,7 @@ public:
     QString rendererReason() const { return m_reason; } ///< why it draws, a sentence
 
     QSize sizeHint() const override { return {860, 520}; }
-    QSize minimumSizeHint() const override { return {240, 180}; }
+    QSize minimumSizeHint() const override { return {160, 100}; }
 
 Q_SIGNALS:
     void frameShown();

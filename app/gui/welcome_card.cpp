@@ -1,6 +1,5 @@
 #include "welcome_card.h"
 
-#include <QEvent>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -11,19 +10,19 @@ namespace pellucid::gui {
 namespace {
 
 constexpr auto kSeenKey = "welcomeCardSeen";
-constexpr int kMargin = 16, kWidth = 330; // logical pixels
+constexpr int kWidth = 230; // logical pixels: what the picture beside it can do without
 
 } // namespace
 
-WelcomeCard::WelcomeCard(QWidget* view) : QFrame(view->parentWidget()), m_view(view) {
+WelcomeCard::WelcomeCard(QWidget* parent) : QFrame(parent) {
     setObjectName("welcomeCard");
     setAutoFillBackground(true);
     setFrameShape(QFrame::StyledPanel);
-    setAttribute(Qt::WA_NoMousePropagation);
     auto* title = new QLabel(tr("<b>This is a sample.</b> Three things to try:"), this);
     title->setObjectName("welcomeTitle");
+    title->setWordWrap(true);
     auto* things = new QLabel(tr("<ul style='margin-left: 14px; -qt-list-indent: 0;'>"
-                                 "<li>Drop a file of your own here, or press Ctrl+O.</li>"
+                                 "<li>Drop a file of your own onto the window, or press Ctrl+O.</li>"
                                  "<li>Click on a thing in the picture: what is it, and how much of it is seen?</li>"
                                  "<li>Drag a target in the table of features, then press Optimize: the picture shows "
                                  "that much of it.</li></ul>"),
@@ -42,11 +41,8 @@ WelcomeCard::WelcomeCard(QWidget* view) : QFrame(view->parentWidget()), m_view(v
     row->addStretch(1);
     row->addWidget(close);
     column->addLayout(row);
+    column->addStretch(1);
     setFixedWidth(kWidth);
-    view->installEventFilter(this);
-    place();
-    show();
-    raise();
 }
 
 bool WelcomeCard::isWanted() { return !QSettings().value(kSeenKey, false).toBool(); }
@@ -55,16 +51,6 @@ void WelcomeCard::dismiss() {
     QSettings().setValue(kSeenKey, true);
     hide();
     deleteLater();
-}
-
-bool WelcomeCard::eventFilter(QObject* watched, QEvent* event) {
-    if (watched == m_view && (event->type() == QEvent::Resize || event->type() == QEvent::Move)) place();
-    return QFrame::eventFilter(watched, event);
-}
-
-void WelcomeCard::place() {
-    resize(kWidth, heightForWidth(kWidth) > 0 ? heightForWidth(kWidth) : sizeHint().height());
-    move(m_view->geometry().bottomLeft() + QPoint(kMargin, -height() - kMargin));
 }
 
 } // namespace pellucid::gui

@@ -115,6 +115,8 @@ public:
         return m_peaks;
     }
 
+    const std::vector<double>& wanted() const { return m_wanted; } ///< covers
+
 private:
     /// ln of the wanted cover over that there is.
     double lack(const RayBundle::Appearance& a, std::size_t f) const {
@@ -181,13 +183,19 @@ private:
 
 } // namespace
 
-TransferFunction withOpacitiesForView(const Volume& volume, const Proposal& proposal, const TransferFunction& tf,
-                                      const View& view, const JobControl& job) {
-    if (tf.features.empty() || tf.features.size() != proposal.features.size()) return tf;
+FirstSight withOpacitiesForView(const Volume& volume, const Proposal& proposal, const TransferFunction& tf,
+                                const View& view, const JobControl& job) {
+    if (tf.features.empty() || tf.features.size() != proposal.features.size()) return {tf, {}};
     const RayBundle rays(volume, tf, view, 72, job);
-    if (rays.rays() == 0) return tf;
+    if (rays.rays() == 0) return {tf, {}};
     const std::vector<double> importance = importanceOf(proposal);
-    return withPeaks(tf, Search(rays, tf, importance, !proposal.background, job).run());
+    Search search(rays, tf, importance, !proposal.background, job);
+    // A cover is a mean over the rays that meet the feature: a share is of all rays.
+    std::vector<double> shares = search.wanted();
+    double all = 0;
+    for (std::size_t f = 0; f < shares.size(); ++f) all += shares[f] *= rays.raysOf(static_cast<int>(f));
+    for (double& share : shares) share /= all;
+    return {withPeaks(tf, search.run()), std::move(shares)};
 }
 
 } // namespace pellucid

@@ -17,11 +17,17 @@ std::vector<double> wantedCovers(const RayBundle& rays, const std::vector<double
 /// How much a feature should be seen, [0,1]: deep and rare ones more.
 std::vector<double> importanceOf(const Proposal& proposal);
 
+/// What the first picture is drawn with, and what that aims at.
+struct FirstSight {
+    TransferFunction tf;
+    std::vector<double> shares; ///< per feature, of the alpha that is wanted, sum 1; empty where nothing is in sight
+};
+
 /// `tf`, which has the features of `proposal`, with peak opacities for this view: covers near the wanted ones, between
 /// 6 and 94 % of the rays translucent, and at least 15 % of the visibility for the second feature where there is one.
 /// The same answer for any number of threads; a fixed number of evaluations. What has no features, or none in sight,
 /// comes back as it is. Throws Cancelled.
-TransferFunction withOpacitiesForView(const Volume& volume, const Proposal& proposal, const TransferFunction& tf,
-                                      const View& view, const JobControl& job = {});
+FirstSight withOpacitiesForView(const Volume& volume, const Proposal& proposal, const TransferFunction& tf,
+                                const View& view, const JobControl& job = {});
 
 } // namespace pellucid

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "optimize/first_sight.h"
 #include "render/published_engine.h"
 #include "session/scene_data.h"
 #include "tf/color_maps.h"
@@ -189,9 +188,17 @@ Scene resolve(Session session, const Scene& basis, const MemoryUse& then, const 
     return scene;
 }
 
-TransferFunction tunedTf(const Scene& scene, const JobControl& job) {
+FirstSight tunedStart(const Scene& scene, const JobControl& job) {
     const View home(homeCamera(scene.volume->geometry(), Projection::Perspective));
     return withOpacitiesForView(*scene.volume, *scene.proposal, scene.tf, home, {job.stop, {}});
+}
+
+void setStart(Session& session, const FirstSight& start) {
+    session.setTf(start.tf);
+    const TransferFunction& tf = *session.tf(); // its features have their identities
+    const bool wanted = std::any_of(tf.features.begin(), tf.features.end(),
+                                    [&](const Feature& f) { return session.goals->contains(f.id); });
+    if (!start.shares.empty() && !wanted) session.goals.set(withTargets(*session.goals, tf, start.shares));
 }
 
 AutomaticStart automaticStart(const Scene& scene, const View& view, const JobControl& job) {
@@ -199,7 +206,7 @@ AutomaticStart automaticStart(const Scene& scene, const View& view, const JobCon
     start.proposal = propose(*scene.data, {job.stop, {}});
     start.window = windowToSet(start.proposal, *scene.data);
     const auto volume = throughWindow(scene.data, start.window);
-    start.tf = withOpacitiesForView(*volume, start.proposal, start.proposal.tf, view, {job.stop, {}});
+    start.sight = withOpacitiesForView(*volume, start.proposal, start.proposal.tf, view, {job.stop, {}});
     return start;
 }
 
@@ -260,7 +267,7 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job) {
         }
     }
     if (inputs.start == SceneInputs::Start::Tuned && scene.proposal) {
-        scene.session.setTf(tunedTf(scene, job));
+        setStart(scene.session, tunedStart(scene, job));
         resolveTf(scene);
     }
     if (proposesFirst) {

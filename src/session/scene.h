@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "optimize/first_sight.h"
 #include "render/annotation.h"
 #include "render/ground.h"
 #include "render/standard_view.h"
@@ -68,7 +69,7 @@ struct SceneInputs {
     std::optional<Projection> projection; ///< of `view`, else of the session's camera, else of the home view
     MemoryUse then;                       ///< what is done with the volume, see VolumeSource
     /// What a volume without transfer function gets: the automatic start; the same before its opacities are tuned, for
-    /// those who show it first (see tunedTf()); or tents:3 over all values, for those who need none.
+    /// those who show it first (see tunedStart()); or tents:3 over all values, for those who need none.
     enum class Start { Tuned, Proposed, Tents } start = Start::Tuned;
 };
 
@@ -88,13 +89,16 @@ Scene openScene(const SceneInputs& inputs, const JobControl& job = {});
 
 /// The transfer function of a scene that has a proposal, with opacities for the home view, whatever its camera is: a
 /// volume has one automatic start. Throws Cancelled.
-TransferFunction tunedTf(const Scene& scene, const JobControl& job = {});
+FirstSight tunedStart(const Scene& scene, const JobControl& job = {});
+/// Puts a start into a session: its transfer function, and the shares that it aims at as targets, where none of its
+/// features has one.
+void setStart(Session& session, const FirstSight& start);
 
 /// The automatic start of a scene's data, whatever its window and transfer function are.
 struct AutomaticStart {
     Proposal proposal;
     std::optional<ValueRange> window; ///< as Variable::window
-    TransferFunction tf;              ///< opacities for the view that was asked for
+    FirstSight sight;                 ///< from the view that was asked for
 };
 /// Throws Cancelled.
 AutomaticStart automaticStart(const Scene& scene, const View& view, const JobControl& job = {});

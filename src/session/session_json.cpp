@@ -829,6 +829,7 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"runs", json::array()}};
     for (const Variable& v : *s.variables) j["variables"].push_back(fromVariable(v, folder, paths));
     for (const Run& run : *s.runs) j["runs"].push_back(fromRun(run));
+    if (s.density) j["density"] = *s.density;
     if (s.camera) j["camera"] = fromCamera(*s.camera);
     addUnknownKeys(j, s.extraJson);
     return j;
@@ -847,6 +848,7 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("frame")) s.frame = static_cast<int>(j["frame"].integer(0, 1'000'000'000));
     if (j.has("features")) s.goals = toGoals(j["features"]);
     if (j.has("hold_targets")) s.holdTargets = j["hold_targets"].boolean();
+    if (j.has("density")) s.density = j["density"].number(0, 1);
     if (j.has("camera")) s.camera = cameraFromJson(j["camera"]);
     if (j.has("clip")) s.clipping = toClipping(j["clip"]);
     if (j.has("display")) s.display = toDisplay(j["display"]);
@@ -874,7 +876,8 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     }
     s.extraJson = j.unknownKeys({"format", "version",     "variables", "frame",   "features", "hold_targets", "camera",
                                  "clip",   "display",     "reference", "measure", "optimize", "refine",       "slices",
-                                 "field",  "target_keys", "adapt",     "hsb",     "ground",   "runs",         "title"});
+                                 "field",  "target_keys", "adapt",     "hsb",     "ground",   "runs",         "density",
+                                 "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

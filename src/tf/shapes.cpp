@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/round_numbers.h"
 #include "tf/color_maps.h"
+#include "tf/part_names.h"
 
 namespace pellucid {
 
@@ -164,6 +166,18 @@ std::string freshName(const TransferFunction& tf, const std::string& base) {
     if (!taken(base)) return base;
     for (int i = 2;; ++i)
         if (const std::string text = base + " " + std::to_string(i); !taken(text)) return text;
+}
+
+/// How many of `counts` (a histogram over [0,1]) lie in [a, b); within a bin they are spread evenly.
+double countedIn(std::span<const std::uint64_t> counts, double a, double b) {
+    const auto bins = static_cast<double>(counts.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        const double lo = static_cast<double>(i) / bins, hi = static_cast<double>(i + 1) / bins;
+        const double part = (std::min(b, hi) - std::max(a, lo)) * bins;
+        if (part > 0) sum += part * static_cast<double>(counts[i]);
+    }
+    return sum;
 }
 
 int insertSorted(TransferFunction& tf, const Feature& feature) {
@@ -417,10 +431,17 @@ AddedFeature withFeatureDuplicated(const TransferFunction& tf, int feature) {
     return added;
 }
 
-TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, double place) {
+TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, double place,
+                                  std::span<const std::uint64_t> counts) {
     const Feature f = at(tf, feature);
+    const ValueRange values = tf.range.value_or(ValueRange{0, 1});
+    const std::string border = numberText(values.lo + place * (values.hi - values.lo), values.hi - values.lo);
     if (!(place - f.a >= kSmallestFeature) || !(f.b - place >= kSmallestFeature))
-        throw Error("the feature '" + f.name + "' cannot be split there", "", "choose a value well inside it");
+        throw Error("the feature '" + f.name + "' cannot be split at " + border, "", "choose a value well inside it");
+    const double below = countedIn(counts, f.a, place), above = countedIn(counts, place, f.b);
+    if (!counts.empty() && !(std::min(below, above) >= kSmallestPart * (below + above)))
+        throw Error("hardly a voxel of '" + f.name + "' would lie " + (below < above ? "below " : "above ") + border, "",
+                    "choose another value");
     TransferFunction result = tf;
     const Group group = pointsAt(result.points, place);
     ControlPoint left = leftOf(tf, place), right = rightOf(tf, place);
@@ -434,11 +455,13 @@ TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, doubl
     bool ofOneColor = true;
     for (const int i : pointsOfFeature(tf, feature))
         ofOneColor = ofOneColor && tf.points[static_cast<std::size_t>(i)].color == f.color;
+    const auto [lowerName, upperName] = namesOfParts(f.name, border);
     at(result, feature).b = place;
+    at(result, feature).name = freshName(tf, lowerName);
     Feature upper = f;
     upper.id = 0;
     upper.extraJson.clear();
-    upper.name = freshName(tf, f.name);
+    upper.name = freshName(tf, upperName);
     upper.a = place;
     result.features.insert(result.features.begin() + feature + 1, upper);
     if (ofOneColor) {
@@ -460,6 +483,11 @@ double splitPlace(const Feature& feature, std::span<const std::uint64_t> counts)
     const auto first = static_cast<std::size_t>(std::ceil(feature.a * bins - 1e-9));
     const auto last = std::min(counts.size(), static_cast<std::size_t>(std::floor(feature.b * bins + 1e-9)));
     if (last < first + 3) return middle;
+    const double all = countedIn(counts, feature.a, feature.b);
+    const auto leavesBoth = [&](double place) {
+        const double below = countedIn(counts, feature.a, place);
+        return std::min(below, all - below) >= kSmallestPart * all;
+    };
     // A valley is as deep as the lower one of the highest counts on its two sides is above it, in logarithms, so that
     // few voxels beside many count; three bins at a time against noise.
     std::vector<double> height;
@@ -479,15 +507,27 @@ double splitPlace(const Feature& feature, std::span<const std::uint64_t> counts)
     for (std::size_t i = 0; i < height.size(); ++i) {
         most = std::max(most, height[i]);
         const double here = std::min(most, above[i]) - height[i];
+        if (here < depth || !leavesBoth((static_cast<double>(first + i) + 0.5) / bins)) continue;
         if (here > depth) {
             depth = here;
             bottom = bottomEnd = i;
-        } else if (here == depth && bottomEnd + 1 == i) {
+        } else if (bottomEnd + 1 == i) {
             bottomEnd = i;
         }
     }
-    if (bottom == 0) return middle;
-    const double place = (static_cast<double>(first) + static_cast<double>(bottom + bottomEnd + 1) / 2) / bins;
+    double place = middle;
+    if (bottom > 0) {
+        place = (static_cast<double>(first) + static_cast<double>(bottom + bottomEnd + 1) / 2) / bins;
+    } else if (!leavesBoth(middle)) {
+        double below = 0, smaller = -1;
+        for (std::size_t i = first; i + 1 < last; ++i) {
+            below += static_cast<double>(counts[i]);
+            if (std::min(below, all - below) > smaller) {
+                smaller = std::min(below, all - below);
+                place = static_cast<double>(i + 1) / bins;
+            }
+        }
+    }
     return std::clamp(place, feature.a + kSmallestFeature, feature.b - kSmallestFeature);
 }
 
@@ -497,7 +537,7 @@ AddedFeature withFeaturesMerged(const TransferFunction& tf, int feature) {
         throw Error("there is no feature above '" + at(tf, feature).name + "'", "", "choose the lower one of two");
     const Feature &low = at(tf, feature), &high = at(tf, next);
     Feature merged = high.b - high.a > low.b - low.a ? high : low;
-    merged.name = low.name + " + " + high.name;
+    merged.name = nameOfWhole(low.name, high.name);
     merged.a = low.a;
     merged.b = high.b;
     AddedFeature result{tf, feature};

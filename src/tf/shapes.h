@@ -66,15 +66,20 @@ AddedFeature withFeatureDuplicated(const TransferFunction& tf, int feature);
 /// as wide, the widest whole. Throws Error where there is none of at least 1/64.
 ValueRange roomFor(const TransferFunction& tf, double width, double near);
 
-/// Two features, [a, at) and [at, b); α and points stay but for a point on each side of the border. The lower one keeps
-/// name and identity; the upper one becomes "NAME 2", and its colour one that is told apart, where the feature is of
-/// one colour. Throws Error where `at` leaves either too narrow.
-TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, double at);
+/// The smallest part of a feature's voxels that a half may have after a split.
+inline constexpr double kSmallestPart = 0.02;
+/// Two features, [a, at) and [at, b), with names that tell them apart (part_names.h); α and points stay but for a point
+/// on each side of the border. The lower one keeps the identity; the upper one's colour becomes one that is told apart,
+/// where the feature is of one colour. `counts`, a histogram over [0,1], says how many voxels there are; empty: nobody
+/// knows. Throws Error where `at` leaves either too narrow, or with less than kSmallestPart of the voxels.
+TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, double at,
+                                  std::span<const std::uint64_t> counts = {});
 /// Where to split: the bottom of the deepest valley of `counts` (a histogram over [0,1]) between two peaks inside the
-/// feature, its middle where there is none.
+/// feature that leaves each side kSmallestPart of its voxels; where there is none its middle, and where that leaves less,
+/// the border between bins that comes nearest to halving the voxels.
 double splitPlace(const Feature& feature, std::span<const std::uint64_t> counts);
 /// The feature and the next one by intensity as one, with what lies between; α and points stay. The wider one's colour,
-/// identity and eye, both names. Throws Error where there is no next one.
+/// identity and eye, both names (those of parts become that of the whole). Throws Error where there is no next one.
 AddedFeature withFeaturesMerged(const TransferFunction& tf, int feature);
 /// The feature and its shape.
 TransferFunction withFeatureRemoved(const TransferFunction& tf, int feature);

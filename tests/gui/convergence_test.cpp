@@ -100,7 +100,8 @@ TEST_CASE("curves follow an optimization, and a dot shows its move", "[convergen
     const QPointF last = dotOf(plot, 0, run.history.size() - 1) * image.devicePixelRatio();
     CHECK(image.pixelColor(last.toPoint()).rgb() == rgbOf(curveColor(0)));
     const auto features = colorsOf(vws);
-    for (const Feature& f : w.document().tf().features) CHECK(features.count(rgbOf(f.color)) == 1);
+    for (const Feature& f : w.document().tf().features)
+        CHECK(features.count(seenOn(theme::kPanel, colorFromRgb(f.color)).rgb()) == 1);
 
     // The mouse reads values.
     QTest::mouseMove(&vws, dotOf(vws, 0, 1).toPoint());
@@ -195,6 +196,53 @@ TEST_CASE("runs are compared, renamed and deleted", "[convergence]") {
     w.document().undo();
     CHECK(runsOf(w).size() == 2);
     CHECK(list.topLevelItem(1)->text(0) == "eight at once");
+}
+
+TEST_CASE("a run has one count of moves, and says what else there was", "[convergence]") {
+    OpenWindow w;
+    openPanel(w);
+    // 1 move on the volume, after 3 on coarser copies of it; a step along equal shares follows.
+    const auto state = [](int level, double f) {
+        OptimizeState s;
+        s.opacity = {0.5, 0.5, 0.5};
+        s.vws = {0.3, 0.3, 0.4};
+        s.objective = f;
+        s.level = level;
+        return s;
+    };
+    OptimizeResult result;
+    result.tf = w.document().tf();
+    result.targets = {0.1, 0.3, 0.6};
+    result.history = {state(0, 0.3), state(2, 0.3), state(2, 0.2), state(1, 0.1), state(0, 0.05), state(0, 0.05)};
+    result.best = 5;
+    result.searched = 5;
+    w.bench().store().edit("Run", {}, [&](Session& session) { session.addRun(runOf(result, {})); });
+    auto& list = w.child<QTreeWidget>("runList");
+    REQUIRE(list.topLevelItemCount() == 1);
+    CHECK(list.topLevelItem(0)->text(1) == "1");
+    CHECK(sayOf(result, 0).contains("in 1 move"));
+    const QString tip = list.topLevelItem(0)->toolTip(1);
+    INFO(tip.toStdString());
+    CHECK(tip.contains("moves: 1 on the volume, 3 on coarser copies of it, 1 along equal shares"));
+}
+
+TEST_CASE("a cream curve can be seen on white", "[convergence][theme]") {
+    OpenWindow w;
+    openPanel(w);
+    TransferFunction tf = w.document().tf();
+    const Rgb cream{0.95, 0.91, 0.8};
+    tf.features[0].color = cream;
+    w.document().setTf(tf, "cream");
+    optimize(w, SearchMethod::Parallel, 2);
+    applyTheme(*qApp, Theme::Light);
+    auto& plot = w.child<PlotView>("vwsPlot");
+    const QColor drawn = seenOn(theme::kPanel, colorFromRgb(cream));
+    CHECK(contrast(drawn, theme::kPanel) >= kMarkContrast);
+    const auto light = colorsOf(plot);
+    CHECK(light.count(drawn.rgb()) == 1);
+    CHECK(light.count(rgbOf(cream)) == 0);
+    applyTheme(*qApp, Theme::Dark); // where it can be seen as it is
+    CHECK(colorsOf(plot).count(rgbOf(cream)) == 1);
 }
 
 TEST_CASE("curves are exported as table, picture and drawing", "[convergence]") {

@@ -52,6 +52,19 @@ TEST_CASE("a screenshot shows the window with picture and figures", "[program]")
     CHECK(colors.size() > 10); // the view, in the upper left part, is not empty
 }
 
+TEST_CASE("without a file it opens on the knee", "[program]") {
+    const QTemporaryDir folder;
+    const auto picture = [&](const QStringList& what) {
+        const QString path = folder.filePath("window.png");
+        const Outcome run = start(QStringList{"--size", "1000x700", "--renderer", "cpu", "--screenshot", path} + what);
+        INFO(run.err.toStdString());
+        REQUIRE(run.status == 0);
+        return QImage(path);
+    };
+    CHECK(picture({}) == picture({"sample:knee"}));
+    CHECK(start({"--help"}, false).out.contains("sample:knee"));
+}
+
 TEST_CASE("a theme can be named", "[program][theme]") {
     const QTemporaryDir folder;
     const auto corner = [&](const QStringList& options) { // the middle of the menu bar

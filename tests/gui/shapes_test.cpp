@@ -14,9 +14,11 @@
 #include <QTimer>
 #include <QToolButton>
 
+#include "base/round_numbers.h"
 #include "density_slider.h"
 #include "optimize/visibility_words.h"
 #include "tf/color_maps.h"
+#include "tf/part_names.h"
 #include "tf/shapes.h"
 
 using namespace pellucid;
@@ -107,6 +109,14 @@ TEST_CASE("a feature is split where its histogram says, merged again and removed
         CHECK(tf.features[1].id == before.features[1].id);
         CHECK(tf.features[1].b == splitPlace(before.features[1], w.document().histogram().counts));
         CHECK(tf.features[2].a == tf.features[1].b);
+        const auto [lower, upper] = namesOfParts(
+            before.features[1].name,
+            numberText(w.document().volume()->valueOfIntensity(tf.features[1].b),
+                       w.document().volume()->range().hi - w.document().volume()->range().lo));
+        CHECK(tf.features[1].name == lower);
+        CHECK(tf.features[2].name == upper);
+        // Each half has voxels to be seen.
+        for (int f : {1, 2}) CHECK(w.document().measures()->features[static_cast<std::size_t>(f)].visibility > 0);
         CHECK(mostApart(opacities(tf), opacities(before)) < 1e-12);
         CHECK(w.document().measures()->features.size() == 4);
     }

@@ -17,16 +17,8 @@ using namespace pellucid::gui;
 
 namespace {
 
-/// Relative luminance, WCAG 2.1.
-double luminance(const QColor& color) {
-    const auto linear = [](double v) { return v <= 0.03928 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
-    return 0.2126 * linear(color.redF()) + 0.7152 * linear(color.greenF()) + 0.0722 * linear(color.blueF());
-}
-
-double contrast(const QColor& a, const QColor& b) {
-    const double x = luminance(a), y = luminance(b);
-    return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
-}
+/// 0 of black, 1 of white: from the contrast to black, (L + 0.05)/0.05.
+double luminance(const QColor& color) { return 0.05 * contrast(color, Qt::black) - 0.05; }
 
 /// The colour that most pixels have: what the widget is painted on.
 QColor groundOf(const QImage& image) {
@@ -63,18 +55,44 @@ TEST_CASE("text can be read in both themes", "[theme]") {
         for (const QColor& ground : {theme::kWindow, theme::kPanel, theme::kRaised, theme::kTitle}) {
             INFO(ground.name().toStdString());
             // 4.5 is what WCAG 2.1 AA asks for.
-            CHECK(contrast(theme::kText, ground) >= 4.5);
-            CHECK((contrast(theme::kFaint, ground) >= 4.5 || ground == theme::kRaised));
+            CHECK(contrast(theme::kText, ground) >= kTextContrast);
+            CHECK(contrast(theme::kFaint, ground) >= kTextContrast);
+            CHECK(contrast(theme::kAccent, ground) >= kMarkContrast); // marks of what the mouse is at
         }
-        CHECK(contrast(theme::kCurve, theme::kHistogram) >= 4.5);
-        CHECK(contrast(theme::kCurve, theme::kPanel) >= 4.5);
-        CHECK(contrast(theme::kKnob, theme::kPanel) >= 4.5);
+        CHECK(contrast(theme::kFalls, theme::kPanel) >= kMarkContrast);
+        CHECK(contrast(theme::kCurve, theme::kHistogram) >= kTextContrast);
+        CHECK(contrast(theme::kCurve, theme::kPanel) >= kTextContrast);
+        CHECK(contrast(theme::kKnob, theme::kPanel) >= kTextContrast);
         const QPalette p = QApplication::palette();
-        CHECK(contrast(p.color(QPalette::HighlightedText), p.color(QPalette::Highlight)) >= 4.5);
-        CHECK(contrast(p.color(QPalette::ButtonText), p.color(QPalette::Button)) >= 4.5);
-        CHECK(contrast(p.color(QPalette::ToolTipText), p.color(QPalette::ToolTipBase)) >= 4.5);
-        CHECK(contrast(p.color(QPalette::PlaceholderText), p.color(QPalette::Base)) >= 4.5);
-        CHECK(contrast(p.color(QPalette::Link), p.color(QPalette::Window)) >= 4.5);
+        CHECK(contrast(p.color(QPalette::HighlightedText), p.color(QPalette::Highlight)) >= kTextContrast);
+        CHECK(contrast(p.color(QPalette::ButtonText), p.color(QPalette::Button)) >= kTextContrast);
+        CHECK(contrast(p.color(QPalette::ToolTipText), p.color(QPalette::ToolTipBase)) >= kTextContrast);
+        CHECK(contrast(p.color(QPalette::PlaceholderText), p.color(QPalette::Base)) >= kTextContrast);
+        CHECK(contrast(p.color(QPalette::Link), p.color(QPalette::Window)) >= kTextContrast);
+    }
+}
+
+TEST_CASE("colours of the data are brought to where they can be seen, and no farther", "[theme]") {
+    // WCAG 2.1: white on black is 21; mid grey #767676 on white is the classic 4.54.
+    CHECK(contrast(Qt::white, Qt::black) == Approx(21));
+    CHECK(contrast(QColor(0x76, 0x76, 0x76), Qt::white) == Approx(4.54).margin(0.01));
+    const DarkAgain dark;
+    for (const Theme theme : {Theme::Dark, Theme::Light}) {
+        applyTheme(*qApp, theme);
+        for (const QColor& ground : {theme::kWindow, theme::kPanel, theme::kTrack})
+            for (int hue = 0; hue < 360; hue += 30)
+                for (const int saturation : {0, 60, 255})
+                    for (int value = 0; value <= 255; value += 51) {
+                        const QColor color = QColor::fromHsv(hue, saturation, value);
+                        const QColor seen = seenOn(ground, color);
+                        INFO(name(theme) << ' ' << ground.name().toStdString() << ' ' << color.name().toStdString());
+                        CHECK(contrast(seen, ground) >= kMarkContrast - 1e-3);
+                        if (contrast(color, ground) >= kMarkContrast)
+                            CHECK(seen == color);
+                        else
+                            CHECK(contrast(seen, ground) < kMarkContrast + 0.2);
+                        CHECK(contrast(seenOn(ground, color, kTextContrast), ground) >= kTextContrast - 1e-3);
+                    }
     }
 }
 
@@ -98,7 +116,7 @@ TEST_CASE("the View menu switches the theme at once, and back", "[theme]") {
         QWidget& widget = w.child<QWidget>(id);
         before[id] = grab(widget);
         CHECK(luminance(groundOf(before[id])) < 0.1);
-        CHECK(textContrast(widget) >= 4.5);
+        CHECK(textContrast(widget) >= kTextContrast);
     }
 
     w.child<QAction>("themeLightAction").trigger();
@@ -112,7 +130,7 @@ TEST_CASE("the View menu switches the theme at once, and back", "[theme]") {
         INFO(id);
         QWidget& widget = w.child<QWidget>(id);
         CHECK(luminance(groundOf(grab(widget))) > 0.6);
-        CHECK(textContrast(widget) >= 4.5);
+        CHECK(textContrast(widget) >= kTextContrast);
     }
     // No feature is painted in another colour, and nothing was edited.
     CHECK(w.document().tf() == tf);

@@ -4,8 +4,10 @@
 #include <QAction>
 #include <QComboBox>
 #include <QDockWidget>
+#include <QHelpEvent>
 #include <QLabel>
 #include <QPushButton>
+#include <QToolTip>
 
 #include <glm/geometric.hpp>
 
@@ -172,6 +174,32 @@ TEST_CASE("the best view is gone to, and is the best", "[gui][views]") {
     CHECK(w.search().best()->best.value >= w.search().best()->present.value);
     CHECK(w.words().contains("VWS = "));
     CHECK(differentPixels(globe, w.globePicture()) > 100);
+}
+
+TEST_CASE("globe and panel have the same figure of this view, and say what is of a coarser copy", "[gui][views]") {
+    OpenGlobe w;
+    w.document().setCamera(rotated(w.document().camera(), w.document().volume()->geometry(), 25, 10));
+    w.settle();
+    REQUIRE_FALSE(w.document().camera() == w.search().best()->best.camera);
+    const QString figure = QString::number(*w.bench().results().objective(), 'f', 4);
+    INFO(w.words().toStdString());
+    CHECK(w.child<QLabel>("distanceLabel").text().endsWith("F = " + figure));
+    CHECK(w.words().endsWith("From here: F = " + figure + "."));
+    // Of a place that nobody has measured on the volume.
+    const QPointF at = *w.globe().pointOf(w.upperRight());
+    QHelpEvent help(QEvent::ToolTip, at.toPoint(), w.globe().mapToGlobal(at.toPoint()));
+    QCoreApplication::sendEvent(&w.globe(), &help);
+    INFO(QToolTip::text().toStdString());
+    CHECK(QToolTip::text().contains(QStringLiteral("F ≈ ")));
+    CHECK(QToolTip::text().contains("on a coarser copy of the volume"));
+    QToolTip::hideText();
+    // The share of a feature, likewise.
+    auto& box = w.child<QComboBox>("viewsFigure");
+    box.setCurrentIndex(2);
+    Q_EMIT box.activated(2);
+    w.found();
+    const double vws = w.document().measures()->features[1].vws;
+    CHECK(w.words().endsWith(QStringLiteral("VWS = %1.").arg(vws, 0, 'f', 4)));
 }
 
 TEST_CASE("a globe of an older state is pale until it is made anew", "[gui][views]") {

@@ -115,9 +115,17 @@ TEST_CASE("the inner one of two balls is seen through the outer one", "[first si
     REQUIRE(proposal.features.size() == 2);
     const auto volume = seenThrough(*data, proposal);
     const View home = homeOf(*volume);
-    const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, home);
+    const FirstSight sight = withOpacitiesForView(*volume, proposal, proposal.tf, home);
+    const TransferFunction& tf = sight.tf;
     tf.validate();
     CHECK(tf.features == proposal.tf.features); // opacities alone have changed
+    // What it aims at, as shares of all: wanted covers times the rays that they are a mean over.
+    const RayBundle rays(*volume, proposal.tf, home, 72);
+    const std::vector<double> wanted = wantedCovers(rays, importanceOf(proposal), !proposal.background);
+    const double first = wanted[0] * rays.raysOf(0), second = wanted[1] * rays.raysOf(1);
+    REQUIRE(sight.shares.size() == 2);
+    CHECK(sight.shares[0] == Approx(first / (first + second)));
+    CHECK(sight.shares[1] == Approx(second / (first + second)));
     CHECK(tf.range == proposal.tf.range);
 
     const FeatureSums sums = makeCpuEngine(volume)->sums(home, std::vector<TransferFunction>{tf}, nullptr)[0];
@@ -146,7 +154,7 @@ TEST_CASE("neither empty nor solid, whatever one starts from", "[first sight]") 
     for (const double start : {0.0005, 0.9}) {
         const TransferFunction from =
             withFeatureOpacities(proposal.tf, std::vector<double>(proposal.features.size(), start));
-        const TransferFunction tf = withOpacitiesForView(*volume, proposal, from, home);
+        const TransferFunction tf = withOpacitiesForView(*volume, proposal, from, home).tf;
         const auto a = RayBundle(*volume, tf, home).appearances({tf}).front();
         CHECK(a.translucent > 0.05);
         CHECK(a.translucent < 0.95);
@@ -161,7 +169,7 @@ TEST_CASE("one feature alone is neither empty nor solid", "[first sight]") {
     const Proposal proposal = propose(*data);
     REQUIRE(proposal.features.size() == 1);
     const auto volume = seenThrough(*data, proposal);
-    const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, homeOf(*volume));
+    const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, homeOf(*volume)).tf;
     const auto a = RayBundle(*volume, tf, homeOf(*volume)).appearances({tf}).front();
     CHECK(a.translucent > 0.02);
     CHECK(a.translucent < 0.98);
@@ -174,7 +182,7 @@ TEST_CASE("features that meet go on meeting, without a step", "[first sight]") {
     REQUIRE(proposal.features.size() == 2);
     REQUIRE(proposal.features[0].hi == proposal.features[1].lo);
     const auto volume = seenThrough(*data, proposal);
-    const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, homeOf(*volume));
+    const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, homeOf(*volume)).tf;
     REQUIRE(featureOpacities(tf) != featureOpacities(proposal.tf));
     const double x = tf.features[0].b;
     CHECK(tf.opacity(x - 1e-9) == Approx(tf.opacity(x)).margin(1e-6));
@@ -188,9 +196,9 @@ TEST_CASE("the same opacities for any number of threads", "[first sight]") {
     const Proposal proposal = propose(*data);
     const auto volume = seenThrough(*data, proposal);
     setThreadCount(1);
-    const TransferFunction one = withOpacitiesForView(*volume, proposal, proposal.tf, homeOf(*volume));
+    const TransferFunction one = withOpacitiesForView(*volume, proposal, proposal.tf, homeOf(*volume)).tf;
     setThreadCount(5);
-    const TransferFunction five = withOpacitiesForView(*volume, proposal, proposal.tf, homeOf(*volume));
+    const TransferFunction five = withOpacitiesForView(*volume, proposal, proposal.tf, homeOf(*volume)).tf;
     setThreadCount(0);
     CHECK(one == five);
 }
@@ -199,11 +207,12 @@ TEST_CASE("where there is nothing to see opacities stay", "[first sight]") {
     const auto nothing = volumeFrom(
         geometryOf(Int3(8)), [](int, int, int) { return NAN; }, std::nullopt);
     const Proposal proposal = propose(*nothing);
-    CHECK(withOpacitiesForView(*nothing, proposal, proposal.tf, homeOf(*nothing)) == proposal.tf);
+    CHECK(withOpacitiesForView(*nothing, proposal, proposal.tf, homeOf(*nothing)).tf == proposal.tf);
+    CHECK(withOpacitiesForView(*nothing, proposal, proposal.tf, homeOf(*nothing)).shares.empty());
     TransferFunction bare = tents(2);
     bare.features.clear();
     const auto volume = slab(Int3(8), 0.5);
-    CHECK(withOpacitiesForView(*volume, proposal, bare, homeOf(*volume)) == bare);
+    CHECK(withOpacitiesForView(*volume, proposal, bare, homeOf(*volume)).tf == bare);
     std::stop_source stop;
     stop.request_stop();
     const auto balls = nestedBalls(16, 0.5, 90);

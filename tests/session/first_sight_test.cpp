@@ -51,7 +51,7 @@ Look lookAt(const Volume& data) {
     const auto volume = std::make_shared<const Volume>(
         data.dataRange().lo < data.dataRange().hi ? data.withRange(proposal.window) : data);
     const View home(homeCamera(data.geometry(), Projection::Perspective));
-    const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, home);
+    const TransferFunction tf = withOpacitiesForView(*volume, proposal, proposal.tf, home).tf;
     tf.validate();
     const auto draw = [&](const std::shared_ptr<const Volume>& v, const TransferFunction& t, bool transparent) {
         RenderSettings settings;

@@ -200,11 +200,23 @@ TEST_CASE("a volume that brings nothing opens by what its data propose", "[sessi
     // Shown first, tuned afterwards: the same in the end.
     in.start = SceneInputs::Start::Proposed;
     const Scene first = openScene(in);
+    // Targets are what the start aims at, not equal shares.
+    const std::vector<double> shares = tunedStart(first).shares, targets = scene.targets();
+    REQUIRE(shares.size() == scene.tf.features.size());
+    REQUIRE(targets.size() == shares.size());
+    for (std::size_t f = 0; f < shares.size(); ++f) CHECK(targets[f] == Approx(shares[f]));
+    CHECK(std::abs(targets[0] - targets[1]) > 0.05);
+    CHECK(first.targets()[0] == first.targets()[1]); // nothing is aimed at yet
+    // Those that somebody has set stay.
+    Session wanted = first.session;
+    wanted.goals.set(withTargets(*wanted.goals, first.tf, {0.9, 0.1}));
+    setStart(wanted, tunedStart(first));
+    CHECK(targetsOf(*wanted.tf(), *wanted.goals)[0] == Approx(0.9));
     CHECK(first.tf.points == scene.proposal->tf.points);
-    CHECK(tunedTf(first) == scene.tf);
+    CHECK(tunedStart(first).tf == scene.tf);
     // Not from where one happens to look: a volume has one automatic start.
     in.view = ViewAngles{120, -40, 3};
-    CHECK(tunedTf(openScene(in)) == scene.tf);
+    CHECK(tunedStart(openScene(in)).tf == scene.tf);
     in.view.reset();
     // Asked for, whatever the session has.
     in.start = SceneInputs::Start::Tuned;
@@ -254,11 +266,11 @@ TEST_CASE("an automatic start again is one for the view that it is asked for", "
     CHECK(other.volume->range() == ValueRange{0, 1e6});
     const AutomaticStart home = automaticStart(other, View(automatic.camera));
     CHECK(home.window == automatic.session.variable().window);
-    CHECK(home.tf.points == automatic.tf.points);
+    CHECK(home.sight.tf.points == automatic.tf.points);
     // With the outer box cut away in front, the inner one needs less to be seen as much.
     View cut(automatic.camera);
     cut.clipping.lo = {0, 0.5, 0};
-    CHECK(automaticStart(other, cut).tf.points != automatic.tf.points);
+    CHECK(automaticStart(other, cut).sight.tf.points != automatic.tf.points);
 }
 
 TEST_CASE("nothing to open is wrong usage", "[session]") {

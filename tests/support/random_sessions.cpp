@@ -323,6 +323,7 @@ Session randomSession(std::uint32_t number) {
     s.frame = random.chance(0.6) ? 0 : random.below(60);
     s.goals = randomGoals(random, features);
     s.holdTargets = random.chance(0.3);
+    if (random.chance(0.5)) s.density = oddNumber(random, 0, 1);
     if (random.chance(0.5)) s.camera = randomCamera(random);
     if (random.chance(0.5)) {
         Clipping clipping{oddVector(random, 0, 0.45), oddVector(random, 0.5, 1), {}};

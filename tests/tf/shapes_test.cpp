@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "support/random_tfs.h"
+#include "tf/part_names.h"
 #include "tf/shapes.h"
 
 using namespace pellucid;
@@ -178,8 +179,8 @@ TEST_CASE("a split changes no opacity, and a merge undoes it", "[shapes]") {
     CHECK(split.features[2].b == tf.features[1].b);
     CHECK(split.features[1].id == 8);
     CHECK(split.features[2].id == 0);
-    CHECK(split.features[1].name == "f2");
-    CHECK(split.features[2].name == "f2 2");
+    CHECK(split.features[1].name == "f2 up to 0.45"); // of a function without a range: intensities
+    CHECK(split.features[2].name == "f2 from 0.45");
     CHECK_FALSE(split.features[2].color == split.features[1].color);
     CHECK(mostDifference(split, tf) < 1e-12);
     // Each side owns a point at the border: raising one leaves the other.
@@ -193,7 +194,7 @@ TEST_CASE("a split changes no opacity, and a merge undoes it", "[shapes]") {
     REQUIRE(merged.tf.features.size() == 3);
     CHECK(merged.tf.features[1].a == tf.features[1].a);
     CHECK(merged.tf.features[1].b == tf.features[1].b);
-    CHECK(merged.tf.features[1].name == "f2 + f2 2");
+    CHECK(merged.tf.features[1].name == "f2");
     CHECK(merged.tf.features[1].id == 0); // the upper part was wider
     CHECK(mostDifference(merged.tf, tf) < 1e-12);
     CHECK_THROWS_AS(withFeaturesMerged(tf, 2), Error);
@@ -213,6 +214,63 @@ TEST_CASE("a feature is split in the deepest valley of its histogram", "[shapes]
     // A slope that goes on to the end is no valley.
     for (std::size_t i = 0; i < 256; ++i) counts[i] = 1000 - 2 * i;
     CHECK(splitPlace(f, counts) == 0.5);
+}
+
+TEST_CASE("neither half of a split is next to nothing", "[shapes]") {
+    TransferFunction tf;
+    tf.range = ValueRange{0, 256};
+    tf.points = {{0.25, 0.5, {}, false, {}}, {0.75, 0.5, {}, false, {}}};
+    tf.features.push_back({"bone", 0.25, 0.75, {}, {}});
+    const Feature f = tf.features[0];
+    const auto partBelow = [](const std::vector<std::uint64_t>& counts, double place) {
+        double below = 0, all = 0; // `place` at the end or in the middle of a bin
+        for (std::size_t i = 64; i < 192; ++i) {
+            const double c = static_cast<double>(counts[i]), bin = static_cast<double>(i);
+            below += c * std::clamp(256 * place - bin, 0.0, 1.0);
+            all += c;
+        }
+        return below / all;
+    };
+    // Two peaks, the deepest valley before the first few voxels: 10 of 12 490 lie below it, 0.08 %.
+    std::vector<std::uint64_t> counts(256, 0);
+    counts[64] = 10;
+    for (std::size_t i = 70; i < 134; ++i) counts[i] = 100;
+    for (std::size_t i = 140; i < 192; ++i) counts[i] = i < 144 ? 50 : 120; // a shallower one between these
+    for (std::size_t i = 134; i < 140; ++i) counts[i] = 20;
+    const double place = splitPlace(f, counts);
+    CHECK(place == 137.0 / 256); // three bins at a time the bottom is 135 to 138
+    CHECK(partBelow(counts, place) >= kSmallestPart);
+    CHECK(partBelow(counts, place) <= 1 - kSmallestPart);
+    CHECK_NOTHROW(withFeatureSplit(tf, 0, place, counts));
+    // No valley, and nearly all in the first tenth: where the voxels are halved, not the interval.
+    std::fill(counts.begin(), counts.end(), 0);
+    for (std::size_t i = 64; i < 74; ++i) counts[i] = 1000 - 50 * (i - 64); // 1000, 950 … 550: 7750
+    const double half = splitPlace(f, counts);
+    CHECK(half == 68.0 / 256); // 3700 below and 4050 above; a bin farther it would be 4500 and 3250
+    // What somebody points at is refused with the reason.
+    CHECK_THROWS_WITH(withFeatureSplit(tf, 0, 0.6, counts), Catch::Contains("hardly a voxel of 'bone' would lie above 15"));
+    CHECK_NOTHROW(withFeatureSplit(tf, 0, 0.6));
+    CHECK(withFeatureSplit(tf, 0, half, counts).features[0].name == "bone up to 68");
+}
+
+TEST_CASE("halves have names that say what they are", "[shapes]") {
+    using Names = std::pair<std::string, std::string>;
+    CHECK(namesOfParts("bone", "700") == Names("bone up to 700", "bone from 700"));
+    CHECK(namesOfParts("bone from 700", "900") == Names("bone from 700 to 900", "bone from 900"));
+    CHECK(namesOfParts("bone up to 700", "-3.5") == Names("bone up to -3.5", "bone from -3.5 to 700"));
+    CHECK(namesOfParts("soft tissue from 1 to 2", "1.5") ==
+          Names("soft tissue from 1 to 1.5", "soft tissue from 1.5 to 2"));
+    CHECK(namesOfParts("22.2 to 86.2", "50") == Names("22.2 to 50", "50 to 86.2"));
+    CHECK(namesOfParts("", "5") == Names("up to 5", "from 5"));
+    CHECK(namesOfParts("from 3", "5") == Names("from 3 up to 5", "from 3 from 5")); // a name like any other
+    for (const char* name : {"bone", "bone from 700", "bone up to 900", "fat from -3 to 1e+06", "0 to 1000", "a b c"}) {
+        INFO(name);
+        const auto [lower, upper] = namesOfParts(name, "800");
+        CHECK(nameOfWhole(lower, upper) == name);
+    }
+    CHECK(nameOfWhole("fat", "bone") == "fat + bone");
+    CHECK(nameOfWhole("22 to 86", "86 to 169") == "22 to 169");
+    CHECK(nameOfWhole("22 to 80", "86 to 169") == "22 to 80 + 86 to 169");
 }
 
 TEST_CASE("a feature that is removed leaves nothing, and nothing else changes", "[shapes]") {

@@ -92,11 +92,11 @@ void split(Workbench& bench, int feature) {
     tryEdit(bench, QObject::tr("Split feature"), [&](const TransferFunction& tf) {
         const Feature& f = tf.features[static_cast<std::size_t>(feature)];
         const std::optional<double> pointed = bench.selection().hoveredIntensity();
-        if (pointed && *pointed > f.a && *pointed < f.b) return withFeatureSplit(tf, feature, *pointed);
         const auto& histogram = bench.scene().histogram;
-        return withFeatureSplit(tf, feature,
-                                splitPlace(f, histogram ? std::span<const std::uint64_t>(histogram->counts)
-                                                        : std::span<const std::uint64_t>()));
+        const std::span<const std::uint64_t> counts =
+            histogram ? std::span<const std::uint64_t>(histogram->counts) : std::span<const std::uint64_t>();
+        const bool points = pointed && *pointed > f.a && *pointed < f.b;
+        return withFeatureSplit(tf, feature, points ? *pointed : splitPlace(f, counts), counts);
     });
 }
 

@@ -81,7 +81,7 @@ OpenController::OpenController(Workbench& bench)
               Scene scene = resolve(std::move(session), change.basis, then, job);
               if (scene.proposal) { // a variable that has not been drawn yet comes to the front
                   session = scene.session;
-                  session.setTf(tunedTf(scene, job));
+                  setStart(session, tunedStart(scene, job));
                   scene = resolve(std::move(session), scene, then, job);
               }
               openNewVariables(scene, change.basis, then, job);

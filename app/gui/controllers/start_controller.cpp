@@ -53,15 +53,15 @@ QString beyondText(const Proposal& proposal, const ValueRange& data) {
 }
 
 StartController::StartController(Workbench& bench)
-    : m_bench(bench), m_tuning([](const Scene& scene, const JobControl& job) { return tunedTf(scene, job); },
-                               [this](const Scene& scene, TransferFunction& tf) { showTuned(scene, tf); }),
+    : m_bench(bench), m_tuning([](const Scene& scene, const JobControl& job) { return tunedStart(scene, job); },
+                               [this](const Scene& scene, FirstSight& start) { showTuned(scene, start); }),
       m_again([](const Request& request,
                  const JobControl& job) { return automaticStart(request.scene, request.view, job); },
               [this](const Request& request, AutomaticStart& start) {
                   if (request.scene.data != m_bench.scene().data || m_bench.isReadOnly()) return;
-                  const auto change = [window = start.window, tf = start.tf](Session& session) {
+                  const auto change = [window = start.window, sight = start.sight](Session& session) {
                       session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
-                      session.setTf(tf);
+                      setStart(session, sight);
                   };
                   m_bench.opening().editData(tr("Automatic start"), change,
                                              [this, proposal = start.proposal] { say(proposal); });
@@ -115,14 +115,14 @@ void StartController::say(const Proposal& proposal) {
                                      }}}});
 }
 
-void StartController::showTuned(const Scene& scene, TransferFunction& tf) {
+void StartController::showTuned(const Scene& scene, const FirstSight& start) {
     SessionStore& store = m_bench.store();
     // Whoever has a hand in it keeps what he has.
     if (store.scene().data != scene.data || store.isPreviewing() || m_bench.isReadOnly() ||
         store.session().tf() != scene.session.tf() || store.scene().volume != scene.volume)
         return;
     const bool clean = store.isClean();
-    store.edit(tr("Automatic opacities"), {}, [&tf](Session& session) { session.setTf(tf); });
+    store.edit(tr("Automatic opacities"), {}, [&start](Session& session) { setStart(session, start); });
     if (clean) store.setClean(); // it is not the user's work
 }
 

@@ -36,10 +36,10 @@ private:
         View view; ///< of startAgain()
     };
     void say(const Proposal& proposal);
-    void showTuned(const Scene& scene, TransferFunction& tf);
+    void showTuned(const Scene& scene, const FirstSight& start);
 
     Workbench& m_bench;
-    Job<Scene, TransferFunction> m_tuning;
+    Job<Scene, FirstSight> m_tuning;
     Job<Request, AutomaticStart> m_again;
 };
 

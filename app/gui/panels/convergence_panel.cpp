@@ -56,6 +56,12 @@ QString shortNumber(double value) { return QString::number(value, 'g', 3); }
 QString tipOf(const Run& run) {
     QStringList lines{QObject::tr("F %1, from %2; %3")
                           .arg(shortNumber(run.after), shortNumber(run.before), QString::fromStdString(run.ended))};
+    const auto coarse = std::count_if(run.history.begin(), run.history.end(), [](const auto& s) { return s.level > 0; });
+    const auto others = static_cast<std::ptrdiff_t>(run.history.size()) - 1 - run.iterations - coarse;
+    QStringList moves{QObject::tr("%1 on the volume").arg(run.iterations)};
+    if (coarse > 0) moves << QObject::tr("%1 on coarser copies of it").arg(coarse);
+    if (others > 0) moves << QObject::tr("%1 along equal shares").arg(others);
+    lines << QObject::tr("moves: %1").arg(moves.join(", "));
     if (run.evaluations > 0) lines << QObject::tr("%1 evaluations of the features' saliency").arg(run.evaluations);
     if (run.seconds > 0) lines << QObject::tr("%1 s").arg(shortNumber(run.seconds));
     if (!run.started.empty())
@@ -137,7 +143,8 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     m_list->setHeaderLabels({tr("Run"), tr("Moves"), tr("F"), tr("s")});
     m_list->headerItem()->setToolTip(kTitle, tr("Checked runs are compared in the first plot; the selected one has\n"
                                                 "the other two. F2 renames, Del deletes."));
-    m_list->headerItem()->setToolTip(kMoves, tr("Moves of the search, those on coarser volumes too"));
+    m_list->headerItem()->setToolTip(kMoves, tr("Moves of the search on the volume itself. The plots also have those on\n"
+                                                "coarser copies of it, hollow, and those along equal shares that follow"));
     m_list->headerItem()->setToolTip(kDistance, tr("Distance from the targets at the end"));
     m_list->headerItem()->setToolTip(kSeconds, tr("Seconds that the search took"));
     m_list->header()->setStretchLastSection(false);
@@ -277,7 +284,7 @@ void ConvergencePanel::fillList() {
         item->setData(kTitle, kNumber, ended ? run.number : kUnderWay);
         item->setText(kTitle, ended ? QString::fromStdString(titleOf(run)) : tr("under way"));
         item->setIcon(kTitle, swatch(colorFromRgb(colorOf(run))));
-        item->setText(kMoves, QString::number(run.history.size() - 1));
+        item->setText(kMoves, QString::number(run.iterations));
         item->setText(kDistance, shortNumber(run.after));
         item->setText(kSeconds, run.seconds > 0 ? shortNumber(run.seconds) : QString());
         for (const int column : {kMoves, kDistance, kSeconds})

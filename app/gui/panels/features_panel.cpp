@@ -108,7 +108,7 @@ protected:
         QPixmap swatch(option->decorationSize);
         swatch.fill(color);
         QPainter painter(&swatch);
-        painter.setPen(theme::kLine);
+        painter.setPen(contrast(color, theme::kPanel) < kMarkContrast ? seenOn(theme::kPanel, color) : theme::kLine);
         painter.drawRect(swatch.rect().adjusted(0, 0, -1, -1));
         option->icon = QIcon(swatch);
     }
@@ -282,8 +282,8 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     column->addWidget(makeShapeRow());
     column->addWidget(makeTargetRow());
     column->addWidget(scroll, 1);
+    column->addLayout(status); // above what is taken hold of, which must not move when a message comes or goes
     column->addWidget(makeColorRow());
-    column->addLayout(status);
     column->addLayout(choices);
     column->addLayout(buttons);
 
@@ -467,7 +467,12 @@ void FeaturesPanel::followRun() {
         if (run.objective() > tolerance && run.firstObjective() > tolerance)
             done = std::log(run.firstObjective() / run.objective()) / std::log(run.firstObjective() / tolerance);
         m_progress->setValue(static_cast<int>(1000 * std::clamp(done, 0.0, 1.0)));
-        m_progress->setFormat(tr("move %1, F = %2").arg(run.move()).arg(run.objective(), 0, 'f', 4));
+        // Moves are those on the volume, as in the message at the end and in the list of runs.
+        const std::vector<OptimizeState>& history = run.underWay()->history;
+        const auto whole = std::count_if(history.begin(), history.end(), [](const auto& s) { return s.level == 0; });
+        m_progress->setFormat((history.back().level == 0 ? tr("move %1, F = %2").arg(whole - 1)
+                                                         : tr("on a coarser copy, F = %1"))
+                                  .arg(run.objective(), 0, 'f', 4));
     }
     m_optimize->setVisible(!on);
     m_cancel->setVisible(on);

@@ -19,6 +19,8 @@
 namespace pellucid::gui {
 namespace {
 
+constexpr int kRowNames = 100; // at most, pixels
+
 QString signedText(double value) { return QString::asprintf("%+.3g", value).replace('-', QChar(0x2212)); }
 
 QColor blend(const QColor& from, const QColor& to, double share) {
@@ -69,10 +71,15 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
     m_table->setObjectName("influenceTable");
     m_table->setEditTriggers(QAbstractItemView::NoEditTriggers);
     m_table->setSelectionMode(QAbstractItemView::NoSelection);
-    // As wide as the numbers: many features scroll, they are not cut off.
+    // As wide as the numbers, names in two lines: many features scroll, numbers are not cut off.
     m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    m_table->horizontalHeader()->setDefaultAlignment(Qt::AlignCenter | Qt::Alignment(Qt::TextWordWrap));
+    m_table->horizontalHeader()->setFixedHeight(2 * m_table->fontMetrics().lineSpacing() + 8);
+    m_table->verticalHeader()->setMaximumWidth(kRowNames);
     m_table->setHorizontalScrollMode(QAbstractItemView::ScrollPerPixel);
     m_table->setTextElideMode(Qt::ElideNone);
+    for (QHeaderView* header : {m_table->horizontalHeader(), m_table->verticalHeader()})
+        header->setTextElideMode(Qt::ElideRight);
     m_table->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     m_copyAction->setObjectName("copyInfluenceAction");
     m_copyAction->setShortcut(QKeySequence::Copy);
@@ -91,6 +98,21 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
         }
     });
     connect(&results, &Results::changed, this, &InfluencePanel::refresh);
+}
+
+// All columns where they fit: names have what numbers leave them.
+void InfluencePanel::fitColumns() {
+    const int n = m_table->columnCount();
+    if (n == 0) return;
+    const int room = m_table->width() - 2 * m_table->frameWidth() -
+                     std::min(m_table->verticalHeader()->sizeHint().width(), kRowNames);
+    const int height = m_table->horizontalHeader()->height();
+    for (int i = 0; i < n; ++i) m_table->horizontalHeaderItem(i)->setData(Qt::SizeHintRole, QSize(room / n, height));
+}
+
+void InfluencePanel::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    fitColumns();
 }
 
 void InfluencePanel::showEvent(QShowEvent* event) {
@@ -128,6 +150,7 @@ void InfluencePanel::rebuild() {
             m_table->setItem(i, j, cell);
         }
     }
+    fitColumns();
     refresh();
 }
 

@@ -20,8 +20,10 @@ public:
     InfluencePanel(SessionStore& store, Results& results, QWidget* parent = nullptr);
 
 private:
+    void resizeEvent(QResizeEvent* event) override;
     void showEvent(QShowEvent* event) override;
     void changeEvent(QEvent* event) override;
+    void fitColumns();
     void rebuild();
     /// What the table shows: the influence, or who hides whom. Null before it is known.
     const std::vector<std::vector<double>>* matrix() const;

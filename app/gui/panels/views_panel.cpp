@@ -31,9 +31,11 @@ QString anglesText(const Vec3& towardEye) {
     return QObject::tr("azimuth %1, elevation %2").arg(degrees(angles.azimuth), degrees(angles.elevation));
 }
 
+/// `about`: of the map, which is of a coarser copy of the volume.
 QString figureText(const ViewMetric& metric, double value, bool about) {
     const QString name = metric.figure == ViewMetric::Figure::Objective ? QObject::tr("F") : QObject::tr("VWS");
-    return QStringLiteral("%1 %2 %3").arg(name, about ? "≈" : "=", QString::number(value, 'f', about ? 2 : 4));
+    return about ? QObject::tr("%1 ≈ %2, on a coarser copy of the volume").arg(name, QString::number(value, 'f', 2))
+                 : QStringLiteral("%1 = %2").arg(name, QString::number(value, 'f', 4));
 }
 
 } // namespace
@@ -130,6 +132,7 @@ ViewsPanel::ViewsPanel(Workbench& bench, QWidget* parent)
     });
     connect(&search, &ViewSearchController::changed, this, &ViewsPanel::refresh);
     connect(&bench.optimizing(), &OptimizeController::runningChanged, this, &ViewsPanel::refresh);
+    connect(&bench.results(), &Results::changed, this, &ViewsPanel::refresh);
     connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (!std::equal(before.tf.features.begin(), before.tf.features.end(), after.tf.features.begin(),
                         after.tf.features.end(),
@@ -164,13 +167,20 @@ QString ViewsPanel::words() const {
     const ViewMetric& metric = search.map().metric;
     const BestView& best = *search.best();
     const Camera& camera = store.scene().camera;
-    const bool sameView = camera == best.present.camera, there = camera == best.best.camera;
-    const double here = there      ? best.best.value
-                        : sameView ? best.present.value
-                                   : search.map().interpolated(-camera.forward());
+    std::optional<double> here = measuredHere(metric);
+    if (camera == best.best.camera) here = best.best.value;
     return tr("Best: %1, %2. From here: %3.")
         .arg(anglesText(-best.best.camera.forward()), figureText(metric, best.best.value, false),
-             figureText(metric, here, !there && !sameView));
+             here ? figureText(metric, *here, false)
+                  : figureText(metric, search.map().interpolated(-camera.forward()), true));
+}
+
+// The figure that the other panels have of this view.
+std::optional<double> ViewsPanel::measuredHere(const ViewMetric& metric) const {
+    const Results& results = m_bench.results();
+    if (!results.vwsIsCurrent()) return {};
+    if (metric.figure == ViewMetric::Figure::Objective) return results.objective();
+    return results.measures()->features.at(metric.feature).vws;
 }
 
 void ViewsPanel::refresh() {

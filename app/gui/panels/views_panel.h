@@ -1,7 +1,11 @@
 // The dock with the sphere of views.
 #pragma once
 
+#include <optional>
+
 #include <QWidget>
+
+#include "optimize/view_search.h"
 
 class QComboBox;
 class QLabel;
@@ -26,6 +30,7 @@ private:
     void fillFigures();
     void refresh();
     QString words() const;
+    std::optional<double> measuredHere(const ViewMetric& metric) const; ///< empty: not of the present state
 
     Workbench& m_bench;
     ViewSearchController* m_search; ///< a child
