@@ -80,7 +80,7 @@ _pellucid_cli() {
             return
             ;;
         --frames | --frame | --array | --cache | --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
-            --region | --step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
+            --region | --step | --finest-step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
             --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
             --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
             --image-size | --report-size | --fix | --tolerance | --coverage | --window | --tf-strength | \

@@ -18,7 +18,8 @@ namespace {
 constexpr double kFrameSeconds = 0.045; ///< that a picture may take while the scene changes
 constexpr int kRest = 120;              ///< milliseconds without a change, before the full picture is begun
 constexpr int kGrowEvery = 40;          ///< milliseconds between looks at what has grown
-/// Rays one pixel apart, samples one voxel apart: what lies between two samples counts in full, by running integrals.
+/// Of the picture before the last. Rays one pixel apart, samples one voxel apart: what lies between two samples counts
+/// in full, by running integrals.
 constexpr double kFullStep = 1, kCoarsestStep = 3;
 constexpr double kCoarsest = 0.5, kLastResort = 0.2; ///< rays per pixel along each axis
 
@@ -41,7 +42,7 @@ struct CpuSurface::Shared {
     std::unique_ptr<TileRenderer> renderer;
 };
 
-/// A full picture while it is drawn: one thread adds parts, the window's takes them.
+/// A picture while it is drawn that grows: one thread adds parts, the window's takes them.
 struct CpuSurface::Growing {
     std::mutex mutex;
     QImage pixels;
@@ -56,7 +57,7 @@ CpuSurface::CpuSurface(QWidget* parent)
     m_idle.setSingleShot(true);
     m_idle.setInterval(kRest);
     m_grow.setInterval(kGrowEvery);
-    connect(&m_idle, &QTimer::timeout, this, [this] { draw(true); });
+    connect(&m_idle, &QTimer::timeout, this, [this] { draw(m_next); });
     connect(&m_grow, &QTimer::timeout, this, &CpuSurface::takeGrown);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_grow.stop();
@@ -98,7 +99,7 @@ CpuSurface::Picture CpuSurface::drawn(Shared& shared, const Task& task, const Jo
 /// Half the resolution before longer steps, and less than that where nothing else helps. `samples`: of those of a full
 /// picture.
 CpuSurface::Plan CpuSurface::planFor(double samples) {
-    Plan plan{std::clamp(std::sqrt(samples), kCoarsest, 1.0), kFullStep};
+    Plan plan{std::clamp(std::sqrt(samples), kCoarsest, 1.0), kFullStep, {}};
     plan.stepInD0 = std::clamp(kFullStep * plan.scale * plan.scale / samples, kFullStep, kCoarsestStep);
     if (plan.stepInD0 == kCoarsestStep)
         plan.scale = std::clamp(std::sqrt(samples * kCoarsestStep / kFullStep), kLastResort, plan.scale);
@@ -132,10 +133,10 @@ void CpuSurface::restart() {
         m_again = true;
         return;
     }
-    draw(false);
+    draw(Stage::Quick);
 }
 
-void CpuSurface::draw(bool full) {
+void CpuSurface::draw(Stage stage) {
     m_again = false;
     m_growing.reset();
     if (!m_scene.volume || width() <= 0 || height() <= 0) {
@@ -148,14 +149,19 @@ void CpuSurface::draw(bool full) {
     const QSize pixels(static_cast<int>(std::lround(width() * ratio)), static_cast<int>(std::lround(height() * ratio)));
     const QPointF mouse = mapFromGlobal(QPointF(QCursor::pos()));
     const QPointF focus = QRectF(rect()).contains(mouse) ? mouse : QRectF(rect()).center();
-    Task task{m_scene, pixels, full ? Plan{1, kFullStep} : planFor(m_samples), (focus * ratio).toPoint(), {}};
+    const RenderSettings& wanted = m_scene.settings;
+    const Plan plan = stage == Stage::Quick  ? planFor(m_samples)
+                      : stage == Stage::Full ? Plan{1, kFullStep, {}}
+                                             : Plan{1, wanted.stepInD0, wanted.finestInD0};
+    Task task{m_scene, pixels, stage, plan, (focus * ratio).toPoint(), {}};
     RenderSettings& settings = task.input.settings;
     settings.width = std::max(1, pixels.width());
     settings.height = std::max(1, pixels.height());
     settings.stepInD0 = task.plan.stepInD0;
+    settings.finestInD0 = task.plan.finestInD0;
     if (!settings.background) settings.background = Rgb{};
-    if (full) {
-        // It grows over the quick picture.
+    if (stage != Stage::Quick) {
+        // It grows over the one before.
         QImage under(pixels, QImage::Format_RGB32);
         QPainter painter(&under);
         painter.setRenderHint(QPainter::SmoothPixmapTransform);
@@ -188,23 +194,28 @@ void CpuSurface::takeGrown() {
 }
 
 void CpuSurface::show(const Task& task, const Picture& picture) {
-    const bool full = task.growing || (task.plan.scale == 1 && task.plan.stepInD0 == kFullStep);
-    m_frame = {task.pixels.width(), task.pixels.height(), task.plan.scale,
-               task.plan.stepInD0,  full && !m_again,     task.input.volume.get()};
+    m_frame = {task.pixels.width(),
+               task.pixels.height(),
+               task.plan.scale,
+               task.input.settings.smallestStep(),
+               task.stage == Stage::Finished && !m_again,
+               task.input.volume.get()};
+    const bool full = task.stage == Stage::Full || (task.plan.scale == 1 && task.plan.stepInD0 == kFullStep);
+    m_next = full ? Stage::Finished : Stage::Full;
     if (task.growing) {
         takeGrown();
         m_grow.stop();
         m_growing.reset();
+        if (task.stage == Stage::Full) draw(Stage::Finished);
     } else {
         m_picture = picture.image;
         m_target = QSizeF(picture.image.size()) / task.plan.scale;
         const double drawn = task.plan.scale * task.plan.scale * kFullStep / task.plan.stepInD0;
         m_samples = std::clamp(drawn * kFrameSeconds / std::max(1e-4, picture.seconds), 0.01, 1.0);
-        if (m_again) {
-            draw(false);
-        } else if (!full) {
+        if (m_again)
+            draw(Stage::Quick);
+        else
             m_idle.start();
-        }
     }
     update();
     if (onFrame) onFrame();

@@ -19,7 +19,8 @@ constexpr double kQuickBudget = 35e6;      // nanoseconds of a picture while the
 constexpr double kRefineBudget = 25e6;     // nanoseconds between two looks at the window's events
 constexpr double kSoftwareSamples = 150e6; // what a software rasterizer is given at most for one picture
 constexpr double kSoftwareStrip = 0.4e6, kHardwareStrip = 40e6; // samples of one strip
-constexpr qint64 kShowEvery = 250; // milliseconds between two looks at a picture being refined
+constexpr double kHalvedSamples = 8; // of a ray whose steps are halved where that matters, about, for one of another
+constexpr qint64 kShowEvery = 250;   // milliseconds between two looks at a picture being refined
 
 QSurfaceFormat wantedFormat() {
     QSurfaceFormat format;
@@ -126,23 +127,29 @@ double GlSurface::samples(const Plan& plan) const {
     const QSize size = pixelSize();
     const BoxInImage box = boxInImage(m_scene.camera, m_scene.volume->geometry(), size.width(), size.height());
     // A box fills about half of the prism that its outline and its depth span.
-    return 0.5 * box.width * box.height * plan.resolutionScale * plan.resolutionScale * box.depthInD0 / plan.stepInD0;
+    return 0.5 * box.width * box.height * plan.resolutionScale * plan.resolutionScale * box.depthInD0 / plan.stepInD0 *
+           (plan.finestInD0 ? kHalvedSamples : 1);
 }
 
 GlSurface::Plan GlSurface::fullPlan() const {
-    Plan plan{1.0, 0.5};
+    Plan plan{1.0, 0.5, {}};
     if (!m_software) return plan;
     // By the number of samples, not by a clock, so that the same scene always ends in the same picture.
     while (plan.stepInD0 < 4.0 && samples(plan) > kSoftwareSamples) plan.stepInD0 *= 2;
     return plan;
 }
 
+GlSurface::Plan GlSurface::finishedPlan() const {
+    const RenderSettings& s = m_scene.settings;
+    return {1.0, s.stepInD0, s.halvings() > 0 ? s.finestInD0 : std::nullopt};
+}
+
 GlSurface::Plan GlSurface::quickPlan() const {
     const Plan full = fullPlan();
     if (samples(full) * m_nanosecondsPerSample <= kQuickBudget) return full;
-    Plan plan{1.0, std::max(1.5, full.stepInD0)};
+    Plan plan{1.0, std::max(1.5, full.stepInD0), {}};
     const auto scaleFor = [&](double step) {
-        return std::sqrt(kQuickBudget / std::max(1.0, samples({1.0, step}) * m_nanosecondsPerSample));
+        return std::sqrt(kQuickBudget / std::max(1.0, samples({1.0, step, {}}) * m_nanosecondsPerSample));
     };
     if (scaleFor(plan.stepInD0) < 0.25) plan.stepInD0 = 3.0;
     plan.resolutionScale = std::clamp(scaleFor(plan.stepInD0), 0.1, 1.0);
@@ -154,6 +161,7 @@ RenderSettings GlSurface::settings(const Plan& plan) const {
     s.width = pixelSize().width();
     s.height = pixelSize().height();
     s.stepInD0 = plan.stepInD0;
+    s.finestInD0 = plan.finestInD0;
     return s;
 }
 
@@ -193,12 +201,11 @@ void GlSurface::drawQuick() {
     try {
         prepareScene();
         const Plan plan = quickPlan();
-        const Plan full = fullPlan();
-        const bool complete = plan.resolutionScale == full.resolutionScale && plan.stepInD0 == full.stepInD0;
+        m_finishing = plan == fullPlan();
         gl->glFinish();
         QElapsedTimer timer;
         timer.start();
-        if (complete) {
+        if (m_finishing) {
             while (!drawStrip(plan)) {
             }
         } else {
@@ -206,12 +213,12 @@ void GlSurface::drawQuick() {
             target.framebuffer = m_picture->handle();
             target.resolutionScale = plan.resolutionScale;
             m_raycaster->draw(m_scene.camera, settings(plan), target);
-            m_idle.start();
         }
         gl->glFinish(); // the time of the work, not of its submission
         const double perSample = static_cast<double>(timer.nsecsElapsed()) / std::max(1e4, samples(plan));
         m_nanosecondsPerSample = std::clamp(0.6 * m_nanosecondsPerSample + 0.4 * perSample, 0.01, 2000.0);
-        finishFrame(plan, complete);
+        finishFrame(plan);
+        if (!m_frame.complete) m_idle.start();
     } catch (const Error& error) {
         fail(error);
     }
@@ -241,7 +248,7 @@ bool GlSurface::drawStrip(const Plan& plan) {
 
 void GlSurface::refine() {
     if (m_dirty || m_failed || !m_picture || !m_raycaster || !m_scene.volume) return;
-    const Plan plan = fullPlan();
+    const Plan plan = m_finishing ? finishedPlan() : fullPlan();
     makeCurrent();
     try {
         prepareScene();
@@ -254,8 +261,11 @@ void GlSurface::refine() {
         }
         doneCurrent();
         if (complete) {
-            finishFrame(plan, true);
+            finishFrame(plan);
             update();
+            m_finishing = true;
+            m_nextRow = 0;
+            if (!m_frame.complete) m_next.start();
         } else {
             if (m_sinceShown.elapsed() > kShowEvery) {
                 m_sinceShown.restart();
@@ -269,9 +279,9 @@ void GlSurface::refine() {
     }
 }
 
-void GlSurface::finishFrame(const Plan& plan, bool complete) {
-    m_frame = {pixelSize().width(), pixelSize().height(), plan.resolutionScale, plan.stepInD0, complete,
-               m_scene.volume.get()};
+void GlSurface::finishFrame(const Plan& plan) {
+    m_frame = {pixelSize().width(),           pixelSize().height(),   plan.resolutionScale,
+               settings(plan).smallestStep(), plan == finishedPlan(), m_scene.volume.get()};
     // Not from inside paintGL: whoever listens may ask for the picture.
     QMetaObject::invokeMethod(
         this,

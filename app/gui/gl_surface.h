@@ -43,18 +43,21 @@ protected:
 private:
     struct Plan {
         double resolutionScale = 1, stepInD0 = 0.5;
+        std::optional<double> finestInD0;
+        bool operator==(const Plan&) const = default;
     };
     void releaseGl();
     QSize pixelSize() const;
     double samples(const Plan& plan) const; ///< estimated number of those of a whole picture
     Plan quickPlan() const;
     Plan fullPlan() const;
+    Plan finishedPlan() const; ///< as it would be saved
     RenderSettings settings(const Plan& plan) const;
     void prepareScene();
     void drawQuick();
     bool drawStrip(const Plan& plan); ///< from m_nextRow on; true: it was the last
     void refine();
-    void finishFrame(const Plan& plan, bool complete);
+    void finishFrame(const Plan& plan);
     void fail(const Error& error);
 
     PictureInput m_scene;
@@ -67,6 +70,7 @@ private:
     bool m_dirty = true;               ///< the scene has changed since the picture was begun
     double m_nanosecondsPerSample = 0; ///< as measured; 0: not yet
     QTimer m_idle, m_next;             ///< until refining begins; to its next strip
+    bool m_finishing = false;          ///< the full picture is there, what is refined now is the one to be saved
     int m_nextRow = 0;                 ///< first row that has not been refined
     QElapsedTimer m_sinceShown;
     FrameInfo m_frame;

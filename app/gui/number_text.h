@@ -14,4 +14,7 @@ QString numberText(double value, double span);
 /// "-1024 – 2986": both ends with as many digits as the range needs.
 QString rangeText(const ValueRange& range);
 
+/// Of a step along rays, in d0: "1/64", "0.3", "2".
+QString stepText(double inD0);
+
 } // namespace pellucid::gui

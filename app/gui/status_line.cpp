@@ -101,10 +101,13 @@ void StatusLine::followScene() {
 }
 
 void StatusLine::followView() {
-    m_renderer->setToolTip(tr("What draws the picture, and how well: pixels, distance of the samples along a ray.\n%1")
+    m_renderer->setToolTip(tr("What draws the picture, and how well: pixels, smallest distance of the samples along "
+                              "a ray.\n%1")
                                .arg(m_view.rendererReason()));
     const FrameInfo& frame = m_view.frame();
-    const QString quality = frame.complete ? tr("step %1 d0").arg(frame.stepInD0) : tr("coarse");
+    const QString quality = frame.complete              ? tr("step %1 d0").arg(stepText(frame.stepInD0))
+                            : frame.resolutionScale < 1 ? tr("coarse")
+                                                        : tr("being refined");
     m_renderer->setText(
         QStringLiteral("%1  %2×%3  %4").arg(m_view.rendererName()).arg(frame.width).arg(frame.height).arg(quality));
 }

@@ -18,18 +18,18 @@ namespace pellucid::gui {
 struct FrameInfo {
     int width = 0, height = 0;  ///< pixels of the screen
     double resolutionScale = 1; ///< rays per pixel along each axis
-    double stepInD0 = 0.5;      ///< distance of samples along a ray
+    double stepInD0 = 0.5;      ///< distance of samples along a ray, where it is smallest
     bool complete = false;      ///< the best that will come of this scene
     const Volume* volume = nullptr; ///< which one it shows; to be compared, no more
 };
 
-/// A child widget of the view that shows a scene: a coarse picture at once, a better one when the scene has stayed
-/// the same for a moment. What is complete depends on the scene and the size alone, never on timing.
+/// A child widget of the view that shows a scene: a coarse picture at once, a full one when the scene has stayed the
+/// same for a moment, and then the one that would be saved. What is complete depends on the scene and the size alone, never on timing.
 class ViewSurface {
 public:
     virtual ~ViewSurface() = default;
     virtual QWidget* widget() = 0;
-    /// What is to be shown. Its size and step are ignored: the widget's pixels, and what time allows.
+    /// What is to be shown, in the end as finely as its settings say. Its size is ignored: the widget's pixels.
     virtual void setScene(const PictureInput& scene) = 0;
     virtual const FrameInfo& frame() const = 0;
     virtual QString rendererName() const = 0; ///< for the status line

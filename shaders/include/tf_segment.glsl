@@ -19,6 +19,11 @@ TfPlace tfPlace(float code) {
     return TfPlace(entry, tfTexel(u_integralStart + entry));
 }
 
+// The running integral of tau up to a place in the table.
+float tfIntegral(float entry) {
+    return tfTexel(u_integralStart + clamp(int(entry + 0.5), 0, u_integralStart - 1)).a;
+}
+
 // Mean of (tau * rgb, tau) while the code goes linearly from one place to another.
 vec4 tfMean(TfPlace a, TfPlace b) {
     int way = b.entry - a.entry;

@@ -27,6 +27,8 @@ void RenderSettings::validate() const {
         throw UsageError("an image has 1 to 16384 pixels along each side", "image size", "give such a size");
     if (!(stepInD0 > 0 && stepInD0 <= 16))
         throw UsageError("the step lies in (0, 16] reference lengths", "step", "give such a step");
+    if (finestInD0 && !(*finestInD0 >= kFinestStep && *finestInD0 <= 16))
+        throw UsageError("the finest step lies in [1/256, 16] reference lengths", "finest step", "give such a step");
     clipping.validate();
     const auto within = [](double value, double lo, double hi) { return value >= lo && value <= hi; };
     for (const double share : {light.gradientOpacity, light.occlusion, light.depthCue, light.silhouettes})
@@ -41,6 +43,13 @@ void RenderSettings::validate() const {
     if (!(length > 0) || !std::isfinite(length))
         throw UsageError("the light needs a direction", "light", "give one that is finite and not 0");
 }
+
+int RenderSettings::halvings() const {
+    if (mode != RenderMode::Composite || !finestInD0 || *finestInD0 >= stepInD0) return 0;
+    return static_cast<int>(std::log2(stepInD0 / *finestInD0) + 1e-9);
+}
+
+double RenderSettings::smallestStep() const { return std::ldexp(stepInD0, -halvings()); }
 
 const Feature* RenderSettings::featureAlone(const TransferFunction& tf) const {
     if (onlyFeature == -1) return nullptr;

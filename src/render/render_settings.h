@@ -15,6 +15,8 @@ namespace pellucid {
 
 struct Ground;
 
+inline constexpr double kFinestStep = 1.0 / 256; ///< that pictures are drawn with, d0
+
 /// What becomes of the intensities along a ray (docs/method.md, "The picture").
 enum class RenderMode {
     Composite, ///< emission and absorption by the transfer function
@@ -45,6 +47,8 @@ struct RenderSettings {
     std::optional<Rgb> background = Rgb{0, 0, 0}; ///< empty: transparent
     std::optional<Rgb> backgroundTop; ///< at the top of the picture, `background` at its bottom; empty: plain
     double stepInD0 = 0.5;            ///< largest distance of samples along a ray, in d0, (0, 16]
+    /// How small that may become where the picture would change else, in d0; empty: the same everywhere.
+    std::optional<double> finestInD0;
     RenderMode mode = RenderMode::Composite;
     Light light;
     Clipping clipping;
@@ -55,6 +59,9 @@ struct RenderSettings {
     std::shared_ptr<const Ground> ground; ///< what lies under the volume, opaque; null: nothing
 
     void validate() const; ///< throws UsageError
+    /// How often a step may be halved until the next time would make it smaller than finestInD0.
+    int halvings() const;
+    double smallestStep() const; ///< that any samples have, in d0
     bool operator==(const RenderSettings&) const = default;
     /// The feature of `tf` that is drawn alone; null: all are drawn. Throws UsageError where it has none of this index.
     const Feature* featureAlone(const TransferFunction& tf) const;

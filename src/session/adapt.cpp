@@ -302,7 +302,8 @@ std::vector<std::vector<double>> pictureMetric(const Scene& scene, const JobCont
     Scene plain = scene; // no figure depends on how it is displayed
     plain.session.display.set({});
     plain.ground.reset();
-    const PictureInput picture = pictureInput(plain, kMetricSize, kMetricSize);
+    PictureInput picture = pictureInput(plain, kMetricSize, kMetricSize);
+    picture.settings.finestInD0.reset();
     const auto labOf = [&](const TransferFunction& tf) {
         return labPixels(renderer->render(picture.camera, tf, picture.settings, job));
     };
@@ -645,7 +646,8 @@ FrameFigures figuresOf(const Scene& scene, const TransferFunction* before, Works
     Scene shown = scene;
     for (std::size_t i = 0; i < 2; ++i) {
         if (i == 1) shown.tf = *before;
-        const PictureInput picture = pictureInput(shown, kFlickerSize, kFlickerSize);
+        PictureInput picture = pictureInput(shown, kFlickerSize, kFlickerSize);
+        picture.settings.finestInD0.reset(); // nor on how finely
         pictures[i] = renderer->render(picture.camera, picture.tf, picture.settings, {job.stop, {}});
     }
     figures.flicker = meanDeltaE(pictures[0], pictures[1]);

@@ -326,6 +326,7 @@ PictureInput pictureInput(const Scene& scene, int width, int height, bool transp
     else
         s.background = display.background;
     s.stepInD0 = scene.session.measure->quality == Quality::High ? 0.25 : 0.5;
+    s.finestInD0 = display.finestStep;
     s.backgroundTop = transparent ? std::nullopt : display.backgroundTop;
     s.mode = display.mode;
     s.light = display.light;

@@ -660,7 +660,8 @@ json fromDisplay(const DisplaySettings& d) {
     json j{{"mode", name(d.mode)},
            {"light", fromLight(d.light)},
            {"background", jsonFromColor(d.background)},
-           {"only_feature", d.onlyFeature}};
+           {"only_feature", d.onlyFeature},
+           {"finest_step", d.finestStep}};
     if (d.backgroundTop) j["background_top"] = jsonFromColor(*d.backgroundTop);
     return j;
 }
@@ -677,6 +678,11 @@ DisplaySettings toDisplay(const JsonValue& j) {
     }
     if (j.has("background")) d.background = colorFromJson(j["background"]);
     if (j.has("background_top")) d.backgroundTop = colorFromJson(j["background_top"]);
+    if (j.has("finest_step")) {
+        d.finestStep = j["finest_step"].number();
+        if (!(d.finestStep >= kFinestStep && d.finestStep <= 16))
+            j["finest_step"].fail("the finest step lies in [1/256, 16] reference lengths");
+    }
     if (j.has("only_feature")) d.onlyFeature = static_cast<FeatureId>(j["only_feature"].integer(0, INT64_MAX / 2));
     return d;
 }

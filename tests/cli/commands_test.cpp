@@ -426,10 +426,16 @@ TEST_CASE("render writes a picture of the asked size over the asked background",
         CHECK(rendered("d.png", change).rgba != plain.rgba);
     }
     // Steps are small against the volume's detail: another one changes little, but something.
-    const Image fine = rendered("e.exr", {"--step", "0.1"}), high = rendered("f.exr", {"--quality", "high"}),
-                normal = rendered("g.exr", {}), quarter = rendered("h.exr", {"--step", "0.25"});
+    const Image fine = rendered("e.exr", {"--step", "0.1"}), half = rendered("g.exr", {"--step", "0.5"}),
+                high = rendered("f.exr", {"--quality", "high", "--finest-step", "0.5"}),
+                quarter = rendered("h.exr", {"--step", "0.25"}), normal = rendered("i.exr", {}),
+                same = rendered("j.exr", {"--step", "0.5", "--finest-step", "0.015625"});
     CHECK(high.rgba == quarter.rgba);
-    CHECK(high.rgba != normal.rgba);
+    CHECK(high.rgba != half.rgba);
+    CHECK(rendered("k.exr", {"--finest-step", "0.5"}).rgba == half.rgba);
+    // By themselves steps are halved where that matters; one that is given is kept unless the finest is given, too.
+    CHECK(normal.rgba == same.rgba);
+    CHECK(normal.rgba != half.rgba);
     for (std::size_t i = 0; i < fine.rgba.size(); ++i) REQUIRE(std::abs(fine.rgba[i] - normal.rgba[i]) < 0.05f);
 }
 

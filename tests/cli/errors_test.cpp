@@ -120,6 +120,7 @@ TEST_CASE("wrong values of render are wrong usage", "[cli][errors]") {
     for (const char* background : {"0,0,1.5", "#12345", "red", "#fff/red"})
         checkFails(w, kRender + Words{"--background", background}, 2, "--background");
     for (const char* step : {"0", "17", "nan"}) checkFails(w, kRender + Words{"--step", step}, 2, "--step");
+    for (const char* step : {"0.001", "17"}) checkFails(w, kRender + Words{"--finest-step", step}, 2, "--finest-step");
     for (const char* clip : {"x:0.5:0.5", "w:0:1", "x:0", "x:-1:1", "x:a:b"})
         checkFails(w, kRender + Words{"--clip", clip}, 2, "--clip");
     checkFails(w, kRender + Words{"--clip", "x:0:0.2", "x:0.5:1"}, 2, "--clip");

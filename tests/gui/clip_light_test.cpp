@@ -7,12 +7,14 @@
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
+#include <QSignalSpy>
 #include <QSlider>
 
 #include <glm/geometric.hpp>
 
 #include "clip_layer.h"
 #include "render/camera_motion.h"
+#include "render/image_renderer.h"
 #include "render/light_presets.h"
 
 using namespace pellucid;
@@ -220,6 +222,58 @@ TEST_CASE("presets and numbers of the light", "[light]") {
     w.document().undo();
     CHECK(lightOf(w).occlusion == 0);
     CHECK(w.child<QDoubleSpinBox>("lightOcclusion").value() == 0);
+}
+
+TEST_CASE("at rest the picture becomes the one that is saved", "[display]") {
+    OpenWindow w(24, ViewRenderer::Cpu);
+    w.settle();
+    // ½ d0 halved five times: 1/64, unless the panel says otherwise.
+    CHECK(w.view().frame().stepInD0 == 1.0 / 64);
+    w.window.findChild<QAction*>("displayAction")->trigger();
+    auto& finest = w.child<QComboBox>("finestStepCombo");
+    CHECK(finest.currentText() == "1/64 d0");
+    const QImage refined = w.picture();
+    finest.setCurrentIndex(0);
+    Q_EMIT finest.activated(0);
+    CHECK(w.bench().store().session().display->finestStep == 0.5);
+    const QImage plain = w.picture();
+    CHECK(w.view().frame().stepInD0 == 0.5);
+    CHECK(plain != refined);
+    w.document().undo();
+    CHECK(finest.currentText() == "1/64 d0");
+    CHECK(w.picture() == refined);
+
+    // As it would be saved: the same pixels, rounded to 8 bits in the same way.
+    auto& surface = w.child<QWidget>("cpuSurface");
+    PictureInput input = pictureInput(w.bench().scene(), surface.width(), surface.height());
+    const Image saved = makeCpuRenderer(input.volume)->render(input.camera, input.tf, input.settings);
+    const QImage shown = surface.grab().toImage();
+    int off = 0;
+    for (int y = 0; y < saved.height; ++y)
+        for (int x = 0; x < saved.width; ++x) {
+            const QColor color = shown.pixelColor(x, y);
+            const int have[3] = {color.red(), color.green(), color.blue()};
+            for (int c = 0; c < 3; ++c)
+                off += have[c] != static_cast<int>(std::clamp(saved.pixel(x, y)[c], 0.0f, 1.0f) * 255.0f + 0.5f);
+        }
+    CHECK(off == 0);
+}
+
+TEST_CASE("a change interrupts refining, and nothing is drawn afterwards", "[display]") {
+    OpenWindow w(48, ViewRenderer::Cpu);
+    w.settle();
+    const Camera home = w.document().camera();
+    // The full picture is there, the finished one is not yet.
+    w.document().setCamera(rotated(home, w.document().volume()->geometry(), 40, 0));
+    REQUIRE(waitFor([&] { return w.view().frame().resolutionScale == 1 && !w.view().isComplete(); }));
+    w.document().setCamera(home);
+    w.settle();
+    PictureInput input = pictureInput(w.bench().scene(), 1, 1);
+    CHECK(input.camera == home);
+    CHECK(w.view().frame().stepInD0 == 1.0 / 64);
+    QSignalSpy shown(&w.view(), &VolumeView::frameShown);
+    QTest::qWait(600); // several times as long as it rests before it goes on
+    CHECK(shown.count() == 0);
 }
 
 TEST_CASE("mode and background are edits of the display", "[display]") {

@@ -111,5 +111,6 @@ TEST_CASE("impossible settings are refused", "[image]") {
     refused([](RenderSettings& s) { s.width = 0; });
     refused([](RenderSettings& s) { s.height = 20000; });
     refused([](RenderSettings& s) { s.stepInD0 = 0; });
+    refused([](RenderSettings& s) { s.finestInD0 = 0.001; });
     refused([](RenderSettings& s) { s.clipping.lo.x = 1; });
 }

@@ -80,8 +80,9 @@ TEST_CASE("leaping over what is transparent changes nothing", "[image]") {
     for (const auto& volume : {rough(), withHoles()})
         for (const RenderMode mode : kModes)
             for (const bool lit : {false, true})
-                for (const TransferFunction& tf : {tents(6, 0.3), tents(2, 0.05)}) {
+                for (const TransferFunction& tf : {tents(6, 0.3), tents(2, 0.05), tents(9, 0.99)}) {
                     RenderSettings settings = transparent(61, 43);
+                    if (tf.features.size() == 9) settings.finestInD0 = 0.1;
                     settings.mode = mode;
                     settings.light.on = lit;
                     settings.stepInD0 = 0.7;
@@ -104,6 +105,7 @@ TEST_CASE("the kernels draw the same", "[image]") {
         for (const RenderMode mode : kModes)
             for (int kernel = 1; kernel < kernels; ++kernel) {
                 RenderSettings settings = transparent(40, 40);
+                settings.finestInD0 = 1.0 / 32;
                 settings.mode = mode;
                 settings.light = {
                     .on = true, .gradientOpacity = 0.3, .occlusion = 0.4, .depthCue = 0.5, .silhouettes = 0.5};
@@ -120,6 +122,7 @@ TEST_CASE("any number of threads, tiles in any order: the same bits", "[image]")
     const Camera camera = cameraFromView(volume->geometry(), 40, 25, 1, Projection::Perspective);
     RenderSettings settings = transparent(150, 97);
     settings.light.on = true;
+    settings.finestInD0 = 1.0 / 16;
     const int before = threadCount();
     setThreadCount(1);
     const Image one = renderer->render(camera, tents(3), settings);
@@ -178,6 +181,49 @@ TEST_CASE("halving the step moves no pixel by more than two levels under smooth 
             // Light is taken in one place of each segment, and normals turn on the way.
             CHECK(distance(whole, renderer->render(camera, tents(2, peak), settings)) <= (lit ? 6.0 : 2.0) / 255);
         }
+}
+
+TEST_CASE("steps are halved until the picture changes by a level no more", "[image]") {
+    // Opaque features with steep sides, whose borders steps of ½ d0 meet at other depths from ray to ray: rings. The
+    // truth is the picture at steps of 1/64 d0.
+    const auto waves = volumeFrom(geometryOf({40, 40, 40}, {1, 1, 1.4}), [](int i, int j, int k) {
+        return 0.5 + 0.24 * std::sin(0.31 * i + 0.1 * k) + 0.24 * std::cos(0.27 * j - 0.2 * k);
+    });
+    for (const auto& volume : {waves, rough(), withHoles()})
+        for (const bool lit : {false, true})
+            for (const TransferFunction& tf : {tents(12, 0.95), tents(3, 0.3)}) {
+                const Camera camera = cameraFromView(volume->geometry(), 33, 21, 1, Projection::Perspective);
+                RenderSettings settings = transparent(80, 80);
+                settings.light.on = lit;
+                const auto renderer = makeCpuRenderer(volume);
+                const Image plain = renderer->render(camera, tf, settings);
+                settings.finestInD0 = 1.0 / 64;
+                const Image refined = renderer->render(camera, tf, settings);
+                settings.finestInD0.reset();
+                settings.stepInD0 = 1.0 / 64;
+                const Image truth = renderer->render(camera, tf, settings);
+                INFO((volume == waves ? "waves" : "rough") << (lit ? ", lit, " : ", ") << tf.features.size());
+                if (tf.features.size() == 12) CHECK(distance(plain, truth) > 3.0 / 255);
+                CHECK(distance(refined, truth) <= 1.0 / 255);
+            }
+}
+
+TEST_CASE("how far steps may be halved", "[image]") {
+    // ½ is not halved further down than 1/8: ½, ¼, 1/8. As far as no full halving fits, and where nothing is asked for,
+    // or no mode asks, not at all.
+    RenderSettings settings;
+    CHECK(settings.halvings() == 0);
+    CHECK(settings.smallestStep() == 0.5);
+    settings.finestInD0 = 1.0 / 8;
+    CHECK(settings.halvings() == 2);
+    CHECK(settings.smallestStep() == 1.0 / 8);
+    settings.finestInD0 = 0.2;
+    CHECK(settings.smallestStep() == 0.25);
+    settings.finestInD0 = 0.5;
+    CHECK(settings.halvings() == 0);
+    settings.finestInD0 = 1.0 / 8;
+    settings.mode = RenderMode::Mip;
+    CHECK(settings.halvings() == 0);
 }
 
 TEST_CASE("a lit sphere is as bright as Phong's formula says", "[image]") {

@@ -341,6 +341,7 @@ Session randomSession(std::uint32_t number) {
         d.background = randomColor(random);
         if (random.chance(0.3)) d.backgroundTop = randomColor(random);
         d.onlyFeature = only;
+        d.finestStep = random.between(kFinestStep, 1);
         s.display = d;
     }
     if (random.chance(0.5)) {

@@ -17,7 +17,15 @@ void PictureOptions::add(CLI::App& app, Mode modeIs) {
     addValue(
         app, "--step", "D",
         [this](const std::string& text, const std::string& option) { step = parseRealAbove(text, option, 0, 16); },
-        "largest distance of samples in reference lengths, the smallest voxel spacing (default 0.5)");
+        "distance of samples in reference lengths, the smallest voxel spacing (default 0.5, and less where "
+        "--finest-step says so)");
+    addValue(
+        app, "--finest-step", "D",
+        [this](const std::string& text, const std::string& option) {
+            finest = parseReal(text, option, kFinestStep, 16);
+        },
+        "how small that may become where it would change the picture by 1/255 (default: what the session says, else "
+        "1/64; with --step: no smaller than that)");
     if (modeIs == Mode::Option)
         addValue(
             app, "--mode", "composite|mip|minip|average|surface",
@@ -44,6 +52,7 @@ void PictureOptions::applyTo(SceneInputs& inputs) const {
             d.backgroundTop = background->top;
         }
         d.mode = mode.value_or(d.mode);
+        d.finestStep = finest.value_or(d.finestStep);
         light.applyTo(d.light);
     });
 }
@@ -56,7 +65,10 @@ void PictureOptions::applyTo(Scene& scene) const {
 }
 
 void PictureOptions::applyTo(PictureInput& picture) const {
-    if (step) picture.settings.stepInD0 = *step;
+    if (step) {
+        picture.settings.stepInD0 = *step;
+        picture.settings.finestInD0 = finest;
+    }
     picture.settings.jitter = jitter;
     picture.settings.validate();
 }

@@ -1,4 +1,4 @@
-// --size, --background, --step, --mode, --jitter, --feature and the light: how the picture looks.
+// --size, --background, --step, --finest-step, --mode, --jitter, --feature and the light: how the picture looks.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ struct PictureOptions {
     ImageSize size;
     std::optional<Gradient> background;
     bool transparent = false;
-    std::optional<double> step;
+    std::optional<double> step, finest;
     std::optional<RenderMode> mode;
     bool jitter = false;
     LightOptions light;

@@ -1,5 +1,6 @@
 #include "panels/display_panel.h"
 
+#include <algorithm>
 #include <array>
 
 #include <QCheckBox>
@@ -34,7 +35,15 @@ const std::array kModes{
     std::pair{QT_TR_NOOP("Average"), QT_TR_NOOP("The mean value, as grey: like an X-ray")},
     std::pair{QT_TR_NOOP("Surfaces"), QT_TR_NOOP("The first surface of each feature")}};
 
+constexpr double kCoarsestFinest = 0.5,
+                 kMostFinest = kFinestStep; ///< offered as the finest step, and powers of 2 between
+
 constexpr Rgb kFirstTop{0.16, 0.19, 0.24}; // of a gradient that is switched on
+
+QString finestText(double step) {
+    return step < kCoarsestFinest ? QObject::tr("%1 d0").arg(stepText(step))
+                                  : QObject::tr("%1 d0 everywhere").arg(stepText(kCoarsestFinest));
+}
 
 QPixmap swatchOf(const Rgb& color) {
     QPixmap swatch(22, 14);
@@ -47,7 +56,7 @@ QPixmap swatchOf(const Rgb& color) {
 DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     : QWidget(parent), m_bench(bench), m_mode(new QComboBox(this)), m_background(new QToolButton(this)),
       m_gradient(new QCheckBox(tr("to the top"), this)), m_top(new QToolButton(this)), m_feature(new QComboBox(this)),
-      m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
+      m_finest(new QComboBox(this)), m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
       m_wholeRange(new QPushButton(tr("&All values"), this)), m_component(new QSpinBox(this)),
       m_note(new QLabel(this)) {
     setObjectName("displayPanel");
@@ -65,6 +74,12 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     m_top->setToolTip(tr("Colour at the top of the picture"));
     m_feature->setObjectName("onlyFeatureCombo");
     m_feature->setToolTip(tr("Draw the voxels of one feature alone; figures are of all"));
+    m_finest->setObjectName("finestStepCombo");
+    m_finest->setToolTip(
+        tr("How finely the picture is drawn when the scene rests: the steps along a ray are halved, down\n"
+           "to this, where the picture would change by 1/255 otherwise. Long steps leave rings where\n"
+           "opacity rises steeply. d0 is the smallest distance of voxels"));
+    for (double step = kCoarsestFinest; step >= kMostFinest; step /= 2) m_finest->addItem(finestText(step), step);
     m_wholeRange->setObjectName("wholeRangeButton");
     m_wholeRange->setToolTip(tr("From the smallest to the largest value of the data"));
     m_component->setObjectName("componentSpin");
@@ -95,6 +110,7 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     behind->addStretch(1);
     form->addRow(tr("Background"), behind);
     form->addRow(tr("&Only"), m_feature);
+    form->addRow(tr("&Finest step"), m_finest);
     auto* window = new QGridLayout;
     window->addWidget(m_lo, 0, 0);
     window->addWidget(m_hi, 0, 1);
@@ -124,6 +140,11 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
         const auto id = static_cast<FeatureId>(m_feature->currentData().toULongLong());
         m_bench.store().edit(tr("Feature alone"), {}, [&](Session& session) {
             session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; });
+        });
+    });
+    connect(m_finest, &QComboBox::activated, this, [this] {
+        m_bench.store().edit(tr("Finest step"), {}, [&](Session& session) {
+            session.display.edit([&](DisplaySettings& d) { d.finestStep = m_finest->currentData().toDouble(); });
         });
     });
     connect(m_lo, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
@@ -197,6 +218,13 @@ void DisplayPanel::follow() {
         m_feature->addItem(color, QString::fromStdString(f.name), QVariant::fromValue<qulonglong>(f.id));
     }
     m_feature->setCurrentIndex(scene.onlyFeature() + 1);
+    m_finest->setEnabled(display.mode == RenderMode::Composite);
+    int finest = m_finest->findData(std::min(display.finestStep, kCoarsestFinest));
+    if (finest < 0) { // as the command line wanted it
+        finest = m_finest->count();
+        m_finest->addItem(finestText(display.finestStep), display.finestStep);
+    }
+    m_finest->setCurrentIndex(finest);
     const ValueRange window = scene.volume->range();
     const double span = window.hi - window.lo;
     for (QDoubleSpinBox* box : {m_lo, m_hi}) {
@@ -223,7 +251,8 @@ PanelInfo displayPanel() {
             .visible = false,
             .size = 0,
             .keys = QKeySequence("Ctrl+D"),
-            .tip = QObject::tr("Mode, background, one feature alone, range of values, component"),
+            .tip =
+                QObject::tr("Mode, background, one feature alone, how finely it is drawn, range of values, component"),
             .make = [](Workbench& bench, QWidget* parent) { return new DisplayPanel(bench, parent); }};
 }
 

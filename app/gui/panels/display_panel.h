@@ -31,6 +31,7 @@ private:
     QCheckBox* m_gradient;
     QToolButton* m_top;
     QComboBox* m_feature;
+    QComboBox* m_finest;
     QDoubleSpinBox *m_lo, *m_hi;
     QPushButton* m_wholeRange;
     QSpinBox* m_component;

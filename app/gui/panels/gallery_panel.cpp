@@ -217,6 +217,7 @@ void GalleryPanel::draw() {
     const double density = devicePixelRatioF();
     task.picture = pictureInput(scene, static_cast<int>(kWidth * density), static_cast<int>(kHeight * density));
     task.picture.settings.stepInD0 = 1;
+    task.picture.settings.finestInD0.reset();
     task.picture.settings.onlyFeature = -1;
     for (const Entry& entry : m_entries) task.tfs.push_back(shownTf(placed(entry.preset.tf, scene.volume->range())));
     task.number = ++m_number;

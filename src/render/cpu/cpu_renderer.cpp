@@ -194,6 +194,7 @@ private:
         s.integral = m_table->integral();
         s.colors = m_table->colors();
         s.depthUnit = m_table->depthUnit();
+        s.lastEntry = static_cast<float>(m_table->cells());
     }
 
     void fillColors(const RenderSettings& settings, PacketScene& s) const {
@@ -222,6 +223,7 @@ private:
             c.slope[i] = perspective ? static_cast<float>(perPixel) : 0;
         }
         c.nearest = perspective ? static_cast<float>(-middle) : -1e30f;
+        s.halvings = settings.halvings();
         s.step = static_cast<float>(settings.stepInD0 * g.d0());
         s.stepInD0 = static_cast<float>(settings.stepInD0);
     }

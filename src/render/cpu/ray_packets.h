@@ -12,6 +12,9 @@ namespace pellucid {
 inline constexpr int kRayBlockShift = 2, kRayBlock = 1 << kRayBlockShift;
 /// Distances of blocks to the next opaque one are counted up to this.
 inline constexpr int kMostBlockDistance = 15;
+/// What a component of a pixel may change by where one segment is halved; and what a lit colour changes by, about,
+/// along d0 (docs/method.md, "The picture").
+inline constexpr float kHalvingTolerance = 0.4f / 255, kLightTurn = 0.4f;
 /// Transmittance below which a ray ends: what lies behind would change a pixel by less than a quarter of an 8-bit
 /// level.
 inline constexpr float kDark = 1.0f / 1024;
@@ -75,6 +78,9 @@ struct PacketScene {
     int planeCount = 0;
     float step = 1;     ///< world units
     float stepInD0 = 1; ///< the same in reference lengths
+    /// How often a step may be halved, in mode Composite: once everywhere, and on where the picture hangs on it by more
+    /// than kHalvingTolerance. 0: never.
+    int halvings = 0;
     bool jitter = false;
 
     // Of the transfer function: cells of equal width, with constant τ and colour in each.
@@ -84,6 +90,7 @@ struct PacketScene {
         nullptr;                          ///< [cells + 1]: 2·(running integral in `depthUnit`) + (this cell is opaque)
     const std::int32_t* colors = nullptr; ///< [cells + 1] × 4: the same of τ·rgb, in the same units, without the bit
     float depthUnit = 0;                  ///< optical depth of one unit on a path of d0
+    float lastEntry = 0;                  ///< number of cells
     /// A colour per voxel (VoxelColors) in place of `colors` and of those of features; null: none. Of the voxel 0.
     const std::uint32_t* voxelColors = nullptr;
 

@@ -50,7 +50,7 @@ public:
                 u = placeOf(m_rays, n);
                 positionAt(m_rays, u, position);
                 meet(u, m_samples.cellsAt(position), *next);
-                if (absorb(*last, *next)) end = endOf(m_rays);
+                if (follow(*last, *next, m_s.halvings)) end = endOf(m_rays);
                 Met* const old = last;
                 last = next;
                 next = old;
@@ -87,7 +87,79 @@ private:
         return toFloat((gathered(m_s.integral + 1, m.cell) >> 1) - (m.integral >> 1));
     }
 
-    /// Takes the rays on from one sample to the next, which is finished where it matters. True where one has ended.
+    /// What lies between two samples, were the intensity linear there.
+    struct Piece {
+        Vec8 depth; ///< optical
+        Vec8 place; ///< about the middle of what is absorbed, were the opacity linear
+        Vec8 met;   ///< opacity by which the colours below are weighted
+        Vec8 fromFraction, toFraction;
+        Int8 from, to; ///< cells
+    };
+
+    /// Takes the rays on from one sample to the next, which is finished where it matters: in halves of halves where the
+    /// picture hangs on what lies between. True where one has ended.
+    bool follow(const Met& last, Met& next, int halvings) {
+        if (halvings == 0) return absorb(last, next);
+        Met middle;
+        const Vec8 u = 0.5f * (last.u + next.u);
+        Vec8 position[3];
+        positionAt(m_rays, u, position);
+        meet(u, m_samples.cellsAt(position), middle);
+        if (halvings > 1 && isCoarse(last, middle, next)) {
+            const bool ended = follow(last, middle, halvings - 1);
+            return follow(middle, next, halvings - 1) | ended;
+        }
+        const bool ended = absorb(last, middle);
+        return absorb(middle, next) | ended;
+    }
+
+    /// Whether two halves of a segment look otherwise than the whole does, as if the intensity were linear.
+    bool isCoarse(const Met& last, Met& middle, Met& next) {
+        const Int8 alive = m_rays.count > last.u;
+        Vec8 error = hidden(last, middle, next);
+        const Int8 some = (middle.integral ^ last.integral) | (next.integral ^ last.integral) | (next.integral & 1);
+        if (none(some)) return !none((error > kHalvingTolerance) & alive);
+        finish(middle);
+        finish(next);
+        const Piece whole = pieceBetween(last, next), first = pieceBetween(last, middle),
+                    second = pieceBetween(middle, next);
+        const Vec8 clear = m_clear * expMinus(first.depth), ofFirst = m_clear - clear,
+                   ofSecond = clear - clear * expMinus(second.depth),
+                   ofWhole = m_clear - m_clear * expMinus(whole.depth);
+        error += positive(ofWhole - ofFirst - ofSecond);
+        if constexpr (kLight || kVoxelColors)
+            error += kLightTurn * m_s.stepInD0 *
+                     positive(whole.place * (ofFirst + ofSecond) - first.place * ofFirst - second.place * ofSecond);
+        if constexpr (!kVoxelColors)
+            for (unsigned lanes = bitsOf((ofFirst + ofSecond > kHalvingTolerance) & alive); lanes != 0;
+                 lanes &= lanes - 1) {
+                const int n = __builtin_ctz(lanes);
+                Vec4 away{};
+                if (ofWhole[n] > 0) away += ofWhole[n] / whole.met[n] * colorsOf(whole, n);
+                if (ofFirst[n] > 0) away -= ofFirst[n] / first.met[n] * colorsOf(first, n);
+                if (ofSecond[n] > 0) away -= ofSecond[n] / second.met[n] * colorsOf(second, n);
+                away = away < 0 ? -away : away;
+                const float most = away[0] > away[1] ? away[0] : away[1];
+                const float largest = most > away[2] ? most : away[2];
+                error[n] = error[n] > largest ? error[n] : largest;
+            }
+        return !none((error > kHalvingTolerance) & alive);
+    }
+
+    /// What the intensity may meet beyond those of three samples, as far as they are off a straight line.
+    Vec8 hidden(const Met& last, const Met& middle, const Met& next) const {
+        const Vec8 off = positive(middle.entry - 0.5f * (last.entry + next.entry));
+        const Vec8 low = least(middle.entry, least(last.entry, next.entry)),
+                   high = most(middle.entry, most(last.entry, next.entry));
+        const Vec8 end = all(m_s.lastEntry);
+        const Int8 above =
+                       gathered(m_s.integral, toInt(least(high + off + 1, end))) - gathered(m_s.integral, toInt(high)),
+                   below = gathered(m_s.integral, toInt(low)) - gathered(m_s.integral, toInt(most(low - off, Vec8{})));
+        const Vec8 met = toFloat((above > below ? above : below) >> 1);
+        return m_clear * least(all(1), met / (off + 1) * (m_s.depthUnit * m_s.stepInD0) * (next.u - last.u));
+    }
+
+    /// Takes the rays on from one sample to the next as if the intensity were linear between them.
     bool absorb(const Met& last, Met& next) {
         if constexpr (kInvalid) {
             // Where nothing is known the other end stands for both.
@@ -102,66 +174,71 @@ private:
             return absorbBetween(last, next);
         }
     }
-    bool absorbBetween(const Met& last, const Met& next) {
-        if (none((next.integral ^ last.integral) | (next.integral & 1))) return false;
-        Vec8 met = toFloat((next.integral >> 1) - (last.integral >> 1)) + (next.within - last.within);
+    Piece pieceBetween(const Met& last, const Met& next) const {
+        Piece p;
+        p.met = toFloat((next.integral >> 1) - (last.integral >> 1)) + (next.within - last.within);
         const Vec8 way = next.entry - last.entry;
         const Int8 resting = positive(way) < 0.01f; // as good as in one place
-        const Vec8 mean = most(Vec8{}, resting ? next.opacity : met / way);
-        Vec8 depth = mean * (next.u - last.u) * (m_s.depthUnit * m_s.stepInD0);
-        if constexpr (kInvalid) depth *= 0.5f * (last.share + next.share);
-        const Int8 some = depth > 0;
+        const Vec8 mean = most(Vec8{}, resting ? next.opacity : p.met / way);
+        p.depth = mean * (next.u - last.u) * (m_s.depthUnit * m_s.stepInD0);
+        if constexpr (kInvalid) p.depth *= 0.5f * (last.share + next.share);
+        // Where it is lit, and where colours of voxels are taken.
+        const Vec8 ends = last.opacity + next.opacity;
+        const Vec8 part = ends > 0 ? (last.opacity + 2.0f * next.opacity) / (3.0f * ends) : all(0.5f);
+        p.place = last.u + part * (next.u - last.u);
+        p.met = resting ? next.opacity : p.met;
+        p.from = resting ? next.cell : last.cell;
+        p.to = next.cell;
+        p.fromFraction = resting ? Vec8{} : last.fraction;
+        p.toFraction = resting ? all(1) : next.fraction;
+        return p;
+    }
+    /// The running integral of τ·rgb, of ray n.
+    Vec4 colorsOf(const Piece& p, int n) const {
+        const std::int32_t *a = m_s.colors + 4 * static_cast<std::int64_t>(p.from[n]),
+                           *b = m_s.colors + 4 * static_cast<std::int64_t>(p.to[n]);
+        const Int4 a0 = colorAt(a), a1 = colorAt(a + 4), b0 = colorAt(b), b1 = colorAt(b + 4);
+        return floats(b0 - a0) + p.toFraction[n] * floats(b1 - b0) - p.fromFraction[n] * floats(a1 - a0);
+    }
+    bool absorbBetween(const Met& last, const Met& next) {
+        if (none((next.integral ^ last.integral) | (next.integral & 1))) return false;
+        Piece p = pieceBetween(last, next);
+        const Int8 some = p.depth > 0;
         if (none(some)) return false;
 
         Vec8 gradient[3], position[3];
-        // Where it is lit, and where colours of voxels are taken: about the middle of what is absorbed, were the
-        // opacity linear.
-        const Vec8 ends = last.opacity + next.opacity;
-        const Vec8 part = ends > 0 ? (last.opacity + 2.0f * next.opacity) / (3.0f * ends) : all(0.5f);
-        const Vec8 place = last.u + part * (next.u - last.u);
         const bool early = kLight && m_s.light.gradientOpacity > 0;
         if (early) {
-            positionAt(m_rays, place, position);
+            positionAt(m_rays, p.place, position);
             for (auto& g : gradient) g = Vec8{};
             m_lighting.gradientsAt(position, bitsOf(some), gradient);
             Vec8 inCamera[3];
             m_lighting.toCamera(gradient, inCamera);
-            depth *= m_lighting.depthShare(Lighting::lengthOf(inCamera));
+            p.depth *= m_lighting.depthShare(Lighting::lengthOf(inCamera));
         }
-        const Vec8 left = m_clear * expMinus(depth), weight = m_clear - left;
+        const Vec8 left = m_clear * expMinus(p.depth), weight = m_clear - left;
         m_clear = left;
 
         const unsigned bits = bitsOf(weight > 0);
         if constexpr (kVoxelColors) {
             Vec4 rgb[kWide];
-            positionAt(m_rays, place, position);
+            positionAt(m_rays, p.place, position);
             m_voxelColors.at(position, bits, rgb);
             for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
                 const int n = __builtin_ctz(lanes);
                 unlit()[n] += weight[n] * rgb[n];
             }
         } else {
-            // The running integral of τ·rgb, of one ray after the other.
-            Int8 from = last.cell;
-            Vec8 fromFraction = last.fraction, toFraction = next.fraction;
-            met = resting ? next.opacity : met;
-            from = resting ? next.cell : from;
-            fromFraction = resting ? Vec8{} : fromFraction;
-            toFraction = resting ? all(1) : toFraction;
-            const Vec8 per = weight / met;
+            const Vec8 per = weight / p.met;
             for (unsigned lanes = bits; lanes != 0; lanes &= lanes - 1) {
                 const int n = __builtin_ctz(lanes);
-                const std::int32_t *a = m_s.colors + 4 * static_cast<std::int64_t>(from[n]),
-                                   *b = m_s.colors + 4 * static_cast<std::int64_t>(next.cell[n]);
-                const Int4 a0 = colorAt(a), a1 = colorAt(a + 4), b0 = colorAt(b), b1 = colorAt(b + 4);
-                const Vec4 rgb = floats(b0 - a0) + toFraction[n] * floats(b1 - b0) - fromFraction[n] * floats(a1 - a0);
-                unlit()[n] += per[n] * rgb;
+                unlit()[n] += per[n] * colorsOf(p, n);
             }
         }
         if constexpr (kLight) {
             m_pending += weight;
-            m_lastPlace = weight > 0 ? place : m_lastPlace;
-            light(m_pending > kLitAtOnce, place);
+            m_lastPlace = weight > 0 ? p.place : m_lastPlace;
+            light(m_pending > kLitAtOnce, p.place);
         }
         const Int8 ended = (m_clear < kDark) & (m_rays.count > 0);
         if (none(ended)) return false;

@@ -20,6 +20,7 @@ public:
     RayTable(const std::function<bool(double s)>& shown, const IntensityGrid& grid);
 
     float cellOfCode() const noexcept { return m_cellOfCode; }
+    std::size_t cells() const noexcept { return m_cells; }
     float depthUnit() const noexcept { return m_depthUnit; }
     const std::int32_t* integral() const noexcept { return m_integral.data(); }
     const std::int32_t* colors() const noexcept { return m_colors.data(); }

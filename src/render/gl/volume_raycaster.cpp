@@ -35,6 +35,8 @@ constexpr int kTableSize = 16384;
 /// JobControl, and before a GPU's watchdog.
 constexpr double kSamplesAtOnce = 8e6;
 constexpr double kMostSteps = 1e6; ///< along one ray
+constexpr double kSamplesPerHalved =
+    8; ///< of a ray whose steps are halved where that matters, about, for one of another
 constexpr std::size_t kMostSurfaces = 128;
 constexpr double kMostGroundAtOnce = 4096 * 4096; ///< pixels: the ground of larger pictures is drawn tile by tile
 
@@ -57,6 +59,11 @@ public:
     }
     void setStep(double inD0, double d0) const {
         glProgramUniform2f(m_id, 5, static_cast<float>(inD0 * d0), static_cast<float>(inD0));
+    }
+    /// As shaders/raycast.frag has it.
+    void setHalves(int halvings, float tolerance, float turn) const {
+        const glm::vec3 halves(std::ldexp(1.0f, 1 - halvings), tolerance, turn);
+        glProgramUniform3fv(m_id, 36, 1, value_ptr(halves));
     }
     void setRegion(const Vec3& lo, const Vec3& hi, const std::vector<VoxelPlane>& planes) const {
         setVector(6, lo);
@@ -197,13 +204,8 @@ public:
     /// `window`: the whole picture or a part of it.
     void prepare(const RenderSettings& settings, const Camera& camera, const Geometry& geometry,
                  const GroundWindow& window, const JobControl& job) {
-        Drawn wanted{settings.ground,
-                     camera,
-                     geometry.boxCenter(),
-                     geometry.radius(),
-                     settings.light.depthCue,
-                     settings.background,
-                     window};
+        Drawn wanted{settings.ground,     camera, geometry.boxCenter(), geometry.radius(), settings.light.depthCue,
+                     settings.background, window};
         if (m_drawn == wanted) return;
         m_drawn.reset();
         const GroundPicture picture = groundOf(settings, camera, geometry, window, job);
@@ -308,6 +310,7 @@ struct VolumeRaycaster::Impl {
         if (bricks->hasInvalid()) defines.emplace_back("HAS_INVALID");
         if (bricks->count() > 1) defines.emplace_back("BRICKS");
         if (showsGround(settings)) defines.emplace_back("GROUND");
+        if (settings.halvings() > 0) defines.emplace_back("HALVES");
         if (isColored(settings.mode) && settings.colors) defines.emplace_back("VOXEL_COLORS");
         if (isColored(settings.mode) && changesColors(settings.light)) {
             defines.emplace_back("LIGHT");
@@ -474,11 +477,13 @@ void VolumeRaycaster::Impl::setUniforms(const RaycastProgram& p, const Camera& c
     p.setPictureFromFragment({tileSize / size, tileLow});
     p.setRays(PictureRays(camera, g, static_cast<double>(settings.width) / settings.height));
 
+    const int halvings = settings.halvings();
     double step = settings.stepInD0;
     if (bricks->count() > 1) step = std::min(step, longestStepInBricks(g));
     if (!(2 * g.radius() / (step * g.d0()) <= kMostSteps))
         throw Error("the picture needs over a million samples along a ray", "step", "make the step longer");
     p.setStep(step, g.d0());
+    if (halvings > 0) p.setHalves(halvings, kHalvingTolerance, kLightTurn);
     Clipping oblique;
     oblique.planes = settings.clipping.planes;
     const Vec3 dims(g.dims);
@@ -552,7 +557,8 @@ void VolumeRaycaster::Impl::cast(const Camera& camera, const RenderSettings& set
         glEnable(GL_SCISSOR_TEST);
         glBindVertexArray(emptyArray.id());
         p.use();
-        const double samplesPerRow = (right - left) * std::max(1.0, box.depthInD0 / settings.stepInD0);
+        const double samplesPerRow = (right - left) * std::max(1.0, box.depthInD0 / settings.stepInD0) *
+                                     (settings.halvings() > 0 ? kSamplesPerHalved : 1);
         const int rows = std::clamp(static_cast<int>(kSamplesAtOnce / samplesPerRow), 1, top - bottom);
         const auto order = bricks->frontToBack(camera);
         for (std::size_t i = 0; i < order.size(); ++i) {
