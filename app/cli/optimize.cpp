@@ -109,8 +109,9 @@ std::string textOf(const OptimizeResult& r, const std::vector<std::string>& name
         table.add({names[i], fixedText(r.targets[i], 4), fixedText(start.vws[i], 4), fixedText(best.vws[i], 4),
                    fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
                    fixedText(r.seen->coverage.covers[i], 4)});
-    return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + "\n" + seenLines(r) + "objective " + plainText(start.objective) + " -> " + plainText(best.objective) + ", " +
-           name(r.reason) + " after " + std::to_string(r.iterations()) + " iterations, " +
+    return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + "\n" + seenLines(r) + "objective " +
+           plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
+           std::to_string(r.iterations()) + " iterations, " +
            (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " on coarser volumes, " : "") +
            (r.laterSteps() > 0 ? std::to_string(r.laterSteps()) + " more so that it can be seen, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
@@ -235,9 +236,10 @@ void SearchOptions::add(CLI::App& app) {
         [this](const std::string& text, const std::string& option) { coverage = parseRealAbove(text, option, 0, 1); },
         "mean alpha of the picture, as near as equal shares come to it (default with newton: that of the start, but "
         "from 0.2 to 0.7)");
-    app.add_flag("--exact-shares", exactShares,
-                 "shares alone count; without it the picture has a coverage of at least 0.2, and a cover of 0.02 of what "
-                 "is wanted");
+    app.add_flag(
+        "--exact-shares", exactShares,
+        "shares alone count; without it the picture has a coverage of at least 0.2, and a cover of 0.02 of what "
+        "is wanted");
     addValue(
         app, "--max-iterations", "N",
         [this](const std::string& text, const std::string& option) {

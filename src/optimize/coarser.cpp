@@ -104,8 +104,8 @@ std::vector<std::unique_ptr<VwsFunction>> CoarserVolumes::functions(const View& 
                                                                     const VwsOptions& options) const {
     std::vector<std::unique_ptr<VwsFunction>> all;
     for (const Level& level : m_levels)
-        all.push_back(std::make_unique<EngineVws>(
-            *level.engine, view, base, level.volume == m_full ? *m_weights : level.weights, options));
+        all.push_back(std::make_unique<EngineVws>(*level.engine, view, base,
+                                                  level.volume == m_full ? *m_weights : level.weights, options));
     return all;
 }
 

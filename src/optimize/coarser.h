@@ -20,14 +20,16 @@ WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, co
 class CoarserVolumes {
 public:
     using MakeEngine = std::function<std::unique_ptr<VisibilityEngine>(std::shared_ptr<const Volume>)>;
-    /// Halves while there are more than kSmallest voxels: far coarser ones mislead. The first copy of a volume that engines sample finely because it
-    /// is small (below kSampledFinely) is the volume itself: what `make` gives is much faster there. Throws Cancelled,
-    /// and what `make` does.
+    /// Halves while there are more than kSmallest voxels: far coarser ones mislead. The first copy of a volume that
+    /// engines sample finely because it is small (below kSampledFinely) is the volume itself: what `make` gives is much
+    /// faster there. Throws Cancelled, and what `make` does.
     CoarserVolumes(std::shared_ptr<const Volume> volume, const MakeEngine& make, const JobControl& job = {});
 
     static constexpr std::size_t kSampledFinely = 128 * 128 * 128;
     static constexpr std::size_t kSmallest = 1'500'000;
     static constexpr std::size_t kMost = 5; ///< copies
+    /// Sweeps of so few voxels follow the hand without a copy.
+    static constexpr std::size_t kQuick = 64 * 64 * 64;
 
     std::size_t size() const { return m_levels.size(); }
     const Volume& volume(std::size_t level) const { return *m_levels[level].volume; }

@@ -20,6 +20,13 @@ std::vector<Coverage> coverageOf(const RayBundle& rays, const std::vector<Transf
     return all;
 }
 
+bool isFaint(const Coverage& look, const std::vector<double>& targets) {
+    if (look.coverage < kFaintCoverage) return true;
+    for (std::size_t f = 0; f < targets.size(); ++f)
+        if (targets[f] > 0 && look.covers[f] < kFaintCover) return true;
+    return false;
+}
+
 Coverage coverageOf(const RayBundle& rays, const TransferFunction& tf) {
     return coverageOf(rays, std::vector<TransferFunction>{tf}, drawnFeatures(tf))[0];
 }

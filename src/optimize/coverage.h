@@ -16,11 +16,14 @@ struct Coverage {
     bool operator==(const Coverage&) const = default;
 };
 
-/// A picture of less is as good as empty, a feature of less cover as good as unseen (docs/method.md, "A picture that can
-/// be seen").
+/// A picture of less is as good as empty, a feature of less cover as good as unseen (docs/method.md, "A picture that
+/// can be seen").
 inline constexpr double kFaintCoverage = 0.2, kFaintCover = 0.02;
 /// A picture of more shows little but surfaces: optimizing goes no further by itself.
 inline constexpr double kMostCoverage = 0.7;
+
+/// Whether the picture, or a feature with a target above 0, is fainter than that.
+bool isFaint(const Coverage& look, const std::vector<double>& targets);
 
 /// Opacities, and what they look like.
 struct SeenShares {

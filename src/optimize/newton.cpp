@@ -71,8 +71,8 @@ void mendBySeen(std::vector<std::vector<double>>& d, const NewtonSearch::Place& 
         double distance = 0;
         for (std::size_t j = 0; j < at.state.opacity.size(); ++j)
             if (place.state.opacity[j] != at.state.opacity[j])
-                distance = std::max(distance,
-                                    std::abs(logOpacity(place.state.opacity[j]) - logOpacity(at.state.opacity[j])));
+                distance =
+                    std::max(distance, std::abs(logOpacity(place.state.opacity[j]) - logOpacity(at.state.opacity[j])));
         if (distance > 0 && distance < kFar) near.emplace_back(distance, &place.state);
     }
     std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -170,15 +170,14 @@ bool NewtonSearch::mayMove(std::size_t level) const {
     return level == 0 ? m_moves < m_options.maxIterations : m_coarseMoves < kMostCoarseMoves;
 }
 
-double NewtonSearch::goalOf(std::size_t level) const {
-    return level == 0 ? m_goalDistance : kCoarseGoal;
-}
+double NewtonSearch::goalOf(std::size_t level) const { return level == 0 ? m_goalDistance : kCoarseGoal; }
 
 double NewtonSearch::score(const Place& place, const Weights& weights) const {
     // What is good enough is not paid for with strength.
-    const double f = std::isnan(place.state.objective)
-                         ? place.state.objective
-                         : std::max(place.state.objective, kContent * goalOf(static_cast<std::size_t>(place.state.level)));
+    const double f =
+        std::isnan(place.state.objective)
+            ? place.state.objective
+            : std::max(place.state.objective, kContent * goalOf(static_cast<std::size_t>(place.state.level)));
     return f * f + weights.floor * weights.floor * place.shortfall +
            weights.strength * weights.strength * place.miss * place.miss;
 }
@@ -189,9 +188,11 @@ bool NewtonSearch::isBetter(const Place& a, const Place& b, const Weights& weigh
 }
 
 bool NewtonSearch::isThere(const Place& place, const Weights& weights) const {
-    return place.state.objective < goalOf(static_cast<std::size_t>(place.state.level)) && (weights.floor == 0 || place.lack < kShownLack) &&
-           (weights.strength == 0 || place.miss < kNearStrength);
+    return place.state.objective < goalOf(static_cast<std::size_t>(place.state.level)) &&
+           (weights.floor == 0 || place.lack < kShownLack) && (weights.strength == 0 || place.miss < kNearStrength);
 }
+
+bool NewtonSearch::isGood(const Place& place) const { return isThere(place, {0, m_goal ? 1.0 : 0.0}); }
 
 /// Small is good: what is above the floors, where they count, comes before what is not; where F is good enough places
 /// are alike, and the one nearest to the wanted strength is taken.
@@ -315,8 +316,8 @@ NewtonSearch::Point NewtonSearch::stepped(const Linear& at, const GoalRows& rows
     return x;
 }
 
-/// Steps of one batch, the boldest first; those whose residuals, as the derivatives foretell them, differ by less than a
-/// twentieth of what they are here count as one.
+/// Steps of one batch, the boldest first; those whose residuals, as the derivatives foretell them, differ by less than
+/// a twentieth of what they are here count as one.
 std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, const GoalRows& rows,
                                                           double caution) const {
     double here = at.place.state.objective * at.place.state.objective;
@@ -362,13 +363,13 @@ std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, cons
 NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, bool borrowed) {
     constexpr int kFailures = 3, kSlowMoves = 4;
     constexpr double kStronger = 0.85; // of the distance from the wanted strength that a move leaves which is for that
-    constexpr double kSlow = 0.96; // of the score that a move leaves
-    constexpr double kFast = 0.1;  // likewise
+    constexpr double kSlow = 0.96;     // of the score that a move leaves
+    constexpr double kFast = 0.1;      // likewise
     const auto level = static_cast<std::size_t>(at.place.state.level);
     double caution = 1;
     int failures = 0, slow = 0;
     double miss = std::numeric_limits<double>::infinity(); // where shares were met before
-    bool known = true; // the derivatives at at.place
+    bool known = true;                                     // the derivatives at at.place
     while (!isThere(at.place, weights) && mayMove(level) && failures < kFailures && slow < kSlowMoves) {
         if (isThere(at.place, {weights.floor, 0})) {
             if (at.place.miss > kStronger * miss) break;
@@ -412,8 +413,8 @@ NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, boo
     return at.place;
 }
 
-/// Weights of the descents one after the other: first all count alike, so that the way is short; then what cannot be had
-/// besides the shares weighs ever less, and the floors ever more.
+/// Weights of the descents one after the other: first all count alike, so that the way is short; then what cannot be
+/// had besides the shares weighs ever less, and the floors ever more.
 std::vector<NewtonSearch::Weights> NewtonSearch::phases(bool floors) const {
     if (!m_goal) return {{}};
     if (floors) return {{1, 0.05}, {10, 0.005}, {30, 5e-4}};
@@ -535,6 +536,7 @@ void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
     std::vector<Place> places = evaluate(0, points);
     if (first) {
         begin();
+        if (isGood(this->start())) return;
         places.erase(places.begin());
     }
     const auto best = std::min_element(places.begin(), places.end(),
@@ -558,8 +560,12 @@ void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
 
 /// The start is known: what had to wait for it goes into the history behind it.
 void NewtonSearch::begin() {
-    m_arrive(m_places.front().state);
-    for (const OptimizeState& state : m_waiting) m_arrive(state);
+    const bool isThere = isGood(start());
+    m_arrive(start().state);
+    for (const OptimizeState& state : m_waiting) {
+        m_job.throwIfStopped();
+        if (!isThere) m_arrive(state); // else nothing needs a hint
+    }
     m_waiting.clear();
 }
 
@@ -587,7 +593,7 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
         begin();
     }
     if (starts.size() > 1) evaluate(0, {starts.begin() + 1, starts.end()});
-    if (isThere(m_places.front(), {0, m_goal ? 1.0 : 0.0}) || !mayMove(0)) return;
+    if (isGood(this->start()) || !mayMove(0)) return;
     if (coarse && done()) return;
     down(first ? std::move(*first) : linearize(0, coarse ? x : atStrength(x, 1)));
     const auto isStrong = [&] { return bestOf(false).miss < kFarStrength; };
@@ -601,6 +607,19 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
 }
 
 void NewtonSearch::look(const Point& x) { evaluate(0, {x}); }
+
+void NewtonSearch::follow(const Point& start) {
+    evaluate(0, {start});
+    begin();
+    if (isGood(this->start()) && this->start().lack <= kShownLack) return;
+    Point x = inside(start);
+    for (const Weights& weights : phases(true)) {
+        if (!mayMove(0)) return;
+        const Place end = descend(linearize(0, x), weights);
+        if (isThere(end, {weights.floor, 0})) return;
+        x = end.state.opacity;
+    }
+}
 
 void NewtonSearch::toFloors(const std::vector<Point>& starts) {
     if (!m_goal || !mayMove(0)) return;

@@ -31,6 +31,8 @@ public:
 
     /// To the targets. `starts`: opacities to begin with, the first of them is the start, the others are known answers.
     void toShares(const std::vector<std::vector<double>>& starts);
+    /// From nearby: to the least F with the floors.
+    void follow(const std::vector<double>& start);
     /// Evaluates what another search has come to.
     void look(const std::vector<double>& opacity);
     /// To the least F with the floors of the goal, from what toShares() and `starts` came to.
@@ -77,6 +79,7 @@ private:
     bool mayMove(std::size_t level) const;
     double score(const Place& place, const Weights& weights) const;
     bool isThere(const Place& place, const Weights& weights) const;
+    bool isGood(const Place& place) const;  ///< on target, and of the wanted strength
     double goalOf(std::size_t level) const; ///< F that is good enough
     bool isBetter(const Place& a, const Place& b, const Weights& weights) const;
     const Place& start() const { return m_places.front(); }
@@ -101,9 +104,9 @@ private:
     const PictureGoal* m_goal;
     const JobControl& m_job;
     Arrive m_arrive;
-    double m_goalDistance;       ///< F on the volume that is good enough
-    std::vector<bool> m_held;    ///< features that no move changes
-    std::vector<Place> m_places; ///< all that was evaluated on the volume, the start first
+    double m_goalDistance;                ///< F on the volume that is good enough
+    std::vector<bool> m_held;             ///< features that no move changes
+    std::vector<Place> m_places;          ///< all that was evaluated on the volume, the start first
     std::vector<OptimizeState> m_waiting; ///< for the start, which comes first
     int m_evaluations = 0, m_spreadStarts = 0;
     int m_moves = 0, m_coarseMoves = 0; ///< of this descent

@@ -289,19 +289,17 @@ void OptimizeOptions::validate() const {
     if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "optimize", "correct it");
 }
 
-int OptimizeResult::laterSteps() const {
-    return searched == 0 ? 0 : static_cast<int>(history.size() - searched);
-}
+int OptimizeResult::laterSteps() const { return searched == 0 ? 0 : static_cast<int>(history.size() - searched); }
 
 int OptimizeResult::iterations() const {
-    const auto full = std::count_if(history.begin(), history.end() - laterSteps(),
-                                    [](const auto& s) { return s.level == 0; });
+    const auto full =
+        std::count_if(history.begin(), history.end() - laterSteps(), [](const auto& s) { return s.level == 0; });
     return std::max(0, static_cast<int>(full) - 1);
 }
 
 int OptimizeResult::coarseIterations() const {
-    return static_cast<int>(std::count_if(history.begin(), history.end() - laterSteps(),
-                                          [](const auto& s) { return s.level > 0; }));
+    return static_cast<int>(
+        std::count_if(history.begin(), history.end() - laterSteps(), [](const auto& s) { return s.level > 0; }));
 }
 
 namespace {
@@ -332,7 +330,8 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     /// Becomes the answer.
     const auto take = [&](const NewtonSearch::Place& place) {
         std::size_t i = result.history.size();
-        while (i > 0 && !(result.history[i - 1].level == 0 && result.history[i - 1].opacity == place.state.opacity)) --i;
+        while (i > 0 && !(result.history[i - 1].level == 0 && result.history[i - 1].opacity == place.state.opacity))
+            --i;
         if (i == 0) {
             arrive(place.state);
             i = result.history.size();
@@ -355,7 +354,10 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     const bool isNewton = options.method == SearchMethod::Newton;
     try {
         NewtonSearch::Place nearest;
-        if (isNewton) {
+        if (isNewton && problem.nearby && goal && moves && !options.exactShares) {
+            newton.follow(start);
+            nearest = newton.visible();
+        } else if (isNewton) {
             addCopies();
             std::vector<std::vector<double>> starts{start};
             for (const auto& x : problem.known)
@@ -379,7 +381,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
         }
         take(nearest);
         if (goal) result.seen = goal->seen(moves ? nearest.look : goal->looks({nearest.state.opacity})[0]);
-        if (goal && moves && nearest.lack > kShownLack) {
+        if (goal && moves && !problem.nearby && nearest.lack > kShownLack) {
             addCopies();
             newton.toFloors({nearest.state.opacity, start});
             const NewtonSearch::Place visible = newton.visible();

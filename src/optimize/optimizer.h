@@ -85,8 +85,8 @@ struct OptimizeResult {
     /// How many states of the history the search has made; those behind them came after it, so that the picture can be
     /// seen. 0: all.
     std::size_t searched = 0;
-    int evaluations = 0;                ///< of W, on any level
-    int spreadStarts = 0;               ///< Newton: starts tried all over the opacities, because it was stuck
+    int evaluations = 0;  ///< of W, on any level
+    int spreadStarts = 0; ///< Newton: starts tried all over the opacities, because it was stuck
     StopReason reason = StopReason::MaxIterations;
     std::optional<Seen> seen = {}; ///< of `tf`; where the problem has rays
 
@@ -109,6 +109,9 @@ struct OptimizeProblem {
     const RayBundle* rays = nullptr;
     /// Opacities that earlier searches have come to: Newton looks at them, too, so that it never ends farther away.
     std::vector<std::vector<double>> known = {};
+    /// With Newton: the start is close to the answer, as where things change little by little. Floors count from the
+    /// first move, and nothing farther away is looked for.
+    bool nearby = false;
 };
 
 /// `watch` is called after the start and each move, on the calling thread. Cancelling through `job` returns what is

@@ -1,5 +1,5 @@
-// What a picture is to be besides the shares of its features: visible, and about as strong as it was (docs/method.md, "A
-// picture that can be seen").
+// What a picture is to be besides the shares of its features: visible, and about as strong as it was (docs/method.md,
+// "A picture that can be seen").
 #pragma once
 
 #include <optional>
@@ -35,8 +35,8 @@ public:
     double lack(const Coverage& look) const;
     /// |ln(have/wanted)| of the coverage; 0 where nothing wanted is in sight.
     double miss(const Coverage& look) const;
-    /// What a search aims at, a little above the floors: ln(aim/have) of the picture, then of each feature with a floor;
-    /// above 0 where it is missed.
+    /// What a search aims at, a little above the floors: ln(aim/have) of the picture, then of each feature with a
+    /// floor; above 0 where it is missed.
     std::vector<double> shortfalls(const Coverage& look) const;
     /// ln(have/wanted) of the coverage.
     double excess(const Coverage& look) const;

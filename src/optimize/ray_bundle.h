@@ -28,8 +28,8 @@ public:
     };
     /// Of each of `tfs`, in their order. `wanted`: per feature; empty: all are. `every`: of so many rays one is looked
     /// at, for estimates that take a part of the time.
-    std::vector<Appearance> appearances(const std::vector<TransferFunction>& tfs,
-                                        const std::vector<char>& wanted = {}, int every = 1) const;
+    std::vector<Appearance> appearances(const std::vector<TransferFunction>& tfs, const std::vector<char>& wanted = {},
+                                        int every = 1) const;
 
     int rays() const { return static_cast<int>(m_begins.size()) - 1; } ///< that meet any feature
     /// Whether a ray meets a feature: passes through it for at least half of d0.

@@ -484,16 +484,19 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         Tracked found = pellucid::track(function, targets, limits, track, quiet);
         // Moves downhill are stuck far from the targets: other starts may not be.
         const double enough = std::hypot(std::max(basis.session.optimize->tolerance, track.distance()), found.least);
-        if (!std::isinf(settings.usedCoherence()) && found.objective > enough) {
-            MeasureInput from = input;
-            from.tf = withFeatureOpacities(input.tf, found.opacity);
+        MeasureInput from = input;
+        from.tf = withFeatureOpacities(input.tf, found.opacity);
+        // Nor do they know whether anything of the shares can be seen.
+        const bool vanishes = !basis.session.optimize->exactShares &&
+                              isFaint(workspace.coverage(from, quiet), normalizedTargets(targets, targets.size()));
+        if (!std::isinf(settings.usedCoherence()) && (found.objective > enough || vanishes)) {
             OptimizeOptions options = *basis.session.optimize;
             options.method = SearchMethod::Newton;
             options.coverage.reset();
             options.maxIterations = kMovesAnew;
-            const OptimizeResult anew = workspace.approach(from, targets, limits, options, false, quiet);
+            const OptimizeResult anew = workspace.optimize(from, targets, limits, options, quiet);
             if (anew.reason == StopReason::Cancelled) throw Cancelled{};
-            if (const OptimizeState& best = anew.history[anew.best]; best.objective < enough) {
+            if (const OptimizeState& best = anew.history[anew.best]; vanishes || best.objective < enough) {
                 found.opacity = best.opacity;
                 found.vws = best.vws;
                 found.objective = best.objective;

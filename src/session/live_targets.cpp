@@ -20,8 +20,8 @@ LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, bool
     const OptimizeResult result = workspace.approach(held.input, held.targets, held.limits, options, coarse, job);
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     const OptimizeState& best = result.history[result.best];
-    const bool approximate = coarse && held.input.volume->size() > CoarserVolumes::kSmallest &&
-                             held.input.settings.profile == Profile::Default;
+    const bool approximate =
+        coarse && held.input.volume->size() > CoarserVolumes::kQuick && held.input.settings.profile == Profile::Default;
     return {best.opacity, best.vws, best.objective, approximate};
 }
 

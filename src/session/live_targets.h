@@ -26,7 +26,7 @@ struct LiveUpdate {
 /// F below which an update leaves opacities alone while things move: what is not seen is not worth a move.
 inline constexpr double kLiveGoal = 0.005;
 
-/// One move toward the targets on the copy of half the resolution (of volumes above CoarserVolumes::kSmallest): what
+/// One move toward the targets on the copy of half the resolution (of volumes above CoarserVolumes::kQuick): what
 /// keeps up with the hand; W of the volume itself may differ by some hundredths. Never farther from the targets than it
 /// began, by the figures of that copy, which the update tells. Throws as Workspace::optimize() does, Cancelled too.
 LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});

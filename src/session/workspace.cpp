@@ -102,9 +102,7 @@ const CoarserVolumes& Workspace::coarser(const MeasureInput& input, const JobCon
         const MeasureSettings& settings = input.settings;
         m_coarser = std::make_unique<CoarserVolumes>(
             input.volume,
-            [&](std::shared_ptr<const Volume> volume) {
-                return makeCopyEngine(settings.engine, std::move(volume));
-            },
+            [&](std::shared_ptr<const Volume> volume) { return makeCopyEngine(settings.engine, std::move(volume)); },
             job);
         m_coarserWeighted = false;
     }
@@ -180,9 +178,7 @@ OcclusionMatrix Workspace::occlusion(const MeasureInput& input, const JobControl
 std::vector<std::unique_ptr<VwsFunction>>
 Workspace::coarserFunctions(const MeasureInput& input, const OptimizeOptions& options, const JobControl& job) {
     // The published profile has one slice per voxel plane: a coarser volume is another problem.
-    if (options.maxIterations == 0 || !options.coarse ||
-        input.settings.profile != Profile::Default)
-        return {};
+    if (options.maxIterations == 0 || !options.coarse || input.settings.profile != Profile::Default) return {};
     return coarser(input, job).functions(input.view, input.tf, input.settings.vws);
 }
 
@@ -263,11 +259,14 @@ OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<
             const EngineVws full(e, input.view, input.tf, w, input.settings.vws);
             const VwsFunction& base = full;
             std::vector<std::unique_ptr<VwsFunction>> held;
-            if (coarse) held = coarserFunctions(input, OptimizeOptions{}, job);
+            if (coarse && input.volume->size() > CoarserVolumes::kQuick)
+                held = coarserFunctions(input, OptimizeOptions{}, job);
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
-            OptimizeResult result =
-                pellucid::optimize({held.empty() ? base : *held.front(), targets, limits}, steps, job);
+            OptimizeProblem problem{held.empty() ? base : *held.front(), targets, limits};
+            problem.rays = &rays(input, {job.stop, {}});
+            problem.nearby = true;
+            OptimizeResult result = pellucid::optimize(problem, steps, job);
             m_seconds.visibility = secondsSince(start);
             return result;
         },

@@ -49,8 +49,8 @@ public:
                     const OptimizeResult& found, const JobControl& job = {},
                     const std::vector<std::vector<double>>& known = {});
 
-    /// The same from nearby, as shares alone want it: no other picture's strength is looked for. `coarse`: on the copy
-    /// of half the resolution and nothing else, where there is one.
+    /// The same from nearby, with the floors of the picture (OptimizeProblem::nearby). `coarse`: on the copy that is
+    /// nearest to the volume and nothing else, where that saves time.
     OptimizeResult approach(const MeasureInput& input, const std::vector<double>& targets,
                             const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool coarse,
                             const JobControl& job = {});

@@ -7,8 +7,7 @@ class WorkspaceTools final : public VerdictTools {
 public:
     WorkspaceTools(Workspace& workspace, const MeasureInput& input, const std::vector<double>& targets,
                    const OptimizeOptions& options, std::vector<std::vector<double>> known)
-        : m_workspace(workspace), m_input(input), m_targets(targets), m_options(options),
-          m_known(std::move(known)) {
+        : m_workspace(workspace), m_input(input), m_targets(targets), m_options(options), m_known(std::move(known)) {
         // What the method at hand reaches, in as many moves as it may, says nothing of what can be reached.
         m_options.method = SearchMethod::Newton;
         m_options.restarts = true;

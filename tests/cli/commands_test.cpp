@@ -601,7 +601,7 @@ TEST_CASE("optimize reaches the targets and tells the way there", "[cli]") {
 
         const std::size_t states = j["objective"].size();
         CHECK(j["iterations"].get<std::size_t>() + j["coarse_iterations"].get<std::size_t>() +
-                  j["density_steps"].get<std::size_t>() ==
+                  j["later_steps"].get<std::size_t>() ==
               states - 1);
         REQUIRE(j["vws"].size() == states);
         REQUIRE(j["opacity"].size() == states);
@@ -659,24 +659,34 @@ TEST_CASE("the fixed step moves each opacity by 0.05 times twice the distance to
     CHECK(std::sqrt(length) == Approx(0.02));
 }
 
-TEST_CASE("optimize goes to the strong end or to a coverage, with the same shares; measure tells it again", "[cli]") {
+TEST_CASE("optimize keeps the coverage or goes to the one that is asked for; measure tells it again", "[cli]") {
     const Workshop w;
     const std::vector<std::string> base{"optimize", "sample:shells", "--size",   "24",    "--tf",     "tents:3:0.1",
                                         "--engine", "cpu",           "--target", "1,3,6", "--out-tf", "a.tf.json"};
-    const json strong = w.json(base);
-    CHECK(strong["objective"].back().get<double>() < 0.001);
-    CHECK(strong["strongest_coverage"].get<double>() >= strong["coverage"].get<double>());
-    const double wanted = strong["coverage"].get<double>() / 2;
-    auto arguments = base;
-    arguments.insert(arguments.end(), {"--coverage", std::to_string(wanted)});
-    const json half = w.json(arguments);
-    CHECK(half["objective"].back().get<double>() < 0.001);
-    CHECK(half["coverage"].get<double>() == Approx(wanted).epsilon(0.01));
-    for (std::size_t f = 0; f < 3; ++f) CHECK(half["opacity"].back()[f] < strong["opacity"].back()[f]);
-    const json again = w.json({"measure", "sample:shells", "--size", "24", "--tf", "a.tf.json", "--engine", "cpu"});
-    CHECK(again["coverage"].get<double>() == Approx(half["coverage"].get<double>()).margin(1e-6));
-    for (std::size_t f = 0; f < 3; ++f)
-        CHECK(again["features"][f]["cover"].get<double>() == Approx(half["covers"][f].get<double>()).margin(1e-6));
+    const auto stateOf = [](const json& j) { return j["best"].get<std::size_t>(); };
+    for (const double wanted : {0.4, 0.25}) {
+        auto arguments = base;
+        arguments.insert(arguments.end(), {"--coverage", std::to_string(wanted)});
+        const json j = w.json(arguments);
+        CHECK(j["objective"][stateOf(j)].get<double>() < 0.001);
+        CHECK(j["coverage"].get<double>() == Approx(wanted).epsilon(0.11));
+        const json again = w.json({"measure", "sample:shells", "--size", "24", "--tf", "a.tf.json", "--engine", "cpu"});
+        CHECK(again["coverage"].get<double>() == Approx(j["coverage"].get<double>()).margin(1e-6));
+        for (std::size_t f = 0; f < 3; ++f)
+            CHECK(again["features"][f]["cover"].get<double>() == Approx(j["covers"][f].get<double>()).margin(1e-6));
+    }
+    // 0.002 of the attention for a shell that hides the core: not without the picture's vanishing, unless it is asked
+    // for.
+    auto hidden = base;
+    hidden[9] = "1,1,2000";
+    const json kept = w.json(hidden);
+    CHECK(kept["coverage"].get<double>() >= 0.199);
+    for (const json& cover : kept["covers"]) CHECK(cover.get<double>() >= 0.0199);
+    REQUIRE(kept.contains("exact"));
+    hidden.push_back("--exact-shares");
+    const json exact = w.json(hidden);
+    CHECK(exact["objective"][stateOf(exact)].get<double>() <= kept["objective"][stateOf(kept)].get<double>());
+    CHECK(exact.contains("faint"));
 }
 
 TEST_CASE("a feature without a voxel is said to be empty and has no target", "[cli]") {

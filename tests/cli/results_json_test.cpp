@@ -25,7 +25,7 @@ TEST_CASE("optimizations have their keys in the order of the manual", "[cli][jso
     r.reason = StopReason::Converged;
     const cli::Json j = cli::jsonFromOptimization(r, {});
     CHECK(keysOf(j) == std::vector<std::string>{"command", "method", "direction", "converged", "stopped", "iterations",
-                                                "coarse_iterations", "density_steps", "evaluations", "spread_starts",
+                                                "coarse_iterations", "later_steps", "evaluations", "spread_starts",
                                                 "best", "target", "objective", "level", "vws", "opacity", "tf"});
     CHECK(j["command"] == "optimize");
     CHECK(j["method"] == "newton");
