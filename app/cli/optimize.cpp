@@ -184,12 +184,14 @@ Answer run(const Options& o, Progress& progress) {
     addProfile(json, input.settings);
     if (Json mapping = jsonFromMapping(opened.scene); !mapping.is_null()) json["hsb"] = std::move(mapping);
     std::vector<std::string> remarks;
+    for (const std::string& remark : {keptText(result), faintText(result)})
+        if (!remark.empty()) remarks.push_back(remark);
     if (result.history[result.best].objective >= options.tolerance && result.reason != StopReason::Visible) {
         const Verdict verdict =
             workspace.explain(input, targets, limits, options, result, progress.phase("explaining"), known);
         for (const std::string& sentence : verdict.sentences) text += sentence + "\n";
         json["verdict"] = jsonFromVerdict(verdict, scene.tf);
-        remarks = verdict.sentences;
+        remarks.insert(remarks.end(), verdict.sentences.begin(), verdict.sentences.end());
     }
     if (o.scene.camera.best) {
         const ViewAngles angles = viewAngles(input.view.camera, input.volume->geometry());

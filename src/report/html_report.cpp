@@ -115,6 +115,7 @@ std::string headline(const Run& run) {
     const std::string figures = "F = " + f + ", from " + from + ", in " + moves + before;
     if (run.ended == "converged") return "On target: " + figures + ".";
     if (run.ended == "max-iterations") return "Stopped at the most moves allowed: " + figures + ".";
+    if (run.ended == "visible") return "As near as it comes with a picture that can be seen: " + figures + ".";
     if (run.ended == "cancelled") return "Stopped by hand: " + figures + ".";
     return "As near as it came from this view: " + figures + ".";
 }

@@ -198,7 +198,7 @@ OptimizeOptions randomOptimize(Random& random) {
 Run randomRun(Random& random) {
     Run r;
     r.kind = random.chance(0.5) ? "optimize" : "refine";
-    r.ended = oneOf(random, std::array{"converged", "max-iterations", "no-progress", "cancelled", "done"});
+    r.ended = oneOf(random, std::array{"converged", "max-iterations", "no-progress", "cancelled", "visible", "done"});
     const auto n = static_cast<std::size_t>(random.below(4));
     const auto numbers = [&] {
         std::vector<double> all;
