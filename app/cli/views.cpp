@@ -37,7 +37,7 @@ ViewMetric metricOf(const Options& o, const Scene& scene) {
         metric.feature = parseFeature(*o.feature, "--feature", scene.tf);
         return metric;
     }
-    metric.targets = targetsOf(o.targets, scene);
+    metric.targets = normalizedTargets(targetsOf(o.targets, scene), scene.tf.features.size());
     return metric;
 }
 

@@ -22,8 +22,8 @@ struct TargetInput {
     std::vector<double> of(const Scene& scene) const;
 };
 
-/// What the visible features of a scene are wanted to show, as shownShares() gives it: of what was given, else of the
-/// scene's own targets. Throws UsageError where these are not one number for each feature.
+/// What the visible features of a scene are wanted to show: shownShares() of what was given, else of the scene's own
+/// targets; only in proportion. Throws UsageError where these are not one number for each feature.
 std::vector<double> targetsOf(const std::optional<TargetInput>& given, const Scene& scene);
 
 inline constexpr const char* kTargetForms = "T1,T2,...|equal|diagonal|inside-out|only:NAME";
