@@ -45,7 +45,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
         if (const auto notice = profileNotice(settings, options.camera)) notices.push_back(*notice);
     }
     // Frames are read later, but that no output replaces one of them is known before any work.
-    for (const std::string& file : filesOf(inputs.session)) addInputFile(file);
+    for (const std::string& path : filesOf(inputs.session)) addInputFile(path);
     if (!work.needsTf) inputs.start = SceneInputs::Start::Tents;
     return inputs;
 }

@@ -37,7 +37,7 @@ ViewMetric metricOf(const Options& o, const Scene& scene, std::vector<std::strin
         metric.feature = parseFeature(*o.feature, "--feature", scene.tf);
         return metric;
     }
-    metric.targets = targetsOf(o.targets, scene, notices);
+    metric.targets = normalizedTargets(targetsOf(o.targets, scene, notices), scene.tf.features.size());
     return metric;
 }
 

@@ -67,7 +67,6 @@ TEST_CASE("no output replaces the file of a variable, of the ground or of a came
                  kOverwrites + "./y.nrrd, which is y.nrrd, ");
     // What a header names is read, too.
     for (const char* header : {"detached.mhd", "detached.nhdr"}) {
-        checkRefused(w, optimize + Words{"--variable", std::string("y=") + header, "--curves", "data.csv"}, "data.csv");
         checkRefused(w, optimize + Words{"--variable", std::string("y=") + header, "--out-tf", "data.raw"},
                      kOverwrites + "data.raw");
         checkRefused(w,
@@ -104,9 +103,8 @@ TEST_CASE("no output replaces a member of a series or what a session names", "[c
     checkRefused(w, {"refine", "f%d.raw", "--raw", "8,8,8,u8", "--tf", "tents:3", "--out-tf", "f2.raw"},
                  kOverwrites + "f2.raw");
     checkRefused(w,
-                 Words{"refine"} + kShells +
-                     Words{"--variable", "y=sample:vortex", "--tf", "o/frame_0002.tf.json", "--out-tf",
-                           "o/../o/frame_0002.tf.json"},
+                 {"refine", "sample:shells", "--sample-size", "16", "--tf", "o/frame_0002.tf.json", "--out-tf",
+                  "o/../o/frame_0002.tf.json"},
                  kOverwrites + "o/../o/frame_0002.tf.json, which is o/frame_0002.tf.json");
 
     w.write("s.pellucid.json", R"({"format":"pellucid-session","version":1,"variables":[

@@ -232,22 +232,18 @@ TEST_CASE("a broken frame of another variable is reported with its number and le
     for (const Words& mode : {Words{"--mode", "static"}, Words{"--mode", "refine"},
                               Words{"--mode", "optimize", "--target", "1,1,1", "--coherence", "0"},
                               Words{"--mode", "optimize", "--target", "1,1,1", "--coherence", "2"}})
-        // The volatility over two frames wants frame 2 at frames 2 and 3.
-        for (const auto& [channels, broken] :
-             {std::pair<std::string, std::vector<int>>{"brightness=y", {2}}, {"saturation=volatility:y:2", {2, 3}}}) {
+        // A volatility over two frames makes do with the one that is sound, but not where its own is broken.
+        for (const char* channels : {"brightness=y", "saturation=volatility:y:2"}) {
             const Outcome r = w.run(kSeries + variable + mode + Words{"--hsb", channels, "--json"});
             INFO(mode[1] << " " << channels << ": " << r.err);
             REQUIRE(r.status == 0);
             const json j = json::parse(r.out);
-            REQUIRE(j["frames"].size() == static_cast<std::size_t>(kFrames) - broken.size());
-            REQUIRE(j["broken"].size() == broken.size());
-            for (std::size_t i = 0; i < broken.size(); ++i) {
-                CHECK(j["broken"][i]["frame"] == broken[i]);
-                CHECK(j["broken"][i]["problem"].get<std::string>().find("y02.raw") != std::string::npos);
-                const std::string number = std::to_string(broken[i]);
-                CHECK(r.err.find("frame " + number + " (f0" + number + ") is passed over: ") != std::string::npos);
-            }
-            CHECK(j["frames"].back()["frame"] == kFrames - 1);
+            REQUIRE(j["frames"].size() == kFrames - 1);
+            CHECK(j["frames"][2]["frame"] == 3);
+            REQUIRE(j["broken"].size() == 1);
+            CHECK(j["broken"][0]["frame"] == 2);
+            CHECK(j["broken"][0]["problem"].get<std::string>().find("y02.raw") != std::string::npos);
+            CHECK(r.err.find("frame 2 (f02) is passed over: ") != std::string::npos);
         }
 }
 
