@@ -11,7 +11,7 @@ namespace pellucid {
 
 /// Bounds of each variable, 0 ≤ lower ≤ upper ≤ 1; empty: 0 and 1 for all.
 struct VariableBounds {
-    std::vector<double> lower, upper;
+    std::vector<double> lower = {}, upper = {};
     double low(std::size_t v) const { return lower.empty() ? 0 : lower[v]; }
     double high(std::size_t v) const { return upper.empty() ? 1 : upper[v]; }
 };
@@ -22,7 +22,7 @@ struct LeastVariance {
     std::vector<std::vector<double>> rows; ///< A, one row of `variables` numbers per e_i
     std::vector<double> constants;         ///< b
     double total = 0;                      ///< clamped to what the bounds allow
-    VariableBounds bounds;
+    VariableBounds bounds = {};
 };
 
 struct LeastVarianceAnswer {
