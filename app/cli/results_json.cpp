@@ -37,12 +37,9 @@ Json jsonFromRefinement(const TransferFunction& before, const RefineResult& r, R
 void addRemarks(Json& json, const std::optional<PriorityOutcome>& outcome, const std::optional<Darkening>& dark) {
     json["chosen"] = nullptr;
     if (outcome) {
-        json["chosen"] = {{"name", outcome->name},
-                          {"gained", outcome->gained},
-                          {"value_gain", outcome->valueGain},
-                          {"part_gain", outcome->partGain},
-                          {"others_gain", outcome->othersGain},
-                          {"text", outcome->text}};
+        json["chosen"] = {
+            {"name", outcome->name},          {"gained", outcome->gained},          {"value_gain", outcome->valueGain},
+            {"part_gain", outcome->partGain}, {"others_gain", outcome->othersGain}, {"text", outcome->text}};
     }
     json["darkening"] = nullptr;
     if (dark) {

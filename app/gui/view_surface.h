@@ -16,10 +16,10 @@ namespace pellucid::gui {
 
 /// How good the picture on the screen is.
 struct FrameInfo {
-    int width = 0, height = 0;  ///< pixels of the screen
-    double resolutionScale = 1; ///< rays per pixel along each axis
-    double stepInD0 = 0.5;      ///< distance of samples along a ray
-    bool complete = false;      ///< the best that will come of this scene
+    int width = 0, height = 0;      ///< pixels of the screen
+    double resolutionScale = 1;     ///< rays per pixel along each axis
+    double stepInD0 = 0.5;          ///< distance of samples along a ray
+    bool complete = false;          ///< the best that will come of this scene
     const Volume* volume = nullptr; ///< which one it shows; to be compared, no more
 };
 

@@ -30,7 +30,8 @@ struct LeastVarianceAnswer {
     double energy = 0;
     int steps = 0; ///< linear systems solved
     /// Largest violation of the optimality conditions, by the largest element of AᵀA: there is a λ with gradient + λ =
-    /// 0 between the bounds, ≥ 0 at the lower, ≤ 0 at the upper one. Energies within the least one plus about its square.
+    /// 0 between the bounds, ≥ 0 at the lower, ≤ 0 at the upper one. Energies within the least one plus about its
+    /// square.
     double residual = 0;
 };
 

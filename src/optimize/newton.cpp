@@ -177,8 +177,8 @@ std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, doub
     return points;
 }
 
-/// Downhill on the level of `at`, to below `goal` if that goes. `borrowed`: the derivatives are those of a coarser copy,
-/// which will do for as long as they bring F down fast.
+/// Downhill on the level of `at`, to below `goal` if that goes. `borrowed`: the derivatives are those of a coarser
+/// copy, which will do for as long as they bring F down fast.
 OptimizeState NewtonSearch::descend(Linear at, double goal, bool borrowed) {
     constexpr int kFailures = 3, kSlowMoves = 4;
     constexpr double kSlow = 0.98; // of F that a move leaves

@@ -286,19 +286,17 @@ void OptimizeOptions::validate() const {
     if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "optimize", "correct it");
 }
 
-int OptimizeResult::densitySteps() const {
-    return searched == 0 ? 0 : static_cast<int>(history.size() - searched);
-}
+int OptimizeResult::densitySteps() const { return searched == 0 ? 0 : static_cast<int>(history.size() - searched); }
 
 int OptimizeResult::iterations() const {
-    const auto full = std::count_if(history.begin(), history.end() - densitySteps(),
-                                    [](const auto& s) { return s.level == 0; });
+    const auto full =
+        std::count_if(history.begin(), history.end() - densitySteps(), [](const auto& s) { return s.level == 0; });
     return std::max(0, static_cast<int>(full) - 1);
 }
 
 int OptimizeResult::coarseIterations() const {
-    return static_cast<int>(std::count_if(history.begin(), history.end() - densitySteps(),
-                                          [](const auto& s) { return s.level > 0; }));
+    return static_cast<int>(
+        std::count_if(history.begin(), history.end() - densitySteps(), [](const auto& s) { return s.level > 0; }));
 }
 
 OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& options, const JobControl& job,

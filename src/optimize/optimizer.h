@@ -82,8 +82,8 @@ struct OptimizeResult {
     /// How many states of the history the search has made; those behind them came after it, along equal shares
     /// (makeVisible()). 0: all.
     std::size_t searched = 0;
-    int evaluations = 0;                ///< of W, on any level
-    int spreadStarts = 0;               ///< Newton: starts tried all over the opacities, because it was stuck
+    int evaluations = 0;  ///< of W, on any level
+    int spreadStarts = 0; ///< Newton: starts tried all over the opacities, because it was stuck
     StopReason reason = StopReason::MaxIterations;
     std::optional<Seen> seen = {}; ///< of `tf`: of those who ask for it (visible_answer.h)
 

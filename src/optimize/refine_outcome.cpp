@@ -101,8 +101,8 @@ PriorityOutcome figuresOf(const Histogram& histogram, const TransferFunction& be
     outcome.valueGain = gainOf(before.opacity(chosen.x), after.opacity(chosen.x));
     outcome.partGain = outcome.valueGain;
     if (chosen.feature)
-        outcome.partGain = gainOf(opacityParts(histogram, before)[*chosen.feature],
-                                  opacityParts(histogram, after)[*chosen.feature]);
+        outcome.partGain =
+            gainOf(opacityParts(histogram, before)[*chosen.feature], opacityParts(histogram, after)[*chosen.feature]);
     other = strongestOther(histogram, before, after, chosen);
     outcome.othersGain = other.gain;
     const double least = std::min(outcome.valueGain, outcome.partGain);
@@ -128,7 +128,8 @@ std::string reasonOf(const PriorityOutcome& outcome, const Other& other) {
     const double least = std::min(outcome.valueGain, outcome.partGain);
     if (least < 1 - kSame)
         return "Refinement lowered " + outcome.name + " by " + percent(least) +
-               ": its values carry so much information that evening out takes from them even where they are prioritized.";
+               ": its values carry so much information that evening out takes from them even where they are "
+               "prioritized.";
     if (other.gain > least * (1 + kSame))
         return "Refinement raised " + other.name + " more than " + outcome.name + ": " + other.name +
                " carries less information, and evening out raises what carries least.";
@@ -148,7 +149,8 @@ std::optional<PriorityOutcome> priorityOutcome(const Histogram& histogram, const
     if (!options.priority.any()) return {};
     if (!chosen) {
         PriorityOutcome none;
-        none.text = "No feature that is shown has a voxel, so there is nothing to bring out: change a feature's interval.";
+        none.text =
+            "No feature that is shown has a voxel, so there is nothing to bring out: change a feature's interval.";
         return none;
     }
     Other other;
@@ -162,11 +164,13 @@ std::optional<PriorityOutcome> priorityOutcome(const Histogram& histogram, const
             return outcome;
         }
         if (!hasVoxels(histogram, f)) {
-            outcome.text = "No voxel has a value of " + name + ", so there is nothing to bring out: choose another value.";
+            outcome.text =
+                "No voxel has a value of " + name + ", so there is nothing to bring out: choose another value.";
             return outcome;
         }
         if (isHeld(before, f)) {
-            outcome.text = name + " has a fixed control point and keeps its opacity: release the point to bring it out.";
+            outcome.text =
+                name + " has a fixed control point and keeps its opacity: release the point to bring it out.";
             return outcome;
         }
         if (!chosen->inside) {
@@ -175,18 +179,18 @@ std::optional<PriorityOutcome> priorityOutcome(const Histogram& histogram, const
             return outcome;
         }
     }
-    const std::string why = before.opacity(chosen->x) >= 1 - kSame
-                                ? name + " is fully opaque already and cannot gain."
-                                : reasonOf(outcome, other);
+    const std::string why = before.opacity(chosen->x) >= 1 - kSame ? name + " is fully opaque already and cannot gain."
+                                                                   : reasonOf(outcome, other);
     RefineOptions by = options;
     by.method = otherThan(options.method);
     Other unused;
     const bool helps = figuresOf(histogram, before, again(by), *chosen, unused).gained;
-    outcome.text = why + (helps ? std::string(" The method ") +
-                                      (by.method == RefineMethod::Exact ? "Exact" : "Greedy") + " brings " + name + " out."
-                          : before.opacity(chosen->x) >= 1 - kSame
-                              ? " Lower the others by hand, or choose another value."
-                              : " Raise it by hand, and fix its control points before you refine the others.");
+    outcome.text =
+        why + (helps ? std::string(" The method ") + (by.method == RefineMethod::Exact ? "Exact" : "Greedy") +
+                           " brings " + name + " out."
+               : before.opacity(chosen->x) >= 1 - kSame
+                   ? " Lower the others by hand, or choose another value."
+                   : " Raise it by hand, and fix its control points before you refine the others.");
     return outcome;
 }
 
@@ -205,8 +209,9 @@ std::optional<Darkening> darkeningOf(const RayBundle& rays, const Histogram& his
         dark.helped = strength(tf);
         Other other;
         if (!(dark.helped >= least)) return false;
-        return !chosen || std::min(figuresOf(histogram, before, tf, *chosen, other).valueGain, 1.0) >=
-                              std::min(figuresOf(histogram, before, after, *chosen, other).valueGain, 1.0) * (1 - kSame);
+        return !chosen ||
+               std::min(figuresOf(histogram, before, tf, *chosen, other).valueGain, 1.0) >=
+                   std::min(figuresOf(histogram, before, after, *chosen, other).valueGain, 1.0) * (1 - kSame);
     };
     RefineOptions by = options;
     by.method = RefineMethod::Exact;
@@ -239,7 +244,8 @@ std::string darkeningText(const Darkening& d) {
         std::snprintf(text, sizeof text, "%.2f", coverage);
         return std::string(text);
     };
-    std::string text = "The picture gets dark: its coverage falls from " + number(d.before) + " to " + number(d.after) + ".";
+    std::string text =
+        "The picture gets dark: its coverage falls from " + number(d.before) + " to " + number(d.after) + ".";
     if (d.help == Darkening::Help::Exact) text += " With the method Exact it stays at " + number(d.helped) + ".";
     if (d.help == Darkening::Help::Stop)
         text += " Stopped after " + std::to_string(d.iterations) + " iterations it stays at " + number(d.helped) + ".";

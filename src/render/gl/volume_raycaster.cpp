@@ -197,13 +197,8 @@ public:
     /// `window`: the whole picture or a part of it.
     void prepare(const RenderSettings& settings, const Camera& camera, const Geometry& geometry,
                  const GroundWindow& window, const JobControl& job) {
-        Drawn wanted{settings.ground,
-                     camera,
-                     geometry.boxCenter(),
-                     geometry.radius(),
-                     settings.light.depthCue,
-                     settings.background,
-                     window};
+        Drawn wanted{settings.ground,     camera, geometry.boxCenter(), geometry.radius(), settings.light.depthCue,
+                     settings.background, window};
         if (m_drawn == wanted) return;
         m_drawn.reset();
         const GroundPicture picture = groundOf(settings, camera, geometry, window, job);
