@@ -11,7 +11,7 @@ namespace pellucid {
 
 /// Bounds of each variable, 0 ≤ lower ≤ upper ≤ 1; empty: 0 and 1 for all.
 struct VariableBounds {
-    std::vector<double> lower, upper;
+    std::vector<double> lower = {}, upper = {};
     double low(std::size_t v) const { return lower.empty() ? 0 : lower[v]; }
     double high(std::size_t v) const { return upper.empty() ? 1 : upper[v]; }
 };
@@ -22,7 +22,7 @@ struct LeastVariance {
     std::vector<std::vector<double>> rows; ///< A, one row of `variables` numbers per e_i
     std::vector<double> constants;         ///< b
     double total = 0;                      ///< clamped to what the bounds allow
-    VariableBounds bounds;
+    VariableBounds bounds = {};
 };
 
 struct LeastVarianceAnswer {
@@ -30,7 +30,8 @@ struct LeastVarianceAnswer {
     double energy = 0;
     int steps = 0; ///< linear systems solved
     /// Largest violation of the optimality conditions, by the largest element of AᵀA: there is a λ with gradient + λ =
-    /// 0 between the bounds, ≥ 0 at the lower, ≤ 0 at the upper one. Energies within the least one plus about its square.
+    /// 0 between the bounds, ≥ 0 at the lower, ≤ 0 at the upper one. Energies within the least one plus about its
+    /// square.
     double residual = 0;
 };
 
