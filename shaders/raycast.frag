@@ -33,7 +33,12 @@ const int kRun = 8;                       // samples between two looks at the bl
 #if MODE == 0
 #include "include/tf_segment.glsl"
 
-const float kLitAtOnce = 1.0 / 64.0; // what has been gathered up to this opacity is lit as one, in its middle
+// What has been gathered up to this opacity is lit as one, in its middle.
+#ifdef HALVES
+const float kLitAtOnce = 1.0 / 512.0;
+#else
+const float kLitAtOnce = 1.0 / 64.0;
+#endif
 
 struct Met {
     float place, share, code;
@@ -116,10 +121,10 @@ bool isCoarse(Met a, Met m, Met b, vec4 first, vec4 second, float clear) {
 
 vec4 traced(PictureRay ray, vec4 sum) {
     float n = ray.first;
-    bool known = false; // the sample n, or where part of the step to it has been done
+    bool known = false; // the sample n, or the one to which the step from there has been done
     Met last = Met(0.0, 0.0, 0.0, TfPlace(0, vec4(0.0)));
 #ifdef HALVES
-    float done = 0.0, size = 1.0; // of the step before the sample n: how much of it; what is to be done next
+    float done = 0.0, size = 1.0; // of the step from the sample n on: how much of it; what is to be done next
 #endif
     do {
         float leap;
@@ -134,15 +139,11 @@ vec4 traced(PictureRay ray, vec4 sum) {
 
         Pending pending = Pending(vec4(0.0), 0.0, vec3(0.0));
         int run = 0;
-        bool more;
         do {
 #ifdef HALVES
-            float from = placeOf(ray, n);
+            float from = placeOf(ray, n), to = placeOf(ray, n + 1.0);
             if (!known) last = meet(ray, from);
             known = true;
-            if (done > 0.0) from = placeOf(ray, n - 1.0);
-            float to = done > 0.0 ? placeOf(ray, n) : placeOf(ray, n + 1.0);
-            if (done == 0.0) n += 1.0;
             Met middle = meet(ray, mix(from, to, done + 0.5 * size)), next = meet(ray, mix(from, to, done + size));
             vec4 first = segment(last, middle), second = segment(middle, next);
             bool own = isOwn(ray, from, to);
@@ -156,9 +157,11 @@ vec4 traced(PictureRay ray, vec4 sum) {
                 last = next;
                 done += size;
                 while (size < 1.0 && fract(0.5 * done / size) == 0.0) size *= 2.0; // the largest part that begins there
-                if (done == 1.0) done = 0.0;
+                if (done == 1.0) {
+                    n += 1.0;
+                    done = 0.0;
+                }
             }
-            more = n < ray.end || done > 0.0;
 #else
             if (known) n += 1.0;
             Met next = meet(ray, placeOf(ray, n));
@@ -166,11 +169,10 @@ vec4 traced(PictureRay ray, vec4 sum) {
             known = true;
             if (isOwn(ray, last.place, next.place)) absorb(ray, segment(last, next), last, next, sum.a, pending);
             last = next;
-            more = n < ray.end;
 #endif
             ++run;
 #ifdef LIGHT
-        } while (more && run < kRun && sum.a < kOpaque && pending.color.a <= kLitAtOnce);
+        } while (n < ray.end && run < kRun && sum.a < kOpaque && pending.color.a <= kLitAtOnce);
         if (pending.color.a > 0.0) {
             float place = pending.places / pending.color.a;
             vec3 voxel = ray.point + place * ray.step;
@@ -182,10 +184,10 @@ vec4 traced(PictureRay ray, vec4 sum) {
                 lit(pending.color.rgb / pending.color.a, pending.gradient, ray.view, voxel, t) * pending.color.a;
         }
 #else
-        } while (more && run < kRun && sum.a < kOpaque);
+        } while (n < ray.end && run < kRun && sum.a < kOpaque);
 #endif
         sum.rgb += pending.color.rgb;
-    } while (more && sum.a < kOpaque);
+    } while (n < ray.end && sum.a < kOpaque);
     return sum;
 }
 
