@@ -27,7 +27,7 @@ struct ActionSpec {
     std::function<QString()> say = {};  ///< the tool tip's text, where it changes ("Undo: Move point")
     bool separatorBefore = false;
     bool inToolBar = false;
-    bool inKeyTable = true; ///< only where it has keys
+    bool inKeyTable = true;                ///< only where it has keys
     std::function<QString()> caption = {}; ///< the text, where it changes
 };
 
