@@ -165,9 +165,7 @@ double DensitySlider::shareOf(double coverage) const {
     return high > low ? std::clamp(std::log(coverage / low) / std::log(high / low), 0.0, 1.0) : 1;
 }
 
-int DensitySlider::valueOf(double coverage) const {
-    return static_cast<int>(std::lround(kReach * shareOf(coverage)));
-}
+int DensitySlider::valueOf(double coverage) const { return static_cast<int>(std::lround(kReach * shareOf(coverage))); }
 
 void DensitySlider::follow() {
     if (m_givenUp || !m_bench.store().hasVolume()) return rest();

@@ -46,7 +46,8 @@ void DockSpace::settle() {
     m_waiting = false;
     if (!m_window.isVisible()) return;
     Docks now = open();
-    const bool closed = now.size() < m_open.size() && std::includes(m_open.begin(), m_open.end(), now.begin(), now.end());
+    const bool closed =
+        now.size() < m_open.size() && std::includes(m_open.begin(), m_open.end(), now.begin(), now.end());
     m_open = std::move(now);
     if (const auto known = m_sizes.find(m_open); closed && known != m_sizes.end()) return giveBack(known->second);
     auto& sizes = m_sizes[m_open];

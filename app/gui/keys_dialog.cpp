@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth = 620;               // logical pixels
 constexpr double kMostOfTheScreen = 0.85; // of its height
 
-}
+} // namespace
 
 KeysDialog::KeysDialog(const Actions& actions, QWidget* parent) : QDialog(parent) {
     setObjectName("keysBox");

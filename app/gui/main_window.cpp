@@ -153,9 +153,8 @@ void MainWindow::addHelpActions() {
                          {volume, tr("Ctrl + left drag"), tr("turn the light")},
                          {volume, tr("Left drag of a clip handle; with Shift"), tr("cut; move the whole slab")},
                          {volume, tr("Esc"), tr("give up a drag")}});
-    add("keysAction", tr("&Help"), tr("&Mouse and keys"), QKeySequence("F1"), [this] {
-        KeysDialog(m_bench->actions(), this).exec();
-    });
+    add("keysAction", tr("&Help"), tr("&Mouse and keys"), QKeySequence("F1"),
+        [this] { KeysDialog(m_bench->actions(), this).exec(); });
     add("aboutAction", tr("&Help"), tr("&About Pellucid"), {}, [this] {
         QMessageBox::about(this, tr("About Pellucid"),
                            tr("<b>Pellucid %1</b><br>The volume explorer that finds the transfer function for you.")

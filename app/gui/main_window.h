@@ -46,7 +46,7 @@ private:
 
     std::unique_ptr<Workbench> m_bench;
     VolumeView* m_view;
-    ViewGrid* m_views; // with m_view in it
+    ViewGrid* m_views;  // with m_view in it
     QHBoxLayout* m_row; // with m_views in it
 };
 

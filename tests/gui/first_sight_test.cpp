@@ -41,7 +41,7 @@ TEST_CASE("a volume opens under its proposal, and its opacities come as a step",
     SceneInputs inputs;
     inputs.session = sessionOf(boxesWithOutlier(folder));
     const Scene tuned = openScene(inputs);
-    CHECK(w.document().tf() == tuned.tf); // as the command line has it
+    CHECK(w.document().tf() == tuned.tf);             // as the command line has it
     CHECK(w.document().targets() == tuned.targets()); // what the start aims at
     CHECK(w.document().targets()[0] != Approx(w.document().targets()[1]).margin(0.05));
     CHECK(w.bench().store().undoText() == "Automatic opacities");
@@ -143,7 +143,8 @@ TEST_CASE("the card of the first start goes for good", "[first sight]") {
     CHECK_FALSE(inWindow(card).intersects(inWindow(w.view())));
     CHECK(w.window.rect().contains(inWindow(card)));
     CHECK(w.view().width() > card.width());
-    for (const QLabel* label : card.findChildren<QLabel*>()) CHECK(label->height() >= label->heightForWidth(label->width()));
+    for (const QLabel* label : card.findChildren<QLabel*>())
+        CHECK(label->height() >= label->heightForWidth(label->width()));
     const Camera camera = w.document().camera();
     drag(card, {10, 10}, {60, 30});
     CHECK(w.document().camera() == camera);

@@ -110,9 +110,8 @@ TEST_CASE("a feature is split where its histogram says, merged again and removed
         CHECK(tf.features[1].b == splitPlace(before.features[1], w.document().histogram().counts));
         CHECK(tf.features[2].a == tf.features[1].b);
         const auto [lower, upper] = namesOfParts(
-            before.features[1].name,
-            numberText(w.document().volume()->valueOfIntensity(tf.features[1].b),
-                       w.document().volume()->range().hi - w.document().volume()->range().lo));
+            before.features[1].name, numberText(w.document().volume()->valueOfIntensity(tf.features[1].b),
+                                                w.document().volume()->range().hi - w.document().volume()->range().lo));
         CHECK(tf.features[1].name == lower);
         CHECK(tf.features[2].name == upper);
         // Each half has voxels to be seen.

@@ -248,7 +248,8 @@ TEST_CASE("neither half of a split is next to nothing", "[shapes]") {
     const double half = splitPlace(f, counts);
     CHECK(half == 68.0 / 256); // 3700 below and 4050 above; a bin farther it would be 4500 and 3250
     // What somebody points at is refused with the reason.
-    CHECK_THROWS_WITH(withFeatureSplit(tf, 0, 0.6, counts), Catch::Contains("hardly a voxel of 'bone' would lie above 15"));
+    CHECK_THROWS_WITH(withFeatureSplit(tf, 0, 0.6, counts),
+                      Catch::Contains("hardly a voxel of 'bone' would lie above 15"));
     CHECK_NOTHROW(withFeatureSplit(tf, 0, 0.6));
     CHECK(withFeatureSplit(tf, 0, half, counts).features[0].name == "bone up to 68");
 }

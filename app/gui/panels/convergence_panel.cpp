@@ -56,7 +56,8 @@ QString shortNumber(double value) { return QString::number(value, 'g', 3); }
 QString tipOf(const Run& run) {
     QStringList lines{QObject::tr("F %1, from %2; %3")
                           .arg(shortNumber(run.after), shortNumber(run.before), QString::fromStdString(run.ended))};
-    const auto coarse = std::count_if(run.history.begin(), run.history.end(), [](const auto& s) { return s.level > 0; });
+    const auto coarse =
+        std::count_if(run.history.begin(), run.history.end(), [](const auto& s) { return s.level > 0; });
     const auto others = static_cast<std::ptrdiff_t>(run.history.size()) - 1 - run.iterations - coarse;
     QStringList moves{QObject::tr("%1 on the volume").arg(run.iterations)};
     if (coarse > 0) moves << QObject::tr("%1 on coarser copies of it").arg(coarse);
@@ -143,8 +144,9 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     m_list->setHeaderLabels({tr("Run"), tr("Moves"), tr("F"), tr("s")});
     m_list->headerItem()->setToolTip(kTitle, tr("Checked runs are compared in the first plot; the selected one has\n"
                                                 "the other two. F2 renames, Del deletes."));
-    m_list->headerItem()->setToolTip(kMoves, tr("Moves of the search on the volume itself. The plots also have those on\n"
-                                                "coarser copies of it, hollow, and those along equal shares that follow"));
+    m_list->headerItem()->setToolTip(kMoves,
+                                     tr("Moves of the search on the volume itself. The plots also have those on\n"
+                                        "coarser copies of it, hollow, and those along equal shares that follow"));
     m_list->headerItem()->setToolTip(kDistance, tr("Distance from the targets at the end"));
     m_list->headerItem()->setToolTip(kSeconds, tr("Seconds that the search took"));
     m_list->header()->setStretchLastSection(false);

@@ -470,9 +470,9 @@ void FeaturesPanel::followRun() {
         // Moves are those on the volume, as in the message at the end and in the list of runs.
         const std::vector<OptimizeState>& history = run.underWay()->history;
         const auto whole = std::count_if(history.begin(), history.end(), [](const auto& s) { return s.level == 0; });
-        m_progress->setFormat((history.back().level == 0 ? tr("move %1, F = %2").arg(whole - 1)
-                                                         : tr("on a coarser copy, F = %1"))
-                                  .arg(run.objective(), 0, 'f', 4));
+        m_progress->setFormat(
+            (history.back().level == 0 ? tr("move %1, F = %2").arg(whole - 1) : tr("on a coarser copy, F = %1"))
+                .arg(run.objective(), 0, 'f', 4));
     }
     m_optimize->setVisible(!on);
     m_cancel->setVisible(on);

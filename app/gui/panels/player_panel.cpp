@@ -313,7 +313,7 @@ void PlayerPanel::followAdapting() {
 }
 
 void PlayerPanel::showDock(bool shown) {
-    auto* dock = qobject_cast<QDockWidget*>(parentWidget());
+    auto* dock = m_bench.window()->findChild<QDockWidget*>("playerDock");
     if (dock == nullptr || dock->isHidden() == !shown) return;
     dock->setVisible(shown);
     m_shownByItself = shown;
