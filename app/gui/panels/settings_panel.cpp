@@ -169,7 +169,7 @@ void SettingsPanel::addOptimization(QFormLayout& form) {
     check("exactSharesCheck", tr("E&xact shares"),
           tr("The shares asked for, even where the picture becomes too faint to see. Otherwise it stays at least 20 % "
              "opaque,\nand what is wanted adds at least 2 % where it is"),
-          &OptimizeOptions::exactShares);
+          &OptimizeOptions::exactShares, [] { return true; });
 }
 
 void SettingsPanel::addMeasuring(QFormLayout& form) {
