@@ -184,19 +184,25 @@ TransferFunction trapezoids(const Evidence& e, const std::vector<Part>& parts, c
     return tf;
 }
 
-/// Parts that no voxel belongs to are nothing to look at. A survey that saw something of each has told; else all voxels
+/// Parts that no voxel belongs to are nothing to look at: the part below reaches over them, so that no hole is left. A
+/// survey that saw something of each has told; else all voxels
 /// are asked. Where nothing is valid all parts stay.
 void dropEmpty(std::vector<Part>& parts, const Evidence& e) {
     const std::vector<FeatureExtent> seen = extentsOf(e.survey, e.window, rangesOf(parts));
     if (std::all_of(seen.begin(), seen.end(), [](const FeatureExtent& extent) { return extent.share > 0; })) return;
     if (!e.data.hasValidVoxels()) return;
     const Histogram histogram = makeHistogram(e.data.withRange(e.window));
-    std::erase_if(parts, [&](const Part& p) {
+    std::vector<Part> kept;
+    for (Part& p : parts) {
         Feature feature;
         feature.a = e.intensity(p.feature.lo);
         feature.b = e.intensity(p.feature.hi);
-        return !hasVoxel(feature, histogram);
-    });
+        if (hasVoxel(feature, histogram))
+            kept.push_back(std::move(p));
+        else if (!kept.empty() && kept.back().feature.hi == p.feature.lo)
+            kept.back().feature.hi = p.feature.hi;
+    }
+    parts = std::move(kept);
 }
 
 /// Shares, depths, opacities and the transfer function of `parts`. Covers of 0 are chosen here.

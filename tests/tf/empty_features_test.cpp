@@ -12,7 +12,8 @@ namespace {
 
 template <class T>
 Volume lineOf(std::vector<T> values) {
-    return Volume(Geometry{{static_cast<int>(values.size()), 1, 1}}, Samples(std::move(values)));
+    const Geometry geometry{{static_cast<int>(values.size()), 1, 1}}; // before they are moved
+    return Volume(geometry, Samples(std::move(values)));
 }
 
 Feature between(double a, double b) { return {"f", a, b, {}, {}}; }

@@ -346,7 +346,7 @@ TEST_CASE("CT of a chest has lungs; foam around a head is none", "[proposal][ct]
     }));
     checkSound(head);
     CHECK(head.kind == DataKind::Ct);
-    CHECK(head.features.front().name == "skin and fat");
+    CHECK(head.features.front().name == "soft tissue"); // no voxel is skin or fat
     CHECK(head.features.back().name == "soft tissue"); // and no bone
 }
 
