@@ -121,7 +121,9 @@ NewtonSearch::Linear NewtonSearch::linearize(std::size_t level, const Point& x) 
     VwsFunction::Linear linear = m_levels[level]->jacobian(capped, m_job);
     Coverage look;
     if (m_goal) look = m_goal->looks({x}, level == 0 ? PictureGoal::Rays::All : PictureGoal::Rays::Some)[0];
-    return {placeOf(linear.vws, x, level, std::move(look)), std::move(linear.derivative)};
+    Linear at{placeOf(linear.vws, x, level, std::move(look)), std::move(linear.derivative)};
+    if (level == 0) m_places.push_back(at.place);
+    return at;
 }
 
 NewtonSearch::GoalRows NewtonSearch::goalRows(const Place& at, const Weights& weights) const {
@@ -536,6 +538,7 @@ void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
     std::vector<Place> places = evaluate(0, points);
     if (first) {
         begin();
+        m_job.throwIfStopped();
         if (isGood(this->start())) return;
         places.erase(places.begin());
     }
@@ -586,7 +589,6 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
         refine(onCopies(startsFor(x), false), start, false);
     } else if (x == start && mayMove(0)) { // the first move is one on the volume, and needs the derivatives there
         first = linearize(0, x);
-        m_places.push_back(first->place);
         begin();
     } else {
         evaluate(0, {start});
@@ -595,7 +597,11 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
     if (starts.size() > 1) evaluate(0, {starts.begin() + 1, starts.end()});
     if (isGood(this->start()) || !mayMove(0)) return;
     if (coarse && done()) return;
-    down(first ? std::move(*first) : linearize(0, coarse ? x : atStrength(x, 1)));
+    if (!first) {
+        first = linearize(0, coarse ? x : atStrength(x, 1));
+        arrive(first->place.state);
+    }
+    down(std::move(*first));
     const auto isStrong = [&] { return bestOf(false).miss < kFarStrength; };
     if (m_goal && !coarse && done() && !isStrong() && mayMove(0)) down(linearize(0, startsFor(x).back()));
     for (std::size_t i = 1; i < starts.size() && !done(); ++i) down(linearize(0, starts[i]));

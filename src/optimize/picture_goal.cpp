@@ -7,10 +7,11 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kNothing = 1e-7; ///< of alpha: a logarithm has no place for 0
-constexpr double kAim = 1.03;     ///< times the floor: what is aimed at is met within a few per cent
-constexpr double kOfMost = 0.97;  ///< of what can be had, where that is below the floor: the rest needs opacities of 1
-constexpr int kEvery = 5;         ///< ray, where some will do
+constexpr double kNothing = 1e-7;  ///< of alpha: a logarithm has no place for 0
+constexpr double kAim = 1.03;      ///< times the floor: what is aimed at is met within a few per cent
+constexpr double kOfMost = 0.97;   ///< of what can be had, where that is below the floor: the rest needs opacities of 1
+constexpr double kNearAsked = 0.8; ///< of a wanted coverage: nearer is not asked for
+constexpr int kEvery = 5;          ///< ray, where some will do
 
 double logRatio(double wanted, double have) { return std::log(wanted / std::max(have, kNothing)); }
 
@@ -38,7 +39,7 @@ PictureGoal::PictureGoal(const RayBundle& rays, const TransferFunction& base, co
     const std::vector<Coverage> looks = this->looks(extremes);
     const double largest = looks[1].coverage;
     // What somebody has asked to be faint may be so.
-    if (coverage) m_asked = std::min(1.0, *coverage / kFaintCoverage);
+    if (coverage) m_asked = std::min(1.0, kNearAsked * *coverage / kFaintCoverage);
     m_leastCoverage = std::min(kFaintCoverage * m_asked, kOfMost * largest);
     for (std::size_t f = 0; f < n; ++f)
         m_leastCovers.push_back(m_wanted[f] ? std::min(kFaintCover * m_asked, kOfMost * looks[2 + f].covers[f]) : 0);

@@ -285,13 +285,13 @@ TEST_CASE("coverage counts the rays that meet what is wanted", "[density]") {
     const auto volume =
         volumeFrom(geometryOf({17, 15, 17}), [](int i, int, int k) { return i == 8 && k == 8 ? 0.8 : 0.2; });
     TransferFunction tf;
-    tf.points = {{0, 0, {1, 0, 0}, false, {}},
-                 {0.5, 0, {1, 0, 0}, false, {}},
-                 {0.7, 0, {0, 0, 1}, false, {}},
-                 {0.75, 0.2, {0, 0, 1}, false, {}},
+    // Between centres the column is fainter: from half-way on it counts.
+    tf.points = {{0, 0.1, {1, 0, 0}, false, {}},
+                 {0.35, 0.1, {1, 0, 0}, false, {}},
+                 {0.45, 0, {0, 0, 1}, false, {}},
+                 {0.5, 0.2, {0, 0, 1}, false, {}},
                  {1, 0.2, {0, 0, 1}, false, {}}};
-    tf.points[0].opacity = tf.points[1].opacity = 0.1;
-    tf.features = {{"block", 0, 0.6, {1, 0, 0}, {}}, {"column", 0.7, 1, {0, 0, 1}, {}}};
+    tf.features = {{"block", 0, 0.35, {1, 0, 0}, {}}, {"column", 0.45, 1, {0, 0, 1}, {}}};
     View view(lookingAlong(volume->geometry(), {0, 1, 0}));
     view.camera.height = 18;
     const RayBundle rays(*volume, tf, view, kCoverageRays);
