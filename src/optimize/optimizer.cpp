@@ -320,6 +320,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     const std::vector<OpacityLimits> limits = fullLimits(function, problem.limits);
     const std::vector<double> start = within(limits, featureOpacities(function.base()));
 
+    const bool isNewton = options.method == SearchMethod::Newton;
     const auto arrive = [&](const OptimizeState& state) {
         result.history.push_back(state);
         if (state.level == 0 && state.objective < result.history[result.best].objective)
@@ -333,6 +334,13 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
         while (i > 0 && !(result.history[i - 1].level == 0 && result.history[i - 1].opacity == place.state.opacity))
             --i;
         if (i == 0) {
+            // Where no more moves are allowed the answer takes the place of the last one, which was not as good.
+            if (isNewton && result.iterations() >= std::max(1, options.maxIterations)) {
+                const auto last = std::find_if(result.history.rbegin(), result.history.rend(),
+                                               [](const OptimizeState& s) { return s.level == 0; });
+                result.history.erase(std::next(last).base());
+                result.best = 0;
+            }
             arrive(place.state);
             i = result.history.size();
         }
@@ -351,7 +359,6 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     };
     Search search(function, result.targets, limits, options, job);
     NewtonSearch newton(levels, result.targets, limits, options, goal && moves ? &*goal : nullptr, job, arrive);
-    const bool isNewton = options.method == SearchMethod::Newton;
     try {
         NewtonSearch::Place nearest;
         if (isNewton && problem.nearby && goal && moves && !options.exactShares) {

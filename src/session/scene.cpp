@@ -1,6 +1,7 @@
 #include "session/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "render/published_engine.h"
@@ -196,8 +197,10 @@ FirstSight tunedStart(const Scene& scene, const JobControl& job) {
 void setStart(Session& session, const FirstSight& start) {
     session.setTf(start.tf);
     const TransferFunction& tf = *session.tf(); // its features have their identities
-    const bool wanted = std::any_of(tf.features.begin(), tf.features.end(),
-                                    [&](const Feature& f) { return session.goals->contains(f.id); });
+    // Every feature has a goal from its first day on, the same for all: what differs somebody has set.
+    const std::vector<double> targets = targetsOf(tf, *session.goals);
+    const bool wanted =
+        std::any_of(targets.begin(), targets.end(), [&](double t) { return std::abs(t - targets.front()) > 1e-9; });
     if (!start.shares.empty() && !wanted) session.goals.set(withTargets(*session.goals, tf, start.shares));
 }
 

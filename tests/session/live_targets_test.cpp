@@ -11,7 +11,7 @@ using namespace pellucid;
 
 namespace {
 
-HeldTargets heldOf(const std::vector<double>& targets) {
+HeldTargets heldOf(const std::vector<double>& targets, bool exactShares = true) {
     SceneInputs in;
     VolumeSource source;
     source.path = "sample:shells";
@@ -19,7 +19,9 @@ HeldTargets heldOf(const std::vector<double>& targets) {
     in.session = sessionOf(source);
     in.tf = "tents:3:0.1";
     in.session.measure.edit([](MeasureSettings& m) { m.engine = EngineChoice::Cpu; });
-    return {measureInput(openScene(in)), targets, {}, {}};
+    OptimizeOptions options;
+    options.exactShares = exactShares;
+    return {measureInput(openScene(in)), targets, {}, options};
 }
 
 double distance(const LiveUpdate& update, const std::vector<double>& targets) {
@@ -63,6 +65,21 @@ TEST_CASE("targets are held while the view turns", "[session][live]") {
         CHECK(measured.features[i].vws == Approx(rest.vws[i]).margin(1e-6));
         CHECK(std::abs(measured.features[i].vws - held.targets[i]) < 0.01);
     }
+}
+
+TEST_CASE("the picture does not vanish while targets are held", "[session][live]") {
+    // 0.6 for the core takes a picture that is 12 % opaque at most.
+    Workspace workspace;
+    HeldTargets held = heldOf({0.2, 0.2, 0.6}, false);
+    put(held, settleTargets(workspace, held));
+    CHECK(workspace.coverage(held.input).coverage > 0.19);
+    for (int i = 0; i < 4; ++i) {
+        turn(held, 15);
+        put(held, followTargets(workspace, held));
+        CHECK(workspace.coverage(held.input).coverage > 0.15); // a move at a time
+    }
+    put(held, settleTargets(workspace, held));
+    CHECK(workspace.coverage(held.input).coverage > 0.19);
 }
 
 TEST_CASE("an opacity that is locked stays while targets are held", "[session][live]") {
