@@ -13,8 +13,8 @@ struct PartName {
 
     std::string text() const {
         if (base.empty() && !from.empty() && !to.empty()) return from + " to " + to;
-        const std::string which = from.empty() ? (to.empty() ? "" : "up to " + to)
-                                               : "from " + from + (to.empty() ? "" : " to " + to);
+        const std::string which =
+            from.empty() ? (to.empty() ? "" : "up to " + to) : "from " + from + (to.empty() ? "" : " to " + to);
         return base + (base.empty() || which.empty() ? "" : " ") + which;
     }
 };

@@ -440,8 +440,8 @@ TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, doubl
         throw Error("the feature '" + f.name + "' cannot be split at " + border, "", "choose a value well inside it");
     const double below = countedIn(counts, f.a, place), above = countedIn(counts, place, f.b);
     if (!counts.empty() && !(std::min(below, above) >= kSmallestPart * (below + above)))
-        throw Error("hardly a voxel of '" + f.name + "' would lie " + (below < above ? "below " : "above ") + border, "",
-                    "choose another value");
+        throw Error("hardly a voxel of '" + f.name + "' would lie " + (below < above ? "below " : "above ") + border,
+                    "", "choose another value");
     TransferFunction result = tf;
     const Group group = pointsAt(result.points, place);
     ControlPoint left = leftOf(tf, place), right = rightOf(tf, place);

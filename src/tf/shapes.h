@@ -75,8 +75,8 @@ inline constexpr double kSmallestPart = 0.02;
 TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, double at,
                                   std::span<const std::uint64_t> counts = {});
 /// Where to split: the bottom of the deepest valley of `counts` (a histogram over [0,1]) between two peaks inside the
-/// feature that leaves each side kSmallestPart of its voxels; where there is none its middle, and where that leaves less,
-/// the border between bins that comes nearest to halving the voxels.
+/// feature that leaves each side kSmallestPart of its voxels; where there is none its middle, and where that leaves
+/// less, the border between bins that comes nearest to halving the voxels.
 double splitPlace(const Feature& feature, std::span<const std::uint64_t> counts);
 /// The feature and the next one by intensity as one, with what lies between; α and points stay. The wider one's colour,
 /// identity and eye, both names (those of parts become that of the whole). Throws Error where there is no next one.
