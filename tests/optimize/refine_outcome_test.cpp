@@ -34,7 +34,7 @@ Start startOf(const Volume& data) {
     start.volume = std::make_shared<const Volume>(
         data.dataRange().lo < data.dataRange().hi ? data.withRange(proposal.window) : data);
     const View home(homeCamera(data.geometry(), Projection::Perspective));
-    start.tf = withOpacitiesForView(*start.volume, proposal, proposal.tf, home);
+    start.tf = withOpacitiesForView(*start.volume, proposal, proposal.tf, home).tf;
     return start;
 }
 
