@@ -240,7 +240,7 @@ void Sequence::plan(ReadAhead& ahead) {
             session = withSmoothed(std::move(session), smooth);
             for (const int frame : task->frames) {
                 AdaptedFrame& made = m_planned[frame];
-                ++made.moves;
+                if (settings().mode == Mode::Optimize) ++made.moves;
                 made.seconds += smooth.seconds / static_cast<double>(task->frames.size());
             }
         } catch (const FileError&) { // a frame that broke meanwhile belongs to no task any more

@@ -168,7 +168,6 @@ public:
         if (m_session.hsb->on) hash.add(static_cast<long long>(frame));
         addTf(hash, previous);
         const TfTrack& track = m_session.variable().track;
-        hash.add(static_cast<long long>(track.keys.contains(frame))); // nothing holds back a first frame
         if (const int key = track.keyBefore(frame); m_needsKey && key >= 0) {
             addTf(hash, *track.keys.at(key));
             addSource(hash, m_series.listing().frames[static_cast<std::size_t>(m_series.nearest(key))].source);
@@ -268,7 +267,8 @@ std::vector<Stretch> stretchesOf(const Session& session, const TimeSeries& serie
         if (const auto next = track.keys.upper_bound(stretch.task.key); next != track.keys.end())
             addTf(hash, startOf(track, next->first));
         stretch.task.basis = hash.text();
-        if (track.keys.at(stretch.task.key)->features.empty()) continue; // nothing was optimized
+        if (session.adapt->mode == Mode::Optimize && track.keys.at(stretch.task.key)->features.empty())
+            continue; // nothing was optimized
         for (const int frame : stretch.task.frames)
             stretch.isSmooth = stretch.isSmooth && track.adapted.at(frame).smooth &&
                                track.adapted.at(frame).smoothBasis == stretch.task.basis;
@@ -280,19 +280,49 @@ TransferFunction writtenFor(const TransferFunction& tf, const ValueRange& window
     return window.lo < window.hi && tf.range ? inRange(tf, window) : tf;
 }
 
-/// What pulls an answer back toward where it came from: the minimum of |x − x₁|² + λ|x − x₀|².
-TransferFunction pulledBack(const TransferFunction& before, TransferFunction after, double coherence) {
-    if (movesFeatures(before)) { // which may have got steps at their ends
-        const std::vector<double> was = featureOpacities(before);
-        std::vector<double> peaks = featureOpacities(after);
-        for (std::size_t f = 0; f < peaks.size(); ++f) peaks[f] = (peaks[f] + coherence * was[f]) / (1 + coherence);
-        return withFeatureOpacities(before, peaks);
+/// One number per frame that minimises Σ (x_t − r_t)² + λ Σ (x_t − x_(t−1))²; where `lastStays` the last is r's. A
+/// tridiagonal system. No number goes to and fro more than before.
+std::vector<double> withSmallSteps(const std::vector<double>& r, double weight, bool lastStays) {
+    const std::size_t n = r.size();
+    std::vector<double> x(n), above(n); // elimination: what is left is x_t = x[t] + above[t]·x_(t+1)
+    for (std::size_t t = 0; t < n; ++t) {
+        const bool last = t + 1 == n;
+        if (last && lastStays) {
+            x[t] = r[t];
+            break;
+        }
+        const double before = t > 0 ? weight : 0, after = last ? 0 : weight;
+        const double pivot = 1 + before + after - (t > 0 ? before * above[t - 1] : 0);
+        above[t] = after / pivot;
+        x[t] = (r[t] + (t > 0 ? before * x[t - 1] : 0)) / pivot;
     }
-    for (std::size_t i = 0; i < after.points.size() && i < before.points.size(); ++i) {
-        double& x = after.points[i].opacity;
-        x = (x + coherence * before.points[i].opacity) / (1 + coherence);
+    for (std::size_t t = n - 1; t-- > 0;) x[t] += above[t] * x[t + 1];
+    return x;
+}
+
+/// A chain of refinements with small steps: of the opacity of each point, or where points have come or moved on the way
+/// of each feature's peak.
+void holdBackJumps(std::vector<TransferFunction>& tfs, double coherence, bool lastStays) {
+    const auto samePlaces = [&](const TransferFunction& tf) {
+        return std::equal(tf.points.begin(), tf.points.end(), tfs.front().points.begin(), tfs.front().points.end(),
+                          [](const ControlPoint& p, const ControlPoint& q) { return p.x == q.x; });
+    };
+    const bool byPoints = std::all_of(tfs.begin(), tfs.end(), samePlaces);
+    std::vector<std::vector<double>> opacities; // [frame][point or feature]
+    for (const TransferFunction& tf : tfs) {
+        std::vector<double>& all = opacities.emplace_back(byPoints ? std::vector<double>() : featureOpacities(tf));
+        for (std::size_t p = 0; byPoints && p < tf.points.size(); ++p) all.push_back(tf.points[p].opacity);
     }
-    return after;
+    for (std::size_t i = 0; i < opacities.front().size(); ++i) {
+        std::vector<double> one;
+        for (const auto& all : opacities) one.push_back(all[i]);
+        one = withSmallSteps(one, coherence, lastStays);
+        for (std::size_t t = 0; t < one.size(); ++t) opacities[t][i] = std::clamp(one[t], 0.0, 1.0);
+    }
+    for (std::size_t t = 0; t < tfs.size(); ++t) {
+        if (!byPoints) tfs[t] = withFeatureOpacities(tfs[t], opacities[t]);
+        for (std::size_t p = 0; byPoints && p < tfs[t].points.size(); ++p) tfs[t].points[p].opacity = opacities[t][p];
+    }
 }
 
 /// How much pictures change with ln τ of each feature: the mean over the pixels of a small picture of ⟨∂Lab/∂y_i,
@@ -375,7 +405,7 @@ std::vector<double> opacitiesBetween(const std::vector<double>& from, const std:
 } // namespace
 
 bool smooths(const AdaptSettings& settings) {
-    return settings.mode == Mode::Optimize && settings.usedCoherence() > 0 && !std::isinf(settings.usedCoherence());
+    return settings.mode != Mode::Static && settings.usedCoherence() > 0 && !std::isinf(settings.usedCoherence());
 }
 
 std::string fingerprintOf(const Session& session, const TimeSeries& series, int frame,
@@ -451,9 +481,6 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
     const Stopwatch watch;
     const JobControl quiet{job.stop, {}};
     const AdaptSettings& settings = *basis.session.adapt;
-    // Nothing is before a first frame that it could differ from.
-    const double coherence =
-        task.frame == task.key && !std::isinf(settings.usedCoherence()) ? 0 : settings.usedCoherence();
     AdaptedFrame made;
     made.frame = task.frame;
     made.basis = task.basis;
@@ -464,10 +491,10 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         RefineOptions options = basis.session.refine->options();
         options.priority = priority;
         made.tf = scene.tf;
-        if (!std::isinf(coherence)) {
-            const RefineResult result =
+        if (!std::isinf(settings.usedCoherence())) {
+            RefineResult result =
                 refineAsDrawn(*scene.histogram, scene.tf, *scene.volume, scene.colors.get(), options, quiet);
-            made.tf = pulledBack(scene.tf, result.tf, coherence);
+            made.tf = std::move(result.tf);
             made.energy = result.energyMovableAfter;
             made.moves = result.iterations;
         }
@@ -536,6 +563,19 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
         tfs.push_back(startOf(track, next->first));
     }
     const auto stays = [&](std::size_t i) { return hasNext && i + 1 == frames.size(); };
+    SmoothedFrames smoothed;
+    smoothed.basis = task.basis;
+    const auto put = [&](std::size_t i, TransferFunction tf) {
+        smoothed.tfs[frames[i]] = std::move(tf);
+        smoothed.from[frames[i]] = track.adapted.at(frames[i]).basis;
+    };
+    if (settings.mode == Mode::Refine) {
+        holdBackJumps(tfs, settings.usedCoherence(), hasNext);
+        for (std::size_t i = 0; i < frames.size(); ++i)
+            if (!stays(i)) put(i, std::move(tfs[i]));
+        smoothed.seconds = watch.seconds();
+        return smoothed;
+    }
     const auto withFunction = [&](std::size_t i, const auto& use) {
         const Scene scene = sceneAt(basis, frames[i], tfs[i], quiet);
         tfs[i] = scene.tf;
@@ -572,7 +612,7 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
     }
     std::vector<std::vector<double>> found;
     if (models.size() > 1)
-        found = smoothed(models, quiet);
+        found = pellucid::smoothed(models, quiet);
     else
         found = {models.front().opacity}; // a frame alone jumps nowhere
 
@@ -596,14 +636,8 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
     std::size_t part = 0;
     while (part < kParts.size() && !(sums[part] <= allowed)) ++part;
 
-    SmoothedFrames smoothed;
-    smoothed.basis = task.basis;
     for (std::size_t i = 0; i < frames.size(); ++i)
-        if (!stays(i)) {
-            smoothed.tfs[frames[i]] =
-                withShownOpacities(tfs[i], part < kParts.size() ? ways[i][part] : models[i].opacity);
-            smoothed.from[frames[i]] = track.adapted.at(frames[i]).basis;
-        }
+        if (!stays(i)) put(i, withShownOpacities(tfs[i], part < kParts.size() ? ways[i][part] : models[i].opacity));
     smoothed.seconds = watch.seconds();
     return smoothed;
 }

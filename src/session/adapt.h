@@ -41,7 +41,7 @@ struct AdaptProgress {
 };
 AdaptProgress adaptProgress(const Session& session, const TimeSeries& series);
 
-/// Whether frames are smoothed together: in the mode Optimize with a coherence between 0 and infinity.
+/// Whether frames are smoothed together: where they are made, with a coherence between 0 and infinity.
 bool smooths(const AdaptSettings& settings);
 
 /// Frames from one key up to the next, or to the end, whose transfer functions are to be smoothed together.
@@ -89,8 +89,9 @@ public:
     /// Workspace::measure() does.
     AdaptedFrame adapt(const Scene& basis, const AdaptTask& task, Workspace& workspace, const JobControl& job = {});
 
-    /// The transfer functions of these frames with as little change from frame to frame as the distance of the
-    /// coherence allows on average; that at the next key stays. Reads the frames, those adapted here before only once.
+    /// The transfer functions of these frames, optimized: with as little change from frame to frame as the distance of
+    /// the coherence allows on average; refined: with steps that its weight holds back. That at the next key stays.
+    /// Reads the frames to optimize, those adapted here before only once.
     /// Throws FileError where one is broken (it is known as such then), Cancelled, and as Workspace::measure() does.
     SmoothedFrames smooth(const Scene& basis, const SmoothTask& task, Workspace& workspace, const JobControl& job = {});
 

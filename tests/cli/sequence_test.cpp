@@ -151,9 +151,7 @@ TEST_CASE("the first frame is refined, too, and coherence lowers flicker", "[cli
     for (const char* coherence : {"0", "1", "4", "16"}) {
         const json j = w.json(refine + Words{"--coherence", coherence, "--compare", "--out", coherence});
         INFO("coherence " << coherence << ": " << j["mean"].dump());
-        // The start is that of the key, whatever the coherence; the static run shows what was before.
-        CHECK(j["frames"][0]["moves"] > 0);
-        CHECK(j["frames"][0]["opacity"] == w.json(refine + Words{"--out", "free"})["frames"][0]["opacity"]);
+        CHECK(j["frames"][0]["moves"] > 0); // the static run shows what was before
         CHECK(j["frames"][0]["vws"] != j["frames"][0]["static"]["vws"]);
         const double now = j["mean"]["flicker"];
         CHECK((flicker == 0 || now < flicker));

@@ -157,21 +157,23 @@ TEST_CASE("the frame that a series starts from is made, too", "[adapt]") {
             Scene scene = sceneOf(Mode::Optimize, coherence);
             scene.session.optimize.edit([](OptimizeOptions& o) { o.exactShares = true; });
             const double key = figures(scene).front().objective;
-            CHECK(key > 0.03); // equal opacities: the first layer hides the others
+            CHECK(key > 0.05); // equal opacities: the first layer hides the others
             adaptAll(scene);
             smoothAll(scene);
             const auto made = figures(scene);
             CHECK(made.front().objective < 0.03); // the tolerance
-            CHECK(summaryOf(made).above == 0);
+            CHECK(summaryOf(made).rms <= 0.02);   // 2/100; single frames may stray
+            CHECK((coherence > 0 || summaryOf(made).above == 0));
         }
     }
-    SECTION("refine: whatever the coherence, it is the refinement of the key; no later jump makes up for it") {
+    SECTION("refine: whatever the coherence, it is the refinement of the key") {
         for (const double coherence : {0.0, 4.0}) {
             Scene scene = sceneOf(Mode::Refine, coherence);
             const RefineResult alone = refine(*scene.histogram, scene.tf, scene.session.refine->options());
             REQUIRE(alone.iterations > 0);
             adaptAll(scene);
-            const TransferFunction first = *scene.session.tfAt(0);
+            const TransferFunction first = *scene.session.variable().track.adapted.at(0).tf;
+            CHECK((coherence > 0 || *scene.session.tfAt(0) == first));
             REQUIRE(first.points.size() == alone.tf.points.size());
             for (std::size_t i = 0; i < first.points.size(); ++i)
                 CHECK(first.points[i].opacity == Approx(alone.tf.points[i].opacity));
@@ -357,9 +359,6 @@ TEST_CASE("frames are smoothed together once all are made", "[adapt]") {
             const AdaptProgress p = adaptProgress(scene.session, *scene.series);
             CHECK(p.smooth == p.all);
         }
-        scene.session.adapt.set({Mode::Refine, 2});
-        adaptAll(scene);
-        CHECK_FALSE(nextToSmooth(scene.session, *scene.series));
     }
 }
 
@@ -458,29 +457,43 @@ TEST_CASE("models of frames that are kept, and those taken anew, give the same",
     CHECK_THROWS_AS(adapter.smooth(scene, *task, workspace, {stop.get_token(), {}}), Cancelled);
 }
 
-TEST_CASE("coherence pulls a refinement back toward the frame before", "[adapt]") {
+TEST_CASE("coherence evens out the steps of refinements, and changes nothing in the chain", "[adapt]") {
     Scene scene = sceneOf(Mode::Refine, 0);
-    Workspace workspace;
-    FrameAdapter adapter;
-    const auto begin = [&] { // the first frame, which nothing holds back
-        const AdaptedFrame first = adapter.adapt(scene, *nextToAdapt(scene.session, *scene.series), workspace);
-        scene.session = withAdapted(std::move(scene.session), 0, first.forTrack());
-    };
-    begin();
-    const auto task = nextToAdapt(scene.session, *scene.series);
-    REQUIRE(task);
-    REQUIRE(task->frame == 1);
-    const AdaptedFrame free = adapter.adapt(scene, *task, workspace);
-    const Scene at = sceneAt(scene, 1, task->previous);
+    const auto free = adaptAll(scene);
+    CHECK_FALSE(nextToSmooth(scene.session, *scene.series));
+    const Scene at = sceneAt(scene, 1, free[0].tf);
     const RefineResult alone = refine(*at.histogram, at.tf, scene.session.refine->options());
-    CHECK(free.tf == alone.tf);
-    CHECK(free.moves == alone.iterations);
-    REQUIRE(alone.iterations > 0);
-    scene.session.adapt.set({Mode::Refine, 1}); // halfway
-    begin();
-    const AdaptedFrame held = adapter.adapt(scene, *nextToAdapt(scene.session, *scene.series), workspace);
-    for (std::size_t i = 0; i < held.tf.points.size(); ++i)
-        CHECK(held.tf.points[i].opacity == Approx((alone.tf.points[i].opacity + at.tf.points[i].opacity) / 2));
+    CHECK(free[1].tf == alone.tf);
+    CHECK(free[1].moves == alone.iterations);
+    double flicker = summaryOf(figures(scene)).flicker;
+    REQUIRE(flicker > 0);
+    for (const double weight : {0.5, 2.0, 8.0}) {
+        scene.session.adapt.set({Mode::Refine, weight});
+        const auto held = adaptAll(scene);
+        REQUIRE(held.size() == free.size());
+        for (std::size_t f = 0; f < free.size(); ++f) CHECK(held[f].tf == free[f].tf);
+        REQUIRE(smoothAll(scene).size() == 1);
+        // At the minimum of Σ (x_t − r_t)² + λ Σ (x_t − x_(t−1))² every derivative is 0:
+        // x_t − r_t + λ (x_t − x_(t−1)) + λ (x_t − x_(t+1)) = 0, without the neighbours that are not there.
+        for (std::size_t p = 0; p < free[0].tf.points.size(); ++p)
+            for (int t = 0; t < kFrames; ++t) {
+                const auto x = [&](int frame) { return scene.session.tfAt(frame)->points[p].opacity; };
+                double slope = x(t) - free[static_cast<std::size_t>(t)].tf.points[p].opacity;
+                if (t > 0) slope += weight * (x(t) - x(t - 1));
+                if (t + 1 < kFrames) slope += weight * (x(t) - x(t + 1));
+                CHECK(slope == Approx(0).margin(1e-12));
+            }
+        const double now = summaryOf(figures(scene)).flicker;
+        CHECK(now < flicker);
+        flicker = now;
+    }
+    // Up to a key, whose frame stays as it was made.
+    scene.session.variables.edit([&](std::vector<Variable>& all) { all.front().track.keys[5] = tents(3, 0.3); });
+    adaptAll(scene);
+    const auto tasks = smoothAll(scene);
+    REQUIRE(tasks.size() == 2);
+    CHECK(tasks[0].frames == Ints{0, 1, 2, 3, 4});
+    CHECK(tasks[1].frames == Ints{5, 6, 7});
 }
 
 TEST_CASE("a broken frame is passed over", "[adapt]") {

@@ -38,8 +38,8 @@ TEST_CASE("a feature has a voxel where one of its intensities occurs, however na
 }
 
 TEST_CASE("empty features are told by name, and count as hidden where targets are", "[empty]") {
-    const Histogram h = makeHistogram(lineOf(std::vector<std::uint8_t>{0, 10, 100}));
-    TransferFunction tf = tents(4); // quarters: 0, 0.1 and 1 lie in the first and the last
+    const Histogram h = makeHistogram(lineOf(std::vector<std::uint8_t>{0, 10, 85, 100}));
+    TransferFunction tf = tents(4); // 0.1 lies in the first, [0.025, 0.225), and 0.85 in the last, [0.775, 0.975)
     CHECK(emptyFeatures(tf, h) == std::vector<bool>{false, true, true, false});
     tf.features[0].name = "a", tf.features[1].name = "b", tf.features[2].name = "c", tf.features[3].name = "d";
     CHECK(namesWithEmpty(tf, h) == std::vector<std::string>{"a", "b (empty)", "c (empty)", "d"});
