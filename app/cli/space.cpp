@@ -95,6 +95,7 @@ std::vector<SpacePath> searchPaths(const Options& o, Workspace& workspace, const
     for (const SearchMethod method : o.methods) {
         OptimizeOptions options = *scene.session.optimize;
         options.method = method;
+        options.exactShares = true; // F is all that the space shows
         JobControl job = progress.phase("optimizing");
         job.progress = nullptr; // how many moves it takes nobody knows
         const OptimizeResult r =

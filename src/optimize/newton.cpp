@@ -612,7 +612,11 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
     }
 }
 
-void NewtonSearch::look(const Point& x) { evaluate(0, {x}); }
+void NewtonSearch::look(const OptimizeState& state) {
+    Coverage look;
+    if (m_goal) look = m_goal->looks({state.opacity})[0];
+    m_places.push_back(placeOf(state.vws, state.opacity, 0, std::move(look)));
+}
 
 void NewtonSearch::follow(const Point& start) {
     evaluate(0, {start});

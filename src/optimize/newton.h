@@ -33,8 +33,8 @@ public:
     void toShares(const std::vector<std::vector<double>>& starts);
     /// From nearby: to the least F with the floors.
     void follow(const std::vector<double>& start);
-    /// Evaluates what another search has come to.
-    void look(const std::vector<double>& opacity);
+    /// Takes what another search has come to, on the volume, for the start.
+    void look(const OptimizeState& state);
     /// To the least F with the floors of the goal, from what toShares() and `starts` came to.
     void toFloors(const std::vector<std::vector<double>>& starts);
 

@@ -381,7 +381,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
                     addCopies();
                     newton.toShares({nearest.state.opacity});
                 } else {
-                    newton.look(nearest.state.opacity);
+                    newton.look(nearest.state);
                 }
                 nearest = newton.nearest();
             }

@@ -89,12 +89,12 @@ TEST_CASE("runs are compared in the plots of F and flicker, and VWS have one axi
 TEST_CASE("the table of a series has a line per frame and run", "[temporal]") {
     const std::string csv = csvOf(example());
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 8); // the head, five frames and two
-    CHECK(csv.rfind("run,frame,time,F,flicker,moves,seconds,VWS skin,target skin,FV skin,opacity skin,VWS =bone,"
+    CHECK(csv.rfind("run,frame,file,time,F,flicker,moves,seconds,VWS skin,target skin,FV skin,opacity skin,VWS =bone,"
                     "target =bone,FV =bone,opacity =bone,problem\n",
                     0) == 0);
-    CHECK(csv.find("\noptimize,3,1.5,0.02,1.5,2,0.25,0.52,0.5,0.5,0.01,0.48,0.5,0.25,0.1,\n") != std::string::npos);
-    CHECK(csv.find("\noptimize,4,2,,,,,,,,,,,,,it ends too early\n") != std::string::npos);
-    CHECK(csv.find("\nstatic,2,1,0,,,,") != std::string::npos);
+    CHECK(csv.find("\noptimize,3,,1.5,0.02,1.5,2,0.25,0.52,0.5,0.5,0.01,0.48,0.5,0.25,0.1,\n") != std::string::npos);
+    CHECK(csv.find("\noptimize,4,,2,,,,,,,,,,,,,it ends too early\n") != std::string::npos);
+    CHECK(csv.find("\nstatic,2,,1,0,,,,") != std::string::npos);
 }
 
 TEST_CASE("figures of a series are means over what could be read", "[temporal]") {

@@ -459,10 +459,13 @@ TEST_CASE("models of frames that are kept, and those taken anew, give the same",
 
 TEST_CASE("coherence evens out the steps of refinements, and changes nothing in the chain", "[adapt]") {
     Scene scene = sceneOf(Mode::Refine, 0);
+    scene.session.refine.edit([](RefineSettings& r) { r.intensity = 0.5; }); // ever more of it
     const auto free = adaptAll(scene);
     CHECK_FALSE(nextToSmooth(scene.session, *scene.series));
     const Scene at = sceneAt(scene, 1, free[0].tf);
-    const RefineResult alone = refine(*at.histogram, at.tf, scene.session.refine->options());
+    RefineOptions options = scene.session.refine->options();
+    options.priority.intensity = 0.5;
+    const RefineResult alone = refine(*at.histogram, at.tf, options);
     CHECK(free[1].tf == alone.tf);
     CHECK(free[1].moves == alone.iterations);
     double flicker = summaryOf(figures(scene)).flicker;
