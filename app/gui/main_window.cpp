@@ -96,7 +96,8 @@ void MainWindow::addPanels() {
     for (const PanelInfo& panel : panelRegistry()) {
         auto* dock = new QDockWidget(panel.title, this);
         dock->setObjectName(QString(panel.id) + "Dock");
-        dock->setWidget(new DockScroll(panel.make(*m_bench, dock), panel.area));
+        auto* const content = new DockScroll(panel.make(*m_bench, dock), panel.area);
+        dock->setWidget(content);
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
         space->watch(*dock);
@@ -107,11 +108,8 @@ void MainWindow::addPanels() {
         }
         if (panel.below != nullptr)
             splitDockWidget(findChild<QDockWidget*>(QString(panel.below) + "Dock"), dock, Qt::Vertical);
-        const QSize most = mostRoom(panel.area, screen()->availableSize());
-        if (panel.size > 0 && panel.area == Qt::BottomDockWidgetArea)
-            resizeDocks({dock}, {std::min(panel.size, most.height())}, Qt::Vertical);
-        else if (panel.size > 0)
-            resizeDocks({dock}, {std::min(panel.size, most.width())}, Qt::Horizontal);
+        if (panel.size > 0)
+            resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
         if (panel.shown)
             connect(dock, &QDockWidget::visibilityChanged, m_bench.get(),
                     [this, shown = panel.shown](bool visible) { shown(*m_bench, visible); });
@@ -121,13 +119,15 @@ void MainWindow::addPanels() {
                      .keys = {panel.keys},
                      .tip = panel.tip,
                      .trigger =
-                         [this, dock] {
+                         [this, dock, content] {
                              dock->setVisible(!isInFront(*dock)); // what lies behind a tab is not put away unseen
                              if (dock->isHidden()) return;
                              dock->raise();
-                             // As high as it likes, where it would be much lower.
-                             const int wanted = dock->widget()->sizeHint().height();
-                             if (dock->widget()->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
+                             // As high as it likes, where it would be much lower; as wide as it must be, if it can.
+                             const int wanted = content->sizeHint().height(), least = content->leastOfContent().width();
+                             if (content->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
+                             if (content->width() < least)
+                                 resizeDocks({dock}, {std::min(least, width() / 2)}, Qt::Horizontal);
                          },
                      .checked = [dock] { return isInFront(*dock); },
                      .separatorBefore = std::exchange(first, false)});
@@ -173,6 +173,7 @@ void MainWindow::welcome() {
     if (!WelcomeCard::isWanted()) return;
     auto* card = new WelcomeCard(centralWidget());
     m_row->insertWidget(0, card); // beside the picture, of which it hides nothing
+    card->show();
     // Another volume: it is no sample any more, and the first thing to try has been done.
     connect(&m_bench->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
         if (before.series && before.series != after.series) card->dismiss();

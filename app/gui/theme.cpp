@@ -98,7 +98,7 @@ public:
             painter->save();
             painter->setRenderHint(QPainter::Antialiasing);
             painter->setPen(Qt::NoPen);
-            painter->setBrush(option->palette.color(QPalette::Highlight));
+            painter->setBrush(theme::kAccent);
             painter->drawRoundedRect(QRectF(option->rect).adjusted(0.5, 0.5, -0.5, -0.5), 2.5, 2.5);
             painter->restore();
             return;
@@ -130,13 +130,13 @@ public:
         if (const auto* button = qstyleoption_cast<const QStyleOptionToolButton*>(option);
             on && button != nullptr && element == CE_ToolButtonLabel) {
             QStyleOptionToolButton lit(*button);
-            lit.palette.setColor(QPalette::ButtonText, lit.palette.color(QPalette::HighlightedText));
+            lit.palette.setColor(QPalette::ButtonText, theme::kPanel);
             return QProxyStyle::drawControl(element, &lit, painter, widget);
         }
         if (const auto* button = qstyleoption_cast<const QStyleOptionButton*>(option);
             on && button != nullptr && element == CE_PushButtonLabel) {
             QStyleOptionButton lit(*button);
-            lit.palette.setColor(QPalette::ButtonText, lit.palette.color(QPalette::HighlightedText));
+            lit.palette.setColor(QPalette::ButtonText, theme::kPanel);
             return QProxyStyle::drawControl(element, &lit, painter, widget);
         }
         QProxyStyle::drawControl(element, option, painter, widget);

@@ -135,6 +135,7 @@ TEST_CASE("the card of the first start goes for good", "[first sight]") {
     const QSize whole = w.view().size();
     w.window.welcome();
     auto& card = w.child<WelcomeCard>("welcomeCard");
+    REQUIRE(waitFor([&] { return w.view().width() < whole.width(); }));
     w.settle();
     CHECK(card.isVisible());
     CHECK(w.child<QLabel>("welcomeTitle").text().contains("sample"));

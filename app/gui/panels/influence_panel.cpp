@@ -81,6 +81,8 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
     for (QHeaderView* header : {m_table->horizontalHeader(), m_table->verticalHeader()})
         header->setTextElideMode(Qt::ElideRight);
     m_table->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    m_table->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);
+    m_table->viewport()->installEventFilter(this);
     m_copyAction->setObjectName("copyInfluenceAction");
     m_copyAction->setShortcut(QKeySequence::Copy);
     m_copyAction->setShortcutContext(Qt::WidgetWithChildrenShortcut);
@@ -104,15 +106,14 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
 void InfluencePanel::fitColumns() {
     const int n = m_table->columnCount();
     if (n == 0) return;
-    const int room = m_table->width() - 2 * m_table->frameWidth() -
-                     std::min(m_table->verticalHeader()->sizeHint().width(), kRowNames);
+    const int room = m_table->viewport()->width();
     const int height = m_table->horizontalHeader()->height();
     for (int i = 0; i < n; ++i) m_table->horizontalHeaderItem(i)->setData(Qt::SizeHintRole, QSize(room / n, height));
 }
 
-void InfluencePanel::resizeEvent(QResizeEvent* event) {
-    QWidget::resizeEvent(event);
-    fitColumns();
+bool InfluencePanel::eventFilter(QObject* watched, QEvent* event) {
+    if (watched == m_table->viewport() && event->type() == QEvent::Resize) fitColumns();
+    return QWidget::eventFilter(watched, event);
 }
 
 void InfluencePanel::showEvent(QShowEvent* event) {

@@ -20,7 +20,7 @@ public:
     InfluencePanel(SessionStore& store, Results& results, QWidget* parent = nullptr);
 
 private:
-    void resizeEvent(QResizeEvent* event) override;
+    bool eventFilter(QObject* watched, QEvent* event) override;
     void showEvent(QShowEvent* event) override;
     void changeEvent(QEvent* event) override;
     void fitColumns();

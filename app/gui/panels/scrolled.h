@@ -1,7 +1,6 @@
 // A panel that may be lower than what it holds.
 #pragma once
 
-#include <QScreen>
 #include <QScrollArea>
 #include <QVBoxLayout>
 
@@ -18,29 +17,25 @@ inline void fillScrolled(QWidget* panel, QWidget* content) {
     column->addWidget(scroll);
 }
 
-/// What the least size of a dock in `area` may be, so that all of the window fits a screen of this size.
-inline QSize mostRoom(Qt::DockWidgetArea area, const QSize& screen) {
-    const bool beside = area == Qt::LeftDockWidgetArea || area == Qt::RightDockWidgetArea;
-    return {screen.width() * (beside ? 56 : 40) / 100, screen.height() * (beside ? 40 : 30) / 100};
-}
-
-/// Around the content of a dock: scrolls it where the screen is too small for the least that it needs.
+/// Around the content of a dock, which may be larger than it: a window of 640 x 400 has a dock on the right, one at the
+/// bottom, and the picture.
 class DockScroll : public QScrollArea {
 public:
-    DockScroll(QWidget* content, Qt::DockWidgetArea area) : m_area(area) {
+    DockScroll(QWidget* content, Qt::DockWidgetArea area)
+        : m_most(area == Qt::BottomDockWidgetArea ? kBelow : kBeside) {
         setWidget(content);
         setWidgetResizable(true);
         setFrameShape(QFrame::NoFrame);
         setFocusPolicy(Qt::NoFocus);
     }
     QSize sizeHint() const override { return widget()->sizeHint(); }
-    QSize minimumSizeHint() const override {
-        const QSize least = widget()->minimumSizeHint().expandedTo(widget()->minimumSize());
-        return least.boundedTo(mostRoom(m_area, screen()->availableSize()));
-    }
+    QSize minimumSizeHint() const override { return leastOfContent().boundedTo(m_most); }
+    /// Smaller, and it scrolls.
+    QSize leastOfContent() const { return widget()->minimumSizeHint().expandedTo(widget()->minimumSize()); }
 
 private:
-    Qt::DockWidgetArea m_area;
+    static constexpr QSize kBeside{360, 200}, kBelow{240, 120}; // logical pixels
+    QSize m_most;                                               ///< that it may ask for
 };
 
 } // namespace pellucid::gui
