@@ -703,7 +703,8 @@ TEST_CASE("a feature without a voxel is said to be empty and has no target", "[c
     const Words about{"v.raw", "--raw", "12,12,12,u8", "--range", "0,255", "--tf", "tents:4:0.3", "--engine", "cpu"};
     const auto names = [&] {
         std::vector<std::string> all;
-        for (const json& f : w.json(Words{"measure"} + about)["features"]) all.push_back(f["name"]);
+        const json measured = w.json(Words{"measure"} + about);
+        for (const json& f : measured["features"]) all.push_back(f["name"]);
         return all;
     }();
     REQUIRE(names.size() == 4);
