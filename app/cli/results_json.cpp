@@ -35,20 +35,18 @@ Json jsonFromRefinement(const TransferFunction& before, const RefineResult& r, R
 }
 
 void addRemarks(Json& json, const std::optional<PriorityOutcome>& outcome, const std::optional<Darkening>& dark) {
-    json["chosen"] = nullptr;
     if (outcome) {
         json["chosen"] = {
             {"name", outcome->name},          {"gained", outcome->gained},          {"value_gain", outcome->valueGain},
             {"part_gain", outcome->partGain}, {"others_gain", outcome->othersGain}, {"text", outcome->text}};
     }
-    json["darkening"] = nullptr;
     if (dark) {
         Json help = nullptr;
         if (dark->help == Darkening::Help::Exact) help = {{"method", "exact"}, {"coverage", dark->helped}};
         if (dark->help == Darkening::Help::Stop)
             help = {{"max_iterations", dark->iterations}, {"coverage", dark->helped}};
-        json["darkening"] = {
-            {"before", dark->before}, {"after", dark->after}, {"help", help}, {"text", darkeningText(*dark)}};
+        json["darkening"] = {{"before", dark->before}, {"after", dark->after}, {"text", darkeningText(*dark)}};
+        if (!help.is_null()) json["darkening"]["help"] = std::move(help);
     }
 }
 

@@ -321,10 +321,12 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     const std::vector<double> start = within(limits, featureOpacities(function.base()));
 
     const bool isNewton = options.method == SearchMethod::Newton;
+    bool looksAside = false;
     const auto arrive = [&](const OptimizeState& state) {
         result.history.push_back(state);
         if (state.level == 0 && state.objective < result.history[result.best].objective)
             result.best = result.history.size() - 1;
+        if (looksAside) return;
         if (watch) watch(result.history.back());
         job.report(options.maxIterations == 0 ? 1.0 : static_cast<double>(result.iterations()) / options.maxIterations);
     };
@@ -390,20 +392,25 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
         if (goal) result.seen = goal->seen(moves ? nearest.look : goal->looks({nearest.state.opacity})[0]);
         if (goal && moves && !problem.nearby && nearest.lack > kShownLack) {
             addCopies();
+            const std::size_t known = result.history.size();
+            looksAside = options.exactShares; // what was not asked for is told, and is no part of the way
+            if (looksAside) result.evaluations = search.evaluations() + newton.evaluations();
             newton.toFloors({nearest.state.opacity, start});
             const NewtonSearch::Place visible = newton.visible();
             if (visible.lack < nearest.lack - kShownLack) {
                 if (options.exactShares) {
                     result.seen->visible = sharesOf(visible);
-                    take(nearest);
                 } else {
                     take(visible);
                     result.seen = goal->seen(visible.look);
                     result.seen->exact = sharesOf(nearest);
                 }
-            } else {
-                take(nearest);
             }
+            if (looksAside) {
+                result.history.resize(known);
+                looksAside = false;
+            }
+            if (!result.seen->exact) take(nearest);
         }
         const double objective = result.history[result.best].objective;
         const bool isKept = result.seen && result.seen->exact && result.seen->exact->objective < options.tolerance;
@@ -417,7 +424,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     } catch (const Cancelled&) {
         result.reason = StopReason::Cancelled;
     }
-    result.evaluations = search.evaluations() + newton.evaluations();
+    if (result.evaluations == 0) result.evaluations = search.evaluations() + newton.evaluations();
     result.spreadStarts = newton.spreadStarts();
     if (!result.history.empty()) result.tf = withFeatureOpacities(function.base(), result.history[result.best].opacity);
     return result;

@@ -59,7 +59,7 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
         CHECK(row["memcpy_share"].get<double>() == Approx(rate / memcpyRate));
     }
     CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
-                                         "optimize-newton", "refine", "refine-500", "refine-direct", "render"});
+                                         "optimize-newton", "optimize-whole", "refine", "refine-500", "refine-direct", "render"});
 
     // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.
     const auto sweeps = rowsNamed(j, "sweep");
@@ -93,7 +93,7 @@ TEST_CASE("bench optimizes and refines as the commands of that name do", "[cli][
     const json j = bench(w, {"--only", "optimize,refine", "--tf", "tents:3:0.2", "--threads", "2"});
     REQUIRE(j["rows"].size() == 2);
     const json found = w.json({"optimize", "sample:shells", "--size", "24", "--engine", "cpu", "--tf", "tents:3:0.2",
-                               "--target", "0.1,0.3,0.6", "--method", "parallel", "--view", "30,20"});
+                               "--target", "0.1,0.3,0.6", "--method", "parallel", "--view", "30,20", "--exact-shares"});
     const json& optimized = j["rows"][0];
     CHECK(optimized["name"] == "optimize");
     CHECK(optimized["converged"] == true);

@@ -19,7 +19,7 @@ using pellucid::test::Workshop;
 namespace {
 
 const Words kOptimize{"optimize", "sample:shells", "--size", "20",       "--tf",
-                      "tents:3",  "--target",      "1,3,6",  "--engine", "cpu"};
+                      "tents:3",  "--target",      "1,3,6",  "--engine", "cpu", "--exact-shares"};
 
 /// What stands between two marks.
 std::string between(const std::string& text, const std::string& begin, const std::string& end) {

@@ -28,7 +28,7 @@ struct Saved {
         session = sessionOf(source);
         session.variables.edit([](std::vector<Variable>& all) { all[0].window = ValueRange{-500, 1500}; });
         TransferFunction tf = tents(3, 0.1);
-        tf.range = ValueRange{-600, 1600};
+        tf.range = ValueRange{-600, 1200};
         tf.features[1].name = "middle";
         tf.points[4].color = tf.features[1].color = {0.1 + 0.2, 0.5, 0.7};
         session.setTf(tf);
