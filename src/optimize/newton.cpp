@@ -162,6 +162,7 @@ NewtonSearch::GoalRows NewtonSearch::goalRows(const Place& at, const Weights& we
 
 void NewtonSearch::arrive(const OptimizeState& state) {
     ++(state.level == 0 ? m_moves : m_coarseMoves);
+    if (state.level > 0 && m_forFloors) return; // the way to the floors is long, and begins beside the one that is shown
     if (m_places.empty())
         m_waiting.push_back(state);
     else
@@ -636,6 +637,7 @@ void NewtonSearch::toFloors(const std::vector<Point>& starts) {
     std::vector<Point> from;
     for (const Point& x : starts) from.push_back(atStrength(inside(x), 1));
     if (m_levels.size() > 1) {
+        m_forFloors = true;
         refine(onCopies(from, true), starts.front(), true);
         if (bestOf(true).lack <= kShownLack) return;
     }
