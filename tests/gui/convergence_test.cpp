@@ -33,6 +33,7 @@ void optimize(OpenWindow& w, SearchMethod method, int mostMoves) {
         session.optimize.edit([&](OptimizeOptions& o) {
             o.method = method;
             o.maxIterations = mostMoves;
+            o.exactShares = true; // the runs are what is looked at, not the pictures
         });
     });
     w.optimizing().start();
