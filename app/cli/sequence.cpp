@@ -43,7 +43,7 @@ struct Options {
     std::optional<TargetInput> targets;
     std::optional<double> tolerance;
     std::optional<int> from;
-    bool compare = false, requireConverged = false, noPictures = false, overGaps = false;
+    bool compare = false, requireConverged = false, noPictures = false, overGaps = false, exactShares = false;
     std::string out;
     std::optional<double> framesPerSecond;
     std::optional<std::string> movie;
@@ -167,6 +167,7 @@ void Sequence::prepareKey() {
         a.mode = m_o.mode.value_or(a.mode);
         if (m_o.coherence) a.coherence = m_o.coherence;
     });
+    if (m_o.exactShares) session.optimize.edit([](OptimizeOptions& options) { options.exactShares = true; });
     if (m_o.tolerance) session.optimize.edit([&](OptimizeOptions& options) { options.tolerance = *m_o.tolerance; });
     if (m_o.targets) {
         const std::vector<double> targets = atOption(
@@ -369,7 +370,10 @@ void Sequence::tellMissed(const SequenceFigures& figures) {
         m_notices.push_back(framesOf(figures.above, figures.frames) +
                             (figures.above == 1 ? " is not on target (F below " : " are not on target (F below ") +
                             plainText(tolerance) + "); the farthest is frame " + std::to_string(figures.worst) +
-                            ", F = " + plainText(figures.worstObjective));
+                            ", F = " + plainText(figures.worstObjective) +
+                            (settings().mode == Mode::Optimize && !m_scene.session.optimize->exactShares
+                                 ? "; shares that can hardly be seen give way (--exact-shares meets them)"
+                                 : ""));
     for (std::size_t i = 0; i < features.size(); ++i) {
         if (isAimed && unseen[i] > 0)
             m_notices.push_back("nothing of '" + features[i].name + "' is seen in " + std::to_string(unseen[i]) +
@@ -551,6 +555,7 @@ Command addSequence(CLI::App& program) {
         *app, "--out", "DIR", [o](const std::string& path) { o->out = path; },
         "write frame_0000.png and frame_0000.tf.json of each frame, curves.csv, curves.svg and curves.png")
         ->required();
+    app->add_flag("--exact-shares", o->exactShares, "meet the targets even where the picture is hardly seen then");
     app->add_flag("--flicker-over-gaps", o->overGaps,
                   "tell flicker after missing or broken frames, too, against the frame before the gap");
     app->add_flag("--no-pictures", o->noPictures, "write no pictures of the frames");

@@ -471,6 +471,9 @@ TEST_CASE("with coherence frames are smoothed together, and undo knows nothing o
 
 TEST_CASE("every frame is optimized to the targets, and the curves show it", "[player]") {
     SeriesWindow w;
+    w.bench().store().edit("Exact shares", {}, [](Session& session) { // else what can hardly be seen gets more
+        session.optimize.edit([](OptimizeOptions& options) { options.exactShares = true; });
+    });
     w.document().setTargets({0.2, 0.3, 0.5});
     w.settle();
     w.child<QAction>("adaptOptimizeAction").trigger();
