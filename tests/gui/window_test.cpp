@@ -361,7 +361,7 @@ TEST_CASE("the influence dock foretells what raising an opacity does", "[window]
     REQUIRE(table.rowCount() == 3);
     REQUIRE(table.columnCount() == 3);
     const auto influence = *w.document().influence();
-    CHECK(table.item(1, 0)->text() == QString::asprintf("%+.3g", influence[1][0]).replace('-', QChar(0x2212)));
+    CHECK(table.item(1, 0)->text() == QString::asprintf("%+.2g", influence[1][0]).replace('-', QChar(0x2212)));
     CHECK(table.item(1, 0)->toolTip().contains("by 0.01"));
 
     // W(x + δ) − W(x) = δ·∂W/∂x, up to the curvature (δ², 1e-4) and the engine's deviation.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <QAction>
 #include <QApplication>
@@ -10,6 +11,7 @@
 #include <QEvent>
 #include <QHeaderView>
 #include <QTableWidget>
+#include <QTimer>
 #include <QVBoxLayout>
 
 #include "panel.h"
@@ -21,7 +23,12 @@ namespace {
 
 constexpr int kRowNames = 100; // at most, pixels
 
-QString signedText(double value) { return QString::asprintf("%+.3g", value).replace('-', QChar(0x2212)); }
+/// With so many digits that count, or whole.
+QString signedText(double value, int digits) {
+    QString text = QString::asprintf("%+.*g", digits, value);
+    if (text.contains('e') && std::abs(value) >= 1) text = QString::asprintf("%+.0f", value);
+    return text.replace('-', QChar(0x2212));
+}
 
 QColor blend(const QColor& from, const QColor& to, double share) {
     const auto part = [share](int a, int b) { return static_cast<int>(std::lround(a + share * (b - a))); };
@@ -104,6 +111,7 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
 
 // All columns where they fit: names have what numbers leave them.
 void InfluencePanel::fitColumns() {
+    m_fitsLater = false;
     const int n = m_table->columnCount();
     if (n == 0) return;
     const int room = m_table->viewport()->width();
@@ -112,7 +120,9 @@ void InfluencePanel::fitColumns() {
 }
 
 bool InfluencePanel::eventFilter(QObject* watched, QEvent* event) {
-    if (watched == m_table->viewport() && event->type() == QEvent::Resize) fitColumns();
+    // Later: it is in the middle of its layout.
+    if (watched == m_table->viewport() && event->type() == QEvent::Resize && !std::exchange(m_fitsLater, true))
+        QTimer::singleShot(0, this, &InfluencePanel::fitColumns);
     return QWidget::eventFilter(watched, event);
 }
 
@@ -152,6 +162,9 @@ void InfluencePanel::rebuild() {
         }
     }
     fitColumns();
+    constexpr int kRows = 4; // at least, without a scroll bar
+    m_table->setMinimumHeight(m_table->horizontalHeader()->height() +
+                              std::min(n, kRows) * m_table->verticalHeader()->sectionSizeHint(0) + 4);
     refresh();
 }
 
@@ -160,14 +173,14 @@ const std::vector<std::vector<double>>* InfluencePanel::matrix() const {
 }
 
 QString InfluencePanel::cellText(double value) const {
-    return m_what->currentIndex() == 0 ? signedText(value) : tr("%1 %").arg(std::lround(100 * value));
+    return m_what->currentIndex() == 0 ? signedText(value, 2) : tr("%1 %").arg(std::lround(100 * value));
 }
 
 QString InfluencePanel::cellTip(int row, int column, double value) const {
     const QString of = m_table->verticalHeaderItem(row)->text(), by = m_table->horizontalHeaderItem(column)->text();
     if (m_what->currentIndex() == 0)
         return tr("Raising the opacity of %1 by 0.01 changes the VWS of %2 by about %3")
-            .arg(by, of, signedText(0.01 * value));
+            .arg(by, of, signedText(0.01 * value, 3));
     if (row == column) return tr("A feature does not hide itself here");
     return tr("%1 hides %2 % of the visibility of %3").arg(by).arg(100 * value, 0, 'f', 1).arg(of);
 }

@@ -40,6 +40,7 @@ private:
     QComboBox* m_what;
     QTableWidget* m_table;
     QAction* m_copyAction;
+    bool m_fitsLater = false;
 };
 
 } // namespace pellucid::gui
