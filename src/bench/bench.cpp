@@ -11,8 +11,8 @@
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
-#include "optimize/coarser.h"
 #include "optimize/optimizer.h"
+#include "optimize/ray_vws.h"
 #include "optimize/refine.h"
 #include "saliency/saliency_direct.h"
 #include "volume/histogram.h"
@@ -228,39 +228,31 @@ private:
         });
     }
 
-    /// Coarser copies are there, too, as they are from the second optimization of a volume on.
+    /// Its rays are there, too.
     void addNewton(const JobControl& job) {
         if (m_case.tf.features.empty()) return;
         const Stopwatch watch;
-        m_coarser.emplace(
-            m_case.volume,
-            [this](std::shared_ptr<const Volume> volume) {
-                return makeCopyEngine(m_options.engine, std::move(volume));
-            },
-            job);
-        m_coarser->setWeights(m_weights, job);
+        m_estimates = rayEstimates(*m_case.volume, m_case.view, m_case.tf, m_weights, {}, job);
         add(row(BenchRow::OptimizeNewton, m_engine->name(), 8), 0,
             [this, setup = watch.seconds()](BenchResult& r, const JobControl& j) {
                 const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
-                const auto copies = m_coarser->functions(m_case.view, m_case.tf, {});
                 OptimizeProblem problem{function, benchTargets(m_case.tf.features.size())};
-                for (const auto& copy : copies) problem.coarser.push_back(copy.get());
+                for (const auto& estimate : m_estimates) problem.estimates.push_back(estimate.get());
                 const OptimizeResult found = optimize(problem, {}, j);
                 if (found.reason == StopReason::Cancelled) throw Cancelled{};
-                // The start, and with each move derivatives and candidates; coarser copies have an eighth of the
-                // voxels.
+                // The start, and with each move derivatives and candidates; rays cost next to nothing.
                 const int sweeps = 1 + found.iterations();
                 r.bytes = sweeps * sweepBytes();
                 r.extra = {{"iterations", found.iterations()},
                            {"coarse_iterations", found.coarseIterations()},
                            {"evaluations", found.evaluations},
-                           {"coarser_copies_seconds", setup},
+                           {"estimates_seconds", setup},
                            {"objective", found.history[found.best].objective},
                            {"converged", found.converged()}};
             });
     }
 
-    /// Copies and rays are made anew each time, as they are for the first optimization of a volume and a view.
+    /// Rays are made anew each time, as they are for the first optimization of a volume and a view.
     void addWhole() {
         if (m_case.tf.features.empty()) return;
         for (const auto& [name, targets] : m_case.targets) {
@@ -269,23 +261,15 @@ private:
             add(result, 0, [this, name = name, targets = targets](BenchResult& r, const JobControl& j) {
                 const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
                 OptimizeProblem problem{function, targets};
-                std::optional<CoarserVolumes> coarser;
                 std::vector<std::unique_ptr<VwsFunction>> held;
-                double copiesSeconds = 0;
-                problem.copies = [&] {
+                double estimatesSeconds = 0;
+                problem.makeEstimates = [&] {
                     const Stopwatch watch;
-                    coarser.emplace(
-                        m_case.volume,
-                        [this](std::shared_ptr<const Volume> v) {
-                            return makeCopyEngine(m_options.engine, std::move(v));
-                        },
-                        j);
-                    coarser->setWeights(m_weights, j);
-                    held = coarser->functions(m_case.view, m_case.tf, {});
-                    std::vector<const VwsFunction*> copies;
-                    for (const auto& copy : held) copies.push_back(copy.get());
-                    copiesSeconds = watch.seconds();
-                    return copies;
+                    held = rayEstimates(*m_case.volume, m_case.view, m_case.tf, m_weights, {}, j);
+                    std::vector<const VwsFunction*> estimates;
+                    for (const auto& estimate : held) estimates.push_back(estimate.get());
+                    estimatesSeconds = watch.seconds();
+                    return estimates;
                 };
                 const Stopwatch raysWatch;
                 const RayBundle rays(*m_case.volume, m_case.tf, m_case.view, kCoverageRays, j);
@@ -294,7 +278,7 @@ private:
                 const OptimizeResult found = optimize(problem, {}, j);
                 if (found.reason == StopReason::Cancelled) throw Cancelled{};
                 r.extra = {{"target", name},
-                           {"copies_seconds", copiesSeconds},
+                           {"estimates_seconds", estimatesSeconds},
                            {"rays_seconds", raysSeconds},
                            {"iterations", found.iterations()},
                            {"coarse_iterations", found.coarseIterations()},
@@ -356,8 +340,8 @@ private:
     const BenchOptions& m_options;
     std::unique_ptr<VisibilityEngine> m_engine; ///< null where no row needs one
     std::unique_ptr<VisibilityEngine> m_slices; ///< made when first needed
-    std::optional<CoarserVolumes> m_coarser;    ///< likewise
     std::optional<Histogram> m_histogram;
+    std::vector<std::unique_ptr<VwsFunction>> m_estimates; ///< of the rows of Newton
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;
     std::vector<TransferFunction> m_candidates; ///< the eight of a search

@@ -1,6 +1,7 @@
 #include "optimize/coarser.h"
 
 #include <algorithm>
+#include <bit>
 
 #include <glm/common.hpp>
 
@@ -52,21 +53,33 @@ WeightFields halvedWeights(const WeightFields& weights, const Volume& volume, co
     parallelFor(static_cast<std::size_t>(dims.z), [&](std::size_t layer) {
         job.throwIfStopped();
         const int k = static_cast<int>(layer);
-        std::vector<std::uint32_t> row(static_cast<std::size_t>(dims.x));
+        const auto width = static_cast<std::size_t>(full.x);
+        std::vector<std::uint32_t> brightness(width), saturation(width), row(static_cast<std::size_t>(dims.x));
         for (int j = 0; j < dims.y; ++j) {
+            const Int3 lo = Int3(0, j, k) * plan.factors, hi = glm::min(lo + plan.factors, full);
+            std::fill(brightness.begin(), brightness.end(), 0u);
+            std::fill(saturation.begin(), saturation.end(), 0u);
+            for (int z = lo.z; z < hi.z; ++z)
+                for (int y = lo.y; y < hi.y; ++y) {
+                    const std::size_t first = at(full, 0, y, z);
+                    for (std::size_t i = 0; i < width; ++i) {
+                        const std::uint32_t units = weights.units(first + i);
+                        brightness[i] += units & 0xffffu;
+                        saturation[i] += units >> 16;
+                    }
+                }
+            // Factors are 1 or 2, so that a mean is of 1, 2, 4 or 8 and its division a shift.
+            const int rows = (hi.z - lo.z) * (hi.y - lo.y);
             for (int i = 0; i < dims.x; ++i) {
-                const Int3 lo = Int3(i, j, k) * plan.factors, hi = glm::min(lo + plan.factors, full);
-                std::uint32_t brightness = 0, saturation = 0, count = 0;
-                for (int z = lo.z; z < hi.z; ++z)
-                    for (int y = lo.y; y < hi.y; ++y)
-                        for (int x = lo.x; x < hi.x; ++x) {
-                            const std::uint32_t units = weights.units(at(full, x, y, z));
-                            brightness += units & 0xffffu;
-                            saturation += units >> 16;
-                            ++count;
-                        }
-                row[static_cast<std::size_t>(i)] = (brightness + count / 2) / count | (saturation + count / 2) / count
-                                                                                          << 16;
+                const int from = i * plan.factors.x, to = std::min(from + plan.factors.x, full.x);
+                std::uint32_t b = 0, s = 0;
+                for (auto x = static_cast<std::size_t>(from); x < static_cast<std::size_t>(to); ++x) {
+                    b += brightness[x];
+                    s += saturation[x];
+                }
+                const auto count = static_cast<unsigned>(rows * (to - from));
+                const int shift = std::countr_zero(count);
+                row[static_cast<std::size_t>(i)] = (b + count / 2) >> shift | (s + count / 2) >> shift << 16;
             }
             coarse.store(at(dims, 0, j, k), row.data(), row.size());
         }

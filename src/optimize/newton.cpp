@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLeastOpacity = 1e-7;                 ///< of a peak that is wanted: a logarithm has no place for 0
 constexpr double kMostOpacity = 1 - 2e-7;              ///< beyond, extinction is capped (docs/method.md, "Visibility")
-constexpr double kCoarseGoal = 2e-3;                   ///< F on coarser volumes
+constexpr double kCoarseGoal = 1e-3;                   ///< F of estimates, which are farther off than that
 constexpr double kTinyShare = 1e-3;                    ///< added to shares before their logarithm is taken
 constexpr int kMostCoarseMoves = 40;                   ///< of one descent
 constexpr std::size_t kBatch = 8;                      ///< candidates in one call of the engine
@@ -358,7 +358,29 @@ std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, cons
                     std::none_of(points.begin(), points.end(), [&](const Point& p) { return same(p, x); }))
                     points.push_back(x);
             }
+    // What a straight line over- or undershoots: lanes that are left cost nothing.
+    const std::size_t whole = points.size();
+    for (const double part : {0.85, 1.15, 0.7, 1.3})
+        for (std::size_t p = 0; p < whole && points.size() < kBatch; ++p) {
+            Point x = at.place.state.opacity;
+            for (std::size_t j = 0; j < x.size(); ++j)
+                if (points[p][j] != x[j])
+                    x[j] = std::clamp(opacityAt(logDepth(x[j]) + part * (logDepth(points[p][j]) - logDepth(x[j]))),
+                                      m_limits[j].lowest, m_limits[j].highest);
+            points.push_back(std::move(x));
+        }
     return points;
+}
+
+/// Whether one of the points leaves no more than `part` of the distance from the wanted strength: rays alone tell, and
+/// no sweep need be spent on points that do not.
+bool NewtonSearch::strengthens(const Place& at, const std::vector<Point>& points, double part) const {
+    std::vector<Point> all{at.state.opacity};
+    all.insert(all.end(), points.begin(), points.end());
+    const std::vector<Coverage> looks = m_goal->looks(all, PictureGoal::Rays::Some);
+    const double here = m_goal->miss(looks[0]);
+    return std::any_of(looks.begin() + 1, looks.end(),
+                       [&](const Coverage& look) { return m_goal->miss(look) <= part * here; });
 }
 
 /// Downhill on the level of `at`, until it is there if that goes. `borrowed`: the derivatives are those of a coarser
@@ -375,6 +397,7 @@ NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, boo
     bool known = true;                                     // the derivatives at at.place
     while (!isThere(at.place, weights) && mayMove(level) && failures < kFailures && slow < kSlowMoves) {
         if (isThere(at.place, {weights.floor, 0})) {
+            if (level == 0 && m_levels.size() > 1) break; // the strength has been seen to along the rays
             if (at.place.miss > kStronger * miss) break;
             miss = at.place.miss;
         }
@@ -387,6 +410,7 @@ NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, boo
             continue;
         }
         if (points.empty()) break;
+        if (isThere(at.place, {weights.floor, 0}) && !strengthens(at.place, points, kStronger)) break;
         std::vector<Place> places = evaluate(level, points);
         places.reserve(places.size() + 1);
         const auto best = std::min_element(places.begin(), places.end(),
@@ -510,17 +534,6 @@ void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
     const bool first = m_places.empty();
     if (first) points.push_back(start);
     points.push_back(from.state.opacity);
-    if (m_levels.size() > 2) {
-        const std::vector<double> coarser = m_levels[2]->evaluate({&from.state.opacity, 1}, m_job)[0];
-        ++m_evaluations;
-        const GoalRows rows = goalRows(at.place, weights);
-        for (const double part : {1.0, 0.5}) {
-            Linear shifted = at;
-            for (std::size_t i = 0; i < coarser.size(); ++i)
-                shifted.place.state.vws[i] += part * (at.place.state.vws[i] - coarser[i]);
-            points.push_back(stepped(shifted, rows, {Variable::Depth, Residual::Difference, 1e-7, 2.0}));
-        }
-    }
     const std::size_t base = points.size() - 1;
     std::vector<std::size_t> free;
     for (std::size_t j = 0; j < start.size(); ++j)

@@ -91,6 +91,7 @@ private:
     std::vector<Point> startsFor(const Point& x) const;
     std::vector<Point> candidates(const Linear& at, const GoalRows& rows, double caution) const;
     Point stepped(const Linear& at, const GoalRows& rows, const Step& step) const;
+    bool strengthens(const Place& at, const std::vector<Point>& points, double part) const;
     Place descend(Linear at, const Weights& weights, bool borrowed = false);
     Place onCopies(const std::vector<Point>& starts, bool floors);
     std::vector<Place> spread(std::size_t level, const Point& best, const Weights& weights);

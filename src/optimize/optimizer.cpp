@@ -354,10 +354,11 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     // That profile looks along the grid and counts moves: its answers stay as they are.
     const bool moves = options.maxIterations > 0 && !options.publishedSteps;
     std::vector<const VwsFunction*> levels{&function};
-    const auto addCopies = [&] {
+    const auto addEstimates = [&] {
         if (!options.coarse || !moves || levels.size() > 1) return;
-        const auto copies = problem.coarser.empty() && problem.copies ? problem.copies() : problem.coarser;
-        levels.insert(levels.end(), copies.begin(), copies.end());
+        const auto estimates =
+            problem.estimates.empty() && problem.makeEstimates ? problem.makeEstimates() : problem.estimates;
+        levels.insert(levels.end(), estimates.begin(), estimates.end());
     };
     Search search(function, result.targets, limits, options, job);
     NewtonSearch newton(levels, result.targets, limits, options, goal && moves ? &*goal : nullptr, job, arrive);
@@ -367,7 +368,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
             newton.follow(start);
             nearest = newton.visible();
         } else if (isNewton) {
-            addCopies();
+            addEstimates();
             std::vector<std::vector<double>> starts{start};
             for (const auto& x : problem.known)
                 if (x.size() == start.size()) starts.push_back(within(limits, x));
@@ -380,7 +381,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
             nearest.state = result.history[result.best];
             if (goal && moves) {
                 if (options.coverage) {
-                    addCopies();
+                    addEstimates();
                     newton.toShares({nearest.state.opacity});
                 } else {
                     newton.look(nearest.state);
@@ -391,7 +392,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
         take(nearest);
         if (goal) result.seen = goal->seen(moves ? nearest.look : goal->looks({nearest.state.opacity})[0]);
         if (goal && moves && !problem.nearby && nearest.lack > kShownLack) {
-            addCopies();
+            addEstimates();
             const std::size_t known = result.history.size();
             looksAside = options.exactShares; // what was not asked for is told, and is no part of the way
             if (looksAside) result.evaluations = search.evaluations() + newton.evaluations();

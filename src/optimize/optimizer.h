@@ -47,7 +47,7 @@ struct OptimizeOptions {
     double step = 0.05;      ///< (0, 10]
     double tolerance = 0.03; ///< on F, > 0
     int maxIterations = 200; ///< moves on the volume, ≥ 0
-    bool coarse = true;      ///< Newton: the first moves on coarser volumes, where the problem has some
+    bool coarse = true;      ///< Newton: the first moves by estimates, where the problem has some
     bool restarts = true;    ///< Newton: where it is stuck it tries starts spread over all opacities
     /// Mean alpha that is wanted of the picture, (0, 1]; empty: with Newton that of the start, within
     /// [kFaintCoverage, kMostCoverage], else as it comes.
@@ -73,7 +73,7 @@ struct OptimizeState {
     double objective = 0;
     std::vector<double> vws;     ///< per feature
     std::vector<double> opacity; ///< per feature
-    int level = 0;               ///< 0: figures of the volume; n: of OptimizeProblem::coarser[n − 1]
+    int level = 0;               ///< 0: figures of the volume; n: of OptimizeProblem::estimates[n − 1]
     bool operator==(const OptimizeState&) const = default;
 };
 
@@ -101,10 +101,10 @@ struct OptimizeProblem {
     const VwsFunction& function;
     std::vector<double> targets;            ///< ≥ 0, scaled to sum 1
     std::vector<OpacityLimits> limits = {}; ///< one per feature; empty: none has any
-    /// The same features of ever coarser volumes; W is nearly that of `function`, and costs less.
-    std::vector<const VwsFunction*> coarser = {};
-    /// Makes them where `coarser` is empty, when they are first needed; may be empty, too.
-    std::function<std::vector<const VwsFunction*>()> copies = {};
+    /// Ever rougher estimates of `function` that cost less (optimize/ray_vws.h).
+    std::vector<const VwsFunction*> estimates = {};
+    /// Makes them where `estimates` is empty, when they are first needed; may be empty, too.
+    std::function<std::vector<const VwsFunction*>()> makeEstimates = {};
     /// Of the function's view and features: what pictures look like. Null: shares are all that counts.
     const RayBundle* rays = nullptr;
     /// Opacities that earlier searches have come to: Newton looks at them, too, so that it never ends farther away.

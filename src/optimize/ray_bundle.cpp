@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "optimize/bin_sampler.h"
 #include "render/ray_box.h"
-#include "render/trilinear.h"
 #include "tf/opacity.h"
 #include "volume/noise.h"
 
@@ -14,55 +14,11 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kBins = 1024;        // of intensity
 constexpr int kMostSteps = 400;    // along the diagonal of the box
 constexpr int kLanes = 8;          // transfer functions that are looked at together
 constexpr double kLeastStep = 0.5; // d0
 constexpr double kMeets = 0.5;     // d0 of path through a feature
 constexpr double kSolid = 0.95, kEmpty = 0.05;
-
-double intensityOf(int bin) { return (bin + 0.5) / kBins; }
-
-/// Trilinear, of intensities: their bin; −1 where more than half of it is invalid.
-template <class Values>
-class BinSampler {
-public:
-    BinSampler(const Volume& volume, const Values& values)
-        : m_volume(volume), m_values(values), m_dims(volume.dims()), m_lo(volume.range().lo),
-          m_perSpan(1 / (volume.range().hi - volume.range().lo)),
-          m_simple(volume.invalidCount() == 0 && std::isfinite(m_perSpan) && m_perSpan > 0) {}
-
-    int at(const Vec3& voxel) const {
-        if (!m_simple) {
-            const Interpolated met = interpolateValid(
-                [&](std::size_t i) { return m_volume.intensityOfValue(static_cast<double>(m_values[i])); }, m_dims,
-                voxel);
-            return met.validShare < 0.5 ? -1 : binOf(met.value);
-        }
-        const TrilinearCell cell(m_dims, voxel);
-        const std::size_t sx = cell.step[0], sy = cell.step[1], sz = cell.step[2];
-        const double fx = cell.fraction[0], fy = cell.fraction[1], fz = cell.fraction[2];
-        const auto value = [&](std::size_t offset) {
-            return std::clamp((static_cast<double>(m_values[cell.corner + offset]) - m_lo) * m_perSpan, 0.0, 1.0);
-        };
-        const auto along = [&](std::size_t o) {
-            const double first = value(o);
-            return first + fx * (value(o + sx) - first);
-        };
-        const double lower = along(0), higher = along(sz);
-        const double near = lower + fy * (along(sy) - lower), far = higher + fy * (along(sz + sy) - higher);
-        return binOf(near + fz * (far - near));
-    }
-
-private:
-    static int binOf(double s) { return std::min(static_cast<int>(s * kBins), kBins - 1); }
-
-    const Volume& m_volume;
-    const Values& m_values;
-    Int3 m_dims;
-    double m_lo, m_perSpan;
-    bool m_simple; ///< all are valid, and the range is one that can be divided by
-};
 
 } // namespace
 
@@ -71,8 +27,8 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
     : m_features(tf.features.size()) {
     const TfSampler opacities(tf);
     std::vector<char> kept; // what can be opaque
-    for (int bin = 0; bin < kBins; ++bin) {
-        const double s = intensityOf(bin);
+    for (int bin = 0; bin < kIntensityBins; ++bin) {
+        const double s = intensityOfBin(bin);
         const int feature = featureAt(tf.features, s);
         const bool outside = feature < 0;
         m_slotOfBin.push_back(outside ? static_cast<int>(m_features) : feature);
@@ -141,12 +97,12 @@ std::vector<RayBundle::Appearance> RayBundle::appearances(const std::vector<Tran
     };
     for (std::size_t first = 0; first < tfs.size(); first += kLanes) {
         const std::size_t lanes = std::min<std::size_t>(kLanes, tfs.size() - first);
-        std::vector<std::array<float, kLanes>> opacity(kBins, std::array<float, kLanes>{});
+        std::vector<std::array<float, kLanes>> opacity(kIntensityBins, std::array<float, kLanes>{});
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             const TfSampler sampler(tfs[first + lane]);
-            for (int bin = 0; bin < kBins; ++bin)
+            for (int bin = 0; bin < kIntensityBins; ++bin)
                 opacity[static_cast<std::size_t>(bin)][lane] =
-                    static_cast<float>(opacityOfStep(sampler.opacity(intensityOf(bin)), m_stepInD0));
+                    static_cast<float>(opacityOfStep(sampler.opacity(intensityOfBin(bin)), m_stepInD0));
         }
         // A slot per block of rays, added in order: the same bits for any number of threads.
         struct Sums {

@@ -156,7 +156,7 @@ struct DisplaySettings {
     std::optional<Rgb> backgroundTop; ///< at the top of the picture; empty: `background` everywhere
     FeatureId onlyFeature = 0;        ///< draw the voxels of this feature alone; 0: all
     double finestStep =
-        1.0 / 64; ///< RenderSettings::finestInD0, [kFinestStep, 16]: from the usual step on, no refining
+        1.0 / 16; ///< RenderSettings::finestInD0, [kFinestStep, 16]: from the usual step on, no refining
     bool operator==(const DisplaySettings&) const = default;
 };
 

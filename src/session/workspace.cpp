@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "engines/engines.h"
+#include "optimize/ray_vws.h"
 #include "render/memory_needs.h"
 #include "render/published_engine.h"
 #include "saliency/published_saliency.h"
@@ -234,11 +235,13 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             std::vector<std::unique_ptr<VwsFunction>> held;
             OptimizeProblem problem{function, targets, limits};
             problem.known = known;
-            problem.copies = [&] {
-                held = coarserFunctions(input, options, {job.stop, {}});
-                std::vector<const VwsFunction*> copies;
-                for (const auto& level : held) copies.push_back(level.get());
-                return copies;
+            problem.makeEstimates = [&] {
+                // The published profile has one slice per voxel plane: rays are another problem.
+                if (!steps.publishedSteps)
+                    held = rayEstimates(*input.volume, input.view, input.tf, w, input.settings.vws, {job.stop, {}});
+                std::vector<const VwsFunction*> estimates;
+                for (const auto& level : held) estimates.push_back(level.get());
+                return estimates;
             };
             problem.rays = &rays(input, {job.stop, {}});
             OptimizeResult result = pellucid::optimize(problem, steps, job, watch);

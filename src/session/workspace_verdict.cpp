@@ -1,4 +1,5 @@
 // What a verdict needs of a workspace.
+#include "optimize/ray_vws.h"
 #include "session/workspace.h"
 
 namespace pellucid {
@@ -23,11 +24,12 @@ public:
         std::vector<std::unique_ptr<VwsFunction>> functions;
         functions.push_back(std::make_unique<EngineVws>(engine, input.view, input.tf, weights, input.settings.vws));
         if (input.settings.profile == Profile::Default)
-            for (auto& level : m_workspace.coarser(input, job).functions(input.view, input.tf, input.settings.vws))
-                functions.push_back(std::move(level));
+            for (auto& estimate :
+                 rayEstimates(*input.volume, input.view, input.tf, weights, input.settings.vws, {job.stop, {}}))
+                functions.push_back(std::move(estimate));
         const std::size_t first = rough && functions.size() > 1 ? 1 : 0;
         OptimizeProblem search{*functions[first], m_targets, problem.limits};
-        for (std::size_t i = first + 1; i < functions.size(); ++i) search.coarser.push_back(functions[i].get());
+        for (std::size_t i = first + 1; i < functions.size(); ++i) search.estimates.push_back(functions[i].get());
         search.known = m_known;
         OptimizeResult result = optimize(search, m_options, job);
         if (result.reason == StopReason::Cancelled) throw Cancelled{};

@@ -429,7 +429,7 @@ TEST_CASE("render writes a picture of the asked size over the asked background",
     const Image fine = rendered("e.exr", {"--step", "0.1"}), half = rendered("g.exr", {"--step", "0.5"}),
                 high = rendered("f.exr", {"--quality", "high", "--finest-step", "0.5"}),
                 quarter = rendered("h.exr", {"--step", "0.25"}), normal = rendered("i.exr", {}),
-                same = rendered("j.exr", {"--step", "0.5", "--finest-step", "0.015625"});
+                same = rendered("j.exr", {"--step", "0.5", "--finest-step", "0.0625"});
     CHECK(high.rgba == quarter.rgba);
     CHECK(high.rgba != half.rgba);
     CHECK(rendered("k.exr", {"--finest-step", "0.5"}).rgba == half.rgba);

@@ -227,11 +227,11 @@ TEST_CASE("presets and numbers of the light", "[light]") {
 TEST_CASE("at rest the picture becomes the one that is saved", "[display]") {
     OpenWindow w(24, ViewRenderer::Cpu);
     w.settle();
-    // ½ d0 halved five times: 1/64, unless the panel says otherwise.
-    CHECK(w.view().frame().stepInD0 == 1.0 / 64);
+    // ½ d0 halved three times: 1/16, unless the panel says otherwise.
+    CHECK(w.view().frame().stepInD0 == 1.0 / 16);
     w.window.findChild<QAction*>("displayAction")->trigger();
     auto& finest = w.child<QComboBox>("finestStepCombo");
-    CHECK(finest.currentText() == "1/64 d0");
+    CHECK(finest.currentText() == "1/16 d0");
     const QImage refined = w.picture();
     finest.setCurrentIndex(0);
     Q_EMIT finest.activated(0);
@@ -240,7 +240,7 @@ TEST_CASE("at rest the picture becomes the one that is saved", "[display]") {
     CHECK(w.view().frame().stepInD0 == 0.5);
     CHECK(plain != refined);
     w.document().undo();
-    CHECK(finest.currentText() == "1/64 d0");
+    CHECK(finest.currentText() == "1/16 d0");
     CHECK(w.picture() == refined);
 
     // As it would be saved: the same pixels, rounded to 8 bits in the same way.
@@ -270,7 +270,7 @@ TEST_CASE("a change interrupts refining, and nothing is drawn afterwards", "[dis
     w.settle();
     PictureInput input = pictureInput(w.bench().scene(), 1, 1);
     CHECK(input.camera == home);
-    CHECK(w.view().frame().stepInD0 == 1.0 / 64);
+    CHECK(w.view().frame().stepInD0 == 1.0 / 16);
     QSignalSpy shown(&w.view(), &VolumeView::frameShown);
     QTest::qWait(600); // several times as long as it rests before it goes on
     CHECK(shown.count() == 0);

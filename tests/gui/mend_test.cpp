@@ -9,6 +9,7 @@
 #include <QDialog>
 #include <QDoubleSpinBox>
 #include <QHeaderView>
+#include <QCheckBox>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
@@ -234,6 +235,7 @@ TEST_CASE("a new volume is never seen under the old transfer function", "[mend]"
 
 TEST_CASE("what is said of an optimization goes when it is not true any more", "[mend]") {
     OpenWindow w;
+    w.child<QCheckBox>("exactSharesCheck").click(); // else the floors, not the shares, may be what is spoken of
     const auto optimize = [&] {
         w.document().setTargets({0.2, 0.2, 0.6});
         w.optimizing().start();

@@ -2,6 +2,7 @@
 #include "gui_support.h"
 
 #include <QAction>
+#include <QCheckBox>
 #include <QLabel>
 
 #include "controllers/optimize_controller.h"
@@ -11,6 +12,7 @@ using namespace pellucid::gui;
 
 TEST_CASE("a target that a locked feature keeps out of reach is explained", "[verdict]") {
     OpenWindow w;
+    w.child<QCheckBox>("exactSharesCheck").click();
     // f1 is the outermost shell. Solid and locked, it hides the others.
     w.document().setTf(withFeatureOpacities(w.document().tf(), {0.95, 0.5, 0.5}), "solid");
     const FeatureId outermost = w.document().tf().features[0].id;

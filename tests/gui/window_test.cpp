@@ -8,6 +8,7 @@
 
 #include <QAction>
 #include <QApplication>
+#include <QCheckBox>
 #include <QClipboard>
 #include <QComboBox>
 #include <QDialog>
@@ -117,6 +118,7 @@ TEST_CASE("the picture follows while the mouse is still down", "[window]") {
 
 TEST_CASE("optimizing brings the VWS bars to the targets, and undo everything back", "[window]") {
     OpenWindow w;
+    w.child<QCheckBox>("exactSharesCheck").click();
     const TransferFunction tf = w.document().tf();
     const QImage before = w.picture();
     auto& bars = w.child<TargetBars>("targetBars");

@@ -298,7 +298,7 @@ TEST_CASE("the first moves are made on coarser volumes, the last word has the vo
     const std::vector<double> t{0.1, 0.3, 0.6};
     const Layers full({20, 3, 1}), near({21, 2.8, 1.05}), farther({24, 2.5, 1.2});
     OptimizeProblem problem{full, t};
-    problem.coarser = {&near, &farther};
+    problem.estimates = {&near, &farther};
     const OptimizeResult r = optimize(problem);
     CHECK(bestOf(r) < kNewtonGoal);
     CHECK(r.iterations() <= 2);
@@ -317,7 +317,7 @@ TEST_CASE("the first moves are made on coarser volumes, the last word has the vo
     // Coarse volumes that show something else cost moves, but mislead nobody.
     const Layers wrong({1, 3, 20}), blind({0, 0, 0});
     for (const Layers* coarse : {&wrong, &blind}) {
-        problem.coarser = {coarse};
+        problem.estimates = {coarse};
         const OptimizeResult all = optimize(problem);
         CHECK(bestOf(all) < kNewtonGoal);
         CHECK(all.history[all.best].vws[2] == Approx(0.6).margin(0.002));
@@ -325,7 +325,7 @@ TEST_CASE("the first moves are made on coarser volumes, the last word has the vo
     // One that is on target says nothing where the volume is not; the start counts on the volume.
     const Layers met({20, 3, 1}, opacitiesOf(r));
     OptimizeProblem there{met, t};
-    there.coarser = {&wrong};
+    there.estimates = {&wrong};
     CHECK(optimize(there).history.size() == 1);
 }
 
@@ -344,7 +344,7 @@ TEST_CASE("limits of moves are those of the volume", "[optimize]") {
 TEST_CASE("cancelling Newton leaves what is there so far", "[optimize]") {
     const Layers f({20, 3, 1}), near({21, 2.8, 1.05});
     OptimizeProblem problem{f, {1, 3, 6}};
-    problem.coarser = {&near};
+    problem.estimates = {&near};
     for (int after = 1; after < 5; ++after) {
         std::stop_source stop;
         int seen = 0;

@@ -387,7 +387,7 @@ TEST_CASE("a picture is made of what the session shows", "[session]") {
     expected.light = Light{.on = true, .occlusion = 0.5};
     expected.clipping = *scene.session.clipping;
     expected.onlyFeature = 1;
-    expected.finestInD0 = 1.0 / 64;
+    expected.finestInD0 = 1.0 / 16;
     CHECK(picture.settings == expected);
     scene.session.display.edit([](DisplaySettings& d) { d.finestStep = 0.25; });
     CHECK(pictureInput(scene, 40, 30).settings.finestInD0 == 0.25);

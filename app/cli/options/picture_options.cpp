@@ -25,7 +25,7 @@ void PictureOptions::add(CLI::App& app, Mode modeIs) {
             finest = parseReal(text, option, kFinestStep, 16);
         },
         "how small that may become where it would change the picture by 1/255 (default: what the session says, else "
-        "1/64; with --step: no smaller than that)");
+        "1/16; with --step: no smaller than that)");
     if (modeIs == Mode::Option)
         addValue(
             app, "--mode", "composite|mip|minip|average|surface",

@@ -1,0 +1,56 @@
+// Bins of intensity along rays: what ray_bundle and ray_vws have in common.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/trilinear.h"
+#include "volume/volume.h"
+
+namespace pellucid {
+
+inline constexpr int kIntensityBins = 1024;
+
+inline double intensityOfBin(int bin) { return (bin + 0.5) / kIntensityBins; }
+inline int binOfIntensity(double s) { return std::min(static_cast<int>(s * kIntensityBins), kIntensityBins - 1); }
+
+/// Trilinear, of intensities: their bin; −1 where more than half of it is invalid.
+template <class Values>
+class BinSampler {
+public:
+    BinSampler(const Volume& volume, const Values& values)
+        : m_volume(volume), m_values(values), m_dims(volume.dims()), m_lo(volume.range().lo),
+          m_perSpan(1 / (volume.range().hi - volume.range().lo)),
+          m_simple(volume.invalidCount() == 0 && std::isfinite(m_perSpan) && m_perSpan > 0) {}
+
+    int at(const Vec3& voxel) const {
+        if (!m_simple) {
+            const Interpolated met = interpolateValid(
+                [&](std::size_t i) { return m_volume.intensityOfValue(static_cast<double>(m_values[i])); }, m_dims,
+                voxel);
+            return met.validShare < 0.5 ? -1 : binOfIntensity(met.value);
+        }
+        const TrilinearCell cell(m_dims, voxel);
+        const std::size_t sx = cell.step[0], sy = cell.step[1], sz = cell.step[2];
+        const double fx = cell.fraction[0], fy = cell.fraction[1], fz = cell.fraction[2];
+        const auto value = [&](std::size_t offset) {
+            return std::clamp((static_cast<double>(m_values[cell.corner + offset]) - m_lo) * m_perSpan, 0.0, 1.0);
+        };
+        const auto along = [&](std::size_t o) {
+            const double first = value(o);
+            return first + fx * (value(o + sx) - first);
+        };
+        const double lower = along(0), higher = along(sz);
+        const double near = lower + fy * (along(sy) - lower), far = higher + fy * (along(sz + sy) - higher);
+        return binOfIntensity(near + fz * (far - near));
+    }
+
+private:
+    const Volume& m_volume;
+    const Values& m_values;
+    Int3 m_dims;
+    double m_lo, m_perSpan;
+    bool m_simple; ///< all are valid, and the range is one that can be divided by
+};
+
+} // namespace pellucid
