@@ -112,7 +112,7 @@ std::string textOf(const OptimizeResult& r, const std::vector<std::string>& name
     return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + "\n" + seenLines(r) + "objective " +
            plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
            std::to_string(r.iterations()) + " iterations, " +
-           (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " on coarser volumes, " : "") +
+           (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " along rays, " : "") +
            (r.laterSteps() > 0 ? std::to_string(r.laterSteps()) + " more so that it can be seen, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
            secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) + ", total " +
@@ -211,7 +211,7 @@ void SearchOptions::add(CLI::App& app) {
         [this](const std::string& text, const std::string& option) {
             method = atOption(option, [&] { return searchMethodFromName(text); });
         },
-        "newton: exact derivatives, first on coarser volumes; or the thesis's: fixed step, line search, or line search "
+        "newton: exact derivatives, first along rays; or the thesis's: fixed step, line search, or line search "
         "with all steps at once (default newton)");
     addValue(
         app, "--direction", "gradient|backward|second|exact",
@@ -248,7 +248,7 @@ void SearchOptions::add(CLI::App& app) {
             maxIterations = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
         },
         "at most so many moves on the volume (default 200)");
-    app.add_flag("--no-coarse", noCoarse, "newton: every move on the volume itself, none on coarser ones");
+    app.add_flag("--no-coarse", noCoarse, "newton: every move on the whole volume, none along a few thousand rays first");
     app.add_flag("--no-restarts", noRestarts, "newton: no other starts where it is stuck");
 }
 

@@ -55,12 +55,6 @@ std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_pt
     }
 }
 
-std::unique_ptr<VisibilityEngine> makeCopyEngine(EngineChoice choice, std::shared_ptr<const Volume> volume) {
-    if (choice == EngineChoice::Gl) return makeGlEngine(std::move(volume));
-    if (choice != EngineChoice::Auto) return makeDraftEngine(std::move(volume));
-    return gpuElseCpu<VisibilityEngine>([&] { return makeGlEngine(volume); }, [&] { return makeDraftEngine(volume); });
-}
-
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume) {
     if (choice == EngineChoice::Auto && !gpuDrawsFaster()) return makeCpuRenderer(std::move(volume));
     if (choice == EngineChoice::Auto)

@@ -14,9 +14,6 @@ bool haveGpu();
 /// Auto: gl on a real GPU, cpu on a software rasterizer, without GL, or where the volume is too large for the GPU.
 std::unique_ptr<VisibilityEngine> makeEngine(EngineChoice choice, std::shared_ptr<const Volume> volume,
                                              Quality quality = Quality::Normal);
-/// For the first steps of a search on copies of a volume (optimize/coarser.h): gl where makeEngine() would take it, else
-/// the cpu engine that samples every volume as sparsely as large ones, whatever the choice is.
-std::unique_ptr<VisibilityEngine> makeCopyEngine(EngineChoice choice, std::shared_ptr<const Volume> volume);
 /// Auto: on a real GPU whichever of gl and cpu is faster here (renderer_probe.h), measured once; else cpu. The
 /// reference choice draws with the cpu renderer, since no other image is defined; slices are what gl draws.
 std::unique_ptr<ImageRenderer> makeRenderer(EngineChoice choice, std::shared_ptr<const Volume> volume);

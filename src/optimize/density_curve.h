@@ -41,7 +41,7 @@ struct DensityCurve {
 /// What the curve is followed through. Keeps references.
 struct DensityProblem {
     const VwsFunction& full;
-    const VwsFunction* coarse = nullptr;    ///< the same features of a coarser volume: steps are taken there
+    const VwsFunction* coarse = nullptr;    ///< an estimate of `full`: steps are taken there
     const RayBundle& rays;                  ///< of the view
     std::vector<OpacityLimits> limits = {}; ///< one per feature; empty: none has any
 };

@@ -384,7 +384,7 @@ bool NewtonSearch::strengthens(const Place& at, const std::vector<Point>& points
 }
 
 /// Downhill on the level of `at`, until it is there if that goes. `borrowed`: the derivatives are those of a coarser
-/// copy, which will do for as long as they bring F down fast; what is seen on the way mends them.
+/// rougher estimate, which will do for as long as they bring F down fast; what is seen on the way mends them.
 NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, bool borrowed) {
     constexpr int kFailures = 3, kSlowMoves = 4;
     constexpr double kStronger = 0.85; // of the distance from the wanted strength that a move leaves which is for that
@@ -456,8 +456,8 @@ std::vector<NewtonSearch::Point> NewtonSearch::startsFor(const Point& x) const {
     return {atStrength(x, 1), atStrength(x, kFainter)};
 }
 
-/// The best of `starts`, followed downhill on the coarsest copy and from there to finer ones, but for the volume.
-NewtonSearch::Place NewtonSearch::onCopies(const std::vector<Point>& starts, bool floors) {
+/// The best of `starts`, followed downhill by the roughest estimate and from there by finer ones, but for the volume.
+NewtonSearch::Place NewtonSearch::byEstimates(const std::vector<Point>& starts, bool floors) {
     const std::vector<Weights> weights = phases(floors);
     const auto better = [&](const Place& a, const Place& b) { return rank(a, floors) < rank(b, floors); };
     const auto down = [&](Linear at, bool borrowed) {
@@ -483,14 +483,14 @@ NewtonSearch::Place NewtonSearch::onCopies(const std::vector<Point>& starts, boo
         for (const Place& p : spread(level, best.state.opacity, weights[0]))
             if (Place end = down(linearize(level, p.state.opacity), false); better(end, best)) best = std::move(end);
     while (--level > 0) {
-        // W differs little from one level to the next, and its derivatives do, too: those of the copy are cheaper.
+        // W differs little from one level to the next, and its derivatives do, too: those of the rougher one are cheaper.
         Linear at = linearize(level + 1, best.state.opacity);
         std::vector<Point> points{best.state.opacity};
         for (const Point& x : starts) points.push_back(x);
         std::vector<Place> here = evaluate(level, points);
         at.place = here[0];
         arrive(at.place.state);
-        // What does not hold on the finer copy was no hint.
+        // What does not hold there was no hint.
         const auto first = std::min_element(here.begin(), here.end(), better);
         best = first == here.begin() ? down(std::move(at), true) : down(linearize(level, first->state.opacity), false);
     }
@@ -523,10 +523,9 @@ std::vector<NewtonSearch::Place> NewtonSearch::spread(std::size_t level, const P
     return places;
 }
 
-/// From the end of the copies to the volume. One batch looks there at the start, if that is not known yet, at the end
-/// of the copies, at where the difference of the last two copies says that the volume wants to be, and as far as lanes
-/// are left at what each opacity changes there: these derivatives, or those of the copy, will do for as long as moves
-/// bring F down fast.
+/// From where the estimates end to the volume. One batch looks there at the start, if that is not known yet, at that
+/// end, and as far as lanes are left at what each opacity changes there: these derivatives, or those of the estimate,
+/// will do for as long as moves bring F down fast.
 void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
     const Weights weights = m_goal ? Weights{floors ? 30.0 : 0.0, 2e-3} : Weights{};
     Linear at = linearize(1, from.state.opacity);
@@ -600,7 +599,7 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
     };
     std::optional<Linear> first;
     if (coarse && mayMove(0)) {
-        refine(onCopies(startsFor(x), false), start, false);
+        refine(byEstimates(startsFor(x), false), start, false);
     } else if (x == start && mayMove(0)) { // the first move is one on the volume, and needs the derivatives there
         first = linearize(0, x);
         begin();
@@ -651,7 +650,7 @@ void NewtonSearch::toFloors(const std::vector<Point>& starts) {
     for (const Point& x : starts) from.push_back(atStrength(inside(x), 1));
     if (m_levels.size() > 1) {
         m_forFloors = true;
-        refine(onCopies(from, true), starts.front(), true);
+        refine(byEstimates(from, true), starts.front(), true);
         if (bestOf(true).lack <= kShownLack) return;
     }
     const std::vector<Weights> weights = phases(true);

@@ -24,7 +24,8 @@ public:
         double shortfall = 0; ///< Σ of the squares of what is missed of PictureGoal::shortfalls()
     };
 
-    /// `levels`: the volume first, then coarser ones. `goal`: null, where shares are all that counts. Keeps references.
+    /// `levels`: the volume first, then ever rougher estimates of it. `goal`: null, where shares are all that
+    /// counts. Keeps references.
     NewtonSearch(const std::vector<const VwsFunction*>& levels, const std::vector<double>& targets,
                  const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, const PictureGoal* goal,
                  const JobControl& job, Arrive arrive);
@@ -93,7 +94,7 @@ private:
     Point stepped(const Linear& at, const GoalRows& rows, const Step& step) const;
     bool strengthens(const Place& at, const std::vector<Point>& points, double part) const;
     Place descend(Linear at, const Weights& weights, bool borrowed = false);
-    Place onCopies(const std::vector<Point>& starts, bool floors);
+    Place byEstimates(const std::vector<Point>& starts, bool floors);
     std::vector<Place> spread(std::size_t level, const Point& best, const Weights& weights);
     void refine(const Place& from, const Point& start, bool floors);
     void begin();

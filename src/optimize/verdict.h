@@ -63,7 +63,7 @@ class VerdictTools {
 public:
     virtual ~VerdictTools() = default;
     virtual const Geometry& geometry() const = 0;
-    /// The search to the targets that the verdict is about; `rough`: on a coarser copy of the volume will do.
+    /// The search to the targets that the verdict is about; `rough`: an estimate will do.
     virtual OptimizeResult solve(const ReachProblem& problem, bool rough, const JobControl& job) = 0;
     /// Sums, weighted by saliency, of candidates: opacities of the features.
     virtual std::vector<FeatureSums>

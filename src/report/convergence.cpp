@@ -16,7 +16,7 @@ PlotAxis moveAxis(std::size_t states) {
     return {.label = "move", .lo = 0, .hi = static_cast<double>(std::max<std::size_t>(2, states) - 1), .whole = true};
 }
 
-/// The moves of one run on coarser volumes: neighbours together.
+/// The moves of one run along rays: neighbours together.
 std::vector<PlotBand> coarseBands(const Run& run) {
     std::vector<PlotBand> bands;
     for (std::size_t i = 0; i < run.history.size(); ++i) {
@@ -25,7 +25,7 @@ std::vector<PlotBand> coarseBands(const Run& run) {
         if (!bands.empty() && bands.back().to == at - 0.5)
             bands.back().to = std::min(at + 0.5, last);
         else
-            bands.push_back({std::max(0.0, at - 0.5), std::min(at + 0.5, last), "coarser volume"});
+            bands.push_back({std::max(0.0, at - 0.5), std::min(at + 0.5, last), "along rays"});
     }
     return bands;
 }

@@ -25,8 +25,8 @@ struct RunCurve {
     Rgb color;
 };
 
-/// F over the moves of each run, 0 being the start, and the tolerance of each as a dashed line. Dots of moves on the
-/// coarser volumes are hollow; of a single run these moves are a band.
+/// F over the moves of each run, 0 being the start, and the tolerance of each as a dashed line. Dots of moves along
+/// rays are hollow; of a single run these moves are a band.
 Plot objectivePlot(std::span<const RunCurve> runs, bool logarithmic = false);
 /// VWS of each feature, in its colour, and its target as a dashed line.
 Plot vwsPlot(const Run& run);

@@ -111,7 +111,7 @@ std::string headline(const Run& run) {
                       moves = std::to_string(run.iterations) + (run.iterations == 1 ? " move" : " moves");
     const auto coarse = std::count_if(run.history.begin(), run.history.end(),
                                       [](const OptimizeState& state) { return state.level > 0; });
-    const std::string before = coarse > 0 ? " after " + std::to_string(coarse) + " on coarser volumes" : "";
+    const std::string before = coarse > 0 ? " after " + std::to_string(coarse) + " along rays" : "";
     const std::string figures = "F = " + f + ", from " + from + ", in " + moves + before;
     if (run.ended == "converged") return "On target: " + figures + ".";
     if (run.ended == "max-iterations") return "Stopped at the most moves allowed: " + figures + ".";
@@ -184,7 +184,7 @@ std::string statesOf(const Report& report) {
     for (const ReportState& s : report.states) {
         const OptimizeState& state = run.history[s.move];
         const std::string what = (s.move == 0 ? std::string("start") : "move " + std::to_string(s.move)) +
-                                 (state.level > 0 ? ", on a coarser volume" : "") +
+                                 (state.level > 0 ? ", along rays" : "") +
                                  (s.move == run.best ? ", the answer" : "");
         html += std::string("<figure") + (s.move == run.best ? " class=\"answer\"" : "") + ">" +
                 imageOf(s.picture, what) + "<figcaption>" + what + "<br>F " + shortText(state.objective) + ", SSIM " +

@@ -87,7 +87,7 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const ReportRequest&
                              {"Tolerance", "F < " + shortText(o.tolerance)},
                              {"Most moves", std::to_string(o.maxIterations)}});
     if (o.method == SearchMethod::Newton) {
-        rows.emplace_back("Coarse to fine", yesNo(o.coarse));
+        rows.emplace_back("Rays first", yesNo(o.coarse));
         rows.emplace_back("Restarts where it is stuck", yesNo(o.restarts));
     } else {
         rows.emplace_back("Direction", std::string(name(o.direction)) + ", normalized: " + yesNo(o.normalize));

@@ -20,15 +20,15 @@ struct LiveUpdate {
     std::vector<double> opacity; ///< per feature
     std::vector<double> vws;     ///< W there
     double objective = 0;        ///< F there
-    bool approximate = false;    ///< W and F are those of the copy of half the resolution
+    bool approximate = false;    ///< W and F are estimates along rays
 };
 
 /// F below which an update leaves opacities alone while things move: what is not seen is not worth a move.
 inline constexpr double kLiveGoal = 0.005;
 
-/// One move toward the targets on the copy of half the resolution (of volumes above CoarserVolumes::kQuick): what
-/// keeps up with the hand; W of the volume itself may differ by some hundredths. Never farther from the targets than it
-/// began, by the figures of that copy, which the update tells. Throws as Workspace::optimize() does, Cancelled too.
+/// One move toward the targets by rays alone where Workspace::isEstimated() says so: what keeps up with the hand; W of
+/// the volume itself may differ by a hundredth. Never farther from the targets than it began, by the figures of those
+/// rays, which the update tells. Throws as Workspace::optimize() does, Cancelled too.
 LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});
 /// The same until F < min(tolerance, kLiveGoal) on the volume itself, or nothing helps: what is done when all rests.
 LiveUpdate settleTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});

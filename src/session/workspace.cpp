@@ -30,7 +30,6 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
     if (m_engineVolume != input.volume || !m_engine || m_choice != settings.engine || m_quality != settings.quality ||
         m_engineProfile != settings.profile) {
         m_engine.reset();
-        m_coarser.reset();
         if (m_weightsVolume != input.volume) { // what was measured before needs no room any more
             m_weightsVolume.reset();
             m_weights = {};
@@ -52,7 +51,6 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
 
 void Workspace::releaseEngine() {
     m_engine.reset();
-    m_coarser.reset();
     m_engineVolume.reset();
     m_rays.reset();
     m_raysVolume.reset();
@@ -69,7 +67,6 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
     if (!haveWeights(input)) {
         const auto start = Clock::now();
         m_weightsVolume.reset();
-        m_coarserWeighted = false;
         const bool published = input.settings.profile == Profile::Published;
         if (published || m_weightsProfile != input.settings.profile) m_weights = {}; // of another form
         m_weightsProfile = input.settings.profile;
@@ -98,20 +95,6 @@ const RayBundle& Workspace::rays(const MeasureInput& input, const JobControl& jo
     return *m_rays;
 }
 
-const CoarserVolumes& Workspace::coarser(const MeasureInput& input, const JobControl& job) {
-    if (!m_coarser) {
-        const MeasureSettings& settings = input.settings;
-        m_coarser = std::make_unique<CoarserVolumes>(
-            input.volume,
-            [&](std::shared_ptr<const Volume> volume) { return makeCopyEngine(settings.engine, std::move(volume)); },
-            job);
-        m_coarserWeighted = false;
-    }
-    if (!m_coarserWeighted) m_coarser->setWeights(m_weights, job);
-    m_coarserWeighted = true;
-    return *m_coarser;
-}
-
 namespace {
 
 /// Runs `work(engine)`. An engine that failed is not trusted again: `release` lets go of it.
@@ -125,13 +108,6 @@ auto guarded(const Work& work, const Release& release) {
         release();
         throw;
     }
-}
-
-/// The curve is followed on the second copy, where there is one.
-DensityProblem densityProblem(const VwsFunction& full, const std::vector<std::unique_ptr<VwsFunction>>& coarser,
-                              const RayBundle& rays, const std::vector<OpacityLimits>& limits) {
-    const std::size_t level = std::min<std::size_t>(coarser.size(), 2);
-    return {full, level == 0 ? nullptr : coarser[level - 1].get(), rays, limits};
 }
 
 } // namespace
@@ -176,11 +152,9 @@ OcclusionMatrix Workspace::occlusion(const MeasureInput& input, const JobControl
                    [this] { releaseEngine(); });
 }
 
-std::vector<std::unique_ptr<VwsFunction>>
-Workspace::coarserFunctions(const MeasureInput& input, const OptimizeOptions& options, const JobControl& job) {
-    // The published profile has one slice per voxel plane: a coarser volume is another problem.
-    if (options.maxIterations == 0 || !options.coarse || input.settings.profile != Profile::Default) return {};
-    return coarser(input, job).functions(input.view, input.tf, input.settings.vws);
+std::vector<std::unique_ptr<VwsFunction>> Workspace::estimates(const MeasureInput& input, const JobControl& job) {
+    if (input.settings.profile != Profile::Default) return {};
+    return rayEstimates(*input.volume, input.view, input.tf, m_weights, input.settings.vws, {job.stop, {}});
 }
 
 Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, const JobControl& job) {
@@ -236,9 +210,7 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             OptimizeProblem problem{function, targets, limits};
             problem.known = known;
             problem.makeEstimates = [&] {
-                // The published profile has one slice per voxel plane: rays are another problem.
-                if (!steps.publishedSteps)
-                    held = rayEstimates(*input.volume, input.view, input.tf, w, input.settings.vws, {job.stop, {}});
+                held = this->estimates(input, job);
                 std::vector<const VwsFunction*> estimates;
                 for (const auto& level : held) estimates.push_back(level.get());
                 return estimates;
@@ -251,9 +223,14 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
         [this] { releaseEngine(); });
 }
 
+bool Workspace::isEstimated(const MeasureInput& input) {
+    constexpr std::size_t kQuick = 64 * 64 * 64; // voxels whose sweeps follow the hand
+    return input.volume->size() > kQuick && input.settings.profile == Profile::Default;
+}
+
 OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<double>& targets,
                                    const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
-                                   bool coarse, const JobControl& job) {
+                                   bool rough, const JobControl& job) {
     return guarded(
         [&] {
             VisibilityEngine& e = engine(input);
@@ -262,8 +239,7 @@ OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<
             const EngineVws full(e, input.view, input.tf, w, input.settings.vws);
             const VwsFunction& base = full;
             std::vector<std::unique_ptr<VwsFunction>> held;
-            if (coarse && input.volume->size() > CoarserVolumes::kQuick)
-                held = coarserFunctions(input, OptimizeOptions{}, job);
+            if (rough && isEstimated(input)) held = estimates(input, job);
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
             OptimizeProblem problem{held.empty() ? base : *held.front(), targets, limits};
@@ -283,9 +259,10 @@ DensityCurve Workspace::densityCurve(const MeasureInput& input, const std::vecto
             VisibilityEngine& e = engine(input);
             const WeightFields& w = weights(input, {job.stop, {}});
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
-            const auto held = coarserFunctions(input, OptimizeOptions{}, {job.stop, {}});
-            return pellucid::densityCurve(densityProblem(function, held, rays(input, {job.stop, {}}), limits),
-                                          featureOpacities(input.tf), {}, job);
+            const auto held = estimates(input, job);
+            const DensityProblem problem{function, held.empty() ? nullptr : held.front().get(),
+                                         rays(input, {job.stop, {}}), limits};
+            return pellucid::densityCurve(problem, featureOpacities(input.tf), {}, job);
         },
         [this] { releaseEngine(); });
 }

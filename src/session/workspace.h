@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "optimize/coarser.h"
 #include "optimize/density_curve.h"
 #include "optimize/fields.h"
 #include "optimize/measure.h"
@@ -49,11 +48,13 @@ public:
                     const OptimizeResult& found, const JobControl& job = {},
                     const std::vector<std::vector<double>>& known = {});
 
-    /// The same from nearby, with the floors of the picture (OptimizeProblem::nearby). `coarse`: on the copy that is
-    /// nearest to the volume and nothing else, where that saves time.
+    /// The same from nearby, with the floors of the picture (OptimizeProblem::nearby). `rough`: by rays and nothing
+    /// else, where isEstimated() says that this saves time.
     OptimizeResult approach(const MeasureInput& input, const std::vector<double>& targets,
-                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool coarse,
+                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool rough,
                             const JobControl& job = {});
+
+    static bool isEstimated(const MeasureInput& input);
 
     /// Through the opacities of the input's transfer function, with the shares that it has.
     DensityCurve densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
@@ -72,11 +73,8 @@ public:
 private:
     friend class WorkspaceTools;
     bool haveWeights(const MeasureInput& input) const;
-    /// Of the volume that engine() and weights() are of now.
-    const CoarserVolumes& coarser(const MeasureInput& input, const JobControl& job);
-    /// None where the options want none; they refer to coarser().
-    std::vector<std::unique_ptr<VwsFunction>> coarserFunctions(const MeasureInput& input,
-                                                               const OptimizeOptions& options, const JobControl& job);
+    /// By rays of the input's view; weights() are its own. None for the published profile, whose slices are another problem.
+    std::vector<std::unique_ptr<VwsFunction>> estimates(const MeasureInput& input, const JobControl& job);
 
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
@@ -91,8 +89,6 @@ private:
     View m_raysView;
     TransferFunction m_raysTf; // with peaks at 1
     std::optional<RayBundle> m_rays;
-    std::unique_ptr<CoarserVolumes> m_coarser; // of m_engineVolume, by its engine's kind
-    bool m_coarserWeighted = false;            // by m_weights
     Seconds m_seconds;
 };
 

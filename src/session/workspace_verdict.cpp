@@ -1,5 +1,4 @@
 // What a verdict needs of a workspace.
-#include "optimize/ray_vws.h"
 #include "session/workspace.h"
 
 namespace pellucid {
@@ -23,10 +22,7 @@ public:
         const WeightFields& weights = m_workspace.weights(input, job);
         std::vector<std::unique_ptr<VwsFunction>> functions;
         functions.push_back(std::make_unique<EngineVws>(engine, input.view, input.tf, weights, input.settings.vws));
-        if (input.settings.profile == Profile::Default)
-            for (auto& estimate :
-                 rayEstimates(*input.volume, input.view, input.tf, weights, input.settings.vws, {job.stop, {}}))
-                functions.push_back(std::move(estimate));
+        for (auto& estimate : m_workspace.estimates(input, job)) functions.push_back(std::move(estimate));
         const std::size_t first = rough && functions.size() > 1 ? 1 : 0;
         OptimizeProblem search{*functions[first], m_targets, problem.limits};
         for (std::size_t i = first + 1; i < functions.size(); ++i) search.estimates.push_back(functions[i].get());

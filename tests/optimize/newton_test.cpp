@@ -294,7 +294,7 @@ TEST_CASE("where it is stuck Newton looks elsewhere", "[optimize]") {
     CHECK(optimize({f, {0.85, 0.15}}).history == found.history); // nothing is left to chance
 }
 
-TEST_CASE("the first moves are made on coarser volumes, the last word has the volume", "[optimize]") {
+TEST_CASE("the first moves are made by estimates, the last word has the volume", "[optimize]") {
     const std::vector<double> t{0.1, 0.3, 0.6};
     const Layers full({20, 3, 1}), near({21, 2.8, 1.05}), farther({24, 2.5, 1.2});
     OptimizeProblem problem{full, t};

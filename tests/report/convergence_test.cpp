@@ -21,8 +21,8 @@ TEST_CASE("the curves of a run are its history", "[convergence]") {
     CHECK(f.series[1].points == std::vector<PlotPoint>{{0, 0.03}, {2, 0.03}});
     CHECK(f.x.hi == 2);
     CHECK(f.y.hi == Approx(0.44)); // a tenth above the largest value
-    // The move on a coarser volume is half a move to both sides.
-    CHECK(f.bands == std::vector<PlotBand>{{0.5, 1.5, "coarser volume"}});
+    // The move along rays is half a move to both sides.
+    CHECK(f.bands == std::vector<PlotBand>{{0.5, 1.5, "along rays"}});
 
     const Plot vws = vwsPlot(run);
     REQUIRE(vws.series.size() == 4); // a curve and a target for each of the two features

@@ -5,7 +5,7 @@
 
 namespace pellucid::test {
 
-/// Newton on two features, three states, the second one on a coarser volume.
+/// Newton on two features, three states, the second one along rays.
 inline Run exampleRun() {
     RunStart start;
     start.tf = tents(2);

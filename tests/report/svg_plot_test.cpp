@@ -40,7 +40,7 @@ Plot plot(const std::string& name) {
         .x = {.label = "move", .lo = 0, .hi = 2, .whole = true},
         .y = {.label = "VWS", .lo = 0, .hi = 1},
         .series = {{.name = name, .color = Rgb{1, 0, 0}, .dotted = true, .points = {{0, 0}, {1, 1}, {2, 0.5, true}}}},
-        .bands = {{0, 0.5, "coarser volume"}}};
+        .bands = {{0, 0.5, "along rays"}}};
 }
 
 } // namespace

@@ -2,7 +2,7 @@
 // Newton reaches on volumes (files, sample:NAME) under three tents and the automatic start, from three views, for three
 // targets each (rising, equal, falling); and on a copy of at most 48³ voxels Newton against the best of N random
 // restarts of the other methods, where Newton does not get below 0.001 there. --delta: root mean square differences of
-// W between the volume and its coarser copies instead, at three opacities. One line per problem; histories of those not
+// W between the volume and its estimates along rays instead, at three opacities. One line per problem; histories of those not
 // reached.
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,12 @@
 
 #include "base/stopwatch.h"
 #include "engines/engines.h"
-#include "optimize/coarser.h"
 #include "optimize/measure.h"
 #include "optimize/optimizer.h"
+#include "optimize/ray_vws.h"
 #include "session/scene.h"
 #include "support/random_cases.h"
+#include "volume/excerpt.h"
 
 using namespace pellucid;
 using namespace pellucid::test;
@@ -82,23 +83,20 @@ int main(int argc, char** argv) {
             const auto make = [](std::shared_ptr<const Volume> v) { return makeEngine(EngineChoice::Cpu, v); };
             const auto engine = make(scene.volume);
             const WeightFields weights = saliencyFields(*scene.volume, scene.tf);
-            CoarserVolumes coarser(scene.volume, make);
-            coarser.setWeights(weights);
-            std::shared_ptr<const Volume> tiny = scene.volume;
-            WeightFields tinyWeights = weights;
-            while (tiny->size() > 48 * 48 * 48) {
-                tinyWeights = halvedWeights(tinyWeights, *tiny);
-                tiny = halved(*tiny);
-            }
+            int factor = 1;
+            while (scene.volume->size() > 48u * 48 * 48 * static_cast<unsigned>(factor * factor * factor)) ++factor;
+            const auto tiny = factor == 1 ? scene.volume
+                                          : std::make_shared<const Volume>(coarserCopy(*scene.volume, factor));
+            const WeightFields tinyWeights = saliencyFields(*tiny, scene.tf);
             const auto tinyEngine = make(tiny);
             for (const auto& [azimuth, elevation] : {std::pair{30.0, 20.0}, {0.0, 0.0}, {-115.0, -40.0}}) {
                 if (onlyAzimuth != -1000 && onlyAzimuth != azimuth) continue;
                 const View view{
                     cameraFromView(scene.volume->geometry(), azimuth, elevation, 1, Projection::Perspective), {}};
                 const EngineVws f(*engine, view, scene.tf, weights), ft(*tinyEngine, view, scene.tf, tinyWeights);
-                const auto coarse = coarser.functions(view, scene.tf, {});
+                const auto estimates = rayEstimates(*scene.volume, view, scene.tf, weights, {});
                 std::vector<const VwsFunction*> levels;
-                for (const auto& c : coarse) levels.push_back(c.get());
+                for (const auto& e : estimates) levels.push_back(e.get());
                 if (delta) {
                     const std::vector<std::vector<double>> xs{featureOpacities(scene.tf),
                                                               std::vector<double>(scene.tf.features.size(), 0.02),
@@ -107,7 +105,7 @@ int main(int argc, char** argv) {
                     std::printf("%s %s %g,%g", path.c_str(), tfName.c_str(), azimuth, elevation);
                     for (std::size_t l = 0; l < levels.size(); ++l) {
                         const auto w = levels[l]->evaluate(xs);
-                        std::printf("  level %zu (%zu):", l + 1, coarser.volume(l).size());
+                        std::printf("  level %zu:", l + 1);
                         for (std::size_t i = 0; i < xs.size(); ++i) std::printf(" %.4f", objectiveOf(w[i], full[i]));
                     }
                     std::printf("\n");

@@ -60,7 +60,7 @@ QString tipOf(const Run& run) {
         std::count_if(run.history.begin(), run.history.end(), [](const auto& s) { return s.level > 0; });
     const auto others = static_cast<std::ptrdiff_t>(run.history.size()) - 1 - run.iterations - coarse;
     QStringList moves{QObject::tr("%1 on the volume").arg(run.iterations)};
-    if (coarse > 0) moves << QObject::tr("%1 on coarser copies of it").arg(coarse);
+    if (coarse > 0) moves << QObject::tr("%1 along rays").arg(coarse);
     if (others > 0) moves << QObject::tr("%1 along equal shares").arg(others);
     lines << QObject::tr("moves: %1").arg(moves.join(", "));
     if (run.evaluations > 0) lines << QObject::tr("%1 evaluations of the features' saliency").arg(run.evaluations);
@@ -115,7 +115,7 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     const char* const names[] = {"objectivePlot", "vwsPlot", "opacityPlot"};
     const QString tips[] = {
         tr("F: the root mean square distance of the features' VWS from their targets, after each move;\n"
-           "dashed: the tolerance. Dots of moves on coarser volumes are hollow.\n"
+           "dashed: the tolerance. Dots of moves along rays are hollow.\n"
            "Click on a dot: show that move. Double-click: export."),
         tr("VWS, each feature's share of what catches the eye, 0 to 1; dashed: the targets"),
         tr("The peak opacity of each feature, 0 to 1, of a path of one reference length d0")};
@@ -145,8 +145,8 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     m_list->headerItem()->setToolTip(kTitle, tr("Checked runs are compared in the first plot; the selected one has\n"
                                                 "the other two. F2 renames, Del deletes."));
     m_list->headerItem()->setToolTip(kMoves,
-                                     tr("Moves of the search on the volume itself. The plots also have those on\n"
-                                        "coarser copies of it, hollow, and those along equal shares that follow"));
+                                     tr("Moves of the search on the volume itself. The plots also have those along\n"
+                                        "rays, hollow, and those at equal shares that follow"));
     m_list->headerItem()->setToolTip(kDistance, tr("Distance from the targets at the end"));
     m_list->headerItem()->setToolTip(kSeconds, tr("Seconds that the search took"));
     m_list->header()->setStretchLastSection(false);

@@ -471,7 +471,7 @@ void FeaturesPanel::followRun() {
         const std::vector<OptimizeState>& history = run.underWay()->history;
         const auto whole = std::count_if(history.begin(), history.end(), [](const auto& s) { return s.level == 0; });
         m_progress->setFormat(
-            (history.back().level == 0 ? tr("move %1, F = %2").arg(whole - 1) : tr("on a coarser copy, F = %1"))
+            (history.back().level == 0 ? tr("move %1, F = %2").arg(whole - 1) : tr("along rays, F ≈ %1"))
                 .arg(run.objective(), 0, 'f', 4));
     }
     m_optimize->setVisible(!on);

@@ -163,8 +163,8 @@ void SettingsPanel::addOptimization(QFormLayout& form) {
     };
     check("normalizeCheck", tr("&Normalize the direction"),
           tr("The direction has length 1, as section 5.3.4 prints it"), &OptimizeOptions::normalize, isStepped);
-    check("coarseCheck", tr("&Coarse to fine"),
-          tr("Newton: the first moves on coarser copies of the volume, the last on the volume itself"),
+    check("coarseCheck", tr("&Rays first"),
+          tr("Newton: the first moves along a few thousand rays, the last on the whole volume"),
           &OptimizeOptions::coarse, [isStepped] { return !isStepped(); });
     check("exactSharesCheck", tr("E&xact shares"),
           tr("The shares asked for, even where the picture becomes too faint to see. Otherwise it stays at least 20 % "
