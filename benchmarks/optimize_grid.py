@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `pellucid-cli optimize` reaches on many volumes, and what the pictures look like.
 
-    optimize_grid.py PELLUCID_CLI VOLUME... [--tf auto,tents:3] [--targets equal,diagonal,inside-out]
+    optimize_grid.py PELLUCID_CLI VOLUME... [--tf auto,tents:3] [--targets equal,diagonal,1:3:6]
                      [--views 30,20 120,30] [--against "--no-coarse" "--method parallel" ...] [--sheet FOLDER]
 
 One line per problem: how it ended, F before and after, coverage, the least cover of a wanted feature, evaluations and
@@ -65,7 +65,7 @@ def main():
             for view in given.views:
                 for target in given.targets.split(","):
                     name = f"{os.path.basename(volume)} {tf} {view} {target}"
-                    problem = [volume, "--tf", tf, "--view", view, "--target", target]
+                    problem = [volume, "--tf", tf, "--view", view, "--target", target.replace(":", ",")]
                     try:
                         answer = optimize(given.cli, problem, [])
                         exact = optimize(given.cli, problem, ["--exact-shares"]) if "exact" in answer else answer

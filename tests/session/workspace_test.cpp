@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "optimize/objective.h"
+#include "optimize/ray_vws.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/camera_motion.h"
 #include "session/workspace.h"
@@ -104,11 +105,10 @@ TEST_CASE("derivatives and searches do not depend on it either", "[session][work
     const auto engine = makeCpuEngine(inputs[1].volume);
     const WeightFields weights = saliencyFields(*inputs[1].volume, inputs[1].tf);
     const EngineVws function(*engine, inputs[1].view, inputs[1].tf, weights);
-    const auto draft = makeDraftEngine(inputs[1].volume);
-    const EngineVws copy(*draft, inputs[1].view, inputs[1].tf, weights);
+    const auto estimates = rayEstimates(*inputs[1].volume, inputs[1].view, inputs[1].tf, weights, {});
     const RayBundle rays(*inputs[1].volume, inputs[1].tf, inputs[1].view, kCoverageRays);
     OptimizeProblem problem{function, {1, 2, 3}};
-    problem.coarser = {&copy};
+    for (const auto& estimate : estimates) problem.estimates.push_back(estimate.get());
     problem.rays = &rays;
     CHECK(a.history == optimize(problem, options).history);
 }
