@@ -2,7 +2,7 @@
 """What `pellucid-cli optimize` reaches on many volumes, and what the pictures look like.
 
     optimize_grid.py PELLUCID_CLI VOLUME... [--tf auto,tents:3] [--targets equal,diagonal,1:3:6]
-                     [--views 30,20 120,30] [--against "--no-coarse" "--method parallel" ...] [--sheet FOLDER]
+                     [--views 30,20 120,30] [--against no-coarse "method parallel" ...] [--sheet FOLDER]
 
 One line per problem: how it ended, F before and after, coverage, the least cover of a wanted feature, evaluations and
 seconds. A problem is marked where its answer is farther from the targets than its start or, with --exact-shares, than
@@ -69,7 +69,7 @@ def main():
                     try:
                         answer = optimize(given.cli, problem, [])
                         exact = optimize(given.cli, problem, ["--exact-shares"]) if "exact" in answer else answer
-                        others = {o: optimize(given.cli, problem, ["--exact-shares", *o.split()])
+                        others = {o: optimize(given.cli, problem, ["--exact-shares", *f"--{o}".split()])
                                   for o in given.against}
                     except (RuntimeError, subprocess.TimeoutExpired) as error:
                         print(f"{name}: {error}", flush=True)
