@@ -82,7 +82,7 @@ struct Seconds {
 std::string seenLines(const OptimizeResult& r) {
     std::string text;
     if (const std::string kept = keptText(r); !kept.empty())
-        text += kept + " --exact-shares gives " + (r.reason == StopReason::Visible ? "them" : "these") + ".\n";
+        text += kept + " Use --exact-shares for the shares alone.\n";
     if (const std::string faint = faintText(r); !faint.empty())
         text += (r.converged() ? "On target, but faint: " : "Faint: ") + faint + "\n";
     return text;
@@ -109,11 +109,13 @@ std::string textOf(const OptimizeResult& r, const std::vector<std::string>& name
         table.add({names[i], fixedText(r.targets[i], 4), fixedText(start.vws[i], 4), fixedText(best.vws[i], 4),
                    fixedText(start.opacity[i], 4), fixedText(best.opacity[i], 4),
                    fixedText(r.seen->coverage.covers[i], 4)});
+    const auto later = std::count_if(r.history.end() - r.laterSteps(), r.history.end(),
+                                     [](const OptimizeState& s) { return s.level == 0; });
     return table.text() + "coverage " + fixedText(r.seen->coverage.coverage, 4) + "\n" + seenLines(r) + "objective " +
            plainText(start.objective) + " -> " + plainText(best.objective) + ", " + name(r.reason) + " after " +
            std::to_string(r.iterations()) + " iterations, " +
            (r.coarseIterations() > 0 ? std::to_string(r.coarseIterations()) + " along rays, " : "") +
-           (r.laterSteps() > 0 ? std::to_string(r.laterSteps()) + " more so that it can be seen, " : "") +
+           (later > 0 ? std::to_string(later) + " more for the strength of the picture, " : "") +
            std::to_string(r.evaluations) + " evaluations\nengine " + engine + ": search " +
            secondsText(seconds.search) + ", saliency " + secondsText(seconds.saliency) + ", total " +
            secondsText(seconds.total) + "\n";
@@ -240,8 +242,8 @@ void SearchOptions::add(CLI::App& app) {
         "from 0.2 to 0.7)");
     app.add_flag(
         "--exact-shares", exactShares,
-        "shares alone count; without it the picture has a coverage of at least 0.2, and a cover of 0.02 of what "
-        "is wanted");
+        "meet the shares even if the picture becomes too faint to see; otherwise its coverage stays at 0.2 or more, "
+        "and the cover of each wanted feature at 0.02 or more");
     addValue(
         app, "--max-iterations", "N",
         [this](const std::string& text, const std::string& option) {

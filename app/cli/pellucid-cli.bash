@@ -51,7 +51,7 @@ _pellucid_cli() {
         --colormap) choices="hue spiral ember sand grey blue-orange blue-red categorical" ;;
         --only)
             [[ $command == bench ]] || return
-            choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton refine refine-500 refine-direct render"
+            choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton optimize-whole refine refine-500 refine-direct render"
             ;;
         --mode)
             choices="composite mip minip average surface"

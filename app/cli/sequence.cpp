@@ -17,6 +17,7 @@
 #include "movie.h"
 #include "options/target_input.h"
 #include "output_files.h"
+#include "optimize/visibility_words.h"
 #include "parse.h"
 #include "render/memory_needs.h"
 #include "report/image_plot.h"
@@ -186,6 +187,8 @@ void Sequence::prepareKey() {
             });
         if (result.reason == StopReason::Cancelled) throw Cancelled{};
         m_scene.tf = withShownOpacities(m_scene.tf, result.history[result.best].opacity);
+        if (const std::string kept = keptText(result); !kept.empty())
+            m_notices.push_back("frame " + std::to_string(m_start) + ": " + kept);
     }
     session.variables.edit([&](std::vector<Variable>& all) { // what is before the start frame is not asked for
         TfTrack& track = all.front().track;
@@ -377,7 +380,7 @@ void Sequence::tellMissed(const SequenceFigures& figures) {
     for (std::size_t i = 0; i < features.size(); ++i) {
         if (isAimed && unseen[i] > 0)
             m_notices.push_back("nothing of '" + features[i].name + "' is seen in " + std::to_string(unseen[i]) +
-                                " of them: choose a range (--range) or features that all frames have");
+                                " of the frames that are not on target: choose a range (--range) or features that all frames have");
         if (empty[i] > 0)
             m_notices.push_back("'" + features[i].name + "' is empty in " + framesOf(empty[i], figures.frames) +
                                 ": no voxel has its values, and it has no target there");
@@ -386,8 +389,8 @@ void Sequence::tellMissed(const SequenceFigures& figures) {
         m_notices.push_back(
             "frame " + std::to_string(m_afterGaps.front()) +
             (m_afterGaps.size() > 1 ? " and " + std::to_string(m_afterGaps.size() - 1) + " more follow" : " follows") +
-            " a gap in the series, so that no flicker is told of " + (m_afterGaps.size() > 1 ? "them" : "it") +
-            " (--flicker-over-gaps compares with the frame before the gap)");
+            " a gap in the series, so " + (m_afterGaps.size() > 1 ? "their" : "its") +
+            " flicker is not reported (--flicker-over-gaps compares with the frame before the gap)");
 }
 
 std::string coherenceText(double coherence) { return std::isinf(coherence) ? "infinite" : plainText(coherence); }

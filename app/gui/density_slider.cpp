@@ -233,7 +233,7 @@ void DensitySlider::rest() {
         m_slider->setPageStep(100);
         m_slider->setValue(0);
         m_value->setText(QStringLiteral("× 1.00"));
-        tip = tr("Multiplies the extinction: everything denser or thinner; the shares change little.\n"
+        tip = tr("Multiplies the extinction: everything denser or thinner; the shares change, too.\n"
                  "Drag it, let go, drag on; Escape gives it up");
     } else {
         m_slider->setRange(0, kReach);
@@ -254,12 +254,12 @@ void DensitySlider::rest() {
         else if (m_curve && m_curve->curve.isPoint())
             tip += tr("\nLocks and bounds leave one picture with these shares");
         else if (m_curve)
-            tip += tr("\nWith these shares: from %1 to %2 of alpha, mean over the pixels that show anything")
+            tip += tr("\nWith these shares: from %1 to %2 of alpha, mean over the pixels whose rays meet a feature that is drawn")
                        .arg(textOf(m_curve->curve.faintest().coverage.coverage),
                             textOf(m_curve->curve.strongest().coverage.coverage));
     }
     m_slider->setToolTip(tip);
-    QString value = tr("Coverage: mean alpha over the pixels whose rays meet any feature");
+    QString value = tr("Coverage: mean alpha over the pixels whose rays meet a feature that is drawn");
     if (measures && measures->coverage && measures->coverage->covers.size() == m_bench.scene().tf.features.size())
         for (std::size_t f = 0; f < measures->coverage->covers.size(); ++f)
             value += tr("\n%1: %2 of alpha where it is seen")

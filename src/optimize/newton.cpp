@@ -383,8 +383,8 @@ bool NewtonSearch::strengthens(const Place& at, const std::vector<Point>& points
                        [&](const Coverage& look) { return m_goal->miss(look) <= part * here; });
 }
 
-/// Downhill on the level of `at`, until it is there if that goes. `borrowed`: the derivatives are those of a coarser
-/// rougher estimate, which will do for as long as they bring F down fast; what is seen on the way mends them.
+/// Downhill on the level of `at`, until it is there if that goes. `borrowed`: the derivatives are those of a rougher
+/// estimate, which will do for as long as they bring F down fast; what is seen on the way mends them.
 NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, bool borrowed) {
     constexpr int kFailures = 3, kSlowMoves = 4;
     constexpr double kStronger = 0.85; // of the distance from the wanted strength that a move leaves which is for that
@@ -461,16 +461,13 @@ NewtonSearch::Place NewtonSearch::byEstimates(const std::vector<Point>& starts, 
     const std::vector<Weights> weights = phases(floors);
     const auto better = [&](const Place& a, const Place& b) { return rank(a, floors) < rank(b, floors); };
     const auto down = [&](Linear at, bool borrowed) {
-        Place place = at.place;
-        for (const Weights& w : weights) {
+        for (std::size_t i = 0; i < weights.size(); ++i) {
             m_coarseMoves = 0;
-            at.place = place;
-            place = descend(borrowed ? at : linearize(static_cast<std::size_t>(place.state.level), place.state.opacity),
-                            w, borrowed);
-            if (isThere(place, {w.floor, 0})) break;
-            borrowed = false;
+            if (i > 0) at = linearize(static_cast<std::size_t>(at.place.state.level), at.place.state.opacity);
+            at.place = descend(at, weights[i], borrowed && i == 0);
+            if (isThere(at.place, {weights[i].floor, 0})) break;
         }
-        return place;
+        return at.place;
     };
     std::size_t level = m_levels.size() - 1;
     std::vector<Place> ends;
@@ -591,19 +588,21 @@ void NewtonSearch::toShares(const std::vector<Point>& starts) {
     const bool coarse = m_levels.size() > 1;
     const auto done = [&] { return bestOf(false).state.objective < m_goalDistance || !mayMove(0); };
     const auto down = [&](Linear at) {
-        for (const Weights& weights : phases(false)) {
-            const Place place = descend(std::move(at), weights);
-            if (place.state.objective < m_goalDistance || !mayMove(0)) return;
-            at = linearize(0, place.state.opacity);
+        const std::vector<Weights> all = phases(false);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (i > 0) at = linearize(0, at.place.state.opacity);
+            at.place = descend(at, all[i]);
+            if (at.place.state.objective < m_goalDistance || !mayMove(0)) return;
         }
     };
+    const bool known = !m_places.empty(); // the start, by look()
     std::optional<Linear> first;
     if (coarse && mayMove(0)) {
         refine(byEstimates(startsFor(x), false), start, false);
     } else if (x == start && mayMove(0)) { // the first move is one on the volume, and needs the derivatives there
         first = linearize(0, x);
-        begin();
-    } else {
+        if (!known) begin();
+    } else if (!known) {
         evaluate(0, {start});
         begin();
     }

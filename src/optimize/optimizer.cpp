@@ -380,16 +380,21 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
             result.searched = result.history.size();
             nearest.state = result.history[result.best];
             if (goal && moves) {
+                newton.look(nearest.state);
                 if (options.coverage) {
                     addEstimates();
                     newton.toShares({nearest.state.opacity});
-                } else {
-                    newton.look(nearest.state);
                 }
                 nearest = newton.nearest();
             }
         }
         take(nearest);
+        if (problem.rays && !goal) { // no ray meets anything
+            const std::size_t n = result.targets.size();
+            result.seen = Seen{{0, std::vector<double>(n, 0.0)}, true, {}, {}, {}};
+            for (std::size_t f = 0; f < n; ++f)
+                if (result.targets[f] > 0) result.seen->unseen.push_back(f);
+        }
         if (goal) result.seen = goal->seen(moves ? nearest.look : goal->looks({nearest.state.opacity})[0]);
         if (goal && moves && !problem.nearby && nearest.lack > kShownLack) {
             addEstimates();

@@ -91,7 +91,7 @@ struct OptimizeResult {
     std::optional<Seen> seen = {}; ///< of `tf`; where the problem has rays
 
     int iterations() const;       ///< moves of the search on the volume
-    int coarseIterations() const; ///< its states on coarser ones
+    int coarseIterations() const; ///< its states by estimates
     int laterSteps() const;       ///< states after the search
     bool converged() const { return reason == StopReason::Converged; }
 };

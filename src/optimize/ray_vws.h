@@ -14,7 +14,6 @@ namespace pellucid {
 /// What rays of one view through the whole volume meet, made once for a volume, a view, the shapes of a transfer
 /// function and its weights. A point of a ray stands for the voxel that it lies in, with the light that reaches that
 /// voxel's centre along the ray: a sample of the sums of eq. 4.13, which has no error but chance (about 1 % of a share).
-/// On copies of lower resolution thin and noisy features would have other values.
 class RaySamples {
 public:
     /// `rays` along each side of a square around the volume. Throws Cancelled.

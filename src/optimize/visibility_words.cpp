@@ -56,8 +56,9 @@ std::string keptText(const OptimizeResult& result) {
     if (!result.seen || !result.seen->exact) return {};
     const SeenShares& exact = *result.seen->exact;
     const bool isExact = exact.objective < kSameShares;
+    const bool isAll = !result.seen->faint && result.seen->unseen.empty();
     return "Asked for " + sharesText(result.targets) + "; kept " + sharesText(result.history[result.best].vws) +
-           ", so that all of it can be seen: " + (isExact ? "with the shares asked for " : "nearer to these shares ") +
+           (isAll ? ", so that all of it can be seen: " : ", so that more of it can be seen: ") + (isExact ? "with the shares asked for " : "nearer to these shares ") +
            thinness(result.tf, result.targets, exact.look) + ".";
 }
 

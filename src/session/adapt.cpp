@@ -371,6 +371,11 @@ std::string modelBasis(const TransferFunction& tf, const std::string& basis) {
     return hash.text();
 }
 
+/// Not so in a frame in which no feature has a voxel.
+bool isAimed(const std::vector<double>& targets) {
+    return std::any_of(targets.begin(), targets.end(), [](double t) { return t > 0; });
+}
+
 /// Of the scene's frame at `opacity`. `metric`: pictureMetric() under the transfer function of the frame before.
 FrameModel modelOf(const Scene& scene, const VwsFunction& function, std::vector<double> opacity,
                    const AdaptSettings& settings, Matrix metric, const JobControl& job) {
@@ -378,7 +383,8 @@ FrameModel modelOf(const Scene& scene, const VwsFunction& function, std::vector<
     for (double& x : below1) x = std::min(x, kMaxOpacity);
     VwsFunction::Linear linear = function.jacobian(below1, job);
     FrameModel model;
-    model.targets = normalizedTargets(scene.targets(), function.featureCount());
+    model.targets = scene.targets();
+    if (isAimed(model.targets)) model.targets = normalizedTargets(model.targets, function.featureCount());
     TrackOptions track;
     track.coherence = settings.usedCoherence();
     model.distance = std::max(std::hypot(track.distance(), leastDistance(linear.vws, linear.derivative, model.targets)),
@@ -498,7 +504,7 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
             made.energy = result.energyMovableAfter;
             made.moves = result.iterations;
         }
-    } else if (settings.mode == Mode::Optimize && !scene.tf.features.empty()) {
+    } else if (settings.mode == Mode::Optimize && isAimed(scene.targets())) { // else nothing of it is in the frame
         const MeasureInput input = measureInput(scene);
         const std::vector<double> targets = scene.targets();
         const std::vector<OpacityLimits> limits = limitsOf(scene.tf, *scene.session.goals);

@@ -202,7 +202,7 @@ TEST_CASE("runs are compared, renamed and deleted", "[convergence]") {
 TEST_CASE("a run has one count of moves, and says what else there was", "[convergence]") {
     OpenWindow w;
     openPanel(w);
-    // 1 move on the volume, after 3 along rays; a step along equal shares follows.
+    // 1 move on the volume, after 3 along rays; a step for the strength of the picture follows.
     const auto state = [](int level, double f) {
         OptimizeState s;
         s.opacity = {0.5, 0.5, 0.5};
@@ -224,7 +224,7 @@ TEST_CASE("a run has one count of moves, and says what else there was", "[conver
     CHECK(sayOf(result, 0).contains("in 1 move"));
     const QString tip = list.topLevelItem(0)->toolTip(1);
     INFO(tip.toStdString());
-    CHECK(tip.contains("moves: 1 on the volume, 3 along rays, 1 along equal shares"));
+    CHECK(tip.contains("moves: 1 on the volume, 3 along rays, 1 after the search"));
 }
 
 TEST_CASE("a cream curve can be seen on white", "[convergence][theme]") {

@@ -141,10 +141,10 @@ void compareDoors(OpenWindow& w, const Inputs& inputs) {
             CHECK(std::abs(run.history[i].objective - optimized["objective"][i].get<double>()) <= kSame);
             checkSame(run.history[i].vws, optimized["vws"][i].get<std::vector<double>>());
         }
-        while (!(w.bench().store().session().goals == before.goals && w.bench().store().session().runs == before.runs)) {
-            REQUIRE(w.document().canUndo());
-            w.document().undo();
-        }
+        if (!(w.document().tf() == unrefined)) w.document().undo(); // a run that finds nothing to change is no step
+        if (!(w.bench().store().session().goals == before.goals)) w.document().undo();
+        CHECK(w.bench().store().session().goals == before.goals);
+        CHECK(w.document().tf() == unrefined);
         w.settle();
     }
 }

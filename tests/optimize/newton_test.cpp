@@ -306,7 +306,7 @@ TEST_CASE("the first moves are made by estimates, the last word has the volume",
     CHECK(r.history.front().level == 0);
     CHECK(r.history[r.best].level == 0);
     int last = 2;
-    for (std::size_t i = 1; i < r.history.size(); ++i) { // from coarse to fine
+    for (std::size_t i = 1; i < r.history.size(); ++i) { // ever finer
         CHECK(r.history[i].level <= last);
         last = r.history[i].level;
     }
@@ -314,7 +314,7 @@ TEST_CASE("the first moves are made by estimates, the last word has the volume",
     options.coarse = false;
     CHECK(optimize(problem, options).coarseIterations() == 0);
     CHECK(optimize(problem, with(SearchMethod::Parallel)).coarseIterations() == 0);
-    // Coarse volumes that show something else cost moves, but mislead nobody.
+    // Estimates of something else cost moves, but mislead nobody.
     const Layers wrong({1, 3, 20}), blind({0, 0, 0});
     for (const Layers* coarse : {&wrong, &blind}) {
         problem.estimates = {coarse};

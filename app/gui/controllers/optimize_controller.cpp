@@ -27,9 +27,10 @@ QString sayOf(const OptimizeResult& result, int restarts) {
                           .arg(fixed4(best.objective), fixed4(result.history.front().objective),
                                counted(result.iterations(), QObject::tr("move"), QObject::tr("moves")));
     if (restarts > 0) figures += QObject::tr("; restarted from the new view");
-    if (const std::string kept = keptText(result); !kept.empty())
-        return QStringLiteral("%1 (%2)").arg(QString::fromStdString(kept), figures);
-    if (const std::string faint = faintText(result); !faint.empty()) // not without what makes it visible
+    const std::string kept = keptText(result), faint = faintText(result);
+    if (!kept.empty())
+        return QStringLiteral("%1 (%2)").arg(QString::fromStdString(faint.empty() ? kept : kept + " " + faint), figures);
+    if (!faint.empty()) // not without what makes it visible
         return QObject::tr("%1: %2 (%3)")
             .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
                  QString::fromStdString(faint), figures);
@@ -65,10 +66,11 @@ OptimizeController::OptimizeController(Workbench& bench)
               return workspace.explain(q.task.input, q.task.targets, q.task.limits, q.task.options, q.found,
                                        {job.stop, {}}, q.task.known);
           },
-          [this](const Question&, Verdict& verdict) {
+          [this](const Question& q, Verdict& verdict) {
               QStringList sentences;
+              if (const std::string kept = keptText(q.found); !kept.empty()) sentences << QString::fromStdString(kept);
               for (const std::string& sentence : verdict.sentences) sentences << QString::fromStdString(sentence);
-              say(sentences.join(' '));
+              say(sentences.join(' '), std::vector<double>(m_exact));
           },
           WhenBusy::StopOld, &bench.compute()) {
     connect(&m_job, &JobBase::busyChanged, this, [this] {
@@ -117,9 +119,14 @@ OptimizeController::About OptimizeController::present() const {
 }
 
 void OptimizeController::say(const QString& text) {
+    say(text, {});
+}
+
+void OptimizeController::say(const QString& text, std::vector<double> exact) {
     m_about = present();
-    if (text == m_message) return;
+    if (text == m_message && exact == m_exact) return;
     m_message = text;
+    m_exact = std::move(exact);
     Q_EMIT messageChanged();
 }
 
@@ -132,9 +139,11 @@ void OptimizeController::start() {
     m_question.reset();
     m_explaining.cancel();
     const About about = present();
+    const bool isAimed = std::any_of(about.targets.begin(), about.targets.end(), [](double t) { return t > 0; });
     begin({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
            *store.session().optimize,
-           knownAnswers(*store.session().runs, normalizedTargets(about.targets, about.targets.size()))});
+           isAimed ? knownAnswers(*store.session().runs, normalizedTargets(about.targets, about.targets.size()))
+                   : std::vector<std::vector<double>>{}});
 }
 
 void OptimizeController::takeExact() {
@@ -212,8 +221,8 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     // It is true of what it was computed from.
     if (!(present() == About{input, task.targets}))
         return say(tr("Something has changed since it began; nothing is known of what is there now."));
-    if (result.seen && result.seen->exact) m_exact = result.seen->exact->opacity;
-    say(sayOf(result, m_restarts));
+    say(sayOf(result, m_restarts),
+        result.seen && result.seen->exact ? result.seen->exact->opacity : std::vector<double>{});
     if (best.objective < task.options.tolerance || result.reason == StopReason::Visible) return;
     m_question = Question{task, result};
     m_question->task.input = input;

@@ -47,8 +47,8 @@ public:
     /// state any more.
     const QString& message() const { return m_message; }
     void say(const QString& text);
-    /// Whether the latest run kept the picture visible instead of the shares asked for, which takeExact() puts in its
-    /// place, as a step of its own. True for as long as its message is.
+    /// Whether message() tells of a run that kept the picture visible instead of the shares asked for, which takeExact()
+    /// puts in its place, as a step of its own.
     bool hasExact() const { return !m_exact.empty() && !m_message.isEmpty(); }
     void takeExact();
 
@@ -76,6 +76,8 @@ private:
     };
 
     About present() const;
+    /// `exact`: of hasExact(); empty: the message offers none.
+    void say(const QString& text, std::vector<double> exact);
     void begin(Task task);
     void restart(const View& view);
     void showMove(const Task& task, int move, const OptimizeState& state);

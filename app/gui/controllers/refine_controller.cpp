@@ -133,7 +133,9 @@ RefineController::RefineController(Workbench& bench)
               if (!dark) return;
               for (Refinement& r : m_kept)
                   if (r.volume == task.refinement.volume && r.after == task.refinement.after) r.dark = dark;
-              say(QString::fromStdString(darkeningText(*dark)));
+              // Of another state, that was undone meanwhile, say, nothing is said.
+              if (const Refinement* now = current(); now != nullptr && now->after == task.refinement.after)
+                  say(QString::fromStdString(darkeningText(*dark)));
               Q_EMIT refined();
           }) {
     bench.store().setConsequence(
@@ -342,7 +344,7 @@ void RefineController::takeHelp() {
         Refinement r = refineFrom(now->before, now->start, m_bench.scene(), by);
         const QScopedValueRollback quiet(m_quiet, true);
         keep(r);
-        m_bench.store().edit(tr("Refine, not as dark"), {}, [&](Session& session) {
+        m_bench.store().edit(tr("Refine, keeping the picture visible"), {}, [&](Session& session) {
             session.refine.edit([&](RefineSettings& s) {
                 if (exact)
                     s.method = RefineMethod::Exact;

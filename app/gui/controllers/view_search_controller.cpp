@@ -6,6 +6,7 @@
 
 #include "controllers/optimize_controller.h"
 #include "optimize/objective.h"
+#include "optimize/visibility_words.h"
 #include "render/view_direction.h"
 #include "tf/shown_tf.h"
 #include "workbench.h"
@@ -268,7 +269,9 @@ void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities&
     m_bench.results().addVws(input, best.vws);
     const ViewAngles angles = viewAngles(found.input.view.camera, task.input.volume->geometry());
     const auto degrees = [](double value) { return QString::number(value, 'f', 0); };
+    const std::string kept = keptText(found.result);
     m_bench.optimizing().say(
+        (kept.empty() ? QString() : QString::fromStdString(kept) + ' ') +
         (found.result.converged()
              ? tr("On target from azimuth %1°, elevation %2°: F = %3, from %4.")
              : tr("Not on target; the nearest view found is azimuth %1°, elevation %2°: F = %3, from %4."))

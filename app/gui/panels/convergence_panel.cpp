@@ -61,7 +61,7 @@ QString tipOf(const Run& run) {
     const auto others = static_cast<std::ptrdiff_t>(run.history.size()) - 1 - run.iterations - coarse;
     QStringList moves{QObject::tr("%1 on the volume").arg(run.iterations)};
     if (coarse > 0) moves << QObject::tr("%1 along rays").arg(coarse);
-    if (others > 0) moves << QObject::tr("%1 along equal shares").arg(others);
+    if (others > 0) moves << QObject::tr("%1 after the search, for the strength of the picture").arg(others);
     lines << QObject::tr("moves: %1").arg(moves.join(", "));
     if (run.evaluations > 0) lines << QObject::tr("%1 evaluations of the features' saliency").arg(run.evaluations);
     if (run.seconds > 0) lines << QObject::tr("%1 s").arg(shortNumber(run.seconds));
@@ -146,7 +146,7 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
                                                 "the other two. F2 renames, Del deletes."));
     m_list->headerItem()->setToolTip(kMoves,
                                      tr("Moves of the search on the volume itself. The plots also have those along\n"
-                                        "rays, hollow, and those at equal shares that follow"));
+                                        "rays, hollow, and those that follow for the strength of the picture"));
     m_list->headerItem()->setToolTip(kDistance, tr("Distance from the targets at the end"));
     m_list->headerItem()->setToolTip(kSeconds, tr("Seconds that the search took"));
     m_list->header()->setStretchLastSection(false);

@@ -112,7 +112,7 @@ TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
     connect(m_shown, &QComboBox::activated, this, &TemporalPanel::refresh);
     m_overGaps->setObjectName("temporalOverGaps");
     m_overGaps->setToolTip(tr("After missing or broken frames, compare with the frame before the gap;\n"
-                              "otherwise no flicker is told there"));
+                              "otherwise no flicker is reported there"));
     connect(m_overGaps, &QCheckBox::toggled, this, [this] {
         refresh();
         next();
