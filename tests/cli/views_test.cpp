@@ -205,3 +205,16 @@ TEST_CASE("what views cannot do is said in words", "[cli][views]") {
     refused(Words{"optimize"} + kScene + Words{"--target", "1,1", "--view", "best", "--camera", "c.json"},
             "--camera and --view");
 }
+
+TEST_CASE("a picture of nothing is told as such", "[cli]") {
+    // What the clipping leaves has no feature: no ray meets one, and there is no cover to compute.
+    const Workshop w;
+    const json j = w.json({"optimize", "sample:disks", "--sample-size", "16", "--tf", "tents:3", "--target", "1,1,1",
+                           "--clip", "y:0:0.02"});
+    CHECK(j["coverage"] == 0);
+    CHECK(j["covers"] == json({0, 0, 0}));
+    CHECK(j["converged"] == false);
+    const Outcome outcome = w.run({"optimize", "sample:disks", "--sample-size", "16", "--tf", "tents:3", "--target",
+                                   "1,1,1", "--clip", "y:0:0.02"});
+    CHECK(outcome.out.find("Faint: The picture is 0 % opaque") != std::string::npos);
+}
