@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "render/trilinear.h"
+#include "tf/transfer_function.h"
 #include "volume/volume.h"
 
 namespace pellucid {
@@ -13,6 +15,24 @@ inline constexpr int kIntensityBins = 1024;
 
 inline double intensityOfBin(int bin) { return (bin + 0.5) / kIntensityBins; }
 inline int binOfIntensity(double s) { return std::min(static_cast<int>(s * kIntensityBins), kIntensityBins - 1); }
+
+/// What the bins of a transfer function's features are, whatever their opacities.
+struct BinFeatures {
+    std::vector<int> slot;  ///< of each bin its feature; as many as there are features where it is in none
+    std::vector<char> kept; ///< whether something can be opaque there: hidden features cannot
+
+    explicit BinFeatures(const TransferFunction& tf) {
+        const TfSampler opacities(tf);
+        for (int bin = 0; bin < kIntensityBins; ++bin) {
+            const double s = intensityOfBin(bin);
+            const int feature = featureAt(tf.features, s);
+            slot.push_back(feature < 0 ? static_cast<int>(tf.features.size()) : feature);
+            kept.push_back(feature < 0 ? opacities.opacity(s) > 0
+                                       : !tf.features[static_cast<std::size_t>(feature)].hidden);
+        }
+    }
+    bool keeps(int bin) const { return kept[static_cast<std::size_t>(bin)] != 0; }
+};
 
 /// Trilinear, of intensities: their bin; −1 where more than half of it is invalid.
 template <class Values>

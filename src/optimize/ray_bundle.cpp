@@ -25,15 +25,8 @@ constexpr double kSolid = 0.95, kEmpty = 0.05;
 RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const View& view, int pixels,
                      const JobControl& job)
     : m_features(tf.features.size()) {
-    const TfSampler opacities(tf);
-    std::vector<char> kept; // what can be opaque
-    for (int bin = 0; bin < kIntensityBins; ++bin) {
-        const double s = intensityOfBin(bin);
-        const int feature = featureAt(tf.features, s);
-        const bool outside = feature < 0;
-        m_slotOfBin.push_back(outside ? static_cast<int>(m_features) : feature);
-        kept.push_back(outside ? opacities.opacity(s) > 0 : !tf.features[static_cast<std::size_t>(feature)].hidden);
-    }
+    const BinFeatures features(tf);
+    m_slotOfBin = features.slot;
     const Geometry& geometry = volume.geometry();
     const double d0 = geometry.d0();
     m_stepInD0 = std::max(kLeastStep, 2 * geometry.radius() / d0 / kMostSteps);
@@ -58,7 +51,7 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
                     const double first = static_cast<double>(hashOf(column, static_cast<int>(row), 0, 1) % 1024) / 1024;
                     for (double t = inside.enter + first * step; t < inside.exit; t += step)
                         if (const int bin = sampler.at(ray.origin + t * ray.direction);
-                            bin >= 0 && kept[static_cast<std::size_t>(bin)])
+                            bin >= 0 && features.keeps(bin))
                             rows[pixel].push_back(static_cast<std::uint16_t>(bin));
                 }
             });

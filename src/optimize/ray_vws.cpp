@@ -58,15 +58,8 @@ std::optional<Camera> aroundAll(const Camera& camera, const Geometry& geometry) 
 RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const View& view, const WeightFields& weights,
                        int rays, const JobControl& job)
     : m_features(tf.features.size()), m_scale{weights.scale(0), weights.scale(1)} {
-    const TfSampler opacities(tf);
-    std::vector<char> kept; // what can be opaque
-    for (int bin = 0; bin < kIntensityBins; ++bin) {
-        const double s = intensityOfBin(bin);
-        const int feature = featureAt(tf.features, s);
-        const bool outside = feature < 0;
-        m_slotOfBin.push_back(outside ? static_cast<int>(m_features) : feature);
-        kept.push_back(outside ? opacities.opacity(s) > 0 : !tf.features[static_cast<std::size_t>(feature)].hidden);
-    }
+    const BinFeatures features(tf);
+    m_slotOfBin = features.slot;
     const Geometry& geometry = volume.geometry();
     const std::optional<Camera> camera = aroundAll(view.camera, geometry);
     if (!camera) return;
@@ -110,7 +103,7 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
                     points.clear();
                     for (double t = inside.enter + first * step; t < inside.exit; t += step) {
                         const Vec3 at = ray.origin + t * ray.direction;
-                        if (const int bin = sampler.at(at); bin >= 0 && kept[static_cast<std::size_t>(bin)]) {
+                        if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin)) {
                             here.bins.push_back(static_cast<std::uint16_t>(bin));
                             begins.push_back(t - step / 2);
                         }
@@ -121,7 +114,7 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
                                 (static_cast<std::size_t>(voxel.y) +
                                  static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(voxel.z));
                         const double s = volume.intensityOfValue(static_cast<double>(values[index]));
-                        if (std::isnan(s) || !kept[static_cast<std::size_t>(binOfIntensity(s))]) continue;
+                        if (std::isnan(s) || !features.keeps(binOfIntensity(s))) continue;
                         // As far along the ray as the voxel's centre, less the d0/2 in front of it.
                         const double center = t + glm::dot(worldFromIndex * (Vec3(voxel) - at), world.direction);
                         const double measure = perspective ? t * t * slant * slant * slant : 1;
