@@ -250,7 +250,8 @@ void SearchOptions::add(CLI::App& app) {
             maxIterations = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
         },
         "at most so many moves on the volume (default 200)");
-    app.add_flag("--no-coarse", noCoarse, "newton: every move on the whole volume, none along a few thousand rays first");
+    app.add_flag("--no-coarse", noCoarse,
+                 "newton: every move on the whole volume, none along a few thousand rays first");
     app.add_flag("--no-restarts", noRestarts, "newton: no other starts where it is stuck");
 }
 

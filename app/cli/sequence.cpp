@@ -15,9 +15,9 @@
 #include "image_io/image_file.h"
 #include "interrupt.h"
 #include "movie.h"
+#include "optimize/visibility_words.h"
 #include "options/target_input.h"
 #include "output_files.h"
-#include "optimize/visibility_words.h"
 #include "parse.h"
 #include "render/memory_needs.h"
 #include "report/image_plot.h"
@@ -380,7 +380,8 @@ void Sequence::tellMissed(const SequenceFigures& figures) {
     for (std::size_t i = 0; i < features.size(); ++i) {
         if (isAimed && unseen[i] > 0)
             m_notices.push_back("nothing of '" + features[i].name + "' is seen in " + std::to_string(unseen[i]) +
-                                " of the frames that are not on target: choose a range (--range) or features that all frames have");
+                                " of the frames that are not on target: choose a range (--range) or features that all "
+                                "frames have");
         if (empty[i] > 0)
             m_notices.push_back("'" + features[i].name + "' is empty in " + framesOf(empty[i], figures.frames) +
                                 ": no voxel has its values, and it has no target there");

@@ -16,6 +16,12 @@ inline constexpr int kIntensityBins = 1024;
 inline double intensityOfBin(int bin) { return (bin + 0.5) / kIntensityBins; }
 inline int binOfIntensity(double s) { return std::min(static_cast<int>(s * kIntensityBins), kIntensityBins - 1); }
 
+/// Length of a ray's steps, d0: ½, and longer where the diagonal of the box would have more than 400 of them.
+inline double stepAlongRays(const Geometry& geometry) {
+    constexpr int kMost = 400;
+    return std::max(0.5, 2 * geometry.radius() / geometry.d0() / kMost);
+}
+
 /// What the bins of a transfer function's features are, whatever their opacities.
 struct BinFeatures {
     std::vector<int> slot;  ///< of each bin its feature; as many as there are features where it is in none

@@ -162,7 +162,8 @@ NewtonSearch::GoalRows NewtonSearch::goalRows(const Place& at, const Weights& we
 
 void NewtonSearch::arrive(const OptimizeState& state) {
     ++(state.level == 0 ? m_moves : m_coarseMoves);
-    if (state.level > 0 && m_forFloors) return; // the way to the floors is long, and begins beside the one that is shown
+    if (state.level > 0 && m_forFloors)
+        return; // the way to the floors is long, and begins beside the one that is shown
     if (m_places.empty())
         m_waiting.push_back(state);
     else
@@ -480,7 +481,8 @@ NewtonSearch::Place NewtonSearch::byEstimates(const std::vector<Point>& starts, 
         for (const Place& p : spread(level, best.state.opacity, weights[0]))
             if (Place end = down(linearize(level, p.state.opacity), false); better(end, best)) best = std::move(end);
     while (--level > 0) {
-        // W differs little from one level to the next, and its derivatives do, too: those of the rougher one are cheaper.
+        // W differs little from one level to the next, and its derivatives do, too: those of the rougher one are
+        // cheaper.
         Linear at = linearize(level + 1, best.state.opacity);
         std::vector<Point> points{best.state.opacity};
         for (const Point& x : starts) points.push_back(x);

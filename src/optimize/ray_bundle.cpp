@@ -14,10 +14,8 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kMostSteps = 400;    // along the diagonal of the box
-constexpr int kLanes = 8;          // transfer functions that are looked at together
-constexpr double kLeastStep = 0.5; // d0
-constexpr double kMeets = 0.5;     // d0 of path through a feature
+constexpr int kLanes = 8;      // transfer functions that are looked at together
+constexpr double kMeets = 0.5; // d0 of path through a feature
 constexpr double kSolid = 0.95, kEmpty = 0.05;
 
 } // namespace
@@ -29,7 +27,7 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
     m_slotOfBin = features.slot;
     const Geometry& geometry = volume.geometry();
     const double d0 = geometry.d0();
-    m_stepInD0 = std::max(kLeastStep, 2 * geometry.radius() / d0 / kMostSteps);
+    m_stepInD0 = stepAlongRays(geometry);
     const double step = m_stepInD0 * d0;
     const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, geometry);
 
@@ -50,8 +48,7 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
                     // as their thickness says.
                     const double first = static_cast<double>(hashOf(column, static_cast<int>(row), 0, 1) % 1024) / 1024;
                     for (double t = inside.enter + first * step; t < inside.exit; t += step)
-                        if (const int bin = sampler.at(ray.origin + t * ray.direction);
-                            bin >= 0 && features.keeps(bin))
+                        if (const int bin = sampler.at(ray.origin + t * ray.direction); bin >= 0 && features.keeps(bin))
                             rows[pixel].push_back(static_cast<std::uint16_t>(bin));
                 }
             });

@@ -19,15 +19,13 @@ namespace pellucid {
 
 namespace {
 
-constexpr int kMostSteps = 400;       // along the diagonal of the box
-constexpr std::size_t kLanes = 8;     // transfer functions that are looked at together
-constexpr double kLeastStep = 0.5;    // d0
-constexpr double kNarrowest = 0.95;   // sine of half the angle under which the sphere around the box may be seen
-constexpr float kDark = 1e-5f;        // light that is given up
-constexpr double kDerivative = 0.02;  // ln of optical depths, for differences
-constexpr std::size_t kBlock = 64;    // rays
-constexpr int kRays = 90;             // along each side, for estimates
-constexpr int kSome = 6;              // of the rough one every so many rays
+constexpr std::size_t kLanes = 8;    // transfer functions that are looked at together
+constexpr double kNarrowest = 0.95;  // sine of half the angle under which the sphere around the box may be seen
+constexpr float kDark = 1e-5f;       // light that is given up
+constexpr double kDerivative = 0.02; // ln of optical depths, for differences
+constexpr std::size_t kBlock = 64;   // rays
+constexpr int kRays = 90;            // along each side, for estimates
+constexpr int kSome = 6;             // of the rough one every so many rays
 
 using Lanes = std::array<float, kLanes>;
 
@@ -64,7 +62,7 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
     const std::optional<Camera> camera = aroundAll(view.camera, geometry);
     if (!camera) return;
     const double d0 = geometry.d0();
-    m_stepInD0 = std::max(kLeastStep, 2 * geometry.radius() / d0 / kMostSteps);
+    m_stepInD0 = stepAlongRays(geometry);
     const double step = m_stepInD0 * d0;
     const bool perspective = camera->projection == Projection::Perspective;
     const Vec3 forward = camera->forward();
@@ -90,8 +88,7 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
                 std::vector<Point> points;
                 for (int column = 0; column < rays; ++column) {
                     OfRay& here = all[row * static_cast<std::size_t>(rays) + static_cast<std::size_t>(column)];
-                    const Ray world =
-                        pixelRay(*camera, column + 0.5, static_cast<double>(row) + 0.5, rays, rays);
+                    const Ray world = pixelRay(*camera, column + 0.5, static_cast<double>(row) + 0.5, rays, rays);
                     const Ray ray = inVoxels(world, geometry);
                     RayInterval inside = intersectBox(ray, geometry);
                     inside.enter = std::max(inside.enter, 0.0);
@@ -137,9 +134,8 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
                         p.met.behind = static_cast<std::uint16_t>(behind);
                         p.met.quarters = static_cast<std::uint16_t>(quarters);
                     }
-                    std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
-                        return a.met.behind < b.met.behind;
-                    });
+                    std::stable_sort(points.begin(), points.end(),
+                                     [](const Point& a, const Point& b) { return a.met.behind < b.met.behind; });
                     for (const Point& p : points) here.voxels.push_back(p.met);
                 }
             });
@@ -258,7 +254,8 @@ VwsFunction::Linear RayVws::jacobian(const std::vector<double>& x, const JobCont
     Linear linear{vws[0], std::vector<std::vector<double>>(n, std::vector<double>(n, 0.0))};
     for (std::size_t j = 0; j < n; ++j) {
         const double change = points[j + 1][j] - x[j];
-        for (std::size_t i = 0; change != 0 && i < n; ++i) linear.derivative[i][j] = (vws[j + 1][i] - vws[0][i]) / change;
+        for (std::size_t i = 0; change != 0 && i < n; ++i)
+            linear.derivative[i][j] = (vws[j + 1][i] - vws[0][i]) / change;
     }
     return linear;
 }

@@ -13,7 +13,8 @@ namespace pellucid {
 
 /// What rays of one view through the whole volume meet, made once for a volume, a view, the shapes of a transfer
 /// function and its weights. A point of a ray stands for the voxel that it lies in, with the light that reaches that
-/// voxel's centre along the ray: a sample of the sums of eq. 4.13, which has no error but chance (about 1 % of a share).
+/// voxel's centre along the ray: a sample of the sums of eq. 4.13, which has no error but chance (about 1 % of a
+/// share).
 class RaySamples {
 public:
     /// `rays` along each side of a square around the volume. Throws Cancelled.
@@ -29,10 +30,10 @@ public:
 private:
     /// A point where there is something to be seen.
     struct Met {
-        std::uint32_t weights; ///< WeightFields::units() of its voxel
-        float measure;         ///< part of the volume that it stands for, times any constant
-        std::uint16_t bin;     ///< of its voxel's intensity
-        std::uint16_t behind;  ///< so many steps of the ray's m_bins ...
+        std::uint32_t weights;  ///< WeightFields::units() of its voxel
+        float measure;          ///< part of the volume that it stands for, times any constant
+        std::uint16_t bin;      ///< of its voxel's intensity
+        std::uint16_t behind;   ///< so many steps of the ray's m_bins ...
         std::uint16_t quarters; ///< ... and so many quarters of the next one
     };
     std::size_t m_features = 0;
@@ -42,7 +43,7 @@ private:
     std::vector<std::uint32_t> m_binBegins{0};
     std::vector<Met> m_voxels;
     std::vector<std::uint32_t> m_voxelBegins{0};
-    std::vector<int> m_slotOfBin;      ///< its feature; m_features: none, but opaque
+    std::vector<int> m_slotOfBin; ///< its feature; m_features: none, but opaque
 };
 
 /// VWS as those rays tell it.

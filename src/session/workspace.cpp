@@ -229,8 +229,8 @@ bool Workspace::isEstimated(const MeasureInput& input) {
 }
 
 OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<double>& targets,
-                                   const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
-                                   bool rough, const JobControl& job) {
+                                   const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool rough,
+                                   const JobControl& job) {
     return guarded(
         [&] {
             VisibilityEngine& e = engine(input);

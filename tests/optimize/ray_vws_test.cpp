@@ -36,8 +36,8 @@ std::vector<double> byEngine(const std::shared_ptr<const Volume>& volume, const 
     return EngineVws(*engine, view, tf, weights).evaluate({&x, 1})[0];
 }
 
-const std::vector<std::vector<double>> kOpacities{{0.01, 0.01, 0.01}, {0.3, 0.3, 0.3}, {0.95, 0.95, 0.95},
-                                                  {0.01, 0.1, 0.9},   {0.6, 0.02, 0.2}};
+const std::vector<std::vector<double>> kOpacities{
+    {0.01, 0.01, 0.01}, {0.3, 0.3, 0.3}, {0.95, 0.95, 0.95}, {0.01, 0.1, 0.9}, {0.6, 0.02, 0.2}};
 
 } // namespace
 
@@ -83,12 +83,10 @@ TEST_CASE("estimates along rays are near the engine's figures", "[optimize][rays
 TEST_CASE("estimates along rays hold for noise, invalid voxels and voxels that are no cubes", "[optimize][rays]") {
     std::mt19937 random(5);
     const auto rough = roughVolume(random, {50, 40, 30}, {1, 1, 1.7});
-    const auto holed = volumeFrom(
-        rough->geometry(),
-        [&](int i, int j, int k) {
-            return i > 20 && j > 15 && k < 12 ? std::numeric_limits<double>::quiet_NaN()
-                                              : rough->intensity(static_cast<std::size_t>(i + 50 * (j + 40 * k)));
-        });
+    const auto holed = volumeFrom(rough->geometry(), [&](int i, int j, int k) {
+        return i > 20 && j > 15 && k < 12 ? std::numeric_limits<double>::quiet_NaN()
+                                          : rough->intensity(static_cast<std::size_t>(i + 50 * (j + 40 * k)));
+    });
     for (const auto& volume : {rough, holed}) {
         const TransferFunction tf = tents(3);
         const WeightFields weights = saliencyFields(*volume, tf);

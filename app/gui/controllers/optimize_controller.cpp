@@ -29,7 +29,8 @@ QString sayOf(const OptimizeResult& result, int restarts) {
     if (restarts > 0) figures += QObject::tr("; restarted from the new view");
     const std::string kept = keptText(result), faint = faintText(result);
     if (!kept.empty())
-        return QStringLiteral("%1 (%2)").arg(QString::fromStdString(faint.empty() ? kept : kept + " " + faint), figures);
+        return QStringLiteral("%1 (%2)").arg(QString::fromStdString(faint.empty() ? kept : kept + " " + faint),
+                                             figures);
     if (!faint.empty()) // not without what makes it visible
         return QObject::tr("%1: %2 (%3)")
             .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
@@ -54,8 +55,8 @@ OptimizeController::OptimizeController(Workbench& bench)
                   QMetaObject::invokeMethod(this,
                                             [this, task, state, number = move++] { showMove(task, number, state); });
               };
-              OptimizeResult result =
-                  workspace.optimize(task.input, task.targets, task.limits, task.options, {job.stop, {}}, watch, task.known);
+              OptimizeResult result = workspace.optimize(task.input, task.targets, task.limits, task.options,
+                                                         {job.stop, {}}, watch, task.known);
               if (result.reason == StopReason::Cancelled) throw Cancelled{};
               return result;
           },
@@ -118,9 +119,7 @@ OptimizeController::About OptimizeController::present() const {
     return {measureInput(m_bench.scene()), m_bench.scene().targets()};
 }
 
-void OptimizeController::say(const QString& text) {
-    say(text, {});
-}
+void OptimizeController::say(const QString& text) { say(text, {}); }
 
 void OptimizeController::say(const QString& text, std::vector<double> exact) {
     m_about = present();
