@@ -4,6 +4,9 @@
     optimize_grid.py PELLUCID_CLI VOLUME... [--tf auto,tents:3] [--targets equal,diagonal,1:3:6]
                      [--views 30,20 120,30] [--against no-coarse "method parallel" ...] [--sheet FOLDER]
 
+Targets of numbers, as 1:3:6, are repeated or cut to as many as there are features. --against runs where F with
+--exact-shares is above 0.001: below, nothing can be nearer by more than that.
+
 One line per problem: how it ended, F before and after, coverage, the least cover of a wanted feature, evaluations and
 seconds. A problem is marked where its answer is farther from the targets than its start or, with --exact-shares, than
 what one of --against reaches by more than 0.001; where the coverage leaves [0.2, 0.75]; and where a wanted feature has a
@@ -27,6 +30,17 @@ def run(cli, arguments, timeout=900):
 
 def optimize(cli, problem, options):
     return json.loads(run(cli, ["optimize", *problem, *options, "--json"]))
+
+
+def features(cli, volume, tf):
+    return len(json.loads(run(cli, ["measure", volume, "--tf", tf, "--json"]))["features"])
+
+
+def in_words(target, count):
+    if ":" not in target:
+        return target
+    numbers = target.split(":")
+    return ",".join(numbers[i % len(numbers)] for i in range(count))
 
 
 def reached(answer):
@@ -59,22 +73,23 @@ def main():
     parser.add_argument("--against", nargs="*", default=[])
     parser.add_argument("--sheet")
     given = parser.parse_args()
-    marked = count = 0
+    marked = problems = 0
     for volume in given.volumes:
         for tf in given.tf.split(","):
+            count = features(given.cli, volume, tf)
             for view in given.views:
                 for target in given.targets.split(","):
                     name = f"{os.path.basename(volume)} {tf} {view} {target}"
-                    problem = [volume, "--tf", tf, "--view", view, "--target", target.replace(":", ",")]
+                    problem = [volume, "--tf", tf, "--view", view, "--target", in_words(target, count)]
                     try:
                         answer = optimize(given.cli, problem, [])
                         exact = optimize(given.cli, problem, ["--exact-shares"]) if "exact" in answer else answer
                         others = {o: optimize(given.cli, problem, ["--exact-shares", *f"--{o}".split()])
-                                  for o in given.against}
+                                  for o in given.against if reached(exact) > MARGIN}
                     except (RuntimeError, subprocess.TimeoutExpired) as error:
                         print(f"{name}: {error}", flush=True)
                         continue
-                    count += 1
+                    problems += 1
                     marks = judge(answer, exact, others)
                     marked += bool(marks)
                     covers = [c for c, t in zip(answer["covers"], answer["target"]) if t > 0]
@@ -96,7 +111,7 @@ def main():
                             run(given.cli, ["render", volume, "--tf", curve, "--view", view, "--size", "256x256", "--out",
                                             f"{file}_{state}.png"])
                         os.remove(after)
-    print(f"{count} problems, {marked} marked")
+    print(f"{problems} problems, {marked} marked")
     return 1 if marked else 0
 
 

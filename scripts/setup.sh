@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that Pellucid is built, run and tested with. Needs root or sudo for that; does nothing
-# when all are there.
+# when all are there. Packages named as arguments are installed, too.
 set -euo pipefail
 
 packages=(
@@ -8,14 +8,14 @@ packages=(
     g++ cmake ninja-build ccache pkg-config git ca-certificates
     # volume files, images, threads, maths, JSON, XML, command line
     zlib1g-dev
-    libopenimageio-dev openimageio-tools libopencv-dev # OpenImageIO's CMake files name the last two
-    libtbb-dev libglm-dev nlohmann-json3-dev libpugixml-dev libcli11-dev
+    libopenimageio-dev libtbb-dev libglm-dev nlohmann-json3-dev libpugixml-dev libcli11-dev
     # OpenGL, on a GPU or in software, with and without a display
-    libepoxy-dev libgl-dev libegl-dev libopengl-dev libvulkan-dev libegl1 libgl1-mesa-dri libegl-mesa0 libosmesa6
+    libepoxy-dev libgl-dev libegl-dev libopengl-dev libegl1 libgl1-mesa-dri libegl-mesa0 libosmesa6
     # the window
     qt6-base-dev libqt6opengl6-dev libqt6openglwidgets6
     # the tests: Catch2, a display without a screen, a font for its windows, scripts
     catch2 xvfb xauth fonts-dejavu-core python3
+    "$@"
 )
 
 if [ "$(dpkg-query -W -f '${db:Status-Status}\n' "${packages[@]}" 2>/dev/null | grep -c '^installed$')" -eq "${#packages[@]}" ]; then

@@ -19,8 +19,8 @@ void addRemarks(Json& json, const std::optional<PriorityOutcome>& outcome, const
 /// What limits, what would help, who hides whom; features by their names in `tf`.
 Json jsonFromVerdict(const Verdict& verdict, const TransferFunction& tf);
 Json jsonFromOptimization(const OptimizeResult& result, const OptimizeOptions& options);
-/// How strong the picture is: "coverage", "covers", "exact" where it keeps the picture visible instead of the shares, and
-/// "faint" where something of it cannot be seen.
+/// How strong the picture is: "coverage", "covers", "exact" where it keeps the picture visible instead of the shares,
+/// and "faint" where something of it cannot be seen.
 void addSeen(Json& json, const OptimizeResult& result);
 
 /// {"view":{"azimuth","elevation"},"camera":{…}}: where an eye is, in degrees, and all of the camera.

@@ -254,7 +254,8 @@ void DensitySlider::rest() {
         else if (m_curve && m_curve->curve.isPoint())
             tip += tr("\nLocks and bounds leave one picture with these shares");
         else if (m_curve)
-            tip += tr("\nWith these shares: from %1 to %2 of alpha, mean over the pixels whose rays meet a feature that is drawn")
+            tip += tr("\nWith these shares: from %1 to %2 of alpha, mean over the pixels whose rays meet a feature "
+                      "that is drawn")
                        .arg(textOf(m_curve->curve.faintest().coverage.coverage),
                             textOf(m_curve->curve.strongest().coverage.coverage));
     }

@@ -18,11 +18,11 @@ struct PanelInfo {
     const char* id; ///< the dock's object name is "<id>Dock", its toggle's "<id>Action"
     QString title;
     Qt::DockWidgetArea area = Qt::RightDockWidgetArea;
-    bool visible = true; ///< at the first start
+    bool visible = true;         ///< at the first start
     const char* tabOf = nullptr; ///< id of a panel before it that it is a tab beside; null: a place of its own
     const char* below = nullptr; ///< id of a panel before it that it stands below; null: wherever there is room
-    int size = 0;        ///< width (or height, at the bottom) at the first start, pixels; 0: as it likes
-    QKeySequence keys;   ///< show or hide it
+    int size = 0;                ///< width (or height, at the bottom) at the first start, pixels; 0: as it likes
+    QKeySequence keys;           ///< show or hide it
     QString tip;
     std::function<QWidget*(Workbench&, QWidget* parent)> make;
     std::function<void(Workbench&, bool visible)> shown = {}; ///< it was shown or hidden; may be empty

@@ -35,8 +35,8 @@ public:
     void setMarks(std::vector<FrameMark> marks);
     void refresh(); ///< more frames may be known
 
-    int frameAt(double x) const; ///< the nearest one
-    QRectF rectOf(int frame) const; ///< its column, in pixels of the widget
+    int frameAt(double x) const;                        ///< the nearest one
+    QRectF rectOf(int frame) const;                     ///< its column, in pixels of the widget
     const QImage& histogram() const { return m_image; } ///< a pixel per frame and bin, intensity 0 below
 
     QSize sizeHint() const override { return {600, 84}; }

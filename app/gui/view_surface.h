@@ -16,15 +16,16 @@ namespace pellucid::gui {
 
 /// How good the picture on the screen is.
 struct FrameInfo {
-    int width = 0, height = 0;  ///< pixels of the screen
-    double resolutionScale = 1; ///< rays per pixel along each axis
-    double stepInD0 = 0.5;      ///< distance of samples along a ray, where it is smallest
-    bool complete = false;      ///< the best that will come of this scene
+    int width = 0, height = 0;      ///< pixels of the screen
+    double resolutionScale = 1;     ///< rays per pixel along each axis
+    double stepInD0 = 0.5;          ///< distance of samples along a ray, where it is smallest
+    bool complete = false;          ///< the best that will come of this scene
     const Volume* volume = nullptr; ///< which one it shows; to be compared, no more
 };
 
 /// A child widget of the view that shows a scene: a coarse picture at once, a full one when the scene has stayed the
-/// same for a moment, and then the one that would be saved. What is complete depends on the scene and the size alone, never on timing.
+/// same for a moment, and then the one that would be saved. What is complete depends on the scene and the size alone,
+/// never on timing.
 class ViewSurface {
 public:
     virtual ~ViewSurface() = default;

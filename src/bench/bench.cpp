@@ -228,16 +228,22 @@ private:
         });
     }
 
+    VwsEstimates estimatesAnew(const JobControl& job) const {
+        return rayEstimates(
+            std::make_shared<RaySamples>(*m_case.volume, m_case.tf, m_case.view, m_weights, JobControl{job.stop, {}}),
+            m_case.tf);
+    }
+
     /// Its rays are there, too.
     void addNewton(const JobControl& job) {
         if (m_case.tf.features.empty()) return;
         const Stopwatch watch;
-        m_estimates = rayEstimates(*m_case.volume, m_case.view, m_case.tf, m_weights, {}, job);
+        const VwsEstimates estimates = estimatesAnew(job);
         add(row(BenchRow::OptimizeNewton, m_engine->name(), 8), 0,
-            [this, setup = watch.seconds()](BenchResult& r, const JobControl& j) {
+            [this, estimates, setup = watch.seconds()](BenchResult& r, const JobControl& j) {
                 const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
                 OptimizeProblem problem{function, benchTargets(m_case.tf.features.size())};
-                for (const auto& estimate : m_estimates) problem.estimates.push_back(estimate.get());
+                problem.estimates = estimates;
                 const OptimizeResult found = optimize(problem, {}, j);
                 if (found.reason == StopReason::Cancelled) throw Cancelled{};
                 // The start, and with each move derivatives and candidates; rays cost next to nothing.
@@ -261,13 +267,10 @@ private:
             add(result, 0, [this, name = name, targets = targets](BenchResult& r, const JobControl& j) {
                 const EngineVws function(*m_engine, m_case.view, m_case.tf, m_weights);
                 OptimizeProblem problem{function, targets};
-                std::vector<std::unique_ptr<VwsFunction>> held;
                 double estimatesSeconds = 0;
                 problem.makeEstimates = [&] {
                     const Stopwatch watch;
-                    held = rayEstimates(*m_case.volume, m_case.view, m_case.tf, m_weights, {}, j);
-                    std::vector<const VwsFunction*> estimates;
-                    for (const auto& estimate : held) estimates.push_back(estimate.get());
+                    VwsEstimates estimates = estimatesAnew(j);
                     estimatesSeconds = watch.seconds();
                     return estimates;
                 };
@@ -341,7 +344,6 @@ private:
     std::unique_ptr<VisibilityEngine> m_engine; ///< null where no row needs one
     std::unique_ptr<VisibilityEngine> m_slices; ///< made when first needed
     std::optional<Histogram> m_histogram;
-    std::vector<std::unique_ptr<VwsFunction>> m_estimates; ///< of the rows of Newton
     WeightFields m_weights, m_nineWeights;
     TransferFunction m_nine;
     std::vector<TransferFunction> m_candidates; ///< the eight of a search

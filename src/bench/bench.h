@@ -35,11 +35,10 @@ enum class BenchRow {
     RefineDirect,
     Render
 };
-inline constexpr std::array kBenchRows{BenchRow::Setup,         BenchRow::Saliency, BenchRow::SaliencyDirect,
-                                       BenchRow::Sweep,         BenchRow::Slices,   BenchRow::Jacobian,
-                                       BenchRow::Optimize,      BenchRow::OptimizeNewton,
-                                       BenchRow::OptimizeWhole, BenchRow::Refine,   BenchRow::Refine500,
-                                       BenchRow::RefineDirect,  BenchRow::Render};
+inline constexpr std::array kBenchRows{
+    BenchRow::Setup,     BenchRow::Saliency,     BenchRow::SaliencyDirect, BenchRow::Sweep,         BenchRow::Slices,
+    BenchRow::Jacobian,  BenchRow::Optimize,     BenchRow::OptimizeNewton, BenchRow::OptimizeWhole, BenchRow::Refine,
+    BenchRow::Refine500, BenchRow::RefineDirect, BenchRow::Render};
 const char* name(BenchRow row); ///< "setup" … "render"
 /// Throws UsageError that names `where`.
 BenchRow benchRowFromName(const std::string& name, const std::string& where);
@@ -71,7 +70,7 @@ struct BenchCase {
     TransferFunction tf;
     std::set<BenchRow> rows;
     /// By name, of the rows OptimizeWhole: one number ≥ 0 per feature.
-    std::vector<std::pair<std::string, std::vector<double>>> targets;
+    std::vector<std::pair<std::string, std::vector<double>>> targets{};
     bool nineFeatures = false; ///< a Jacobian of kNineTents too
     /// Length of the steps of the eight candidates in those of a line search, (0, 1].
     double stepScale = 1;

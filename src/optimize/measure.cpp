@@ -28,8 +28,8 @@ std::vector<Feature> intervalsWithin(const std::vector<Feature>& features) {
 
 } // namespace
 
-Measures measure(VisibilityEngine& engine, const View& view, const TransferFunction& tf,
-                 const WeightFields& weights, const VwsOptions& options, const JobControl& job) {
+Measures measure(VisibilityEngine& engine, const View& view, const TransferFunction& tf, const WeightFields& weights,
+                 const VwsOptions& options, const JobControl& job) {
     const auto start = std::chrono::steady_clock::now();
     // To the engine the histogram's bins are features too, so that one sweep gives it all and no field is stored.
     TransferFunction divided = tf;

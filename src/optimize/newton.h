@@ -106,9 +106,9 @@ private:
     const PictureGoal* m_goal;
     const JobControl& m_job;
     Arrive m_arrive;
-    double m_goalDistance;                ///< F on the volume that is good enough
-    std::vector<bool> m_held;             ///< features that no move changes
-    std::vector<Place> m_places;          ///< all that was evaluated on the volume, the start first
+    double m_goalDistance;       ///< F on the volume that is good enough
+    std::vector<bool> m_held;    ///< features that no move changes
+    std::vector<Place> m_places; ///< all that was evaluated on the volume, the start first
     bool m_forFloors = false;
     std::vector<OptimizeState> m_waiting; ///< for the start, which comes first
     int m_evaluations = 0, m_spreadStarts = 0;

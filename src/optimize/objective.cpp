@@ -1,5 +1,6 @@
 #include "optimize/objective.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -23,6 +24,10 @@ std::vector<double> normalizedTargets(std::vector<double> targets, std::size_t f
         throw UsageError("all targets are 0", "targets", "give at least one above 0");
     for (double& t : targets) t /= sum;
     return targets;
+}
+
+bool isAimed(std::span<const double> targets) {
+    return std::any_of(targets.begin(), targets.end(), [](double t) { return t > 0; });
 }
 
 double objectiveOf(std::span<const double> vws, std::span<const double> targets) {

@@ -1,6 +1,7 @@
 // Distance of the features' VWS from their targets (docs/method.md, "Optimization", eq. 5.1), many candidates at once.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,8 @@ namespace pellucid {
 
 /// Targets ≥ 0 scaled to sum 1. Throws UsageError: negative, not finite, all 0, or another number than `features`.
 std::vector<double> normalizedTargets(std::vector<double> targets, std::size_t features);
+/// Some target is above 0: there is something to aim at.
+bool isAimed(std::span<const double> targets);
 
 /// F = sqrt(Σ (W − t)² / n).
 double objectiveOf(std::span<const double> vws, std::span<const double> targets);
@@ -33,6 +36,9 @@ public:
     /// W at x and its exact derivatives, in one sweep.
     virtual Linear jacobian(const std::vector<double>& x, const JobControl& job = {}) const = 0;
 };
+
+/// Ever rougher estimates of one function that cost less, the finest first.
+using VwsEstimates = std::vector<std::shared_ptr<const VwsFunction>>;
 
 /// As an engine tells it. Keeps references: engine and weights outlive it.
 class EngineVws final : public VwsFunction {

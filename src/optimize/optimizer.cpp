@@ -353,12 +353,12 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
         goal.emplace(*problem.rays, function.base(), result.targets, limits, start, options.coverage);
     // That profile looks along the grid and counts moves: its answers stay as they are.
     const bool moves = options.maxIterations > 0 && !options.publishedSteps;
+    VwsEstimates estimates; // whom the levels belong to
     std::vector<const VwsFunction*> levels{&function};
     const auto addEstimates = [&] {
         if (!options.coarse || !moves || levels.size() > 1) return;
-        const auto estimates =
-            problem.estimates.empty() && problem.makeEstimates ? problem.makeEstimates() : problem.estimates;
-        levels.insert(levels.end(), estimates.begin(), estimates.end());
+        estimates = problem.estimates.empty() && problem.makeEstimates ? problem.makeEstimates() : problem.estimates;
+        for (const auto& estimate : estimates) levels.push_back(estimate.get());
     };
     Search search(function, result.targets, limits, options, job);
     NewtonSearch newton(levels, result.targets, limits, options, goal && moves ? &*goal : nullptr, job, arrive);

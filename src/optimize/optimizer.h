@@ -101,10 +101,9 @@ struct OptimizeProblem {
     const VwsFunction& function;
     std::vector<double> targets;            ///< ≥ 0, scaled to sum 1
     std::vector<OpacityLimits> limits = {}; ///< one per feature; empty: none has any
-    /// Ever rougher estimates of `function` that cost less (optimize/ray_vws.h).
-    std::vector<const VwsFunction*> estimates = {};
+    VwsEstimates estimates = {};            ///< of `function` (optimize/ray_vws.h)
     /// Makes them where `estimates` is empty, when they are first needed; may be empty, too.
-    std::function<std::vector<const VwsFunction*>()> makeEstimates = {};
+    std::function<VwsEstimates()> makeEstimates = {};
     /// Of the function's view and features: what pictures look like. Null: shares are all that counts.
     const RayBundle* rays = nullptr;
     /// Opacities that earlier searches have come to: Newton looks at them, too, so that it never ends farther away.

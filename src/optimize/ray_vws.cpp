@@ -24,7 +24,6 @@ constexpr double kNarrowest = 0.95;  // sine of half the angle under which the s
 constexpr float kDark = 1e-5f;       // light that is given up
 constexpr double kDerivative = 0.02; // ln of optical depths, for differences
 constexpr std::size_t kBlock = 64;   // rays
-constexpr int kRays = 90;            // along each side, for estimates
 constexpr int kSome = 6;             // of the rough one every so many rays
 
 using Lanes = std::array<float, kLanes>;
@@ -54,7 +53,7 @@ std::optional<Camera> aroundAll(const Camera& camera, const Geometry& geometry) 
 } // namespace
 
 RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const View& view, const WeightFields& weights,
-                       int rays, const JobControl& job)
+                       const JobControl& job, int rays)
     : m_features(tf.features.size()), m_scale{weights.scale(0), weights.scale(1)} {
     const BinFeatures features(tf);
     m_slotOfBin = features.slot;
@@ -260,13 +259,11 @@ VwsFunction::Linear RayVws::jacobian(const std::vector<double>& x, const JobCont
     return linear;
 }
 
-std::vector<std::unique_ptr<VwsFunction>> rayEstimates(const Volume& volume, const View& view,
-                                                       const TransferFunction& base, const WeightFields& weights,
-                                                       const VwsOptions& options, const JobControl& job) {
-    const auto samples = std::make_shared<const RaySamples>(volume, base, view, weights, kRays, job);
-    std::vector<std::unique_ptr<VwsFunction>> all;
+VwsEstimates rayEstimates(std::shared_ptr<const RaySamples> samples, const TransferFunction& base,
+                          const VwsOptions& options) {
+    VwsEstimates all;
     if (samples->empty()) return all;
-    for (const int every : {1, kSome}) all.push_back(std::make_unique<RayVws>(samples, base, options, every));
+    for (const int every : {1, kSome}) all.push_back(std::make_shared<RayVws>(samples, base, options, every));
     return all;
 }
 

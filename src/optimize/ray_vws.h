@@ -17,9 +17,11 @@ namespace pellucid {
 /// share).
 class RaySamples {
 public:
-    /// `rays` along each side of a square around the volume. Throws Cancelled.
+    static constexpr int kRays = 90; ///< along each side of a square around the volume
+
+    /// Throws Cancelled.
     RaySamples(const Volume& volume, const TransferFunction& tf, const View& view, const WeightFields& weights,
-               int rays, const JobControl& job = {});
+               const JobControl& job = {}, int rays = kRays);
 
     /// Nothing is met, or the eye is so close that no bundle holds the volume.
     bool empty() const { return m_voxels.empty(); }
@@ -66,10 +68,8 @@ private:
     int m_every;
 };
 
-/// Ever rougher estimates, the finest first, for OptimizeProblem::estimates; none where rays cannot tell. They refer to
-/// nothing.
-std::vector<std::unique_ptr<VwsFunction>> rayEstimates(const Volume& volume, const View& view,
-                                                       const TransferFunction& base, const WeightFields& weights,
-                                                       const VwsOptions& options, const JobControl& job = {});
+/// Estimates for OptimizeProblem; none where rays cannot tell.
+VwsEstimates rayEstimates(std::shared_ptr<const RaySamples> samples, const TransferFunction& base,
+                          const VwsOptions& options = {});
 
 } // namespace pellucid

@@ -122,11 +122,10 @@ RefineComparison compareMethods(const Histogram& histogram, const TransferFuncti
     const RefineResult greedy = refine(histogram, tf, by, job);
     by.method = RefineMethod::Exact;
     const bool features = movesFeatures(tf); // both of what greedy moves
-    by.total = features ? FeatureLine(histogram, greedy.tf, options.priority).movableAmount()
-                        : movableOpacity(greedy.tf);
+    by.total =
+        features ? FeatureLine(histogram, greedy.tf, options.priority).movableAmount() : movableOpacity(greedy.tf);
     // From there, so that it is never worse.
-    const RefineResult exact =
-        (features ? refineFeatures : refineExact)(histogram, greedy.tf, by, job);
+    const RefineResult exact = (features ? refineFeatures : refineExact)(histogram, greedy.tf, by, job);
     return {*by.total, greedy.energyMovableAfter, exact.energyMovableAfter, exact.tf};
 }
 

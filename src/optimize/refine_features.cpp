@@ -16,7 +16,8 @@ constexpr double kLeastKept = 0.25; ///< of a feature that gives way to the one 
 /// α just below and just above x.
 std::pair<double, double> opacitiesAbout(const TransferFunction& tf, double x) {
     const std::vector<ControlPoint> points = tf.pointsWithEnds();
-    const auto below = std::lower_bound(points.begin(), points.end(), x, [](const auto& p, double v) { return p.x < v; });
+    const auto below =
+        std::lower_bound(points.begin(), points.end(), x, [](const auto& p, double v) { return p.x < v; });
     const double from = below != points.end() && below->x == x ? below->opacity : tf.opacity(x);
     return {from, tf.opacity(x)};
 }
@@ -86,7 +87,8 @@ private:
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// The greedy search: takes from the heaviest, gives to the lightest, or to what is meant, while that evens weights out.
+/// The greedy search: takes from the heaviest, gives to the lightest, or to what is meant, while that evens weights
+/// out.
 std::vector<double> greedyPeaks(const FeatureLine& line, const RefineOptions& options, RefineResult& result,
                                 EnergyCurve& curve, const JobControl& job) {
     Parts parts(line);

@@ -8,6 +8,7 @@
 #include "optimize/coverage.h"
 #include "optimize/refine_features.h"
 #include "optimize/refine_words.h"
+#include "tf/empty_features.h"
 
 namespace pellucid {
 
@@ -108,15 +109,9 @@ PriorityOutcome figuresOf(const Histogram& histogram, const TransferFunction& be
     other = strongestOther(histogram, before, after, chosen);
     outcome.othersGain = other.gain;
     const double least = std::min(outcome.valueGain, outcome.partGain);
-    outcome.gained = chosen.inside && least >= 1 - kSame && least > outcome.othersGain * (1 + kSame);
+    const bool isThere = !chosen.feature || hasVoxel(before.features[*chosen.feature], histogram);
+    outcome.gained = isThere && chosen.inside && least >= 1 - kSame && least > outcome.othersGain * (1 + kSame);
     return outcome;
-}
-
-bool hasVoxels(const Histogram& histogram, const Feature& f) {
-    const int bins = static_cast<int>(histogram.counts.size());
-    for (int b = histogramBin(f.a, bins); b < bins && b < f.b * bins; ++b)
-        if (histogram.counts[static_cast<std::size_t>(b)] > 0) return true;
-    return false;
 }
 
 std::string percent(double gain) {
@@ -165,7 +160,7 @@ std::optional<PriorityOutcome> priorityOutcome(const Histogram& histogram, const
             outcome.text = name + " is hidden and cannot be brought out: show it first.";
             return outcome;
         }
-        if (!hasVoxels(histogram, f)) {
+        if (!hasVoxel(f, histogram)) {
             outcome.text =
                 "No voxel has a value of " + name + ", so there is nothing to bring out: choose another value.";
             return outcome;
@@ -250,7 +245,8 @@ std::string darkeningText(const Darkening& d) {
         "The picture gets dark: its coverage falls from " + number(d.before) + " to " + number(d.after) + ".";
     if (d.help == Darkening::Help::Exact) text += " With the method Exact it stays at " + number(d.helped) + ".";
     if (d.help == Darkening::Help::Stop)
-        text += " Stopped after " + std::to_string(d.iterations) + (d.iterations == 1 ? " iteration" : " iterations") + " it stays at " + number(d.helped) + ".";
+        text += " Stopped after " + std::to_string(d.iterations) + (d.iterations == 1 ? " iteration" : " iterations") +
+                " it stays at " + number(d.helped) + ".";
     if (d.help == Darkening::Help::None) text += " Fix the control points that are to stay visible, and refine again.";
     return text;
 }

@@ -17,12 +17,12 @@ using RefineAgain = std::function<TransferFunction(const RefineOptions&)>;
 /// What became of what a priority chose. Its part is a feature, or, under a transfer function of one feature at most,
 /// the control points about the value.
 struct PriorityOutcome {
-    std::string name;        ///< the feature, else "the value 812"
-    double valueGain = 1;    ///< α of the chosen value, after by before; of a region the part's highest
-    double partGain = 1;     ///< the part's Σ α·p, after by before
-    double othersGain = 0;   ///< the largest of the others' that have voxels; infinite where one appears
-    bool gained = false;     ///< the value is in a part, neither has fallen, and both gain on all others
-    std::string text;        ///< a sentence that says why not, and what helps; empty where `gained`
+    std::string name;      ///< the feature, else "the value 812"
+    double valueGain = 1;  ///< α of the chosen value, after by before; of a region the part's highest
+    double partGain = 1;   ///< the part's Σ α·p, after by before
+    double othersGain = 0; ///< the largest of the others' that have voxels; infinite where one appears
+    bool gained = false;   ///< the value is in a part, neither has fallen, and both gain on all others
+    std::string text;      ///< a sentence that says why not, and what helps; empty where `gained`
 };
 
 /// Empty without a priority. `options`: those that led from `before` to `after`; `again` tells whether what the

@@ -58,7 +58,8 @@ std::string keptText(const OptimizeResult& result) {
     const bool isExact = exact.objective < kSameShares;
     const bool isAll = !result.seen->faint && result.seen->unseen.empty();
     return "Asked for " + sharesText(result.targets) + "; kept " + sharesText(result.history[result.best].vws) +
-           (isAll ? ", so that all of it can be seen: " : ", so that more of it can be seen: ") + (isExact ? "with the shares asked for " : "nearer to these shares ") +
+           (isAll ? ", so that all of it can be seen: " : ", so that more of it can be seen: ") +
+           (isExact ? "with the shares asked for " : "nearer to these shares ") +
            thinness(result.tf, result.targets, exact.look) + ".";
 }
 

@@ -184,8 +184,7 @@ std::string statesOf(const Report& report) {
     for (const ReportState& s : report.states) {
         const OptimizeState& state = run.history[s.move];
         const std::string what = (s.move == 0 ? std::string("start") : "move " + std::to_string(s.move)) +
-                                 (state.level > 0 ? ", along rays" : "") +
-                                 (s.move == run.best ? ", the answer" : "");
+                                 (state.level > 0 ? ", along rays" : "") + (s.move == run.best ? ", the answer" : "");
         html += std::string("<figure") + (s.move == run.best ? " class=\"answer\"" : "") + ">" +
                 imageOf(s.picture, what) + "<figcaption>" + what + "<br>F " + shortText(state.objective) + ", SSIM " +
                 fixedText(s.ssim, 4) + "</figcaption></figure>\n";

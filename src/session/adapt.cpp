@@ -372,10 +372,6 @@ std::string modelBasis(const TransferFunction& tf, const std::string& basis) {
 }
 
 /// Not so in a frame in which no feature has a voxel.
-bool isAimed(const std::vector<double>& targets) {
-    return std::any_of(targets.begin(), targets.end(), [](double t) { return t > 0; });
-}
-
 /// Of the scene's frame at `opacity`. `metric`: pictureMetric() under the transfer function of the frame before.
 FrameModel modelOf(const Scene& scene, const VwsFunction& function, std::vector<double> opacity,
                    const AdaptSettings& settings, Matrix metric, const JobControl& job) {

@@ -1,7 +1,5 @@
 #include "session/live_targets.h"
 
-#include <algorithm>
-
 namespace pellucid {
 
 namespace {
@@ -15,12 +13,11 @@ LiveUpdate update(Workspace& workspace, const HeldTargets& held, int moves, bool
     options.coverage.reset();
     options.coarse = false;
     options.restarts = !rough; // where the hand rests there is time for them
-    options.tolerance = std::min(options.tolerance, kLiveGoal);
     options.maxIterations = moves;
-    const OptimizeResult result = workspace.approach(held.input, held.targets, held.limits, options, rough, job);
+    const auto [result, estimated] = workspace.approach(held.input, held.targets, held.limits, options, rough, job);
     if (result.reason == StopReason::Cancelled) throw Cancelled{};
     const OptimizeState& best = result.history[result.best];
-    return {best.opacity, best.vws, best.objective, rough && Workspace::isEstimated(held.input)};
+    return {best.opacity, best.vws, best.objective, estimated};
 }
 
 } // namespace

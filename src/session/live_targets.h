@@ -23,14 +23,11 @@ struct LiveUpdate {
     bool approximate = false;    ///< W and F are estimates along rays
 };
 
-/// F below which an update leaves opacities alone while things move: what is not seen is not worth a move.
-inline constexpr double kLiveGoal = 0.005;
-
-/// One move toward the targets by rays alone where Workspace::isEstimated() says so: what keeps up with the hand; W of
-/// the volume itself may differ by a hundredth. Never farther from the targets than it began, by the figures of those
-/// rays, which the update tells. Throws as Workspace::optimize() does, Cancelled too.
+/// One move toward the targets, on large volumes by rays alone: what keeps up with the hand; W of the volume itself may
+/// differ by a hundredth. Never farther from the targets than it began, by the figures that the update tells. Throws as
+/// Workspace::optimize() does, Cancelled too.
 LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});
-/// The same until F < min(tolerance, kLiveGoal) on the volume itself, or nothing helps: what is done when all rests.
+/// The same on the volume itself until the targets are met or nothing helps: what is done when all rests.
 LiveUpdate settleTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});
 
 } // namespace pellucid

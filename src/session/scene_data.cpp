@@ -169,7 +169,8 @@ std::shared_ptr<const Volume> channelOf(Scene& scene, SeriesFinder& finder, cons
     std::shared_ptr<const Volume> volume = series->load(series->nearest(scene.session.frame), job);
     if (!onSameGrid(volume->geometry(), scene.volume->geometry()))
         volume = std::make_shared<const Volume>(resampledTo(*volume, scene.volume->geometry(), job));
-    return throughWindow(volume, window ? *window : series->range(job));
+    if (!window) window = series->range(job);
+    return throughWindow(volume, *window);
 }
 
 /// Whether colours, and what they are made of, are those of `basis`.

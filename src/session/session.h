@@ -255,10 +255,10 @@ struct Session {
     Part<AdaptSettings> adapt;
     Part<HsbMapping> hsb;
     Part<GroundView> ground;
-    bool holdTargets = false;     ///< live: opacities follow camera, colours and settings so that targets are held
+    bool holdTargets = false;      ///< live: opacities follow camera, colours and settings so that targets are held
     std::optional<double> density; ///< where the density slider was left, [0,1] from faint to strong; empty: untouched
     std::optional<Camera> camera;  ///< empty: the home view of the volume
-    Part<Clipping> clipping;      ///< what is cut away, of pictures and of figures
+    Part<Clipping> clipping;       ///< what is cut away, of pictures and of figures
     Part<DisplaySettings> display;
     Part<FrameOfReference> reference; ///< what stands around the picture
     Part<MeasureSettings> measure;

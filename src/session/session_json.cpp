@@ -880,10 +880,10 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
         }
         s.runs = std::move(runs);
     }
-    s.extraJson = j.unknownKeys({"format", "version",     "variables", "frame",   "features", "hold_targets", "camera",
-                                 "clip",   "display",     "reference", "measure", "optimize", "refine",       "slices",
-                                 "field",  "target_keys", "adapt",     "hsb",     "ground",   "runs",         "density",
-                                 "title"});
+    s.extraJson = j.unknownKeys({"format", "version", "variables", "frame",       "features", "hold_targets",
+                                 "camera", "clip",    "display",   "reference",   "measure",  "optimize",
+                                 "refine", "slices",  "field",     "target_keys", "adapt",    "hsb",
+                                 "ground", "runs",    "density",   "title"});
     s.identifyFeatures(); // where someone has written the file by hand
     return file;
 }

@@ -34,10 +34,7 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
             m_weightsVolume.reset();
             m_weights = {};
         }
-        if (m_raysVolume != input.volume) {
-            m_raysVolume.reset();
-            m_rays.reset();
-        }
+        if (m_raysOf.volume != input.volume) releaseRays();
         requireMemory(useUnder(settings), input.volume->title, input.volume->dims(), input.volume->sampleType());
         m_engine = settings.profile == Profile::Published ? makePublishedEngine(input.volume)
                                                           : makeEngine(settings.engine, input.volume, settings.quality);
@@ -52,8 +49,13 @@ VisibilityEngine& Workspace::engine(const MeasureInput& input) {
 void Workspace::releaseEngine() {
     m_engine.reset();
     m_engineVolume.reset();
+    releaseRays();
+}
+
+void Workspace::releaseRays() {
     m_rays.reset();
-    m_raysVolume.reset();
+    m_raySamples.reset();
+    m_raysOf = {};
 }
 
 bool Workspace::haveWeights(const MeasureInput& input) const {
@@ -67,6 +69,7 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
     if (!haveWeights(input)) {
         const auto start = Clock::now();
         m_weightsVolume.reset();
+        m_raySamples.reset();
         const bool published = input.settings.profile == Profile::Published;
         if (published || m_weightsProfile != input.settings.profile) m_weights = {}; // of another form
         m_weightsProfile = input.settings.profile;
@@ -83,15 +86,16 @@ const WeightFields& Workspace::weights(const MeasureInput& input, const JobContr
     return m_weights;
 }
 
+void Workspace::lookAlong(const MeasureInput& input) {
+    RaysOf now{input.volume, input.view, withFullPeaks(input.tf)};
+    if (now == m_raysOf) return;
+    releaseRays();
+    m_raysOf = std::move(now);
+}
+
 const RayBundle& Workspace::rays(const MeasureInput& input, const JobControl& job) {
-    TransferFunction shapes = withFullPeaks(input.tf);
-    if (!m_rays || m_raysVolume != input.volume || !(m_raysView == input.view) || !(m_raysTf == shapes)) {
-        m_rays.reset();
-        m_rays.emplace(*input.volume, input.tf, input.view, kCoverageRays, job);
-        m_raysVolume = input.volume;
-        m_raysView = input.view;
-        m_raysTf = std::move(shapes);
-    }
+    lookAlong(input);
+    if (!m_rays) m_rays.emplace(*input.volume, input.tf, input.view, kCoverageRays, job);
     return *m_rays;
 }
 
@@ -152,9 +156,13 @@ OcclusionMatrix Workspace::occlusion(const MeasureInput& input, const JobControl
                    [this] { releaseEngine(); });
 }
 
-std::vector<std::unique_ptr<VwsFunction>> Workspace::estimates(const MeasureInput& input, const JobControl& job) {
+VwsEstimates Workspace::estimates(const MeasureInput& input, const JobControl& job) {
     if (input.settings.profile != Profile::Default) return {};
-    return rayEstimates(*input.volume, input.view, input.tf, m_weights, input.settings.vws, {job.stop, {}});
+    lookAlong(input);
+    if (!m_raySamples)
+        m_raySamples =
+            std::make_shared<RaySamples>(*input.volume, input.tf, input.view, m_weights, JobControl{job.stop, {}});
+    return rayEstimates(m_raySamples, input.tf, input.settings.vws);
 }
 
 Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, const JobControl& job) {
@@ -206,15 +214,9 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
-            std::vector<std::unique_ptr<VwsFunction>> held;
             OptimizeProblem problem{function, targets, limits};
             problem.known = known;
-            problem.makeEstimates = [&] {
-                held = this->estimates(input, job);
-                std::vector<const VwsFunction*> estimates;
-                for (const auto& level : held) estimates.push_back(level.get());
-                return estimates;
-            };
+            problem.makeEstimates = [&] { return estimates(input, job); };
             problem.rays = &rays(input, {job.stop, {}});
             OptimizeResult result = pellucid::optimize(problem, steps, job, watch);
             m_seconds.visibility = secondsSince(start);
@@ -223,14 +225,10 @@ OptimizeResult Workspace::optimize(const MeasureInput& input, const std::vector<
         [this] { releaseEngine(); });
 }
 
-bool Workspace::isEstimated(const MeasureInput& input) {
+Workspace::Approach Workspace::approach(const MeasureInput& input, const std::vector<double>& targets,
+                                        const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
+                                        bool rough, const JobControl& job) {
     constexpr std::size_t kQuick = 64 * 64 * 64; // voxels whose sweeps follow the hand
-    return input.volume->size() > kQuick && input.settings.profile == Profile::Default;
-}
-
-OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<double>& targets,
-                                   const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool rough,
-                                   const JobControl& job) {
     return guarded(
         [&] {
             VisibilityEngine& e = engine(input);
@@ -238,16 +236,15 @@ OptimizeResult Workspace::approach(const MeasureInput& input, const std::vector<
             const auto start = Clock::now();
             const EngineVws full(e, input.view, input.tf, w, input.settings.vws);
             const VwsFunction& base = full;
-            std::vector<std::unique_ptr<VwsFunction>> held;
-            if (rough && isEstimated(input)) held = estimates(input, job);
+            const VwsEstimates along = rough && input.volume->size() > kQuick ? estimates(input, job) : VwsEstimates{};
             OptimizeOptions steps = options;
             steps.publishedSteps = input.settings.profile == Profile::Published;
-            OptimizeProblem problem{held.empty() ? base : *held.front(), targets, limits};
+            OptimizeProblem problem{along.empty() ? base : *along.front(), targets, limits};
             problem.rays = &rays(input, {job.stop, {}});
             problem.nearby = true;
-            OptimizeResult result = pellucid::optimize(problem, steps, job);
+            Approach reached{pellucid::optimize(problem, steps, job), !along.empty()};
             m_seconds.visibility = secondsSince(start);
-            return result;
+            return reached;
         },
         [this] { releaseEngine(); });
 }
@@ -259,8 +256,8 @@ DensityCurve Workspace::densityCurve(const MeasureInput& input, const std::vecto
             VisibilityEngine& e = engine(input);
             const WeightFields& w = weights(input, {job.stop, {}});
             const EngineVws function(e, input.view, input.tf, w, input.settings.vws);
-            const auto held = estimates(input, job);
-            const DensityProblem problem{function, held.empty() ? nullptr : held.front().get(),
+            const VwsEstimates along = estimates(input, job);
+            const DensityProblem problem{function, along.empty() ? nullptr : along.front().get(),
                                          rays(input, {job.stop, {}}), limits};
             return pellucid::densityCurve(problem, featureOpacities(input.tf), {}, job);
         },

@@ -15,6 +15,8 @@
 
 namespace pellucid {
 
+class RaySamples;
+
 /// Used by one thread at a time. The same input gives the same figures, whatever was computed before. An engine that
 /// has failed is not kept.
 class Workspace {
@@ -48,13 +50,15 @@ public:
                     const OptimizeResult& found, const JobControl& job = {},
                     const std::vector<std::vector<double>>& known = {});
 
+    struct Approach {
+        OptimizeResult result;
+        bool estimated = false; ///< its figures are those of rays
+    };
     /// The same from nearby, with the floors of the picture (OptimizeProblem::nearby). `rough`: by rays and nothing
-    /// else, where isEstimated() says that this saves time.
-    OptimizeResult approach(const MeasureInput& input, const std::vector<double>& targets,
-                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool rough,
-                            const JobControl& job = {});
-
-    static bool isEstimated(const MeasureInput& input);
+    /// else, where this saves time and rays can tell.
+    Approach approach(const MeasureInput& input, const std::vector<double>& targets,
+                      const std::vector<OpacityLimits>& limits, const OptimizeOptions& options, bool rough,
+                      const JobControl& job = {});
 
     /// Through the opacities of the input's transfer function, with the shares that it has.
     DensityCurve densityCurve(const MeasureInput& input, const std::vector<OpacityLimits>& limits,
@@ -73,8 +77,12 @@ public:
 private:
     friend class WorkspaceTools;
     bool haveWeights(const MeasureInput& input) const;
-    /// By rays of the input's view; weights() are its own. None for the published profile, whose slices are another problem.
-    std::vector<std::unique_ptr<VwsFunction>> estimates(const MeasureInput& input, const JobControl& job);
+    /// By rays of the input's view; weights() are its own. None for the published profile, whose slices are another
+    /// problem.
+    VwsEstimates estimates(const MeasureInput& input, const JobControl& job);
+    /// Lets go of what other rays than the input's have met.
+    void lookAlong(const MeasureInput& input);
+    void releaseRays();
 
     std::shared_ptr<const Volume> m_engineVolume, m_weightsVolume;
     EngineChoice m_choice = EngineChoice::Auto;
@@ -85,10 +93,14 @@ private:
     std::shared_ptr<const VoxelColors> m_weightsColors;
     SaliencyOptions m_weightsOptions;
     WeightFields m_weights;
-    std::shared_ptr<const Volume> m_raysVolume;
-    View m_raysView;
-    TransferFunction m_raysTf; // with peaks at 1
+    struct RaysOf {
+        std::shared_ptr<const Volume> volume;
+        View view;
+        TransferFunction shapes; ///< peaks are 1
+        bool operator==(const RaysOf&) const = default;
+    } m_raysOf;
     std::optional<RayBundle> m_rays;
+    std::shared_ptr<const RaySamples> m_raySamples; ///< of m_weights, too
     Seconds m_seconds;
 };
 

@@ -20,12 +20,16 @@ public:
         const MeasureInput input = inputOf(problem);
         VisibilityEngine& engine = m_workspace.engine(input);
         const WeightFields& weights = m_workspace.weights(input, job);
-        std::vector<std::unique_ptr<VwsFunction>> functions;
-        functions.push_back(std::make_unique<EngineVws>(engine, input.view, input.tf, weights, input.settings.vws));
-        for (auto& estimate : m_workspace.estimates(input, job)) functions.push_back(std::move(estimate));
-        const std::size_t first = rough && functions.size() > 1 ? 1 : 0;
-        OptimizeProblem search{*functions[first], m_targets, problem.limits};
-        for (std::size_t i = first + 1; i < functions.size(); ++i) search.estimates.push_back(functions[i].get());
+        const EngineVws full(engine, input.view, input.tf, weights, input.settings.vws);
+        VwsEstimates along = m_workspace.estimates(input, job);
+        const VwsFunction* function = &full;
+        std::shared_ptr<const VwsFunction> finest;
+        if (rough && !along.empty()) {
+            finest = along.front();
+            function = finest.get();
+            along.erase(along.begin());
+        }
+        OptimizeProblem search{*function, m_targets, problem.limits, std::move(along)};
         search.known = m_known;
         OptimizeResult result = optimize(search, m_options, job);
         if (result.reason == StopReason::Cancelled) throw Cancelled{};

@@ -251,8 +251,8 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
     listing.notices.clear();
     switch (derivation.kind) {
     case Derivation::Kind::Gradient:
-        return std::make_shared<TimeSeries>(std::move(listing), [base, title](int frame, const JobControl& job) {
-            return named(gradientOf(*base->load(frame, job), base->range(job), job), title);
+        return std::make_shared<TimeSeries>(std::move(listing), [base, title](int frame, const JobControl& loading) {
+            return named(gradientOf(*base->load(frame, loading), base->range(loading), loading), title);
         });
     case Derivation::Kind::Volatility: {
         if (derivation.frames < 1 || derivation.frames > kMostFrames)
@@ -260,8 +260,8 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
                              "give 1 to " + std::to_string(kMostFrames) + " frames");
         listing.declaredRange = ValueRange{0, 0.5}; // no values of [0,1] deviate more
         auto sums = std::make_shared<VolatilitySums>(base, derivation.frames);
-        return std::make_shared<TimeSeries>(std::move(listing), [sums, title](int frame, const JobControl& job) {
-            return named(sums->at(frame, job), title);
+        return std::make_shared<TimeSeries>(std::move(listing), [sums, title](int frame, const JobControl& loading) {
+            return named(sums->at(frame, loading), title);
         });
     }
     case Derivation::Kind::Difference: {
@@ -274,11 +274,11 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
             listing.declaredRange = ValueRange{range.lo - range.hi, range.hi - range.lo};
         }
         return std::make_shared<TimeSeries>(std::move(listing), [base, title, reference](int frame,
-                                                                                         const JobControl& job) {
-            const auto from = base->load(reference, job);
-            const auto to = base->load(frame, job);
+                                                                                         const JobControl& loading) {
+            const auto from = base->load(reference, loading);
+            const auto to = base->load(frame, loading);
             return named(Volume(to->geometry(),
-                                SampleArray<float>(mapped(*to, job,
+                                SampleArray<float>(mapped(*to, loading,
                                                           [&](const auto& values, std::size_t i) {
                                                               return from->isValid(i) ? static_cast<double>(values[i]) -
                                                                                             from->value(i)

@@ -59,7 +59,8 @@ TEST_CASE("bench prints every row, with one thread and with two", "[cli][bench]"
         CHECK(row["memcpy_share"].get<double>() == Approx(rate / memcpyRate));
     }
     CHECK(names == std::set<std::string>{"setup", "saliency", "saliency-direct", "sweep", "jacobian", "optimize",
-                                         "optimize-newton", "optimize-whole", "refine", "refine-500", "refine-direct", "render"});
+                                         "optimize-newton", "optimize-whole", "refine", "refine-500", "refine-direct",
+                                         "render"});
 
     // One and eight candidates, three densities, one and two threads; codes of 2 bytes and two weights of 2 each.
     const auto sweeps = rowsNamed(j, "sweep");

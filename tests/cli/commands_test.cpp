@@ -582,9 +582,9 @@ TEST_CASE("refine leaves fixed control points alone", "[cli]") {
 
 TEST_CASE("optimize reaches the targets and tells the way there", "[cli]") {
     const Workshop w;
-    const std::vector<std::string> base{"optimize",    "sample:shells", "--size", "24",       "--tf",
-                                        "tents:3:0.1", "--engine",      "cpu",    "--target", "1,3,6",
-                                        "--exact-shares"}; // these shares take a faint picture
+    const std::vector<std::string> base{
+        "optimize", "sample:shells", "--size",   "24",    "--tf",          "tents:3:0.1",
+        "--engine", "cpu",           "--target", "1,3,6", "--exact-shares"}; // these shares take a faint picture
     for (const std::string method : {"newton", "parallel", "line"}) {
         INFO(method);
         auto arguments = base;
@@ -715,7 +715,8 @@ TEST_CASE("a feature without a voxel is said to be empty and has no target", "[c
         const json measured = w.json(Words{"measure"} + about);
         for (std::size_t f = 0; f < 4; ++f) CHECK(measured["features"][f]["empty"] == (f == 1 || f == 2));
         CHECK(w.run(Words{"measure"} + about).out.find(empty) != std::string::npos);
-        CHECK(w.run(Words{"probe"} + Words(about.begin(), about.end() - 2) + Words{"9,9", "--size", "20x20"}).out.find(empty) != std::string::npos);
+        CHECK(w.run(Words{"probe"} + Words(about.begin(), about.end() - 2) + Words{"9,9", "--size", "20x20"})
+                  .out.find(empty) != std::string::npos);
     }
     SECTION("words skip it") {
         const json j = w.json(Words{"optimize"} + about + Words{"--target", "equal", "--exact-shares"});
@@ -757,7 +758,7 @@ TEST_CASE("a feature without a voxel is said to be empty and has no target", "[c
     }
     SECTION("a series says in how many frames it is empty, and aims at nothing there") {
         std::string other = bytes; // in the second frame some voxels of the third quarter
-        int count = 0; // every other one
+        int count = 0;             // every other one
         for (char& c : other)
             if (c == 40 && ++count % 2 == 0) c = static_cast<char>(150);
         w.write("s0.raw", bytes);

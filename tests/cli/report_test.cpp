@@ -18,8 +18,8 @@ using pellucid::test::Workshop;
 
 namespace {
 
-const Words kOptimize{"optimize", "sample:shells", "--size", "20",       "--tf",
-                      "tents:3",  "--target",      "1,3,6",  "--engine", "cpu", "--exact-shares"};
+const Words kOptimize{"optimize", "sample:shells", "--size",   "20",  "--tf",          "tents:3",
+                      "--target", "1,3,6",         "--engine", "cpu", "--exact-shares"};
 
 /// What stands between two marks.
 std::string between(const std::string& text, const std::string& begin, const std::string& end) {

@@ -126,7 +126,8 @@ TEST_CASE("space draws the ways of methods", "[cli][space]") {
     REQUIRE(answer["paths"].size() == 2);
     CHECK(answer["paths"][0]["method"] == "parallel");
     CHECK(answer["paths"][1]["method"] == "fixed");
-    const json alone = w.json(Words{"optimize"} + kShells + Words{"--target", "1,3,6", "--method", "parallel", "--exact-shares"});
+    const json alone =
+        w.json(Words{"optimize"} + kShells + Words{"--target", "1,3,6", "--method", "parallel", "--exact-shares"});
     CHECK(answer["paths"][0]["objective"] == alone["objective"]);
     CHECK(answer["paths"][0]["opacity"] == alone["opacity"]);
     CHECK(w.read("paths.png") != w.read("bare.png"));

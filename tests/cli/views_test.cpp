@@ -164,9 +164,9 @@ TEST_CASE("optimize searches view and opacities together", "[cli][views]") {
     const Workshop w;
     writeScene(w);
     const Words targets{"--target", "1,1"};
-    const json j = w.json(Words{"optimize"} + kScene + targets +
-                          Words{"--view", "best", "--exact-shares", "--out-tf", "found.tf.json", "--out-camera",
-                                "found.camera.json"});
+    const json j = w.json(
+        Words{"optimize"} + kScene + targets +
+        Words{"--view", "best", "--exact-shares", "--out-tf", "found.tf.json", "--out-camera", "found.camera.json"});
     CHECK(j["converged"] == true);
     CHECK(j["view"].contains("azimuth"));
     CHECK(j["view"].contains("elevation"));

@@ -98,6 +98,11 @@ std::vector<double> vwsAt(const VwsFunction& f, const std::vector<double>& x) { 
 double bestOf(const OptimizeResult& r) { return r.history[r.best].objective; }
 const std::vector<double>& opacitiesOf(const OptimizeResult& r) { return r.history[r.best].opacity; }
 
+/// As problems take estimates; it has to outlive them.
+std::shared_ptr<const VwsFunction> borrowed(const VwsFunction& function) {
+    return {std::shared_ptr<const VwsFunction>{}, &function};
+}
+
 } // namespace
 
 TEST_CASE("a step in a box is the minimum over it", "[optimize]") {
@@ -298,7 +303,7 @@ TEST_CASE("the first moves are made by estimates, the last word has the volume",
     const std::vector<double> t{0.1, 0.3, 0.6};
     const Layers full({20, 3, 1}), near({21, 2.8, 1.05}), farther({24, 2.5, 1.2});
     OptimizeProblem problem{full, t};
-    problem.estimates = {&near, &farther};
+    problem.estimates = {borrowed(near), borrowed(farther)};
     const OptimizeResult r = optimize(problem);
     CHECK(bestOf(r) < kNewtonGoal);
     CHECK(r.iterations() <= 2);
@@ -317,7 +322,7 @@ TEST_CASE("the first moves are made by estimates, the last word has the volume",
     // Estimates of something else cost moves, but mislead nobody.
     const Layers wrong({1, 3, 20}), blind({0, 0, 0});
     for (const Layers* coarse : {&wrong, &blind}) {
-        problem.estimates = {coarse};
+        problem.estimates = {borrowed(*coarse)};
         const OptimizeResult all = optimize(problem);
         CHECK(bestOf(all) < kNewtonGoal);
         CHECK(all.history[all.best].vws[2] == Approx(0.6).margin(0.002));
@@ -325,7 +330,7 @@ TEST_CASE("the first moves are made by estimates, the last word has the volume",
     // One that is on target says nothing where the volume is not; the start counts on the volume.
     const Layers met({20, 3, 1}, opacitiesOf(r));
     OptimizeProblem there{met, t};
-    there.estimates = {&wrong};
+    there.estimates = {borrowed(wrong)};
     CHECK(optimize(there).history.size() == 1);
 }
 
@@ -344,7 +349,7 @@ TEST_CASE("limits of moves are those of the volume", "[optimize]") {
 TEST_CASE("cancelling Newton leaves what is there so far", "[optimize]") {
     const Layers f({20, 3, 1}), near({21, 2.8, 1.05});
     OptimizeProblem problem{f, {1, 3, 6}};
-    problem.estimates = {&near};
+    problem.estimates = {borrowed(near)};
     for (int after = 1; after < 5; ++after) {
         std::stop_source stop;
         int seen = 0;

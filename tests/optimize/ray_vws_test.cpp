@@ -25,7 +25,7 @@ std::shared_ptr<const Volume> shells() {
 
 std::vector<double> byRays(const Volume& volume, const View& view, const TransferFunction& tf,
                            const WeightFields& weights, const std::vector<double>& x) {
-    const auto estimates = rayEstimates(volume, view, tf, weights, {});
+    const VwsEstimates estimates = rayEstimates(std::make_shared<RaySamples>(volume, tf, view, weights), tf);
     REQUIRE(estimates.size() == 2);
     return estimates[0]->evaluate({&x, 1})[0];
 }
@@ -112,15 +112,15 @@ TEST_CASE("estimates are of the whole volume, however much of it the picture sho
     // From so near no bundle holds the volume: no estimates, and the search looks at the volume alone.
     camera.eye = volume->geometry().boxCenter() + Vec3(0, -0.9 * volume->geometry().radius(), 0);
     camera.center = volume->geometry().boxCenter();
-    CHECK(rayEstimates(*volume, camera, tf, weights, {}).empty());
+    CHECK(rayEstimates(std::make_shared<RaySamples>(*volume, tf, camera, weights), tf).empty());
 }
 
 TEST_CASE("derivatives along rays are those of the estimate", "[optimize][rays]") {
     const auto volume = shells();
     const TransferFunction tf = tents(3);
     const WeightFields weights = saliencyFields(*volume, tf);
-    const auto estimates =
-        rayEstimates(*volume, cameraFromView(volume->geometry(), 30, 20, 1, Projection::Perspective), tf, weights, {});
+    const View view{cameraFromView(volume->geometry(), 30, 20, 1, Projection::Perspective), {}};
+    const VwsEstimates estimates = rayEstimates(std::make_shared<RaySamples>(*volume, tf, view, weights), tf);
     for (const auto& estimate : estimates)
         for (const std::vector<double>& x : {std::vector{0.02, 0.1, 0.4}, {0.4, 0.4, 0.9}}) {
             const VwsFunction::Linear linear = estimate->jacobian(x);
@@ -157,7 +157,7 @@ TEST_CASE("nothing to be seen gives no estimate, and a stop is heard", "[optimiz
     const View view{cameraFromView(volume->geometry(), 30, 20, 1, Projection::Perspective), {}};
     std::stop_source stop;
     stop.request_stop();
-    CHECK_THROWS_AS(rayEstimates(*volume, view, tf, weights, {}, {stop.get_token(), {}}), Cancelled);
+    CHECK_THROWS_AS(RaySamples(*volume, tf, view, weights, {stop.get_token(), {}}), Cancelled);
     for (Feature& feature : tf.features) feature.hidden = true;
-    CHECK(rayEstimates(*volume, view, tf, weights, {}).empty());
+    CHECK(RaySamples(*volume, tf, view, weights).empty());
 }

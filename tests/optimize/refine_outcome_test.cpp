@@ -158,9 +158,9 @@ void tryVolume(const std::string& name, const Volume& data) {
             try {
                 const ImageRegion region{
                     {{u - 0.03, v - 0.03}, {u + 0.03, v - 0.03}, {u + 0.03, v + 0.03}, {u - 0.03, v + 0.03}}};
-                priorities.push_back({"region at " + std::to_string(u).substr(0, 4) + "," +
-                                          std::to_string(v).substr(0, 4),
-                                      {{}, regionColors(picture, region)}});
+                priorities.push_back(
+                    {"region at " + std::to_string(u).substr(0, 4) + "," + std::to_string(v).substr(0, 4),
+                     {{}, regionColors(picture, region)}});
             } catch (const Error&) { // nothing is to be seen there
             }
         }
@@ -200,6 +200,8 @@ Histogram even() {
     Histogram h;
     h.counts.assign(256, 4);
     h.total = 1024;
+    h.maxCode = 512; // bin b holds one value, in its middle
+    for (std::uint16_t b = 0; b < 256; ++b) h.codes.push_back(static_cast<std::uint16_t>(2 * b + 1));
     return h;
 }
 
@@ -231,8 +233,8 @@ TEST_CASE("features that share a border point move as wholes toward the one that
         CHECK(r.tf.opacity(0.4) == Approx(0.025).margin(1e-6)); // a quarter of 0.1, from the border on
         CHECK(r.edgesBefore.size() == 2);
         CHECK(r.energyMovableAfter < r.energyMovableBefore);
-        // Hard can rise to 1 only: by 0.18 · (1 / 0.5 − 1) = 0.18, more than the 0.015 that soft may give, so that it gets
-        // these: × 195 / 180.
+        // Hard can rise to 1 only: by 0.18 · (1 / 0.5 − 1) = 0.18, more than the 0.015 that soft may give, so that it
+        // gets these: × 195 / 180.
         options.priority.intensity = 0.6;
         const RefineResult other = refine(even(), tf, options);
         CHECK(featureOpacities(other.tf)[0] == Approx(0.025).margin(1e-6));
@@ -260,8 +262,17 @@ TEST_CASE("a sentence says why what was chosen cannot gain", "[refine][outcome]"
     tf = softAndHard();
     Histogram h = even();
     for (std::size_t b = 0; b < 128; ++b) h.counts[b] = 0; // up to 0.5
+    h.codes.erase(h.codes.begin(), h.codes.begin() + 128);
     h.total = 512;
     CHECK(sentenceFor(h, tf, 0.3) ==
+          "No voxel has a value of soft, so there is nothing to bring out: choose another value.");
+    // A feature between two values of one bin has no voxel, though the bin has some.
+    tf = softAndHard();
+    tf.points[0].x = 0.299;
+    tf.points[1].x = 0.3;
+    tf.features[0].a = 0.299;
+    tf.features[0].b = 0.3;
+    CHECK(sentenceFor(even(), tf, 0.2995) ==
           "No voxel has a value of soft, so there is nothing to bring out: choose another value.");
 }
 
@@ -275,11 +286,10 @@ TEST_CASE("what is chosen gains on all others under every real volume, or a sent
         WARN("SKIPPED: there is no folder " << folder);
         return;
     }
-    for (const char* file :
-         {"nucleon/nucleon.mhd", "tooth/tooth.mhd", "vortex/vorts1.mhd", "walnut/walnut.mhd",
-          "hydrogenatom/hydrogenatom.dat", "viscous_fingers/density_040.mhd", "cranium_ct/cranium_ct.nrrd",
-          "nifti/ch2.nii.gz", "nifti/mpld_asl_4d.nii.gz", "nrrd/FLAIR.nrrd", "mha/epi_short.mha", "pvm/Lobster.pvm",
-          "pvm/Bucky.pvm"}) {
+    for (const char* file : {"nucleon/nucleon.mhd", "tooth/tooth.mhd", "vortex/vorts1.mhd", "walnut/walnut.mhd",
+                             "hydrogenatom/hydrogenatom.dat", "viscous_fingers/density_040.mhd",
+                             "cranium_ct/cranium_ct.nrrd", "nifti/ch2.nii.gz", "nifti/mpld_asl_4d.nii.gz",
+                             "nrrd/FLAIR.nrrd", "mha/epi_short.mha", "pvm/Lobster.pvm", "pvm/Bucky.pvm"}) {
         VolumeSource source;
         source.path = folder + file;
         try {

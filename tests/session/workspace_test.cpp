@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "optimize/objective.h"
 #include "optimize/ray_vws.h"
-#include "render/cpu/cpu_engine.h"
 #include "render/camera_motion.h"
+#include "render/cpu/cpu_engine.h"
 #include "session/workspace.h"
 
 using namespace pellucid;
@@ -105,12 +105,39 @@ TEST_CASE("derivatives and searches do not depend on it either", "[session][work
     const auto engine = makeCpuEngine(inputs[1].volume);
     const WeightFields weights = saliencyFields(*inputs[1].volume, inputs[1].tf);
     const EngineVws function(*engine, inputs[1].view, inputs[1].tf, weights);
-    const auto estimates = rayEstimates(*inputs[1].volume, inputs[1].view, inputs[1].tf, weights, {});
     const RayBundle rays(*inputs[1].volume, inputs[1].tf, inputs[1].view, kCoverageRays);
     OptimizeProblem problem{function, {1, 2, 3}};
-    for (const auto& estimate : estimates) problem.estimates.push_back(estimate.get());
+    problem.estimates = rayEstimates(
+        std::make_shared<RaySamples>(*inputs[1].volume, inputs[1].tf, inputs[1].view, weights), inputs[1].tf);
     problem.rays = &rays;
     CHECK(a.history == optimize(problem, options).history);
+}
+
+TEST_CASE("what rays have met is of the input at hand", "[session][workspace]") {
+    // Opacities keep them; another feature, colour, view, saliency, volume does not.
+    const std::vector<MeasureInput> inputs = variations();
+    OptimizeOptions options;
+    options.maxIterations = 1;
+    const auto historyOf = [&](Workspace& workspace, const MeasureInput& input) {
+        return workspace.optimize(input, std::vector<double>(input.tf.features.size(), 1.0), {}, options).history;
+    };
+    Workspace used;
+    for (const MeasureInput& input : inputs) {
+        Workspace unused;
+        CHECK(historyOf(used, input) == historyOf(unused, input));
+        CHECK(historyOf(used, inputs[0]) == historyOf(unused, inputs[0]));
+    }
+}
+
+TEST_CASE("figures of a move are called estimates where they are", "[session][workspace]") {
+    MeasureInput input = measureInput(sceneOf("sample:shells", "tents:3:0.1", 72)); // large enough to save time
+    Workspace workspace;
+    CHECK(workspace.approach(input, {1, 2, 3}, {}, {}, true).estimated);
+    CHECK_FALSE(workspace.approach(input, {1, 2, 3}, {}, {}, false).estimated);
+    Camera near = input.view.camera; // no bundle from there holds the volume
+    near.eye = input.volume->geometry().boxCenter() + Vec3(0, -0.9 * input.volume->geometry().radius(), 0);
+    input.view = near;
+    CHECK_FALSE(workspace.approach(input, {1, 2, 3}, {}, {}, true).estimated);
 }
 
 TEST_CASE("saliency is computed once for colours, however opaque they are", "[session][workspace]") {

@@ -347,7 +347,7 @@ TEST_CASE("CT of a chest has lungs; foam around a head is none", "[proposal][ct]
     checkSound(head);
     CHECK(head.kind == DataKind::Ct);
     CHECK(head.features.front().name == "soft tissue"); // no voxel is skin or fat
-    CHECK(head.features.back().name == "soft tissue"); // and no bone
+    CHECK(head.features.back().name == "soft tissue");  // and no bone
 }
 
 TEST_CASE("a window that somebody has chosen stays", "[proposal]") {

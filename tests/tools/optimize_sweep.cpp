@@ -2,8 +2,8 @@
 // Newton reaches on volumes (files, sample:NAME) under three tents and the automatic start, from three views, for three
 // targets each (rising, equal, falling); and on a copy of at most 48³ voxels Newton against the best of N random
 // restarts of the other methods, where Newton does not get below 0.001 there. --delta: root mean square differences of
-// W between the volume and its estimates along rays instead, at three opacities. One line per problem; histories of those not
-// reached.
+// W between the volume and its estimates along rays instead, at three opacities. One line per problem; histories of
+// those not reached.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -85,8 +85,8 @@ int main(int argc, char** argv) {
             const WeightFields weights = saliencyFields(*scene.volume, scene.tf);
             int factor = 1;
             while (scene.volume->size() > 48u * 48 * 48 * static_cast<unsigned>(factor * factor * factor)) ++factor;
-            const auto tiny = factor == 1 ? scene.volume
-                                          : std::make_shared<const Volume>(coarserCopy(*scene.volume, factor));
+            const auto tiny =
+                factor == 1 ? scene.volume : std::make_shared<const Volume>(coarserCopy(*scene.volume, factor));
             const WeightFields tinyWeights = saliencyFields(*tiny, scene.tf);
             const auto tinyEngine = make(tiny);
             for (const auto& [azimuth, elevation] : {std::pair{30.0, 20.0}, {0.0, 0.0}, {-115.0, -40.0}}) {
@@ -94,9 +94,8 @@ int main(int argc, char** argv) {
                 const View view{
                     cameraFromView(scene.volume->geometry(), azimuth, elevation, 1, Projection::Perspective), {}};
                 const EngineVws f(*engine, view, scene.tf, weights), ft(*tinyEngine, view, scene.tf, tinyWeights);
-                const auto estimates = rayEstimates(*scene.volume, view, scene.tf, weights, {});
-                std::vector<const VwsFunction*> levels;
-                for (const auto& e : estimates) levels.push_back(e.get());
+                const VwsEstimates levels =
+                    rayEstimates(std::make_shared<RaySamples>(*scene.volume, scene.tf, view, weights), scene.tf);
                 if (delta) {
                     const std::vector<std::vector<double>> xs{featureOpacities(scene.tf),
                                                               std::vector<double>(scene.tf.features.size(), 0.02),

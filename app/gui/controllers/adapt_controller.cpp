@@ -78,14 +78,14 @@ void AdaptController::addActions() {
     const QString menu = tr("T&ime");
     Actions& actions = m_bench.actions();
     const auto open = [this] { return m_bench.player().hasSeries() && !m_bench.isReadOnly(); };
-    const auto mode = [&](const char* id, const QString& text, const QString& tip, Mode mode, bool separator) {
+    const auto mode = [&](const char* id, const QString& text, const QString& tip, Mode which, bool separator) {
         actions.add({.id = id,
                      .menu = menu,
                      .text = text,
                      .tip = tip,
-                     .trigger = [this, mode] { setMode(mode); },
+                     .trigger = [this, which] { setMode(which); },
                      .enabled = open,
-                     .checked = [this, mode] { return m_bench.store().session().adapt->mode == mode; },
+                     .checked = [this, which] { return m_bench.store().session().adapt->mode == which; },
                      .separatorBefore = separator});
     };
     mode("adaptStaticAction", tr("&Static transfer function"), tr("The keys alone, and what lies between them"),

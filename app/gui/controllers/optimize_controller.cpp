@@ -138,11 +138,11 @@ void OptimizeController::start() {
     m_question.reset();
     m_explaining.cancel();
     const About about = present();
-    const bool isAimed = std::any_of(about.targets.begin(), about.targets.end(), [](double t) { return t > 0; });
     begin({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
            *store.session().optimize,
-           isAimed ? knownAnswers(*store.session().runs, normalizedTargets(about.targets, about.targets.size()))
-                   : std::vector<std::vector<double>>{}});
+           isAimed(about.targets)
+               ? knownAnswers(*store.session().runs, normalizedTargets(about.targets, about.targets.size()))
+               : std::vector<std::vector<double>>{}});
 }
 
 void OptimizeController::takeExact() {

@@ -47,8 +47,8 @@ public:
     /// state any more.
     const QString& message() const { return m_message; }
     void say(const QString& text);
-    /// Whether message() tells of a run that kept the picture visible instead of the shares asked for, which takeExact()
-    /// puts in its place, as a step of its own.
+    /// Whether message() tells of a run that kept the picture visible instead of the shares asked for, which
+    /// takeExact() puts in its place, as a step of its own.
     bool hasExact() const { return !m_exact.empty() && !m_message.isEmpty(); }
     void takeExact();
 

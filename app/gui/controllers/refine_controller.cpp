@@ -290,12 +290,10 @@ Refinement RefineController::refineFrom(const TransferFunction& before, const Tr
     };
     r.result = refineBy(r.options);
     r.after = withOpacitiesOf(before, r.result.tf);
-    const auto outcome = priorityOutcome(*scene.histogram,
-                                         r.options.priority.region.empty()
-                                             ? before
-                                             : withDrawnColors(before, *scene.volume, scene.colors.get()),
-                                         r.after, r.options,
-                                         [&](const RefineOptions& by) { return refineBy(by).tf; });
+    const auto outcome = priorityOutcome(
+        *scene.histogram,
+        r.options.priority.region.empty() ? before : withDrawnColors(before, *scene.volume, scene.colors.get()),
+        r.after, r.options, [&](const RefineOptions& by) { return refineBy(by).tf; });
     if (outcome) r.shortfall = QString::fromStdString(outcome->text);
     r.words = QString::fromStdString(changeText(opacityChanges(r.before, r.after)));
     return r;

@@ -122,7 +122,7 @@ private:
     QSize m_viewSize{4, 3};
     bool m_ghost = true;
     std::shared_ptr<KeptRenderer> m_renderer;
-    std::optional<TransferFunction> m_examined;  ///< what examine() has looked at last
+    std::optional<TransferFunction> m_examined; ///< what examine() has looked at last
     Job<Look, std::vector<RegionColor>> m_look; // last: they end before the rest goes
     Job<Examined, std::optional<Darkening>> m_examine;
 };

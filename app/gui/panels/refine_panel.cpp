@@ -229,8 +229,10 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     m_edges->setObjectName("refineEdges");
     m_plot->setObjectName("refineCurve");
     m_plot->setToolTip(tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
-    const std::pair<QLabel*, const char*> labels[] = {
-        {m_words, "refineWords"}, {m_note, "refineNote"}, {m_figures, "refineFigures"}, {m_comparison, "refineComparison"}};
+    const std::pair<QLabel*, const char*> labels[] = {{m_words, "refineWords"},
+                                                      {m_note, "refineNote"},
+                                                      {m_figures, "refineFigures"},
+                                                      {m_comparison, "refineComparison"}};
     for (const auto& [label, name] : labels) {
         label->setObjectName(name);
         label->setWordWrap(true);
@@ -404,7 +406,8 @@ void RefinePanel::showOutcome() {
     const std::vector<double> weights =
         now != nullptr ? now->result.edgesAfter
                        : edgeWeights(*scene.histogram, scene.tf, m_bench.refining().options().priority);
-    const std::vector<RefineEdge> edges = now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
+    const std::vector<RefineEdge> edges =
+        now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
     const TfSampler sampler(scene.tf);
     const double span = scene.volume->range().hi - scene.volume->range().lo;
     const auto value = [&](double x) { return numberText(scene.volume->valueOfIntensity(x), span); };
@@ -450,8 +453,9 @@ void RefinePanel::showNote(const Refinement* refinement) {
     m_note->setVisible(!sentences.isEmpty());
     m_help->setVisible(dark && dark->help != Darkening::Help::None);
     if (!dark) return;
-    m_help->setText(dark->help == Darkening::Help::Exact ? tr("Refine by Exact instead")
-                                                         : tr("Stop after %L1 iterations instead").arg(dark->iterations));
+    m_help->setText(dark->help == Darkening::Help::Exact
+                        ? tr("Refine by Exact instead")
+                        : tr("Stop after %L1 iterations instead").arg(dark->iterations));
     m_help->setEnabled(refinement == m_bench.refining().current() && !m_bench.isReadOnly());
 }
 

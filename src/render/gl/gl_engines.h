@@ -27,8 +27,8 @@ bool isSoftwareRenderer(std::string renderer);
 /// What a headless context finds here; empty where none can be made.
 struct GlInfo {
     std::string vendor, renderer, version;
-    std::string platform;  ///< "EGL surfaceless", "OSMesa", …
-    bool software = false; ///< isSoftwareRenderer(renderer)
+    std::string platform;                             ///< "EGL surfaceless", "OSMesa", …
+    bool software = false;                            ///< isSoftwareRenderer(renderer)
     std::vector<std::pair<std::string, long>> limits; ///< by OpenGL's names: "max_3d_texture_size", …
 };
 std::optional<GlInfo> probeGl();

@@ -46,9 +46,9 @@ public:
 
     /// Draws settings.width × settings.height pixels (or the tile) over whatever the target holds. Needs a volume and a
     /// transfer function. With a background the result is opaque; without, colours are premultiplied by alpha.
-    /// settings.stepInD0 is the largest distance of samples along a ray: larger is faster and coarser. Colours of voxels
-    /// go up when they are other ones than before; the ground is drawn by the CPU, once for all tiles of a picture.
-    /// Throws Error (invalid camera or settings, the device fails), Cancelled.
+    /// settings.stepInD0 is the largest distance of samples along a ray: larger is faster and coarser. Colours of
+    /// voxels go up when they are other ones than before; the ground is drawn by the CPU, once for all tiles of a
+    /// picture. Throws Error (invalid camera or settings, the device fails), Cancelled.
     void draw(const Camera& camera, const RenderSettings& settings, const DrawTarget& target,
               const JobControl& job = {});
 
