@@ -381,7 +381,11 @@ TEST_CASE("a picture is made of what the session shows", "[session]") {
     scene.session.clipping = Clipping{{0, 0.25, 0}, {1, 1, 0.5}, {{{1, 2, 3}, 4}}};
     scene.session.measure.edit([](MeasureSettings& m) { m.quality = Quality::High; });
     PictureInput picture = pictureInput(scene, 40, 30);
-    RenderSettings expected{.width = 40, .height = 30, .background = Rgb{0.1, 0.2, 0.3}, .stepInD0 = 0.25};
+    RenderSettings expected;
+    expected.width = 40;
+    expected.height = 30;
+    expected.background = Rgb{0.1, 0.2, 0.3};
+    expected.stepInD0 = 0.25;
     expected.backgroundTop = Rgb{1, 1, 1};
     expected.mode = RenderMode::Mip;
     expected.light = Light{.on = true, .occlusion = 0.5};

@@ -69,7 +69,7 @@ std::vector<MeasureInput> variations() {
 }
 
 MeasureInput inputOf(std::shared_ptr<const Volume> volume, const TransferFunction& tf) {
-    return {std::move(volume), tf, {}, {}};
+    return {std::move(volume), tf, {}, {}, {}};
 }
 
 } // namespace
@@ -300,7 +300,8 @@ TEST_CASE("a search that was stopped says nothing of what can be reached", "[ses
     REQUIRE(verdict.sentences.size() == 1);
     CHECK(verdict.sentences[0].starts_with("Within reach: "));
     std::vector<double> vws;
-    const MeasureInput there{input.volume, withFeatureOpacities(input.tf, verdict.opacity), input.view, input.settings};
+    const MeasureInput there{
+        input.volume, withFeatureOpacities(input.tf, verdict.opacity), input.view, input.settings, {}};
     for (const FeatureMeasures& f : workspace.measure(there).features) vws.push_back(f.vws);
     CHECK(objectiveOf(vws, targets) == Approx(verdict.objective).margin(1e-4));
 }

@@ -266,8 +266,8 @@ void ChannelsBox::followChannel(Channel channel) {
     QComboBox& combo = *m_channels[indexOf(channel)];
     combo.clear();
     const auto add = [&](const std::string& name) {
-        if (const QString data = QString::fromStdString(name); combo.findData(data) < 0)
-            combo.addItem(driverText(session, name), data);
+        if (const QString key = QString::fromStdString(name); combo.findData(key) < 0)
+            combo.addItem(driverText(session, name), key);
     };
     if (channel != Channel::Opacity)
         combo.addItem(channel == Channel::Hue ? tr("the same everywhere") : tr("full everywhere"), QString());
