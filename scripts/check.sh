@@ -3,7 +3,6 @@
 #   format    every C++ file is as clang-format leaves it
 #   headless  the command line builds alone and needs neither Qt nor OpenGL to start
 #   dev       everything builds with assertions and with warnings as errors
-#   asan      volume files, transfer functions and saliency under the address and undefined-behaviour sanitizers
 # --by: no check begins later than so many seconds after now; those left out are named. Exit status 1 where one fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -30,12 +29,6 @@ check_dev() {
     cmake --build --preset dev
 }
 
-check_asan() {
-    cmake --preset dev-asan -DPELLUCID_BUILD_GUI=OFF >/dev/null
-    cmake --build --preset dev-asan --target test_base test_volume test_tf test_saliency
-    ctest --preset dev-asan --parallel 2 -L '^(base|volume|tf|saliency)$'
-}
-
 by=
 checks=()
 while [ $# -gt 0 ]; do
@@ -44,15 +37,15 @@ while [ $# -gt 0 ]; do
             by=${2:?--by needs seconds}
             shift
             ;;
-        format | headless | dev | asan) checks+=("$1") ;;
+        format | headless | dev) checks+=("$1") ;;
         *)
-            echo "check: no check is called '$1'; there are format, headless, dev and asan" >&2
+            echo "check: no check is called '$1'; there are format, headless and dev" >&2
             exit 2
             ;;
     esac
     shift
 done
-[ ${#checks[@]} -gt 0 ] || checks=(format headless dev asan)
+[ ${#checks[@]} -gt 0 ] || checks=(format headless dev)
 
 failed=0
 start=$SECONDS
