@@ -66,7 +66,7 @@ public:
             return store.cancel();
         case 5:
             return store.edit(name, {}, [&](Session& s) {
-                s.clipping.set({{0.4 * number(), 0, 0}, {1, 0.5 + 0.5 * number(), 1}});
+                s.clipping.set({{0.4 * number(), 0, 0}, {1, 0.5 + 0.5 * number(), 1}, {}});
             });
         case 6:
             return store.edit(name, {}, [&](Session& s) {
@@ -82,7 +82,14 @@ public:
             });
         default:
             return store.edit(name, {}, [&](Session& s) {
-                s.addRun({"refine", "done", {"a"}, {}, {}, 0, number(), number(), pick(9)});
+                Run run;
+                run.kind = "refine";
+                run.ended = "done";
+                run.features = {"a"};
+                run.before = number();
+                run.after = number();
+                run.iterations = pick(9);
+                s.addRun(std::move(run));
             });
         }
     }
