@@ -76,7 +76,11 @@ def main():
     marked = problems = 0
     for volume in given.volumes:
         for tf in given.tf.split(","):
-            count = features(given.cli, volume, tf)
+            try:
+                count = features(given.cli, volume, tf)
+            except (RuntimeError, subprocess.TimeoutExpired) as error:
+                print(f"{os.path.basename(volume)} {tf}: {error}", flush=True)
+                continue
             for view in given.views:
                 for target in given.targets.split(","):
                     name = f"{os.path.basename(volume)} {tf} {view} {target}"

@@ -20,13 +20,11 @@ public:
         const MeasureInput input = inputOf(problem);
         VisibilityEngine& engine = m_workspace.engine(input);
         const WeightFields& weights = m_workspace.weights(input, job);
-        const EngineVws full(engine, input.view, input.tf, weights, input.settings.vws);
+        std::shared_ptr<const VwsFunction> function =
+            std::make_shared<EngineVws>(engine, input.view, input.tf, weights, input.settings.vws);
         VwsEstimates along = m_workspace.estimates(input, job);
-        const VwsFunction* function = &full;
-        std::shared_ptr<const VwsFunction> finest;
         if (rough && !along.empty()) {
-            finest = along.front();
-            function = finest.get();
+            function = along.front();
             along.erase(along.begin());
         }
         OptimizeProblem search{*function, m_targets, problem.limits, std::move(along)};

@@ -324,8 +324,7 @@ void SpacePanel::refresh() {
     const bool hasTwo = m_bench.store().hasVolume() && axes().features.size() >= 2;
     const bool current = isCurrent(), running = m_job.isRunning(), mayEdit = current && !m_bench.isReadOnly();
     if (current) // F follows from W
-        if (std::vector<double> wanted = targets();
-            wanted != m_targets && std::any_of(wanted.begin(), wanted.end(), [](double t) { return t > 0; })) {
+        if (std::vector<double> wanted = targets(); wanted != m_targets && isAimed(wanted)) {
             m_space = std::make_shared<const ParameterSpace>(withTargets(*m_space, wanted));
             m_targets = std::move(wanted);
         }
