@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "commands.h"
-#include "optimize/visibility_words.h"
+#include "optimize/answer/visibility_words.h"
 #include "optimize_report.h"
 #include "options/target_input.h"
 #include "output_files.h"

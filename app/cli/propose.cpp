@@ -3,7 +3,7 @@
 
 #include "base/round_numbers.h"
 #include "commands.h"
-#include "optimize/first_sight.h"
+#include "optimize/answer/first_sight.h"
 #include "output_files.h"
 #include "parse.h"
 #include "resolve.h"

@@ -1,16 +1,16 @@
 // `refine`: entropy refinement of the opacities.
-#include "optimize/refine.h"
+#include "optimize/refine/refine.h"
 
 #include <cmath>
 #include <functional>
 
 #include "commands.h"
 #include "optimize/coverage.h"
-#include "optimize/drawn_colors.h"
-#include "optimize/refine_features.h"
-#include "optimize/refine_outcome.h"
-#include "optimize/refine_words.h"
-#include "optimize/region_colors.h"
+#include "optimize/refine/drawn_colors.h"
+#include "optimize/refine/refine_features.h"
+#include "optimize/refine/refine_outcome.h"
+#include "optimize/refine/refine_words.h"
+#include "optimize/refine/region_colors.h"
 #include "output_files.h"
 #include "parse.h"
 #include "render/image_renderer.h"

@@ -1,7 +1,7 @@
 #include "results_json.h"
 
-#include "optimize/refine_words.h"
-#include "optimize/visibility_words.h"
+#include "optimize/answer/visibility_words.h"
+#include "optimize/refine/refine_words.h"
 #include "render/camera_motion.h"
 #include "tf/formats/tf_json.h"
 

@@ -1,10 +1,10 @@
 // Refinements and optimizations as the JSON that commands promise, keys in the order of the documentation.
 #pragma once
 
+#include "optimize/answer/verdict.h"
 #include "optimize/optimizer.h"
-#include "optimize/refine.h"
-#include "optimize/refine_outcome.h"
-#include "optimize/verdict.h"
+#include "optimize/refine/refine.h"
+#include "optimize/refine/refine_outcome.h"
 #include "output.h"
 #include "render/camera.h"
 

@@ -15,7 +15,7 @@
 #include "image_io/image_file.h"
 #include "interrupt.h"
 #include "movie.h"
-#include "optimize/visibility_words.h"
+#include "optimize/answer/visibility_words.h"
 #include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"

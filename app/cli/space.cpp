@@ -4,14 +4,14 @@
 #include "base/atomic_file.h"
 #include "commands.h"
 #include "image_io/image_file.h"
-#include "optimize/space_picture.h"
 #include "options/target_input.h"
 #include "output_files.h"
 #include "parse.h"
 #include "prepare.h"
 #include "render/memory_needs.h"
+#include "report/space_picture.h"
 #include "resolve.h"
-#include "session/space_inputs.h"
+#include "session/coarser_input.h"
 
 namespace pellucid::cli {
 

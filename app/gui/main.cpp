@@ -13,11 +13,11 @@
 #include "controllers/open_controller.h"
 #include "controllers/recovery_controller.h"
 #include "controllers/theme_actions.h"
-#include "input_habits.h"
-#include "main_window.h"
+#include "frame/main_window.h"
 #include "tf/formats/tf_file.h"
-#include "theme.h"
 #include "version.h"
+#include "widgets/input_habits.h"
+#include "widgets/theme.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include "base/stopwatch.h"
 #include "optimize/optimizer.h"
 #include "optimize/ray_vws.h"
-#include "optimize/refine.h"
+#include "optimize/refine/refine.h"
 #include "saliency/saliency_direct.h"
 #include "volume/histogram.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "optimize/boxed_step.h"
+#include "optimize/solve/boxed_step.h"
 
 namespace pellucid {
 

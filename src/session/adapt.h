@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "optimize/smoothing.h"
+#include "optimize/time/smoothing.h"
 #include "session/workspace.h"
 
 namespace pellucid {

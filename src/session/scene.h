@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "optimize/first_sight.h"
+#include "optimize/answer/first_sight.h"
 #include "render/annotation.h"
 #include "render/ground.h"
 #include "render/standard_view.h"

@@ -9,7 +9,7 @@
 
 #include "optimize/fields.h"
 #include "optimize/optimizer.h"
-#include "optimize/refine.h"
+#include "optimize/refine/refine.h"
 #include "render/annotation.h"
 #include "render/engine_choice.h"
 #include "render/image_region.h"

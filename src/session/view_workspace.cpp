@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "optimize/objective.h"
 #include "render/cpu/cpu_engine.h"
-#include "volume/coarser_colors.h"
 #include "volume/excerpt.h"
 
 namespace pellucid {

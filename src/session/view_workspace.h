@@ -3,7 +3,7 @@
 
 #include <mutex>
 
-#include "optimize/view_search.h"
+#include "optimize/views/view_search.h"
 #include "session/scene.h"
 #include "session/workspace.h"
 

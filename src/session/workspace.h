@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "optimize/density_curve.h"
+#include "optimize/answer/density_curve.h"
+#include "optimize/answer/occlusion.h"
+#include "optimize/answer/verdict.h"
 #include "optimize/fields.h"
 #include "optimize/measure.h"
-#include "optimize/occlusion.h"
-#include "optimize/verdict.h"
 #include "session/scene.h"
 
 namespace pellucid {

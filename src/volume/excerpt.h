@@ -12,6 +12,7 @@
 #include "base/job.h"
 #include "volume/memory_use.h"
 #include "volume/volume.h"
+#include "volume/voxel_colors.h"
 
 namespace pellucid {
 
@@ -69,6 +70,9 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl&
 /// Means over blocks of `factor`³ voxels (≥ 1) of all of it, which keeps the reference length: opacities, saliency and
 /// figures mean what they do in `whole`, and differ by what the finer voxels say.
 Volume coarserCopy(const Volume& whole, int factor);
+/// Colours by voxel on the grid of coarserCopy(): each the mean over `factor` (≥ 1) voxels along each axis, fewer at
+/// the far ends.
+VoxelColors coarserColors(const VoxelColors& colors, int factor);
 
 /// The voxels of the data that lie, wholly or in part, between the fractions `lo` and `hi` of the volume's box along
 /// each axis; 0 ≤ lo < hi ≤ 1.

@@ -13,11 +13,11 @@
 #include <QTimer>
 #include <QWheelEvent>
 
-#include "histogram_bars.h"
-#include "number_text.h"
-#include "opacity_axis.h"
-#include "point_selection.h"
-#include "selection.h"
+#include "services/selection.h"
+#include "tf/histogram_bars.h"
+#include "tf/point_selection.h"
+#include "widgets/number_text.h"
+#include "widgets/opacity_axis.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

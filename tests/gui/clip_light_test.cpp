@@ -12,10 +12,10 @@
 
 #include <glm/geometric.hpp>
 
-#include "clip_layer.h"
 #include "render/camera_motion.h"
 #include "render/image_renderer.h"
 #include "render/light_presets.h"
+#include "view/clip_layer.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

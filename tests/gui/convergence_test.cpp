@@ -15,11 +15,11 @@
 #include <QTreeWidget>
 
 #include "panels/convergence_panel.h"
-#include "plot_view.h"
 #include "report/convergence.h"
 #include "report/report.h"
 #include "session/session_json.h"
-#include "theme.h"
+#include "widgets/plot_view.h"
+#include "widgets/theme.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

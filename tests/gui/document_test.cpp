@@ -5,7 +5,7 @@
 #include <QAbstractItemModelTester>
 #include <QSignalSpy>
 
-#include "models/features_model.h"
+#include "panels/features_model.h"
 #include "tf/edit.h"
 
 using namespace pellucid;

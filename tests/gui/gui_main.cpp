@@ -8,7 +8,7 @@
 #include <QSettings>
 #include <QTemporaryDir>
 
-#include "theme.h"
+#include "widgets/theme.h"
 
 int main(int argc, char** argv) {
     Catch::Session session;

@@ -12,11 +12,11 @@
 #include "controllers/recovery_controller.h"
 #include "controllers/refine_controller.h"
 #include "controllers/save_controller.h"
-#include "main_window.h"
+#include "frame/main_window.h"
 #include "panels/features_panel.h"
+#include "panels/target_bars.h"
 #include "store/edits.h"
-#include "target_bars.h"
-#include "tf_canvas.h"
+#include "tf/tf_canvas.h"
 #include "volume/procedural.h"
 
 namespace pellucid::gui {

@@ -19,12 +19,12 @@
 #include <QTimer>
 #include <QToolButton>
 
-#include "density_slider.h"
-#include "dock_space.h"
-#include "panel.h"
+#include "frame/dock_space.h"
+#include "panels/density_slider.h"
+#include "services/panel.h"
 #include "session/session_json.h"
 #include "tf/edit.h"
-#include "theme.h"
+#include "widgets/theme.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

@@ -22,9 +22,9 @@
 #include <QToolTip>
 
 #include "image_io/image_file.h"
-#include "input_habits.h"
 #include "render/camera_motion.h"
 #include "tf/edit.h"
+#include "widgets/input_habits.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

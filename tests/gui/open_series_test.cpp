@@ -22,8 +22,8 @@
 #include <QTimer>
 #include <QUrl>
 
-#include "raw_dialog.h"
-#include "series_files.h"
+#include "dialogs/raw_dialog.h"
+#include "dialogs/series_files.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

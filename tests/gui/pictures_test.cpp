@@ -13,7 +13,7 @@
 #include "panels/space_panel.h"
 #include "render/camera_motion.h"
 #include "render/clip_handles.h"
-#include "selection.h"
+#include "services/selection.h"
 #include "session/variable_edits.h"
 
 using namespace pellucid;

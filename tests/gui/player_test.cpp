@@ -1,6 +1,6 @@
 // Frames of a series in the window: play, step, scrub; undo across frames; keys; transfer functions that follow.
 #include "gui_support.h"
-#include "theme.h"
+#include "widgets/theme.h"
 
 #include <atomic>
 #include <thread>
@@ -17,11 +17,11 @@
 
 #include "controllers/adapt_controller.h"
 #include "controllers/player_controller.h"
-#include "input_habits.h"
-#include "palette_bar.h"
 #include "panels/temporal_panel.h"
+#include "panels/time_strip.h"
 #include "session/session_json.h"
-#include "time_strip.h"
+#include "tf/palette_bar.h"
+#include "widgets/input_habits.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

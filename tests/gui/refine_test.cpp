@@ -8,11 +8,11 @@
 #include <QPushButton>
 #include <QSignalSpy>
 
-#include "optimize/refine.h"
-#include "palette_bar.h"
+#include "optimize/refine/refine.h"
 #include "panels/refine_panel.h"
-#include "picture_pair.h"
 #include "render/clip_handles.h"
+#include "tf/palette_bar.h"
+#include "view/picture_pair.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

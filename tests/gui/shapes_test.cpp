@@ -15,8 +15,8 @@
 #include <QToolButton>
 
 #include "base/round_numbers.h"
-#include "density_slider.h"
-#include "optimize/visibility_words.h"
+#include "optimize/answer/visibility_words.h"
+#include "panels/density_slider.h"
 #include "tf/color_maps.h"
 #include "tf/part_names.h"
 #include "tf/shapes.h"

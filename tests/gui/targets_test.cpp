@@ -20,9 +20,9 @@
 #include <QToolTip>
 
 #include "controllers/live_controller.h"
-#include "models/features_model.h"
+#include "panels/features_model.h"
 #include "render/camera_motion.h"
-#include "selection.h"
+#include "services/selection.h"
 #include "session/target_presets.h"
 #include "tf/edit.h"
 

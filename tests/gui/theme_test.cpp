@@ -10,7 +10,7 @@
 #include <QStatusBar>
 
 #include "controllers/theme_actions.h"
-#include "theme.h"
+#include "widgets/theme.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

@@ -21,9 +21,9 @@
 #include <QTreeWidget>
 
 #include "controllers/player_controller.h"
+#include "dialogs/series_files.h"
 #include "panels/channels_box.h"
 #include "panels/variables_panel.h"
-#include "series_files.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

@@ -14,7 +14,7 @@
 #include "controllers/view_search_controller.h"
 #include "panels/views_panel.h"
 #include "render/view_direction.h"
-#include "view_globe.h"
+#include "view/view_globe.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

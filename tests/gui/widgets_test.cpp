@@ -1,6 +1,6 @@
 #include "gui_support.h"
 
-#include "notice_bar.h"
+#include "frame/notice_bar.h"
 
 #include <cmath>
 #include <fstream>
@@ -14,10 +14,10 @@
 #include <QTemporaryDir>
 #include <QToolButton>
 
-#include "cpu_surface.h"
-#include "opacity_editor.h"
-#include "raw_dialog.h"
-#include "target_bars.h"
+#include "dialogs/raw_dialog.h"
+#include "panels/target_bars.h"
+#include "view/cpu_surface.h"
+#include "widgets/opacity_editor.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

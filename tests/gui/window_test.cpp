@@ -29,7 +29,7 @@
 #include <QWheelEvent>
 
 #include "image_io/image_file.h"
-#include "optimize/refine.h"
+#include "optimize/refine/refine.h"
 #include "render/camera_motion.h"
 #include "tf/formats/tf_json.h"
 

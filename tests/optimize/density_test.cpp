@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "optimize/density_curve.h"
-#include "optimize/visibility_words.h"
+#include "optimize/answer/density_curve.h"
+#include "optimize/answer/visibility_words.h"
 #include "render/camera_motion.h"
 #include "support/volumes.h"
 #include "tf/opacity.h"

@@ -1,7 +1,7 @@
 // Regions of pictures whose colours are by voxel.
 #include <catch2/catch.hpp>
 
-#include "optimize/drawn_colors.h"
+#include "optimize/refine/drawn_colors.h"
 #include "volume/histogram.h"
 
 using namespace pellucid;

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "optimize/first_sight.h"
+#include "optimize/answer/first_sight.h"
 #include "render/camera_motion.h"
 #include "render/image_renderer.h"
 #include "render/visibility.h"

@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "base/error.h"
-#include "optimize/boxed_step.h"
 #include "optimize/measure.h"
 #include "optimize/newton.h"
 #include "optimize/optimizer.h"
+#include "optimize/solve/boxed_step.h"
 #include "support/random_cases.h"
 #include "support/volumes.h"
 

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "base/error.h"
-#include "optimize/least_variance.h"
-#include "optimize/refine_features.h"
+#include "optimize/refine/refine_features.h"
+#include "optimize/solve/least_variance.h"
 #include "support/refine_cases.h"
 #include "volume/loader.h"
 

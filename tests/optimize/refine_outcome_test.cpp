@@ -6,12 +6,12 @@
 
 #include <catch2/catch.hpp>
 
+#include "optimize/answer/first_sight.h"
 #include "optimize/coverage.h"
-#include "optimize/drawn_colors.h"
-#include "optimize/first_sight.h"
-#include "optimize/refine_features.h"
-#include "optimize/refine_outcome.h"
-#include "optimize/region_colors.h"
+#include "optimize/refine/drawn_colors.h"
+#include "optimize/refine/refine_features.h"
+#include "optimize/refine/refine_outcome.h"
+#include "optimize/refine/region_colors.h"
 #include "render/camera_motion.h"
 #include "render/image_renderer.h"
 #include "support/volumes.h"

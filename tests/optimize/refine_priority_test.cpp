@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "optimize/measure.h"
-#include "optimize/refine.h"
-#include "optimize/region_colors.h"
+#include "optimize/refine/refine.h"
+#include "optimize/refine/region_colors.h"
 #include "render/camera_motion.h"
 #include "render/image_renderer.h"
 #include "render/standard_view.h"

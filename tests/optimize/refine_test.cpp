@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "optimize/refine.h"
+#include "optimize/refine/refine.h"
 
 using namespace pellucid;
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "optimize/refine_words.h"
+#include "optimize/refine/refine_words.h"
 
 using namespace pellucid;
 

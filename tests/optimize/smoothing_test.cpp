@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "optimize/log_depths.h"
-#include "optimize/smoothing.h"
+#include "optimize/solve/log_depths.h"
+#include "optimize/time/smoothing.h"
 #include "support/random_cases.h"
 
 using namespace pellucid;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "optimize/tracking.h"
+#include "optimize/time/tracking.h"
 
 using namespace pellucid;
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "optimize/verdict.h"
+#include "optimize/answer/verdict.h"
 #include "saliency/saliency_field.h"
 #include "support/random_cases.h"
 #include "support/volumes.h"

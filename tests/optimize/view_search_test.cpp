@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "optimize/view_search.h"
+#include "optimize/views/view_search.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/view_direction.h"
 #include "saliency/saliency_field.h"

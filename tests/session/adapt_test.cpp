@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "optimize/tracking.h"
+#include "optimize/time/tracking.h"
 #include "session/adapt.h"
 #include "tf/opacity.h"
 

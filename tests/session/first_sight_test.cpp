@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "optimize/first_sight.h"
+#include "optimize/answer/first_sight.h"
 #include "render/camera_motion.h"
 #include "render/image_renderer.h"
 #include "render/visibility.h"

@@ -5,7 +5,7 @@
 
 #include "engines/engines.h"
 #include "render/image_renderer.h"
-#include "session/space_inputs.h"
+#include "session/coarser_input.h"
 #include "session/variable_edits.h"
 #include "session/view_workspace.h"
 #include "session/workspace.h"

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "optimize/refine.h"
+#include "optimize/refine/refine.h"
 
 namespace pellucid::test {
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string>
 
-#include "optimize/density_curve.h"
-#include "optimize/visibility_words.h"
+#include "optimize/answer/density_curve.h"
+#include "optimize/answer/visibility_words.h"
 #include "session/scene.h"
 #include "session/workspace.h"
 

@@ -5,7 +5,7 @@
 
 #include "controllers/open_controller.h"
 #include "controllers/player_controller.h"
-#include "workbench.h"
+#include "services/workbench.h"
 
 namespace pellucid::gui {
 namespace {

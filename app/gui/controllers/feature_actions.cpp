@@ -8,10 +8,10 @@
 #include <QWidgetAction>
 
 #include "controllers/target_actions.h"
+#include "services/workbench.h"
 #include "store/edits.h"
 #include "tf/shapes.h"
-#include "theme.h"
-#include "workbench.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

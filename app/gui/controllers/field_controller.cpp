@@ -4,8 +4,8 @@
 #include <QFileInfo>
 #include <QSettings>
 
+#include "services/workbench.h"
 #include "volume/loader.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

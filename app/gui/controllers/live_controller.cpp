@@ -6,8 +6,8 @@
 #include <QScopedValueRollback>
 
 #include "controllers/optimize_controller.h"
+#include "services/workbench.h"
 #include "tf/shown_tf.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

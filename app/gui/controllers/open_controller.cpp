@@ -9,11 +9,11 @@
 
 #include "controllers/save_controller.h"
 #include "controllers/start_controller.h"
-#include "number_text.h"
-#include "raw_dialog.h"
+#include "dialogs/raw_dialog.h"
+#include "dialogs/series_dialog.h"
+#include "dialogs/series_files.h"
 #include "render/memory_needs.h"
-#include "series_dialog.h"
-#include "series_files.h"
+#include "services/workbench.h"
 #include "session/scene_data.h"
 #include "session/variable_edits.h"
 #include "tf/formats/tf_file.h"
@@ -21,7 +21,7 @@
 #include "volume/excerpt.h"
 #include "volume/file_contents.h"
 #include "volume/procedural.h"
-#include "workbench.h"
+#include "widgets/number_text.h"
 
 namespace pellucid::gui {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "optimize/visibility_words.h"
+#include "optimize/answer/visibility_words.h"
+#include "services/workbench.h"
 #include "tf/shown_tf.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

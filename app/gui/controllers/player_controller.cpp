@@ -6,8 +6,8 @@
 #include "controllers/adapt_controller.h"
 #include "controllers/open_controller.h"
 #include "render/memory_needs.h"
+#include "services/workbench.h"
 #include "session/scene_data.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

@@ -6,10 +6,10 @@
 #include "controllers/slice_actions.h"
 #include "render/clip_handles.h"
 #include "render/slice.h"
+#include "services/workbench.h"
 #include "store/edits.h"
 #include "tf/emphasis.h"
 #include "tf/shown_tf.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

@@ -7,12 +7,12 @@
 
 #include "controllers/optimize_controller.h"
 #include "optimize/coverage.h"
-#include "optimize/drawn_colors.h"
-#include "optimize/refine_features.h"
-#include "optimize/refine_words.h"
-#include "optimize/region_colors.h"
-#include "picture_pair.h"
-#include "workbench.h"
+#include "optimize/refine/drawn_colors.h"
+#include "optimize/refine/refine_features.h"
+#include "optimize/refine/refine_words.h"
+#include "optimize/refine/region_colors.h"
+#include "services/workbench.h"
+#include "view/picture_pair.h"
 
 namespace pellucid::gui {
 namespace {

@@ -10,9 +10,9 @@
 #include <QSize>
 
 #include "jobs/job.h"
-#include "kept_renderer.h"
-#include "optimize/refine_outcome.h"
+#include "optimize/refine/refine_outcome.h"
 #include "session/scene.h"
+#include "widgets/kept_renderer.h"
 
 namespace pellucid::gui {
 

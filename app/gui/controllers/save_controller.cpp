@@ -12,10 +12,10 @@
 #include "image_io/image_file.h"
 #include "render/annotation_raster.h"
 #include "report/report.h"
+#include "services/workbench.h"
 #include "session/session_json.h"
 #include "tf/formats/tf_json.h"
 #include "version.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <QObject>
 
+#include "dialogs/save_image_dialog.h"
 #include "jobs/job.h"
-#include "save_image_dialog.h"
 #include "session/scene.h"
 
 namespace pellucid::gui {

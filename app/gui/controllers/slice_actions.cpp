@@ -6,7 +6,7 @@
 
 #include <glm/common.hpp>
 
-#include "workbench.h"
+#include "services/workbench.h"
 
 namespace pellucid::gui {
 namespace {

@@ -1,8 +1,8 @@
 #include "controllers/start_controller.h"
 
 #include "controllers/open_controller.h"
-#include "number_text.h"
-#include "workbench.h"
+#include "services/workbench.h"
+#include "widgets/number_text.h"
 
 namespace pellucid::gui {
 namespace {

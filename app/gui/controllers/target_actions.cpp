@@ -10,9 +10,9 @@
 #include <QMenu>
 
 #include "controllers/feature_actions.h"
+#include "services/workbench.h"
 #include "session/target_presets.h"
 #include "store/edits.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

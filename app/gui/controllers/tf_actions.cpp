@@ -1,8 +1,8 @@
 #include "controllers/tf_actions.h"
 
+#include "services/workbench.h"
 #include "store/edits.h"
 #include "tf/transfer_function.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

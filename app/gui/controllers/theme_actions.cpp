@@ -3,7 +3,7 @@
 #include <QApplication>
 #include <QSettings>
 
-#include "workbench.h"
+#include "services/workbench.h"
 
 namespace pellucid::gui {
 namespace {

@@ -1,7 +1,7 @@
 // The choice between a dark and a light window.
 #pragma once
 
-#include "theme.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 

@@ -1,7 +1,7 @@
 #include "controllers/view_actions.h"
 
 #include "render/camera_motion.h"
-#include "workbench.h"
+#include "services/workbench.h"
 
 namespace pellucid::gui {
 namespace {

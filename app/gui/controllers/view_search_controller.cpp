@@ -5,11 +5,11 @@
 #include <glm/geometric.hpp>
 
 #include "controllers/optimize_controller.h"
+#include "optimize/answer/visibility_words.h"
 #include "optimize/objective.h"
-#include "optimize/visibility_words.h"
 #include "render/view_direction.h"
+#include "services/workbench.h"
 #include "tf/shown_tf.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

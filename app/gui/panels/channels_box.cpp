@@ -15,9 +15,9 @@
 #include <QToolButton>
 
 #include "controllers/open_controller.h"
-#include "number_box.h"
 #include "panels/variables_panel.h"
-#include "workbench.h"
+#include "services/workbench.h"
+#include "widgets/number_box.h"
 
 namespace pellucid::gui {
 namespace {

@@ -10,12 +10,12 @@
 
 #include <glm/geometric.hpp>
 
-#include "number_box.h"
-#include "number_text.h"
-#include "panel.h"
-#include "panels/scrolled.h"
 #include "render/clip_handles.h"
-#include "workbench.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "widgets/number_box.h"
+#include "widgets/number_text.h"
+#include "widgets/scrolled.h"
 
 namespace pellucid::gui {
 namespace {

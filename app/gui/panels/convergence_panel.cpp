@@ -20,15 +20,15 @@
 #include "base/atomic_file.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/save_controller.h"
-#include "panel.h"
-#include "plot_view.h"
 #include "report/convergence.h"
 #include "report/csv.h"
 #include "report/svg_plot.h"
+#include "services/panel.h"
+#include "services/workbench.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
-#include "theme.h"
-#include "workbench.h"
+#include "widgets/plot_view.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

@@ -17,12 +17,12 @@
 #include <QVBoxLayout>
 
 #include "controllers/open_controller.h"
-#include "number_box.h"
-#include "number_text.h"
-#include "panel.h"
-#include "panels/scrolled.h"
-#include "theme.h"
-#include "workbench.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "widgets/number_box.h"
+#include "widgets/number_text.h"
+#include "widgets/scrolled.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

@@ -26,13 +26,13 @@
 #include "controllers/feature_actions.h"
 #include "controllers/optimize_controller.h"
 #include "controllers/target_actions.h"
-#include "density_slider.h"
-#include "lock_mark.h"
-#include "opacity_editor.h"
-#include "panel.h"
 #include "panels/channels_box.h"
-#include "theme.h"
-#include "workbench.h"
+#include "panels/density_slider.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "widgets/lock_mark.h"
+#include "widgets/opacity_editor.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

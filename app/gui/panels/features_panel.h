@@ -3,8 +3,8 @@
 
 #include <QWidget>
 
-#include "models/features_model.h"
-#include "target_bars.h"
+#include "panels/features_model.h"
+#include "panels/target_bars.h"
 
 class QComboBox;
 class QLabel;

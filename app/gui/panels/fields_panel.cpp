@@ -17,12 +17,12 @@
 #include <QSlider>
 
 #include "controllers/field_controller.h"
-#include "number_box.h"
-#include "panel.h"
-#include "panels/scrolled.h"
+#include "services/panel.h"
+#include "services/workbench.h"
 #include "tf/color_maps.h"
-#include "theme.h"
-#include "workbench.h"
+#include "widgets/number_box.h"
+#include "widgets/scrolled.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

@@ -12,13 +12,13 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "image_convert.h"
-#include "panel.h"
+#include "services/panel.h"
+#include "services/workbench.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
-#include "theme.h"
-#include "workbench.h"
+#include "widgets/image_convert.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

@@ -8,9 +8,9 @@
 #include <QWidget>
 
 #include "jobs/job.h"
-#include "kept_renderer.h"
 #include "session/scene.h"
 #include "tf/presets.h"
+#include "widgets/kept_renderer.h"
 
 class QComboBox;
 class QListWidget;

@@ -16,11 +16,11 @@
 #include <glm/geometric.hpp>
 
 #include "controllers/open_controller.h"
-#include "number_box.h"
-#include "series_files.h"
+#include "dialogs/series_files.h"
+#include "services/workbench.h"
 #include "tf/terrain.h"
 #include "volume/procedural.h"
-#include "workbench.h"
+#include "widgets/number_box.h"
 
 namespace pellucid::gui {
 namespace {

@@ -14,9 +14,9 @@
 #include <QTimer>
 #include <QVBoxLayout>
 
-#include "panel.h"
-#include "theme.h"
-#include "workbench.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

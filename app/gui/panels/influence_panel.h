@@ -3,7 +3,7 @@
 
 #include <QWidget>
 
-#include "results.h"
+#include "services/results.h"
 #include "store/session_store.h"
 
 class QAction;

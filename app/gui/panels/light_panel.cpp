@@ -15,11 +15,11 @@
 
 #include <glm/geometric.hpp>
 
-#include "number_box.h"
-#include "panel.h"
-#include "panels/scrolled.h"
 #include "render/light_presets.h"
-#include "workbench.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "widgets/number_box.h"
+#include "widgets/scrolled.h"
 
 namespace pellucid::gui {
 namespace {

@@ -17,11 +17,11 @@
 
 #include "controllers/adapt_controller.h"
 #include "controllers/player_controller.h"
-#include "number_box.h"
-#include "panel.h"
-#include "theme.h"
-#include "time_strip.h"
-#include "workbench.h"
+#include "panels/time_strip.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "widgets/number_box.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

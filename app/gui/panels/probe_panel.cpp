@@ -14,12 +14,12 @@
 #include <QWheelEvent>
 
 #include "controllers/probe_controller.h"
-#include "number_text.h"
 #include "panels/probe_plot.h"
 #include "render/clip_handles.h"
-#include "theme.h"
-#include "volume_view.h"
-#include "workbench.h"
+#include "services/workbench.h"
+#include "view/volume_view.h"
+#include "widgets/number_text.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

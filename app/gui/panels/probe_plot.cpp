@@ -12,9 +12,9 @@
 #include <glm/geometric.hpp>
 
 #include "controllers/probe_controller.h"
-#include "number_text.h"
-#include "theme.h"
-#include "workbench.h"
+#include "services/workbench.h"
+#include "widgets/number_text.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

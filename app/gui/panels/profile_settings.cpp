@@ -6,8 +6,8 @@
 #include <QPushButton>
 
 #include "render/published_engine.h"
-#include "theme.h"
-#include "workbench.h"
+#include "services/workbench.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

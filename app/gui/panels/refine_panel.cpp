@@ -19,13 +19,13 @@
 #include <QToolTip>
 #include <QVBoxLayout>
 
-#include "number_box.h"
-#include "number_text.h"
-#include "optimize/refine_features.h"
-#include "panel.h"
-#include "panels/scrolled.h"
-#include "theme.h"
-#include "workbench.h"
+#include "optimize/refine/refine_features.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "widgets/number_box.h"
+#include "widgets/number_text.h"
+#include "widgets/scrolled.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

@@ -9,12 +9,12 @@
 #include <QPushButton>
 #include <QSpinBox>
 
-#include "number_box.h"
-#include "panel.h"
 #include "panels/profile_settings.h"
-#include "panels/scrolled.h"
-#include "theme.h"
-#include "workbench.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "widgets/number_box.h"
+#include "widgets/scrolled.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

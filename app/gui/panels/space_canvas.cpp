@@ -6,10 +6,10 @@
 #include <QMouseEvent>
 #include <QPainter>
 
-#include "image_convert.h"
-#include "mark_painter.h"
-#include "number_text.h"
-#include "theme.h"
+#include "widgets/image_convert.h"
+#include "widgets/mark_painter.h"
+#include "widgets/number_text.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

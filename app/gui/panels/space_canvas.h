@@ -7,8 +7,8 @@
 #include <QWidget>
 
 #include "jobs/job.h"
-#include "kept_renderer.h"
-#include "optimize/space_picture.h"
+#include "report/space_picture.h"
+#include "widgets/kept_renderer.h"
 
 namespace pellucid::gui {
 

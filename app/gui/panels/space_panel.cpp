@@ -19,12 +19,12 @@
 
 #include "base/atomic_file.h"
 #include "image_io/image_file.h"
-#include "panel.h"
 #include "panels/space_canvas.h"
-#include "session/space_inputs.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "session/coarser_input.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
-#include "workbench.h"
 
 namespace pellucid::gui {
 namespace {

@@ -7,7 +7,7 @@
 #include <QWidget>
 
 #include "jobs/job.h"
-#include "optimize/space_picture.h"
+#include "report/space_picture.h"
 #include "session/scene.h"
 
 class QComboBox;

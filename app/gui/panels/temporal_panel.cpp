@@ -16,13 +16,13 @@
 #include "base/atomic_file.h"
 #include "controllers/adapt_controller.h"
 #include "controllers/player_controller.h"
-#include "panel.h"
-#include "plot_view.h"
 #include "report/svg_plot.h"
+#include "services/panel.h"
+#include "services/workbench.h"
 #include "session/scene_data.h"
 #include "tf/tf_range.h"
-#include "theme.h"
-#include "workbench.h"
+#include "widgets/plot_view.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

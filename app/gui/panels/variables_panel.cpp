@@ -14,17 +14,17 @@
 #include <QVBoxLayout>
 
 #include "controllers/open_controller.h"
-#include "number_text.h"
-#include "panel.h"
+#include "dialogs/series_files.h"
 #include "panels/channels_box.h"
 #include "panels/ground_box.h"
-#include "panels/scrolled.h"
-#include "series_files.h"
+#include "services/panel.h"
+#include "services/workbench.h"
 #include "session/scene_data.h"
-#include "theme.h"
 #include "volume/file_contents.h"
 #include "volume/procedural.h"
-#include "workbench.h"
+#include "widgets/number_text.h"
+#include "widgets/scrolled.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

@@ -12,12 +12,12 @@
 
 #include "controllers/optimize_controller.h"
 #include "controllers/view_search_controller.h"
-#include "panel.h"
 #include "render/view_direction.h"
-#include "theme.h"
-#include "view_globe.h"
-#include "volume_view.h"
-#include "workbench.h"
+#include "services/panel.h"
+#include "services/workbench.h"
+#include "view/view_globe.h"
+#include "view/volume_view.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <QWidget>
 
-#include "optimize/view_search.h"
+#include "optimize/views/view_search.h"
 
 class QComboBox;
 class QLabel;

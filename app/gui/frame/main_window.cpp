@@ -1,0 +1,227 @@
+#include "frame/main_window.h"
+
+#include <QApplication>
+#include <QCloseEvent>
+#include <QDialog>
+#include <QDockWidget>
+#include <QDragEnterEvent>
+#include <QFileInfo>
+#include <QHBoxLayout>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QScreen>
+#include <QSettings>
+#include <QStatusBar>
+#include <QVBoxLayout>
+
+#include "controllers/open_controller.h"
+#include "controllers/optimize_controller.h"
+#include "controllers/player_controller.h"
+#include "controllers/recovery_controller.h"
+#include "controllers/refine_controller.h"
+#include "controllers/save_controller.h"
+#include "frame/dock_space.h"
+#include "frame/keys_dialog.h"
+#include "frame/notice_bar.h"
+#include "frame/status_line.h"
+#include "frame/welcome_card.h"
+#include "panels/probe_panel.h"
+#include "services/panel.h"
+#include "view/clip_layer.h"
+#include "view/light_layer.h"
+#include "view/region_layer.h"
+#include "view/slice_layer.h"
+#include "widgets/scrolled.h"
+
+namespace pellucid::gui {
+
+MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
+    : QMainWindow(parent), m_bench(std::make_unique<Workbench>(this)),
+      m_view(new VolumeView(m_bench->store(), renderer, this, &m_bench->fields())),
+      m_views(new ViewGrid(*m_bench, *m_view, this)), m_row(new QHBoxLayout) {
+    setObjectName("mainWindow");
+    setAcceptDrops(true);
+    setDockNestingEnabled(true);
+    auto* middle = new QWidget(this);
+    auto* column = new QVBoxLayout(middle);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    column->addWidget(new NoticeBar(m_bench->notices(), middle));
+    m_row->addWidget(m_views, 1);
+    column->addLayout(m_row, 1);
+    setCentralWidget(middle);
+
+    m_view->overlay().add(std::make_unique<SliceLayer>());
+    addClipHandles(*m_bench, m_view->overlay());
+    m_view->overlay().add(std::make_unique<LightLayer>(*m_bench, m_view->overlay()));
+    addProbe(*m_bench, *m_view);
+    m_view->overlay().add(std::make_unique<RegionLayer>(*m_bench, m_view->overlay()));
+    addPanels();
+    addHelpActions();
+    m_bench->actions().build(*this);
+    m_bench->opening().updateRecentFiles();
+    new StatusLine(*m_bench, *m_view, *statusBar());
+
+    connect(m_view, &VolumeView::frameShown, this, [this] {
+        m_bench->saving().setSeenSize({m_view->frame().width, m_view->frame().height});
+        m_bench->refining().setViewSize({m_view->frame().width, m_view->frame().height});
+        m_bench->player().pictureShown(m_view->frame().volume);
+        Q_EMIT settledChanged();
+    });
+    connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
+    connect(m_view, &VolumeView::rendererFailed, this, [this](const Error& error) {
+        m_bench->notices().add({QString::fromUtf8(error.what()), {}});
+    });
+    connect(m_bench.get(), &Workbench::idleChanged, this, &MainWindow::settledChanged);
+    connect(&m_bench->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
+    connect(&m_bench->opening(), &OpenController::busyChanged, this, &MainWindow::updateTitle);
+    updateTitle();
+    resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
+}
+
+MainWindow::~MainWindow() {
+    // Widgets refer to the workbench, its jobs to nothing of theirs: so widgets go first.
+    m_bench->disconnect();
+    delete takeCentralWidget();
+    for (QDialog* dialog : findChildren<QDialog*>(QString(), Qt::FindDirectChildrenOnly)) delete dialog;
+    for (QDockWidget* dock : findChildren<QDockWidget*>()) delete dock;
+    for (StatusLine* line : statusBar()->findChildren<StatusLine*>()) delete line;
+}
+
+void MainWindow::addPanels() {
+    setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+    Actions& actions = m_bench->actions();
+    auto* const space = new DockSpace(*this);
+    bool first = true;
+    for (const PanelInfo& panel : panelRegistry()) {
+        auto* dock = new QDockWidget(panel.title, this);
+        dock->setObjectName(QString(panel.id) + "Dock");
+        auto* const content = new DockScroll(panel.make(*m_bench, dock), panel.area);
+        dock->setWidget(content);
+        addDockWidget(panel.area, dock);
+        dock->setVisible(panel.visible);
+        space->watch(*dock);
+        if (panel.tabOf != nullptr) {
+            auto* beside = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
+            tabifyDockWidget(beside, dock);
+            beside->raise();
+        }
+        if (panel.below != nullptr)
+            splitDockWidget(findChild<QDockWidget*>(QString(panel.below) + "Dock"), dock, Qt::Vertical);
+        if (panel.size > 0)
+            resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
+        if (panel.shown)
+            connect(dock, &QDockWidget::visibilityChanged, m_bench.get(),
+                    [this, shown = panel.shown](bool visible) { shown(*m_bench, visible); });
+        actions.add({.id = QString(panel.id) + "Action",
+                     .menu = tr("&View"),
+                     .text = tr("%1 panel").arg(panel.title),
+                     .keys = {panel.keys},
+                     .tip = panel.tip,
+                     .trigger =
+                         [this, dock, content] {
+                             dock->setVisible(!isInFront(*dock)); // what lies behind a tab is not put away unseen
+                             if (dock->isHidden()) return;
+                             dock->raise();
+                             // As high as it likes, where it would be much lower; as wide as it must be, if it can.
+                             const int wanted = content->sizeHint().height(), least = content->leastOfContent().width();
+                             if (content->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
+                             if (content->width() < least)
+                                 resizeDocks({dock}, {std::min(least, width() / 2)}, Qt::Horizontal);
+                         },
+                     .checked = [dock] { return isInFront(*dock); },
+                     .separatorBefore = std::exchange(first, false)});
+        connect(dock, &QDockWidget::visibilityChanged, &actions, &Actions::refresh);
+    }
+}
+
+void MainWindow::addHelpActions() {
+    Actions& actions = m_bench->actions();
+    const auto add = [&](const QString& id, const QString& menu, const QString& text, const QKeySequence& keys,
+                         std::function<void()> trigger) {
+        actions.add({.id = id,
+                     .menu = menu,
+                     .text = text,
+                     .keys = keys.isEmpty() ? QList<QKeySequence>{} : QList<QKeySequence>{keys},
+                     .trigger = std::move(trigger)});
+    };
+    const QString volume = tr("Volume");
+    actions.addGestures({{volume, tr("Left drag, arrow keys"), tr("rotate")},
+                         {volume, tr("Middle drag, Shift + left drag"), tr("pan")},
+                         {volume, tr("Wheel, right drag, + and −"), tr("zoom")},
+                         {volume, tr("Double-click"), tr("fit")},
+                         {volume, tr("Ctrl + left drag"), tr("turn the light")},
+                         {volume, tr("Left drag of a clip handle; with Shift"), tr("cut; move the whole slab")},
+                         {volume, tr("Esc"), tr("give up a drag")}});
+    add("keysAction", tr("&Help"), tr("&Mouse and keys"), QKeySequence("F1"),
+        [this] { KeysDialog(m_bench->actions(), this).exec(); });
+    add("aboutAction", tr("&Help"), tr("&About Pellucid"), {}, [this] {
+        QMessageBox::about(this, tr("About Pellucid"),
+                           tr("<b>Pellucid %1</b><br>The volume explorer that finds the transfer function for you.")
+                               .arg(QApplication::applicationVersion()));
+    });
+    add("quitAction", tr("&File"), tr("&Quit"), QKeySequence("Ctrl+Q"), [] { QApplication::closeAllWindows(); });
+}
+
+void MainWindow::restoreLayout() {
+    const QSettings settings;
+    restoreGeometry(settings.value("geometry").toByteArray());
+    restoreState(settings.value("windowState").toByteArray());
+}
+
+void MainWindow::welcome() {
+    if (!WelcomeCard::isWanted()) return;
+    auto* card = new WelcomeCard(centralWidget());
+    m_row->insertWidget(0, card); // beside the picture, of which it hides nothing
+    card->show();
+    // Another volume: it is no sample any more, and the first thing to try has been done.
+    connect(&m_bench->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
+        if (before.series && before.series != after.series) card->dismiss();
+    });
+}
+
+bool MainWindow::isSettled() const { return m_bench->isIdle() && m_views->isComplete(); }
+
+void MainWindow::updateTitle() {
+    SessionStore& store = m_bench->store();
+    if (!store.hasVolume()) return setWindowTitle(tr("Pellucid"));
+    const QString title = QString::fromStdString(store.scene().volume->title), file = m_bench->opening().sessionPath();
+    setWindowTitle(file.isEmpty() ? tr("%1[*] – Pellucid").arg(title)
+                                  : tr("%1 – %2[*] – Pellucid").arg(title, QFileInfo(file).fileName()));
+    setWindowModified(!store.isClean());
+}
+
+void MainWindow::changeEvent(QEvent* event) {
+    QMainWindow::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange) m_bench->actions().refresh(); // the theme, perhaps by another window
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+    m_bench->optimizing().cancel();
+    if (!m_bench->saving().maybeSave()) return event->ignore();
+    m_bench->recovery().discard();
+    m_bench->opening().cancel();
+    m_bench->saving().cancel();
+    QSettings settings;
+    settings.setValue("geometry", saveGeometry());
+    settings.setValue("windowState", saveState());
+    event->accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+    const QList<QUrl> urls = event->mimeData()->urls();
+    if (!urls.isEmpty() && urls.front().isLocalFile()) event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+    QStringList paths;
+    for (const QUrl& url : event->mimeData()->urls())
+        if (url.isLocalFile()) paths << url.toLocalFile();
+    if (paths.isEmpty()) return;
+    event->acceptProposedAction();
+    // In a later turn: a dialog must not keep the program waiting that the file was dragged from.
+    QMetaObject::invokeMethod(
+        this, [this, paths] { m_bench->opening().openPaths(paths); }, Qt::QueuedConnection);
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,53 @@
+// The frame: the picture in the middle, the panels around it, menus and status line. What happens, happens elsewhere.
+#pragma once
+
+#include <memory>
+
+#include <QMainWindow>
+
+#include "services/workbench.h"
+#include "view/view_grid.h"
+#include "view/volume_view.h"
+
+class QHBoxLayout;
+
+namespace pellucid::gui {
+
+class MainWindow : public QMainWindow {
+    Q_OBJECT
+public:
+    explicit MainWindow(ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr);
+    ~MainWindow() override;
+
+    Workbench& workbench() { return *m_bench; }
+    VolumeView& view() { return *m_view; }
+    ViewGrid& views() { return *m_views; }
+
+    /// Size, place and docks as the last window was closed with.
+    void restoreLayout();
+    /// A card beside the picture, if nobody has dismissed it: for a start on a sample.
+    void welcome();
+    /// The picture is as good as it gets, the figures are of the present state, and nothing is under way.
+    bool isSettled() const;
+
+Q_SIGNALS:
+    void settledChanged(); ///< isSettled() may have changed
+
+protected:
+    void changeEvent(QEvent* event) override;
+    void closeEvent(QCloseEvent* event) override;
+    void dragEnterEvent(QDragEnterEvent* event) override;
+    void dropEvent(QDropEvent* event) override;
+
+private:
+    void addPanels();
+    void addHelpActions();
+    void updateTitle();
+
+    std::unique_ptr<Workbench> m_bench;
+    VolumeView* m_view;
+    ViewGrid* m_views;  // with m_view in it
+    QHBoxLayout* m_row; // with m_views in it
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,57 @@
+#include "frame/notice_bar.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+namespace pellucid::gui {
+
+NoticeBar::NoticeBar(Notices& notices, QWidget* parent)
+    : QFrame(parent), m_notices(notices), m_label(new QLabel(this)), m_rows(new QVBoxLayout) {
+    setObjectName("noticeBar");
+    m_label->setObjectName("noticeText");
+    m_label->setWordWrap(true);
+    m_label->setTextFormat(Qt::PlainText);
+    m_label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    auto* close = new QToolButton(this);
+    close->setObjectName("noticeClose");
+    close->setText(QString(QChar(0x2715)));
+    close->setAutoRaise(true);
+    close->setToolTip(tr("Dismiss"));
+    connect(close, &QToolButton::clicked, &m_notices, &Notices::clear);
+    auto* row = new QHBoxLayout(this);
+    row->setContentsMargins(12, 5, 6, 5);
+    row->addWidget(m_label, 1);
+    row->addLayout(m_rows);
+    row->addWidget(close, 0, Qt::AlignTop);
+    connect(&notices, &Notices::changed, this, &NoticeBar::refresh);
+    refresh();
+}
+
+void NoticeBar::refresh() {
+    QStringList texts;
+    while (QLayoutItem* item = m_rows->takeAt(0)) {
+        if (item->widget() != nullptr) item->widget()->deleteLater(); // it may be the button that was clicked
+        delete item;
+    }
+    int number = 0;
+    for (const Notice& notice : m_notices.all()) {
+        texts << notice.text;
+        for (const Notice::Choice& choice : notice.choices) {
+            auto* button = new QPushButton(choice.text, this);
+            button->setObjectName(QStringLiteral("noticeChoice%1").arg(number++));
+            button->setToolTip(notice.text);
+            connect(button, &QPushButton::clicked, &m_notices, [this, text = notice.text, act = choice.act] {
+                m_notices.remove(text);
+                act();
+            });
+            m_rows->addWidget(button);
+        }
+    }
+    m_label->setText(texts.join('\n'));
+    setVisible(!texts.isEmpty());
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,142 @@
+#include "frame/status_line.h"
+
+#include <QLabel>
+#include <QProgressBar>
+#include <QStatusBar>
+#include <QToolButton>
+
+#include "controllers/open_controller.h"
+#include "controllers/optimize_controller.h"
+#include "controllers/save_controller.h"
+#include "render/camera_motion.h"
+#include "services/workbench.h"
+#include "view/volume_view.h"
+#include "volume/orientation.h"
+#include "widgets/number_text.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kMessageTime = 4000; // milliseconds
+
+} // namespace
+
+StatusLine::StatusLine(Workbench& bench, VolumeView& view, QStatusBar& bar)
+    : QObject(&bar), m_bench(bench), m_view(view), m_bar(bar), m_volume(new QLabel(&bar)), m_camera(new QLabel(&bar)),
+      m_renderer(new QLabel(&bar)), m_engine(new QLabel(&bar)), m_background(new QLabel(&bar)),
+      m_progress(new QProgressBar(&bar)), m_cancel(new QToolButton(&bar)) {
+    m_volume->setObjectName("volumeLabel");
+    m_camera->setObjectName("cameraLabel");
+    m_renderer->setObjectName("rendererLabel");
+    m_engine->setObjectName("engineLabel");
+    m_camera->setToolTip(tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
+                            "volume fits): what pellucid-cli takes as --view"));
+    m_engine->setToolTip(tr("What computes visibility and VWS"));
+    m_background->setObjectName("backgroundLabel");
+    m_progress->setObjectName("backgroundProgress");
+    m_progress->setMaximumSize(160, 14);
+    m_progress->setTextVisible(false);
+    m_cancel->setObjectName("backgroundCancel");
+    m_cancel->setText(tr("Cancel"));
+    bar.addWidget(m_background);
+    bar.addWidget(m_progress);
+    bar.addWidget(m_cancel);
+    for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine}) bar.addPermanentWidget(label);
+
+    OpenController& opening = bench.opening();
+    SaveController& saving = bench.saving();
+    connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving] {
+        opening.cancel();
+        saving.cancel();
+    });
+    const auto showProgress = [this](double fraction) {
+        m_progress->setRange(0, 100);
+        m_progress->setValue(static_cast<int>(100 * fraction));
+    };
+    const auto sayCancelled = [this] { m_bar.showMessage(tr("Cancelled"), kMessageTime); };
+    connect(&opening, &OpenController::progress, this, showProgress);
+    connect(&saving, &SaveController::progress, this, showProgress);
+    connect(&opening, &OpenController::cancelled, this, sayCancelled);
+    connect(&saving, &SaveController::cancelled, this, sayCancelled);
+    connect(&opening, &OpenController::busyChanged, this, &StatusLine::followBackground);
+    connect(&saving, &SaveController::busyChanged, this, &StatusLine::followBackground);
+    connect(&bench, &Workbench::message, this, [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
+    connect(&bench.store(), &SessionStore::changed, this, &StatusLine::followScene);
+    connect(&bench.results(), &Results::changed, this, &StatusLine::followFigures);
+    connect(&bench.optimizing(), &OptimizeController::runningChanged, this, &StatusLine::followFigures);
+    connect(&view, &VolumeView::frameShown, this, &StatusLine::followView);
+    followBackground();
+    followScene();
+}
+
+void StatusLine::followScene() {
+    if (!m_bench.store().hasVolume()) return;
+    const Scene& scene = m_bench.scene();
+    const Volume& volume = *scene.volume;
+    QString text = QStringLiteral("%1×%2×%3 %4")
+                       .arg(volume.dims().x)
+                       .arg(volume.dims().y)
+                       .arg(volume.dims().z)
+                       .arg(QString::fromLatin1(name(volume.sampleType())));
+    if (scene.series->varies())
+        text += tr(", %1 (%L2 of %L3)")
+                    .arg(QString::fromStdString(scene.series->listing().label(scene.session.frame)))
+                    .arg(scene.session.frame + 1)
+                    .arg(scene.series->size());
+    m_volume->setText(text);
+    m_volume->setToolTip(tr("%1, values %2, spacing %3 × %4 × %5, %L6 invalid voxels\naxes: %7")
+                             .arg(QString::fromStdString(volume.format), rangeText(volume.dataRange()))
+                             .arg(volume.geometry().spacing.x)
+                             .arg(volume.geometry().spacing.y)
+                             .arg(volume.geometry().spacing.z)
+                             .arg(volume.invalidCount())
+                             .arg(QString::fromStdString(axesText(volume.geometry()))));
+    const ViewAngles angles = viewAngles(scene.camera, volume.geometry());
+    m_camera->setText(QStringLiteral("%1°, %2°  ×%3")
+                          .arg(angles.azimuth, 0, 'f', 0)
+                          .arg(angles.elevation, 0, 'f', 0)
+                          .arg(angles.zoom, 0, 'f', 2));
+    followView();
+    followFigures();
+}
+
+void StatusLine::followView() {
+    m_renderer->setToolTip(tr("What draws the picture, and how well: pixels, smallest distance of the samples along "
+                              "a ray.\n%1")
+                               .arg(m_view.rendererReason()));
+    const FrameInfo& frame = m_view.frame();
+    const QString quality = frame.complete              ? tr("step %1 d0").arg(stepText(frame.stepInD0))
+                            : frame.resolutionScale < 1 ? tr("coarse")
+                                                        : tr("being refined");
+    m_renderer->setText(
+        QStringLiteral("%1  %2×%3  %4").arg(m_view.rendererName()).arg(frame.width).arg(frame.height).arg(quality));
+}
+
+void StatusLine::followFigures() {
+    const Results& results = m_bench.results();
+    if (m_bench.optimizing().isRunning()) {
+        m_engine->setText(tr("optimizing"));
+        return;
+    }
+    switch (results.state()) {
+    case Results::State::Nothing:
+        return m_engine->clear();
+    case Results::State::Measuring:
+        return m_engine->setText(tr("measuring"));
+    case Results::State::Current:
+        return m_engine->setText(tr("measured: %1").arg(results.engineName()));
+    case Results::State::Failed:
+        return m_engine->setText(tr("not measured"));
+    }
+}
+
+void StatusLine::followBackground() {
+    const bool opening = m_bench.opening().isBusy(), busy = opening || m_bench.saving().isBusy();
+    const QString text = opening ? m_bench.opening().busyText() : m_bench.saving().busyText();
+    if (busy && (m_cancel->isHidden() || text != m_background->text())) m_progress->setRange(0, 0);
+    m_background->setText(text);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_background, m_progress, m_cancel})
+        widget->setVisible(busy);
+}
+
+} // namespace pellucid::gui

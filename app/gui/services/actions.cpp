@@ -1,0 +1,125 @@
+#include "services/actions.h"
+
+#include <algorithm>
+
+#include <QMainWindow>
+#include <QMenu>
+#include <QMenuBar>
+#include <QToolBar>
+
+namespace pellucid::gui {
+namespace {
+
+QString plain(QString text) {
+    text.remove('&');
+    while (text.endsWith(QChar(0x2026))) text.chop(1);
+    return text;
+}
+
+QString keysText(const QList<QKeySequence>& keys) {
+    QStringList all;
+    for (const QKeySequence& key : keys) all << key.toString(QKeySequence::NativeText);
+    return all.join(", ");
+}
+
+QString tipOf(const ActionSpec& spec, const QString& text) {
+    const QString head = spec.tip.isEmpty() ? plain(text) : spec.tip;
+    return spec.keys.isEmpty() ? head : QStringLiteral("%1 (%2)").arg(head, keysText(spec.keys));
+}
+
+} // namespace
+
+Actions::Actions(QObject* parent) : QObject(parent) {}
+
+QAction* Actions::add(ActionSpec spec) {
+    auto* action = new QAction(spec.text, this);
+    action->setObjectName(spec.id);
+    action->setShortcuts(spec.keys);
+    action->setToolTip(tipOf(spec, spec.text));
+    action->setStatusTip(spec.tip);
+    action->setCheckable(static_cast<bool>(spec.checked));
+    connect(action, &QAction::triggered, this, [this, trigger = spec.trigger] {
+        if (trigger) trigger();
+        refresh(); // a check mark shows what is, not what was clicked
+    });
+    m_entries.push_back({std::move(spec), action});
+    return action;
+}
+
+void Actions::addGestures(std::vector<Gesture> gestures) {
+    m_gestures.insert(m_gestures.end(), gestures.begin(), gestures.end());
+}
+
+QAction* Actions::find(const QString& id) const {
+    const auto at = std::find_if(m_entries.begin(), m_entries.end(), [&](const Entry& e) { return e.spec.id == id; });
+    return at == m_entries.end() ? nullptr : at->action;
+}
+
+void Actions::refresh() {
+    for (const Entry& e : m_entries) {
+        if (e.spec.enabled) e.action->setEnabled(e.spec.enabled());
+        if (e.spec.checked) e.action->setChecked(e.spec.checked());
+        if (e.spec.caption) e.action->setText(e.spec.caption());
+        if (!e.spec.say) continue;
+        e.action->setToolTip(tipOf(e.spec, e.spec.say()));
+        e.action->setStatusTip(e.spec.say());
+    }
+}
+
+QMenu* Actions::menuAt(QMainWindow& window, const QString& path) {
+    const auto known = std::find_if(m_menus.begin(), m_menus.end(), [&](const auto& m) { return m.first == path; });
+    if (known != m_menus.end()) return known->second;
+    const auto slash = path.lastIndexOf('/');
+    const QString name = path.mid(slash + 1);
+    QMenu* menu = slash < 0 ? window.menuBar()->addMenu(name) : menuAt(window, path.left(slash))->addMenu(name);
+    menu->setObjectName(plain(name).toLower().replace(' ', '_') + "Menu");
+    menu->setToolTipsVisible(true);
+    m_menus.emplace_back(path, menu);
+    return menu;
+}
+
+QMenu* Actions::menu(const QString& path) const {
+    const auto known = std::find_if(m_menus.begin(), m_menus.end(), [&](const auto& m) { return m.first == path; });
+    return known == m_menus.end() ? nullptr : known->second;
+}
+
+void Actions::build(QMainWindow& window) {
+    auto* bar = new QToolBar(tr("Tools"), &window);
+    bar->setObjectName("viewToolBar");
+    bar->setMovable(false);
+    QString barGroup;
+    for (const Entry& e : m_entries) {
+        e.action->setParent(&window);
+        if (!e.spec.menu.isEmpty()) {
+            QMenu* menu = menuAt(window, e.spec.menu);
+            if (e.spec.separatorBefore) menu->addSeparator();
+            menu->addAction(e.action);
+        } else {
+            window.addAction(e.action); // its keys work all the same
+        }
+        if (!e.spec.inToolBar) continue;
+        if (!bar->actions().isEmpty() && barGroup != e.spec.menu) bar->addSeparator();
+        barGroup = e.spec.menu;
+        bar->addAction(e.action);
+    }
+    window.addToolBar(bar);
+    refresh();
+}
+
+QString Actions::keyTable(const QString& text) const {
+    QString rows, place;
+    const auto row = [&](const QString& at, const QString& how, const QString& what) {
+        if (!how.contains(text, Qt::CaseInsensitive) && !what.contains(text, Qt::CaseInsensitive)) return;
+        if (at != place)
+            rows += QStringLiteral("<tr><td colspan=2><b>%1</b></td></tr>").arg((place = at).toHtmlEscaped());
+        rows += QStringLiteral("<tr><td>%1&nbsp;&nbsp;</td><td>%2</td></tr>")
+                    .arg(how.toHtmlEscaped(), what.toHtmlEscaped());
+    };
+    for (const Gesture& g : m_gestures) row(g.place, g.how, g.what);
+    for (const Entry& e : m_entries)
+        if (!e.spec.keys.isEmpty() && e.spec.inKeyTable)
+            row(plain(e.spec.menu.section('/', 0, 0)), keysText(e.spec.keys), plain(e.action->text()));
+    return QStringLiteral("<table cellpadding=2>%1</table>").arg(rows);
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,53 @@
+// The colours of the transfer function along the intensity axis: a click prioritizes an intensity.
+#pragma once
+
+#include <optional>
+
+#include <QWidget>
+
+#include "tf/tf_canvas.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// A click refines for the intensity under the mouse (thesis 3.4.3), a drag goes on doing so. The marker shows what is
+/// prioritized.
+class PaletteBar : public QWidget {
+    Q_OBJECT
+public:
+    /// Lies below `canvas`, as wide, and follows its axis.
+    PaletteBar(Workbench& bench, TfCanvas& canvas, QWidget* parent = nullptr);
+
+    /// The middle of the place of an intensity, widget pixels.
+    QPointF positionOf(double intensity) const;
+
+    QSize sizeHint() const override { return {300, 30}; }
+    QSize minimumSizeHint() const override { return {100, 30}; }
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void contextMenuEvent(QContextMenuEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void leaveEvent(QEvent* event) override;
+    void focusInEvent(QFocusEvent* event) override;
+    void focusOutEvent(QFocusEvent* event) override;
+    bool event(QEvent* event) override;
+
+private:
+    QRectF strip() const;
+    double intensityAt(const QPointF& position) const;
+    QString valueText(double intensity) const;
+    std::optional<double> marked() const;
+    bool isReady() const;
+
+    Workbench& m_bench;
+    TfCanvas& m_canvas;
+    bool m_dragging = false;
+    std::optional<double> m_hovered;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,175 @@
+// The curve of the transfer function over the histogram, edited with the mouse.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <QImage>
+#include <QPainterPath>
+#include <QWidget>
+
+#include "services/results.h"
+#include "services/selection.h"
+#include "store/session_store.h"
+#include "tf/histogram_bars.h"
+#include "tf/intensity_axis.h"
+#include "tf/point_selection.h"
+#include "tf/volume_counts.h"
+#include "widgets/opacity_axis.h"
+
+class QMenu;
+
+namespace pellucid::gui {
+
+/// Where things of the plane (intensity, opacity) are drawn, widget pixels.
+class CanvasGeometry {
+public:
+    virtual ~CanvasGeometry() = default;
+    virtual QRectF plot() const = 0;
+    virtual QPointF positionOf(double x, double opacity) const = 0;
+    /// The curve of a transfer function: what is straight in opacity is bent where the axis is.
+    virtual QPainterPath curveOf(const TransferFunction& tf) const = 0;
+};
+
+/// Something drawn behind the curve and over the histogram, by whoever knows of it. The painter is clipped to the plot.
+class CanvasLayer {
+public:
+    virtual ~CanvasLayer() = default;
+    virtual void paint(QPainter& painter, const CanvasGeometry& where) = 0;
+};
+
+/// Every finished drag is one undo step; while the mouse is down the store previews.
+class TfCanvas : public QWidget, public CanvasGeometry {
+    Q_OBJECT
+public:
+    TfCanvas(SessionStore& store, Results& results, Selection& selection, QWidget* parent = nullptr);
+
+    void setHistogramScale(HistogramScale scale);
+    HistogramScale histogramScale() const { return m_scale; }
+    /// Behind the curve: how often intensities meet gradient magnitudes.
+    void setJointHistogramShown(bool on);
+    /// See OpacityAxis; on at first.
+    void setFineOpacityAxis(bool on);
+    bool isFineOpacityAxis() const { return m_opacityAxis.isFine(); }
+    void setReadOnly(bool on);
+    /// What values are in, such as "HU"; empty: not known.
+    void setUnit(const QString& unit);
+
+    const PointSelection& selectedPoints() const { return m_points; }
+    void selectPoints(const PointSelection& points);
+    int selectedPoint() const { return m_points.current(); } ///< −1: none
+    void selectPoint(int index);                             ///< alone
+    void addPoint(double x, double opacity);
+    void removeSelected();
+    void toggleFixed();
+    void chooseColor();
+
+    QPointF positionOf(double x, double opacity) const override;
+    QRectF plot() const override;
+    QPainterPath curveOf(const TransferFunction& tf) const override;
+    IntensityAxis& axis() { return m_axis; }
+    /// In the order of adding; who adds calls update() when it looks different.
+    void addLayer(std::unique_ptr<CanvasLayer> layer) { m_layers.push_back(std::move(layer)); }
+    QRectF barOf(const Feature& feature) const; ///< above the plot, as far as it is seen; empty: not at all
+
+    /// What is at the hovered intensity: value, opacity, voxels, feature. Empty where nothing is hovered.
+    QString readout() const;
+    /// A histogram is being counted that will be shown.
+    bool isCounting() const { return m_counts.isBusy(); }
+
+    QSize sizeHint() const override { return {640, 190}; }
+    QSize minimumSizeHint() const override { return {300, 130}; }
+
+Q_SIGNALS:
+    /// The selected points, or which of them is the current one.
+    void selectionChanged(int current);
+    /// A context menu is about to open at an intensity, which is the hovered one while it is open; `feature` 0: none
+    /// is there. Others may add to it; on a feature's bar it is empty so far.
+    void menuOpening(QMenu& menu, double intensity, pellucid::FeatureId feature);
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+    void contextMenuEvent(QContextMenuEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void leaveEvent(QEvent* event) override;
+    void changeEvent(QEvent* event) override;
+    bool event(QEvent* event) override;
+
+private:
+    enum class Zone { None, Plot, Bars, Axis, Overview };
+    enum class Part { Middle, Lower, Upper }; // of a feature's bar
+    struct BarHit {
+        int feature = 0;
+        Part part = Part::Middle;
+    };
+    struct Drag {
+        enum class Kind { Points, Band, Pan, Overview, Feature };
+        Kind kind = Kind::Points;
+        QPointF pressed, last; // the mouse
+        QPointF at;            // the mouse, had it moved as slowly as Ctrl makes it
+        bool moved = false;
+        TransferFunction start = {};
+        int index = 0;              // of the point or feature
+        Part part = Part::Middle;   // of the feature's bar
+        PointSelection before = {}; // of Band: what was selected; of Points: what a click without motion selects
+        double lo = 0;              // of Pan, Overview: the axis then
+
+        bool edits() const { return kind == Kind::Points || kind == Kind::Feature; }
+    };
+
+    Zone zoneAt(const QPointF& position) const;
+    QRectF overviewTrack() const;
+    double intensityAt(double pixelX) const;
+    double opacityAt(double pixelY) const;
+    std::vector<int> pointsAt(const QPointF& position) const; ///< the nearest first
+    int pointAt(const QPointF& position) const;               ///< −1: none
+    std::optional<BarHit> barAt(const QPointF& position) const;
+    QString valueText(double x) const; ///< with its unit
+    QString toolTipAt(const QPointF& position) const;
+    SeenBins seenHistogram() const;
+    void follow(const Scene& before, const Scene& after);
+    const TransferFunction& tf() const { return m_store.scene().tf; }
+    void nudge(double dx, double dHeight);
+    void hover(const QPointF& position);
+    void dragPoints(const QPointF& to, bool alongAxis);
+    void dragFeature(const QPointF& to);
+    void selectBand(const QRectF& band);
+    void fillMenu(QMenu& menu, const QPointF& position);
+
+    struct Ink;
+    void paintJointHistogram(QPainter& painter, const Ink& ink);
+    void paintHistogram(QPainter& painter, const Ink& ink) const;
+    void paintVisibility(QPainter& painter, const Ink& ink) const;
+    void paintGradientAxis(QPainter& painter, const Ink& ink) const;
+    void paintAxes(QPainter& painter, const Ink& ink) const;
+    void paintOverview(QPainter& painter, const Ink& ink) const;
+    void paintFeatures(QPainter& painter, const Ink& ink) const;
+    void paintCurve(QPainter& painter, const Ink& ink) const;
+    void paintHair(QPainter& painter, const Ink& ink) const;
+    void paintPoints(QPainter& painter, const Ink& ink) const;
+    void paintTopLine(QPainter& painter, const Ink& ink) const;
+
+    SessionStore& m_store;
+    Results& m_results;
+    Selection& m_selection;
+    IntensityAxis m_axis;
+    OpacityAxis m_opacityAxis;
+    mutable VolumeCounts m_counts; // counts when asked
+    std::vector<std::unique_ptr<CanvasLayer>> m_layers;
+    HistogramScale m_scale = HistogramScale::Log;
+    bool m_showJoint = false, m_readOnly = false, m_menuOpen = false;
+    QString m_unit;
+    PointSelection m_points;
+    int m_hovered = -1;                 // a point
+    std::optional<BarHit> m_hoveredBar; // a feature's
+    std::optional<Drag> m_drag;
+    QImage m_jointImage; // null: to be made
+};
+
+} // namespace pellucid::gui

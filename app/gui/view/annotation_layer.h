@@ -1,0 +1,21 @@
+// The frame of reference over the picture in the window.
+#pragma once
+
+#include "view/view_overlay.h"
+
+namespace pellucid::gui {
+
+class FieldController;
+
+/// Draws what the session's FrameOfReference switches on, and title and legend of a field; takes no clicks.
+class AnnotationLayer : public OverlayLayer {
+public:
+    /// `fields` outlives this; null: the view shows the data.
+    explicit AnnotationLayer(const FieldController* fields = nullptr) : m_fields(fields) {}
+    void paint(QPainter& painter, const OverlayView& view) override;
+
+private:
+    const FieldController* m_fields;
+};
+
+} // namespace pellucid::gui

@@ -1,0 +1,57 @@
+// Handles of what is cut away, over the picture.
+#pragma once
+
+#include "render/clip_handles.h"
+#include "view/view_overlay.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// The box that is left with a handle on each face, and each oblique plane with one that moves and one that turns it.
+/// Drags are previews, so that picture and figures follow them.
+class ClipLayer : public OverlayLayer {
+public:
+    ClipLayer(Workbench& bench, QWidget& overlay) : m_bench(bench), m_overlay(overlay) {}
+
+    bool isShown() const { return m_shown; }
+    void setShown(bool shown);
+
+    void paint(QPainter& painter, const OverlayView& view) override;
+    Qt::CursorShape cursorAt(const QPointF& point, const OverlayView& view) override;
+    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
+    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
+    void release() override;
+    void cancel() override;
+
+private:
+    enum class Kind { None, Face, Plane, Tip };
+    struct Handle {
+        Kind kind = Kind::None;
+        int index = 0;      ///< axis of a face, else of Clipping::planes
+        bool upper = false; ///< of faces
+        bool operator==(const Handle&) const = default;
+    };
+    struct Placed {
+        Handle handle;
+        QPointF at;
+        double depth;
+    };
+    std::vector<Placed> handles(const OverlayView& view) const; ///< the nearest to the viewer last
+    Handle handleAt(const QPointF& point, const OverlayView& view) const;
+    void paintBox(QPainter& painter, const OverlayView& view) const;
+    void paintPlanes(QPainter& painter, const OverlayView& view) const;
+    Clipping dragged(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) const;
+
+    Workbench& m_bench;
+    QWidget& m_overlay;
+    bool m_shown = false;
+    Handle m_hovered, m_held;
+    QPointF m_from;
+    Clipping m_start; ///< when the handle was taken
+};
+
+/// The layer over the view, and the action "Show clip handles".
+void addClipHandles(Workbench& bench, ViewOverlay& overlay);
+
+} // namespace pellucid::gui

@@ -1,0 +1,234 @@
+#include "view/cpu_surface.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <vector>
+
+#include <QCursor>
+#include <QPainter>
+
+#include "render/image_renderer.h"
+#include "widgets/theme.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr double kFrameSeconds = 0.045; ///< that a picture may take while the scene changes
+constexpr int kRest = 120;              ///< milliseconds without a change, before the full picture is begun
+constexpr int kGrowEvery = 40;          ///< milliseconds between looks at what has grown
+/// Of the picture before the last. Rays one pixel apart, samples one voxel apart: what lies between two samples counts
+/// in full, by running integrals.
+constexpr double kFullStep = 1, kCoarsestStep = 3;
+constexpr double kCoarsest = 0.5, kLastResort = 0.2; ///< rays per pixel along each axis
+
+/// Opaque pixels of a part of `from` into the same place of `to`.
+void convert(const Image& from, const ImagePart& part, QImage& to) {
+    const auto byte = [](float v) { return static_cast<unsigned>(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f); };
+    for (int y = part.y0; y < part.y1; ++y) {
+        const float* pixel = from.pixel(part.x0, y);
+        auto* line = reinterpret_cast<QRgb*>(to.scanLine(y));
+        for (int x = part.x0; x < part.x1; ++x, pixel += 4)
+            line[x] = 0xff000000u | byte(pixel[0]) << 16 | byte(pixel[1]) << 8 | byte(pixel[2]);
+    }
+}
+
+} // namespace
+
+struct CpuSurface::Shared {
+    std::mutex mutex;
+    std::shared_ptr<const Volume> volume;
+    std::unique_ptr<TileRenderer> renderer;
+};
+
+/// A picture while it is drawn that grows: one thread adds parts, the window's takes them.
+struct CpuSurface::Growing {
+    std::mutex mutex;
+    QImage pixels;
+    std::vector<ImagePart> ready; ///< not yet taken
+};
+
+CpuSurface::CpuSurface(QWidget* parent)
+    : QWidget(parent), m_renderer(std::make_shared<Shared>()),
+      m_job([shared = m_renderer](const Task& task, const JobControl& job) { return drawn(*shared, task, job); },
+            [this](const Task& task, Picture& picture) { show(task, picture); }) {
+    setObjectName("cpuSurface");
+    m_idle.setSingleShot(true);
+    m_idle.setInterval(kRest);
+    m_grow.setInterval(kGrowEvery);
+    connect(&m_idle, &QTimer::timeout, this, [this] { draw(m_next); });
+    connect(&m_grow, &QTimer::timeout, this, &CpuSurface::takeGrown);
+    connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
+        m_grow.stop();
+        if (onFailure) onFailure(error);
+    });
+}
+
+CpuSurface::~CpuSurface() = default;
+
+CpuSurface::Picture CpuSurface::drawn(Shared& shared, const Task& task, const JobControl& job) {
+    const std::lock_guard lock(shared.mutex);
+    job.throwIfStopped();
+    if (shared.volume != task.input.volume) {
+        shared.renderer = makeCpuRenderer(task.input.volume);
+        shared.volume = task.input.volume;
+    }
+    const PictureInput& in = task.input;
+    const auto begin = std::chrono::steady_clock::now();
+    Picture picture;
+    if (task.growing) {
+        Image image(in.settings.width, in.settings.height);
+        shared.renderer->refine(
+            in.camera, in.tf, in.settings, image, task.focus.x(), task.focus.y(),
+            [&](const ImagePart& part) {
+                const std::lock_guard growing(task.growing->mutex);
+                convert(image, part, task.growing->pixels);
+                task.growing->ready.push_back(part);
+            },
+            job);
+    } else {
+        const Image image = shared.renderer->preview(in.camera, in.tf, in.settings, task.plan.scale, job);
+        picture.image = QImage(image.width, image.height, QImage::Format_RGB32);
+        convert(image, {0, 0, image.width, image.height}, picture.image);
+    }
+    picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return picture;
+}
+
+/// Half the resolution before longer steps, and less than that where nothing else helps. `samples`: of those of a full
+/// picture.
+CpuSurface::Plan CpuSurface::planFor(double samples) {
+    Plan plan{std::clamp(std::sqrt(samples), kCoarsest, 1.0), kFullStep, {}};
+    plan.stepInD0 = std::clamp(kFullStep * plan.scale * plan.scale / samples, kFullStep, kCoarsestStep);
+    if (plan.stepInD0 == kCoarsestStep)
+        plan.scale = std::clamp(std::sqrt(samples * kCoarsestStep / kFullStep), kLastResort, plan.scale);
+    return plan;
+}
+
+void CpuSurface::setScene(const PictureInput& scene) {
+    if (scene == m_scene) return;
+    // From one frame of a series to the next the old picture stays until the new one is there.
+    const bool otherData = !scene.volume || !m_scene.volume || scene.volume->title != m_scene.volume->title ||
+                           scene.volume->dims() != m_scene.volume->dims();
+    const bool otherVolume = scene.volume != m_scene.volume;
+    m_scene = scene;
+    if (otherVolume && otherData) { // nothing of the old one may be seen any more
+        m_job.cancel();
+        m_growing.reset();
+        m_picture = {};
+        update();
+    }
+    restart();
+}
+
+void CpuSurface::resizeEvent(QResizeEvent*) { restart(); }
+
+void CpuSurface::restart() {
+    m_frame.complete = false;
+    m_idle.stop();
+    m_grow.stop();
+    // A quick picture under way is let finish, else a steady drag would never show any.
+    if (m_job.isRunning() && !m_growing) {
+        m_again = true;
+        return;
+    }
+    draw(Stage::Quick);
+}
+
+void CpuSurface::draw(Stage stage) {
+    m_again = false;
+    m_growing.reset();
+    if (!m_scene.volume || width() <= 0 || height() <= 0) {
+        m_job.cancel();
+        m_picture = {};
+        update();
+        return;
+    }
+    const qreal ratio = devicePixelRatioF();
+    const QSize pixels(static_cast<int>(std::lround(width() * ratio)), static_cast<int>(std::lround(height() * ratio)));
+    const QPointF mouse = mapFromGlobal(QPointF(QCursor::pos()));
+    const QPointF focus = QRectF(rect()).contains(mouse) ? mouse : QRectF(rect()).center();
+    const RenderSettings& wanted = m_scene.settings;
+    const Plan plan = stage == Stage::Quick  ? planFor(m_samples)
+                      : stage == Stage::Full ? Plan{1, kFullStep, {}}
+                                             : Plan{1, wanted.stepInD0, wanted.finestInD0};
+    Task task{m_scene, pixels, stage, plan, (focus * ratio).toPoint(), {}};
+    RenderSettings& settings = task.input.settings;
+    settings.width = std::max(1, pixels.width());
+    settings.height = std::max(1, pixels.height());
+    settings.stepInD0 = task.plan.stepInD0;
+    settings.finestInD0 = task.plan.finestInD0;
+    if (!settings.background) settings.background = Rgb{};
+    if (stage != Stage::Quick) {
+        // It grows over the one before.
+        QImage under(pixels, QImage::Format_RGB32);
+        QPainter painter(&under);
+        painter.setRenderHint(QPainter::SmoothPixmapTransform);
+        painter.drawImage(QRectF(QPointF(), m_target), m_picture);
+        painter.end();
+        m_picture = std::move(under);
+        m_target = QSizeF(pixels);
+        m_growing = std::make_shared<Growing>();
+        m_growing->pixels = QImage(pixels, QImage::Format_RGB32);
+        task.growing = m_growing;
+        m_grow.start();
+    }
+    m_job.start(std::move(task), tr("the picture"));
+}
+
+void CpuSurface::takeGrown() {
+    if (!m_growing) return;
+    const std::lock_guard lock(m_growing->mutex);
+    if (m_growing->ready.empty()) return;
+    const qreal ratio = devicePixelRatioF();
+    for (const ImagePart& part : m_growing->ready) {
+        for (int y = part.y0; y < part.y1; ++y) {
+            const auto* from = reinterpret_cast<const QRgb*>(m_growing->pixels.constScanLine(y));
+            std::copy(from + part.x0, from + part.x1, reinterpret_cast<QRgb*>(m_picture.scanLine(y)) + part.x0);
+        }
+        update(QRectF(part.x0 / ratio, part.y0 / ratio, (part.x1 - part.x0) / ratio, (part.y1 - part.y0) / ratio)
+                   .toAlignedRect());
+    }
+    m_growing->ready.clear();
+}
+
+void CpuSurface::show(const Task& task, const Picture& picture) {
+    m_frame = {task.pixels.width(),
+               task.pixels.height(),
+               task.plan.scale,
+               task.input.settings.smallestStep(),
+               task.stage == Stage::Finished && !m_again,
+               task.input.volume.get()};
+    const bool full = task.stage == Stage::Full || (task.plan.scale == 1 && task.plan.stepInD0 == kFullStep);
+    m_next = full ? Stage::Finished : Stage::Full;
+    if (task.growing) {
+        takeGrown();
+        m_grow.stop();
+        m_growing.reset();
+        if (task.stage == Stage::Full) draw(Stage::Finished);
+    } else {
+        m_picture = picture.image;
+        m_target = QSizeF(picture.image.size()) / task.plan.scale;
+        const double drawn = task.plan.scale * task.plan.scale * kFullStep / task.plan.stepInD0;
+        m_samples = std::clamp(drawn * kFrameSeconds / std::max(1e-4, picture.seconds), 0.01, 1.0);
+        if (m_again)
+            draw(Stage::Quick);
+        else
+            m_idle.start();
+    }
+    update();
+    if (onFrame) onFrame();
+}
+
+void CpuSurface::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    if (m_picture.isNull()) {
+        painter.fillRect(rect(), colorFromRgb(m_scene.settings.background.value_or(Rgb{})));
+        return;
+    }
+    painter.setRenderHint(QPainter::SmoothPixmapTransform);
+    painter.drawImage(QRectF(QPointF(), m_target / devicePixelRatioF()), m_picture);
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,76 @@
+// The picture drawn by the CPU renderer on threads: for machines without a GPU.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <QImage>
+#include <QTimer>
+#include <QWidget>
+
+#include "jobs/job.h"
+#include "view/view_surface.h"
+
+namespace pellucid::gui {
+
+/// While the scene changes: as fine as a frame's time allows, by what the last frame took. At rest the full picture
+/// grows from where the mouse points, and then over it the one that would be saved. Nothing is computed while nothing
+/// changes.
+class CpuSurface : public QWidget, public ViewSurface {
+    Q_OBJECT
+public:
+    explicit CpuSurface(QWidget* parent = nullptr);
+    ~CpuSurface() override;
+
+    QWidget* widget() override { return this; }
+    void setScene(const PictureInput& scene) override;
+    const FrameInfo& frame() const override { return m_frame; }
+    QString rendererName() const override { return tr("CPU"); }
+
+protected:
+    void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+
+private:
+    struct Shared; // with threads that have been cancelled but have not noticed yet
+    struct Growing;
+    enum class Stage { Quick, Full, Finished };
+    /// How finely a picture is drawn.
+    struct Plan {
+        double scale = 1;    ///< rays per pixel along each axis
+        double stepInD0 = 1; ///< between samples of a ray
+        std::optional<double> finestInD0;
+    };
+    struct Task {
+        PictureInput input;
+        QSize pixels; ///< of the widget
+        Stage stage;
+        Plan plan;
+        QPoint focus;                     ///< pixel from which a picture grows
+        std::shared_ptr<Growing> growing; ///< where it does; null: a quick picture
+    };
+    struct Picture {
+        QImage image; ///< null: what has grown is it
+        double seconds = 0;
+    };
+    static Picture drawn(Shared& shared, const Task& task, const JobControl& job);
+    static Plan planFor(double samples);
+    void restart();
+    void draw(Stage stage);
+    void show(const Task& task, const Picture& picture);
+    void takeGrown();
+
+    PictureInput m_scene;
+    std::shared_ptr<Shared> m_renderer;
+    std::shared_ptr<Growing> m_growing; ///< the picture under way that grows, null: none
+    QImage m_picture;                   ///< shown over m_target, device pixels
+    QSizeF m_target;
+    FrameInfo m_frame;
+    double m_samples = 0.25;    ///< that a quick picture can afford, of those of a full one; follows the time it takes
+    bool m_again = false;       ///< the scene changed while a coarse picture was being drawn
+    Stage m_next = Stage::Full; ///< when the scene rests
+    QTimer m_idle, m_grow;
+    Job<Task, Picture> m_job; // last: its threads end before the rest goes
+};
+
+} // namespace pellucid::gui

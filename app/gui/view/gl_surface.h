@@ -1,0 +1,79 @@
+// The picture drawn by the raycaster in the window's own OpenGL context.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <QElapsedTimer>
+#include <QOpenGLWidget>
+#include <QTimer>
+
+#include "view/view_surface.h"
+
+class QOpenGLFramebufferObject;
+
+namespace pellucid::gl {
+class VolumeRaycaster;
+}
+
+namespace pellucid::gui {
+
+/// Draws into a framebuffer of its own, at first coarsely within a time budget that it learns to keep, later strip by
+/// strip between the window's events, so that even a software OpenGL never makes the window wait.
+class GlSurface : public QOpenGLWidget, public ViewSurface {
+    Q_OBJECT
+public:
+    explicit GlSurface(QWidget* parent = nullptr);
+    ~GlSurface() override;
+
+    /// Whether this machine gives a context that can draw (OpenGL 4.3 core or later), and by what; tries one.
+    enum class Available { No, InSoftware, OnGpu };
+    static Available available(QString* renderer = nullptr);
+
+    QWidget* widget() override { return this; }
+    void setScene(const PictureInput& scene) override;
+    const FrameInfo& frame() const override { return m_frame; }
+    QString rendererName() const override { return m_rendererName; }
+
+protected:
+    void initializeGL() override;
+    void resizeGL(int width, int height) override;
+    void paintGL() override;
+
+private:
+    struct Plan {
+        double resolutionScale = 1, stepInD0 = 0.5;
+        std::optional<double> finestInD0;
+        bool operator==(const Plan&) const = default;
+    };
+    void releaseGl();
+    QSize pixelSize() const;
+    double samples(const Plan& plan) const; ///< estimated number of those of a whole picture
+    Plan quickPlan() const;
+    Plan fullPlan() const;
+    Plan finishedPlan() const; ///< as it would be saved
+    RenderSettings settings(const Plan& plan) const;
+    void prepareScene();
+    void drawQuick();
+    bool drawStrip(const Plan& plan); ///< from m_nextRow on; true: it was the last
+    void refine();
+    void finishFrame(const Plan& plan);
+    void fail(const Error& error);
+
+    PictureInput m_scene;
+    std::unique_ptr<gl::VolumeRaycaster> m_raycaster;
+    std::shared_ptr<const Volume> m_uploaded;
+    std::unique_ptr<QOpenGLFramebufferObject> m_picture;
+    bool m_software = true, m_failed = false;
+    QString m_rendererName;
+
+    bool m_dirty = true;               ///< the scene has changed since the picture was begun
+    double m_nanosecondsPerSample = 0; ///< as measured; 0: not yet
+    QTimer m_idle, m_next;             ///< until refining begins; to its next strip
+    bool m_finishing = false;          ///< the full picture is there, what is refined now is the one to be saved
+    int m_nextRow = 0;                 ///< first row that has not been refined
+    QElapsedTimer m_sinceShown;
+    FrameInfo m_frame;
+};
+
+} // namespace pellucid::gui

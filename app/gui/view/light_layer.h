@@ -1,0 +1,29 @@
+// The light that a hand turns, over the picture.
+#pragma once
+
+#include "view/view_overlay.h"
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// Ctrl + left drag turns the light like a ball, which is shown meanwhile. It goes on where it was off.
+class LightLayer : public OverlayLayer {
+public:
+    LightLayer(Workbench& bench, QWidget& overlay) : m_bench(bench), m_overlay(overlay) {}
+
+    void paint(QPainter& painter, const OverlayView& view) override;
+    bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
+    void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
+    void release() override;
+    void cancel() override;
+
+private:
+    Workbench& m_bench;
+    QWidget& m_overlay;
+    bool m_held = false;
+    QPointF m_from;
+    Vec3 m_start{0, 0, 1}; ///< where the light came from then
+};
+
+} // namespace pellucid::gui

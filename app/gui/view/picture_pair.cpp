@@ -1,0 +1,120 @@
+#include "view/picture_pair.h"
+
+#include <QGridLayout>
+#include <QLabel>
+
+#include "controllers/refine_controller.h"
+#include "services/workbench.h"
+#include "widgets/image_convert.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr int kRest = 150; // milliseconds without a change before both are drawn anew
+
+} // namespace
+
+PicturePair::PicturePair(Workbench& bench, QWidget* parent)
+    : QDialog(parent), m_bench(bench), m_words(new QLabel(this)), m_renderer(std::make_shared<KeptRenderer>()),
+      m_job(
+          [renderer = m_renderer](const Inputs& inputs, const JobControl& job) {
+              Pictures pictures;
+              for (std::size_t i = 0; i < inputs.size(); ++i)
+                  pictures[i] = qImageFromImage(renderer->render(inputs[i], job));
+              return pictures;
+          },
+          [this](const Inputs&, Pictures& pictures) {
+              m_pictures = std::move(pictures);
+              showPictures();
+          }) {
+    setObjectName("picturePair");
+    setWindowTitle(tr("Before and after refinement"));
+    setAttribute(Qt::WA_DeleteOnClose);
+    auto* grid = new QGridLayout(this);
+    grid->setContentsMargins(12, 12, 12, 12);
+    grid->setSpacing(8);
+    const char* const names[] = {"Before", "After"};
+    for (int i = 0; i < 2; ++i) {
+        auto* picture = m_labels[static_cast<std::size_t>(i)] = new QLabel(this);
+        picture->setObjectName(QStringLiteral("picture%1").arg(names[i]));
+        picture->setAlignment(Qt::AlignCenter);
+        picture->setMinimumSize(200, 150);
+        picture->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored); // it must not follow what it shows
+        picture->setAutoFillBackground(true);
+        picture->setBackgroundRole(QPalette::Base);
+        auto* caption = m_captions[static_cast<std::size_t>(i)] = new QLabel(this);
+        caption->setObjectName(QStringLiteral("caption%1").arg(names[i]));
+        caption->setAlignment(Qt::AlignCenter);
+        caption->setToolTip(tr("Energy: variance of the edge weights, summed over the edges with a movable end"));
+        grid->addWidget(picture, 0, i);
+        grid->addWidget(caption, 1, i);
+        grid->setColumnStretch(i, 1);
+    }
+    grid->setRowStretch(0, 1);
+    m_words->setObjectName("pairWords");
+    m_words->setAlignment(Qt::AlignCenter);
+    m_words->setWordWrap(true);
+    grid->addWidget(m_words, 2, 0, 1, 2);
+    resize(1000, 520);
+
+    m_wait.setSingleShot(true);
+    m_wait.setInterval(kRest);
+    connect(&m_wait, &QTimer::timeout, this, &PicturePair::start);
+    const auto again = [this] { m_wait.start(); };
+    connect(&bench.store(), &SessionStore::changed, this, [this, again](const Scene& before, const Scene& after) {
+        if (before.volume != after.volume) m_renderer->release();
+        again();
+    });
+    connect(&bench.refining(), &RefineController::refined, this, again);
+    connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
+        m_words->setText(tr("The pictures could not be drawn: %1").arg(QString::fromUtf8(error.what())));
+    });
+    m_wait.start();
+}
+
+PicturePair::~PicturePair() = default;
+
+void PicturePair::start() {
+    const Refinement* refinement = m_bench.refining().latest();
+    if (refinement == nullptr) { // of a volume that has gone
+        close();
+        return;
+    }
+    const QSize pixels = m_labels[0]->size() * devicePixelRatioF();
+    Scene scene = m_bench.scene();
+    Inputs inputs;
+    scene.tf = refinement->before;
+    inputs[0] = pictureInput(scene, std::max(1, pixels.width()), std::max(1, pixels.height()));
+    scene.tf = refinement->after;
+    inputs[1] = pictureInput(scene, std::max(1, pixels.width()), std::max(1, pixels.height()));
+    const auto energy = [](double value) { return QString::number(value, 'g', 3).replace('-', QChar(0x2212)); };
+    m_captions[0]->setText(tr("Before: energy %1").arg(energy(refinement->result.energyMovableBefore)));
+    m_captions[1]->setText(tr("After: energy %1").arg(energy(refinement->result.energyMovableAfter)));
+    m_words->setText(refinement->words);
+    if (m_pictures[0].isNull())
+        for (QLabel* label : m_labels) label->setText(tr("Being drawn…"));
+    m_job.start(std::move(inputs), tr("the pictures"));
+}
+
+void PicturePair::showPictures() {
+    for (std::size_t i = 0; i < m_pictures.size(); ++i) {
+        QPixmap pixmap = QPixmap::fromImage(m_pictures[i]);
+        pixmap.setDevicePixelRatio(devicePixelRatioF());
+        m_labels[i]->setPixmap(pixmap);
+    }
+}
+
+void PicturePair::resizeEvent(QResizeEvent* event) {
+    QDialog::resizeEvent(event);
+    m_wait.start();
+}
+
+void showPicturePair(Workbench& bench) {
+    auto* pair = bench.window()->findChild<PicturePair*>("picturePair");
+    if (pair == nullptr) pair = new PicturePair(bench, bench.window());
+    pair->show();
+    pair->raise();
+    pair->activateWindow();
+}
+
+} // namespace pellucid::gui

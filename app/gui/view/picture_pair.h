@@ -1,0 +1,53 @@
+// The picture before and after the latest refinement, beside each other.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include <QDialog>
+#include <QImage>
+#include <QTimer>
+
+#include "jobs/job.h"
+#include "session/scene.h"
+#include "widgets/kept_renderer.h"
+
+class QLabel;
+
+namespace pellucid::gui {
+
+class Workbench;
+
+/// Both are drawn by the CPU off this thread, from the present camera and in the present light, and follow camera,
+/// display and refinement while the window is open.
+class PicturePair : public QDialog {
+    Q_OBJECT
+public:
+    explicit PicturePair(Workbench& bench, QWidget* parent);
+    ~PicturePair() override;
+
+    bool isComplete() const { return !m_wait.isActive() && !m_job.isRunning() && !m_pictures[0].isNull(); }
+    const QImage& picture(int which) const { return m_pictures.at(static_cast<std::size_t>(which)); } ///< 0 before
+
+protected:
+    void resizeEvent(QResizeEvent* event) override;
+
+private:
+    using Inputs = std::array<PictureInput, 2>;
+    using Pictures = std::array<QImage, 2>;
+    void start();
+    void showPictures();
+
+    Workbench& m_bench;
+    std::array<QLabel*, 2> m_labels, m_captions;
+    QLabel* m_words;
+    Pictures m_pictures;
+    QTimer m_wait; ///< for the hand to rest
+    std::shared_ptr<KeptRenderer> m_renderer;
+    Job<Inputs, Pictures> m_job; // last: it ends before the rest goes
+};
+
+/// Shows the one of the window, which is made where there is none yet.
+void showPicturePair(Workbench& bench);
+
+} // namespace pellucid::gui

@@ -1,0 +1,552 @@
+#include "view/slice_pane.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QPainterPath>
+#include <QToolButton>
+#include <QWheelEvent>
+
+#include <glm/common.hpp>
+
+#include "controllers/slice_actions.h"
+#include "services/workbench.h"
+#include "tf/shown_tf.h"
+#include "volume/orientation.h"
+#include "widgets/image_convert.h"
+#include "widgets/number_text.h"
+#include "widgets/theme.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr double kFill = 0.94;         // of the view, by the whole plane
+constexpr double kTitle = 24;          // height of the strip that a double-click makes the view large on, pixels
+constexpr double kMargin = 7;          // of texts, pixels
+constexpr double kZoomPerNotch = 1.15; // as in the volume
+constexpr double kMostZoom = 64;
+constexpr double kWidthPixels = 100; // of a drag to the right that doubles the window of grey
+constexpr double kLevelPixels = 200; // of a drag upward that moves it by its width
+constexpr double kSlowSeconds = 0.04;
+constexpr float kDimmed = 0.35f; // of what is clipped away
+constexpr int kFarSteps = 10;    // with Shift
+
+void haloText(QPainter& painter, const QPointF& baseline, const QString& text, const QColor& color) {
+    QPainterPath path;
+    path.addText(baseline, painter.font(), text);
+    painter.strokePath(path, QPen(QColor(0, 0, 0, 190), 3, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+    painter.setPen(color);
+    painter.drawText(baseline, text);
+}
+
+void haloLine(QPainter& painter, const QLineF& line, const QColor& color) {
+    painter.setPen(QPen(QColor(0, 0, 0, 130), 2.6));
+    painter.drawLine(line);
+    painter.setPen(QPen(color, 1.2));
+    painter.drawLine(line);
+}
+
+const char* unitOf(const Geometry& geometry) { return geometry.frame == Frame::Patient ? "mm" : "units"; }
+
+} // namespace
+
+QColor slicePlaneColor(int worldAxis) {
+    // Red, green and blue as on the cube, of Okabe and Ito's hues.
+    static const std::array kColors{QColor(0xf0, 0x75, 0x3f), QColor(0x2f, 0xc0, 0x93), QColor(0x5f, 0xb8, 0xee)};
+    return kColors.at(static_cast<std::size_t>(worldAxis));
+}
+
+SlicePane::SlicePane(Workbench& bench, int worldAxis, Lane& lane, QWidget* parent)
+    : QWidget(parent), m_bench(bench), m_worldAxis(worldAxis), m_maximize(new QToolButton(this)),
+      m_job([](const Request& request, const JobControl&) { return drawn(request); },
+            [this](const Request& request, Drawn& result) { show(request, result); }, WhenBusy::FinishOld, &lane) {
+    const char axisLetter = "XYZ"[worldAxis];
+    setObjectName(QStringLiteral("slice%1").arg(QLatin1Char(axisLetter)));
+    setAccessibleName(tr("Slice across %1").arg(QLatin1Char(axisLetter)));
+    setFocusPolicy(Qt::StrongFocus);
+    setMouseTracking(true);
+    setContextMenuPolicy(Qt::PreventContextMenu);
+    setCursor(Qt::CrossCursor);
+    m_maximize->setObjectName(objectName() + "Maximize");
+    m_maximize->setAutoRaise(true);
+    m_maximize->setFocusPolicy(Qt::NoFocus);
+    m_maximize->setCursor(Qt::ArrowCursor);
+    m_maximize->setFixedSize(20, 20);
+    setMaximized(false);
+    connect(m_maximize, &QToolButton::clicked, this, &SlicePane::maximizeWanted);
+    connect(&bench.store(), &SessionStore::changed, this, &SlicePane::follow);
+}
+
+void SlicePane::setMaximized(bool on) {
+    QPixmap pixmap(32, 32);
+    pixmap.setDevicePixelRatio(2);
+    pixmap.fill(Qt::transparent);
+    QPainter painter(&pixmap);
+    painter.setPen(QPen(theme::kMark, 1.3));
+    painter.setBrush(QColor(0, 0, 0, 120));
+    painter.drawRect(on ? QRectF(5, 5, 6, 6) : QRectF(2.5, 2.5, 11, 11));
+    painter.end();
+    m_maximize->setIcon(pixmap);
+    m_maximize->setToolTip(on ? tr("All views again (double-click on the title)")
+                              : tr("This view alone (double-click on the title)"));
+}
+
+int SlicePane::axis() const {
+    const Geometry& geometry = m_bench.scene().volume->geometry();
+    for (int a = 0; a < 3; ++a)
+        if (sliceWorldAxis(geometry, a) == m_worldAxis) return a;
+    return m_worldAxis;
+}
+
+SlicePlane SlicePane::planeOfSize(int pixelsWide, int pixelsHigh) const {
+    const Geometry& geometry = m_bench.scene().volume->geometry();
+    SlicePlane plane;
+    plane.axis = axis();
+    plane.position = crosshairOf(m_bench.scene())[plane.axis];
+    plane.width = std::max(1, pixelsWide);
+    plane.height = std::max(1, pixelsHigh);
+    const SliceRect whole = fittedSlice(geometry, plane.axis, plane.width, plane.height);
+    const Vec2 center = m_center.value_or(0.5 * sliceSize(geometry, plane.axis));
+    const double w = whole.width / (kFill * m_zoom), h = whole.height / (kFill * m_zoom);
+    plane.shown = {center.x - w / 2, center.y - h / 2, w, h};
+    return plane;
+}
+
+SlicePlane SlicePane::plane() const { return planeOfSize(width(), height()); }
+
+void SlicePane::follow(const Scene& before, const Scene& after) {
+    if (before.series != after.series) {
+        m_motion = Motion::None;
+        m_zoom = 1;
+        m_center.reset();
+        m_image = {}; // nothing of the old one may be seen any more
+        m_hovered.reset();
+    }
+    // A change that this drag did not make (undo, another file) ends it.
+    if (m_motion == Motion::Window && m_moved && !m_bench.store().isPreviewing()) m_motion = Motion::None;
+    request();
+    if (isHidden()) return;
+    if (before.volume != after.volume || before.session.slices != after.session.slices || !(before.tf == after.tf)) {
+        hover(m_mouse);
+        update();
+    }
+}
+
+void SlicePane::request() {
+    if (isHidden() || !m_bench.store().hasVolume() || width() <= 0 || height() <= 0) return;
+    const Scene& scene = m_bench.scene();
+    const qreal ratio = devicePixelRatioF();
+    Request next;
+    next.volume = scene.volume;
+    next.tf = shownTf(scene.tf);
+    next.plane =
+        planeOfSize(static_cast<int>(std::lround(width() * ratio)), static_cast<int>(std::lround(height() * ratio)));
+    next.settings.window = greyWindowOf(scene);
+    next.settings.tfStrength = scene.session.slices->tfStrength;
+    next.settings.clipping = *scene.session.clipping;
+    next.settings.colors = scene.colors;
+    if (next == m_wanted) return;
+    m_wanted = next;
+    m_complete = false;
+    next.coarse = m_slow;
+    m_job.start(std::move(next), tr("the slice"));
+    Q_EMIT frameShown();
+}
+
+SlicePane::Drawn SlicePane::drawn(const Request& request) {
+    const auto begin = std::chrono::steady_clock::now();
+    SlicePlane plane = request.plane;
+    if (request.coarse) {
+        plane.width = (plane.width + 1) / 2;
+        plane.height = (plane.height + 1) / 2;
+    }
+    SliceSettings settings = request.settings;
+    settings.clipping = {};
+    Image image = renderSlice(*request.volume, request.tf, plane, settings);
+    if (!request.settings.clipping.isNone()) {
+        // What is clipped away stays, dimmed: one sees what the volume leaves out.
+        const Image left = renderSlice(*request.volume, request.tf, plane, request.settings);
+        for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+            if (left.rgba[i + 3] == 0)
+                for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] *= kDimmed;
+    }
+    Drawn result;
+    result.image = qImageFromImage(image);
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return result;
+}
+
+void SlicePane::show(const Request& request, const Drawn& result) {
+    if (request.volume != m_wanted.volume) return; // of what is no longer open
+    m_image = result.image;
+    m_slow = result.seconds * (request.coarse ? 4 : 1) > kSlowSeconds;
+    Request full = request;
+    full.coarse = false;
+    const bool latest = full == m_wanted;
+    if (latest && request.coarse) m_job.start(std::move(full), tr("the slice"));
+    m_complete = latest && !request.coarse;
+    update();
+    Q_EMIT frameShown();
+}
+
+void SlicePane::fit() {
+    m_zoom = 1;
+    m_center.reset();
+    request();
+    update();
+}
+
+void SlicePane::zoomAbout(const QPointF& point, double factor) {
+    if (!m_bench.store().hasVolume()) return;
+    const double zoom = std::clamp(m_zoom * factor, 1.0 / 4, kMostZoom);
+    const SlicePlane before = plane();
+    const double fx = point.x() / before.width, fy = point.y() / before.height;
+    const Vec2 held{before.shown.left + fx * before.shown.width, before.shown.top + fy * before.shown.height};
+    const double w = before.shown.width * m_zoom / zoom, h = before.shown.height * m_zoom / zoom;
+    m_zoom = zoom;
+    m_center = Vec2{held.x + (0.5 - fx) * w, held.y + (0.5 - fy) * h};
+    request();
+    hover(m_mouse);
+    update();
+}
+
+void SlicePane::pan(const QPointF& way) {
+    const SlicePlane now = plane();
+    const double perPixel = now.shown.width / now.width;
+    m_center = Vec2{now.shown.left + now.shown.width / 2 - way.x() * perPixel,
+                    now.shown.top + now.shown.height / 2 - way.y() * perPixel};
+    request();
+    update();
+}
+
+/// Toward +x, +y, +z of the world: left, posterior, superior.
+void SlicePane::step(int slices) {
+    if (!m_bench.store().hasVolume()) return;
+    const int a = axis();
+    const bool along = m_bench.scene().volume->geometry().directions[a][m_worldAxis] > 0;
+    Vec3 voxel = crosshairOf(m_bench.scene());
+    voxel[a] += along ? slices : -slices;
+    moveCrosshair(m_bench.store(), voxel);
+}
+
+void SlicePane::moveCrosshairTo(const QPointF& point) {
+    moveCrosshair(m_bench.store(), voxelAtPixel(m_bench.scene().volume->geometry(), plane(), {point.x(), point.y()}));
+}
+
+void SlicePane::dragWindow(const QPointF& way) {
+    if (m_bench.isReadOnly()) return;
+    const ValueRange all = m_bench.scene().data->range(), from = *m_windowBefore;
+    const double whole = all.hi - all.lo;
+    if (!(whole > 0)) return;
+    const double start = std::max(from.hi - from.lo, whole * 1e-6);
+    const double width = std::clamp(start * std::exp2(way.x() / kWidthPixels), whole * 1e-6, 4 * whole);
+    const double level = std::clamp(from.lo + (from.hi - from.lo) / 2 - start * way.y() / kLevelPixels, all.lo, all.hi);
+    m_bench.store().preview(tr("Window of grey"), [&](Session& session) {
+        session.slices.edit([&](SliceViews& s) { s.window = ValueRange{level - width / 2, level + width / 2}; });
+    });
+}
+
+void SlicePane::hover(const std::optional<QPointF>& point) {
+    m_mouse = point;
+    m_hovered.reset();
+    if (point && m_bench.store().hasVolume() && !isHidden()) {
+        const Volume& volume = *m_bench.scene().volume;
+        const Vec3 voxel = voxelAtPixel(volume.geometry(), plane(), {point->x(), point->y()});
+        const Vec3 lo = volume.geometry().voxelBoxMin(), hi = volume.geometry().voxelBoxMax();
+        bool inside = true;
+        for (int a = 0; a < 3; ++a) inside = inside && voxel[a] >= lo[a] && voxel[a] <= hi[a];
+        if (inside) m_hovered = Hovered{voxel, volume.geometry().worldFromVoxel(voxel), valueAt(volume, voxel, false)};
+    }
+    std::optional<double> intensity;
+    if (m_hovered && m_hovered->value) intensity = m_bench.scene().volume->intensityOfValue(*m_hovered->value);
+    m_bench.selection().setHoveredIntensity(intensity);
+    update();
+}
+
+QString SlicePane::hoverText() const {
+    if (!m_hovered || !m_bench.store().hasVolume()) return {};
+    const Scene& scene = m_bench.scene();
+    const Geometry& geometry = scene.volume->geometry();
+    QString text = tr("invalid");
+    if (m_hovered->value) {
+        const ValueRange all = scene.data->range();
+        text = numberText(*m_hovered->value, all.hi - all.lo);
+        const int feature = featureAt(scene.tf.features, scene.volume->intensityOfValue(*m_hovered->value));
+        if (feature >= 0)
+            text += "  " + QString::fromStdString(scene.tf.features[static_cast<std::size_t>(feature)].name);
+    }
+    const double size = 2 * geometry.radius();
+    const Vec3& w = m_hovered->world;
+    return text + QStringLiteral("\n%1, %2, %3 %4")
+                      .arg(numberText(w.x, size), numberText(w.y, size), numberText(w.z, size),
+                           QLatin1String(unitOf(geometry)));
+}
+
+bool SlicePane::onTitle(const QPointF& point) const { return point.y() < kTitle; }
+
+void SlicePane::mousePressEvent(QMouseEvent* event) {
+    if (m_motion != Motion::None || !m_bench.store().hasVolume()) return; // the first button decides
+    switch (event->button()) {
+    case Qt::LeftButton:
+        if (event->modifiers().testFlag(Qt::ShiftModifier)) {
+            m_motion = Motion::Pan;
+        } else if (!onTitle(event->position())) {
+            m_motion = Motion::Crosshair;
+            m_crosshairBefore = crosshairOf(m_bench.scene());
+            moveCrosshairTo(event->position());
+        }
+        break;
+    case Qt::MiddleButton:
+        m_motion = Motion::Pan;
+        break;
+    case Qt::RightButton:
+        if (m_bench.isReadOnly()) return;
+        m_bench.store().commit();
+        m_motion = Motion::Window;
+        m_windowBefore = greyWindowOf(m_bench.scene());
+        break;
+    default:
+        return event->ignore();
+    }
+    m_button = event->button();
+    m_pressed = m_last = event->position();
+    m_moved = false;
+}
+
+void SlicePane::mouseMoveEvent(QMouseEvent* event) {
+    const QPointF point = event->position();
+    if (m_motion == Motion::None) setCursor(onTitle(point) ? Qt::ArrowCursor : Qt::CrossCursor);
+    if (m_motion == Motion::None || !m_bench.store().hasVolume()) return hover(point);
+    if (!m_moved && (point - m_pressed).manhattanLength() < 3) return;
+    m_moved = true;
+    switch (m_motion) {
+    case Motion::Crosshair:
+        moveCrosshairTo(point);
+        break;
+    case Motion::Pan:
+        pan(point - m_last);
+        break;
+    case Motion::Window:
+        dragWindow(point - m_pressed);
+        break;
+    case Motion::None:
+        break;
+    }
+    m_last = point;
+    hover(point);
+}
+
+void SlicePane::mouseReleaseEvent(QMouseEvent* event) {
+    if (event->button() != m_button) return;
+    const Motion motion = std::exchange(m_motion, Motion::None);
+    m_button = Qt::NoButton;
+    if (motion == Motion::Window && m_moved) m_bench.store().commit();
+    update(); // the numbers of the drag go
+}
+
+void SlicePane::mouseDoubleClickEvent(QMouseEvent* event) {
+    if (!m_bench.store().hasVolume()) return;
+    if (event->button() == Qt::RightButton && !m_bench.isReadOnly()) return resetGreyWindow(m_bench.store());
+    if (event->button() != Qt::LeftButton) return;
+    if (onTitle(event->position())) return Q_EMIT maximizeWanted();
+    if (m_crosshairBefore) m_bench.store().setCrosshair(*m_crosshairBefore); // the first click was half of this
+    fit();
+}
+
+void SlicePane::wheelEvent(QWheelEvent* event) {
+    const int delta = event->angleDelta().y() != 0 ? event->angleDelta().y() : event->angleDelta().x();
+    if (delta == 0) return event->ignore();
+    event->accept();
+    if (event->modifiers().testFlag(Qt::ControlModifier))
+        return zoomAbout(event->position(), std::pow(kZoomPerNotch, delta / 120.0));
+    m_wheel += delta; // a touch pad sends many small ones
+    const int notches = m_wheel / 120;
+    m_wheel -= 120 * notches;
+    if (notches != 0) step(event->modifiers().testFlag(Qt::ShiftModifier) ? kFarSteps * notches : notches);
+}
+
+void SlicePane::keyPressEvent(QKeyEvent* event) {
+    const int far = event->modifiers().testFlag(Qt::ShiftModifier) ? kFarSteps : 1;
+    switch (event->key()) {
+    case Qt::Key_PageUp:
+    case Qt::Key_Up:
+    case Qt::Key_Right:
+        return step(far);
+    case Qt::Key_PageDown:
+    case Qt::Key_Down:
+    case Qt::Key_Left:
+        return step(-far);
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+        return zoomAbout(QRectF(rect()).center(), kZoomPerNotch);
+    case Qt::Key_Minus:
+        return zoomAbout(QRectF(rect()).center(), 1 / kZoomPerNotch);
+    case Qt::Key_Escape:
+        if (m_motion != Motion::None) return cancelDrag();
+        break;
+    default:
+        break;
+    }
+    QWidget::keyPressEvent(event);
+}
+
+void SlicePane::cancelDrag() {
+    const Motion motion = std::exchange(m_motion, Motion::None);
+    if (motion == Motion::Crosshair && m_crosshairBefore) m_bench.store().setCrosshair(*m_crosshairBefore);
+    if (motion == Motion::Window && m_moved) m_bench.store().cancel();
+    update();
+}
+
+void SlicePane::leaveEvent(QEvent* event) {
+    QWidget::leaveEvent(event);
+    if (m_motion == Motion::None) hover({});
+}
+
+void SlicePane::focusInEvent(QFocusEvent* event) {
+    QWidget::focusInEvent(event);
+    update();
+}
+
+void SlicePane::focusOutEvent(QFocusEvent* event) {
+    QWidget::focusOutEvent(event);
+    update();
+}
+
+void SlicePane::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    m_maximize->move(width() - m_maximize->width() - 2, 3);
+    request();
+}
+
+void SlicePane::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    request();
+}
+
+void SlicePane::hideEvent(QHideEvent* event) {
+    QWidget::hideEvent(event);
+    m_motion = Motion::None;
+    if (m_mouse) hover({});
+}
+
+QString SlicePane::titleText() const {
+    const Geometry& geometry = m_bench.scene().volume->geometry();
+    const int a = axis();
+    const Vec3 voxel = crosshairOf(m_bench.scene());
+    const double at = geometry.worldFromVoxel(voxel)[m_worldAxis];
+    QString name = QString::fromLatin1(sliceName(geometry, a));
+    if (geometry.frame == Frame::Patient) name[0] = name[0].toUpper(); // a word, not an axis
+    return tr("%1  %2 of %3   %4 %5")
+        .arg(name)
+        .arg(static_cast<int>(std::lround(voxel[a])) + 1)
+        .arg(geometry.dims[a])
+        .arg(numberText(at, 2 * geometry.radius()), QLatin1String(unitOf(geometry)));
+}
+
+void SlicePane::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.fillRect(rect(), QColor(0x0c, 0x0c, 0x0c)); // in any theme: grey is judged against black
+    if (!m_bench.store().hasVolume()) return;
+    painter.setRenderHint(QPainter::SmoothPixmapTransform);
+    if (!m_image.isNull()) painter.drawImage(QRectF(rect()), m_image);
+    painter.setRenderHint(QPainter::Antialiasing);
+    const SlicePlane shown = plane();
+    paintCrosshair(painter, shown);
+
+    QFont small = font();
+    small.setPointSizeF(small.pointSizeF() * 0.9);
+    painter.setFont(small);
+    const QFontMetricsF metrics(small);
+    paintLetters(painter);
+    paintScale(painter, shown);
+    const QColor color = slicePlaneColor(m_worldAxis);
+    painter.fillRect(QRectF(0, 0, width(), 2), color);
+    haloText(painter, {kMargin, 5 + metrics.ascent()},
+             metrics.elidedText(titleText(), Qt::ElideRight, width() - 2 * kMargin - m_maximize->width()), color);
+    QString text = hoverText();
+    if (m_motion == Motion::Window && m_moved) {
+        const ValueRange window = greyWindowOf(m_bench.scene());
+        const double span = window.hi - window.lo;
+        text = tr("window %1  level %2\n%3 to %4")
+                   .arg(numberText(span, span), numberText(window.lo + span / 2, span), numberText(window.lo, span),
+                        numberText(window.hi, span));
+    }
+    const QStringList lines = text.split('\n', Qt::SkipEmptyParts);
+    double y = height() - kMargin - metrics.descent() - metrics.lineSpacing() * static_cast<double>(lines.size() - 1);
+    for (const QString& line : lines) {
+        haloText(painter, {kMargin, y}, line, theme::kMark);
+        y += metrics.lineSpacing();
+    }
+    if (hasFocus()) {
+        painter.setBrush(Qt::NoBrush);
+        painter.setPen(QPen(theme::kMarkAccent, 1));
+        painter.drawRect(QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5));
+    }
+}
+
+void SlicePane::paintCrosshair(QPainter& painter, const SlicePlane& plane) const {
+    const Geometry& geometry = m_bench.scene().volume->geometry();
+    const Vec2 at = pixelOfVoxel(geometry, plane, crosshairOf(m_bench.scene()));
+    const SliceView view = sliceView(geometry, plane.axis);
+    constexpr double kGap = 9; // so that what the lines point at is seen
+    const QColor upright = slicePlaneColor(sliceWorldAxis(geometry, view.right)),
+                 level = slicePlaneColor(sliceWorldAxis(geometry, view.down));
+    haloLine(painter, {at.x, 0.0, at.x, at.y - kGap}, upright);
+    haloLine(painter, {at.x, at.y + kGap, at.x, static_cast<double>(height())}, upright);
+    haloLine(painter, {0.0, at.y, at.x - kGap, at.y}, level);
+    haloLine(painter, {at.x + kGap, at.y, static_cast<double>(width()), at.y}, level);
+}
+
+QStringList SlicePane::edgeLetters() const {
+    const Geometry& geometry = m_bench.scene().volume->geometry();
+    const SliceView view = sliceView(geometry, axis());
+    const Vec3 right = geometry.directions[view.right] * (view.flipRight ? -1.0 : 1.0),
+               up = geometry.directions[view.down] * (view.flipDown ? 1.0 : -1.0);
+    QStringList letters;
+    for (const Vec3& direction : {right, -right, up, -up}) {
+        if (geometry.frame == Frame::Patient) {
+            letters << QString::fromStdString(directionLetters(direction));
+            continue;
+        }
+        int most = 0;
+        for (int a = 1; a < 3; ++a)
+            if (std::abs(direction[a]) > std::abs(direction[most])) most = a;
+        letters << (direction[most] < 0 ? QString(QChar(0x2212)) : QString()) + QLatin1Char("xyz"[most]);
+    }
+    return letters;
+}
+
+void SlicePane::paintLetters(QPainter& painter) const {
+    const QFontMetricsF metrics(painter.font());
+    const double cap = metrics.capHeight(), midX = width() / 2.0, midY = height() / 2.0;
+    const QPointF middles[] = {
+        {static_cast<double>(width()), midY}, {0, midY}, {midX, kTitle + cap}, {midX, height() - kMargin - cap / 2}};
+    const QStringList letters = edgeLetters();
+    for (int i = 0; i < 4; ++i) {
+        const double w = metrics.horizontalAdvance(letters[i]);
+        const double left = std::clamp(middles[i].x() - w / 2, kMargin, std::max(kMargin, width() - kMargin - w));
+        haloText(painter, {left, middles[i].y() + cap / 2}, letters[i], theme::kMark);
+    }
+}
+
+void SlicePane::paintScale(QPainter& painter, const SlicePlane& plane) const {
+    if (width() < 180) return;
+    const double perPixel = plane.shown.width / plane.width;
+    const double length = roundNumberBelow(0.2 * width() * perPixel), pixels = length / perPixel;
+    const double right = width() - kMargin - 2, y = height() - kMargin - 2;
+    for (const QLineF& line :
+         {QLineF(right - pixels, y, right, y), QLineF(right - pixels, y - 3, right - pixels, y + 3),
+          QLineF(right, y - 3, right, y + 3)})
+        haloLine(painter, line, theme::kMark);
+    const QFontMetricsF metrics(painter.font());
+    const QString text = QStringLiteral("%1 %2").arg(numberText(length, length),
+                                                     QLatin1String(unitOf(m_bench.scene().volume->geometry())));
+    haloText(painter, {right - metrics.horizontalAdvance(text), y - 6}, text, theme::kMark);
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,298 @@
+#include "view/volume_view.h"
+
+#include <cmath>
+
+#include <map>
+
+#include <QApplication>
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QSettings>
+#include <QVBoxLayout>
+#include <QWheelEvent>
+
+#include "base/parallel.h"
+#include "controllers/field_controller.h"
+#include "controllers/view_actions.h"
+#include "render/camera_motion.h"
+#include "view/annotation_layer.h"
+#include "view/cpu_surface.h"
+#include "view/gl_surface.h"
+
+namespace pellucid::gui {
+namespace {
+
+constexpr double kDegreesPerView = 220; // of a drag across the height of the view
+constexpr double kZoomPerView = 12;     // factor of a right-drag across the height of the view
+constexpr double kZoomPerNotch = 1.15;  // factor of one notch of the wheel
+constexpr double kDegreesPerKey = 5;
+constexpr qint64 kWheelPause = 600; // milliseconds that part two zooms
+
+// Times are kept for the process, and for later ones.
+std::map<QString, RendererTimes>& timesOfProcess() {
+    static std::map<QString, RendererTimes> s_times;
+    return s_times;
+}
+
+// A slash would make a group of settings.
+QString keyOf(QString machine) { return "renderers/" + machine.replace('/', '_').replace('\\', '_'); }
+
+std::optional<RendererTimes> keptTimes(const QString& machine) {
+    const auto known = timesOfProcess().find(machine);
+    if (known != timesOfProcess().end()) return known->second;
+    const QVariantList kept = QSettings().value(keyOf(machine)).toList();
+    if (kept.size() != 2 || !(kept[0].toDouble() > 0)) return {};
+    RendererTimes times{kept[0].toDouble(), {}};
+    if (kept[1].toDouble() > 0) times.gl = kept[1].toDouble();
+    return times;
+}
+
+void keepTimes(const QString& machine, const RendererTimes& times) {
+    timesOfProcess()[machine] = times;
+    QSettings().setValue(keyOf(machine), QVariantList{times.cpu, times.gl.value_or(0)});
+}
+
+QString reasonOf(const RendererTimes& times, bool gl) {
+    if (!times.gl) return QObject::tr("OpenGL cannot draw here.");
+    const auto ms = [](double seconds) { return QString::number(1000 * seconds, 'g', 3); };
+    return (gl ? QObject::tr("OpenGL draws a small picture in %1 ms, the CPU in %2 ms.")
+               : QObject::tr("The CPU draws a small picture in %2 ms, OpenGL in %1 ms."))
+        .arg(ms(*times.gl), ms(times.cpu));
+}
+
+} // namespace
+
+VolumeView::VolumeView(SessionStore& store, ViewRenderer renderer, QWidget* parent, FieldController* fields)
+    : QWidget(parent), m_store(store), m_fields(fields), m_overlay(new ViewOverlay(store, this)),
+      m_probe([](const int&, const JobControl& job) { return timeRenderers(job); },
+              [this](const int&, RendererTimes& times) {
+                  keepTimes(m_machine, times);
+                  showTimes(times);
+              }) {
+    setObjectName("volumeView");
+    setAccessibleName(tr("Volume"));
+    setFocusPolicy(Qt::StrongFocus);
+    setMouseTracking(true);
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    m_overlay->add(std::make_unique<AnnotationLayer>(fields));
+    chooseRenderer(renderer);
+    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.volume != after.volume) lookFrom({});
+        updateScene();
+    });
+    if (fields != nullptr)
+        connect(fields, &FieldController::changed, this, [this] {
+            updateScene();
+            m_overlay->update();
+        });
+}
+
+void VolumeView::chooseRenderer(ViewRenderer wanted) {
+    QString renderer;
+    const auto available = wanted == ViewRenderer::Cpu ? GlSurface::Available::No : GlSurface::available(&renderer);
+    if (wanted == ViewRenderer::Gl && available == GlSurface::Available::No)
+        throw Error("no OpenGL 4.3 or later", "this display", "draw on the CPU");
+    bool gl = available == GlSurface::Available::OnGpu;
+    if (wanted != ViewRenderer::Auto) {
+        gl = wanted == ViewRenderer::Gl;
+        m_reason = tr("As it was asked for.");
+    } else if (available == GlSurface::Available::No) {
+        m_reason = tr("There is no OpenGL 4.3 here.");
+    } else {
+        m_expectGl = gl;
+        m_machine =
+            QStringLiteral("%1, %2, %3").arg(renderer).arg(threadCount()).arg(QCoreApplication::applicationVersion());
+        if (const auto times = keptTimes(m_machine)) {
+            gl = times->preferGl(m_expectGl);
+            m_reason = reasonOf(*times, gl);
+        } else {
+            m_reason = gl ? tr("There is a GPU.") : tr("OpenGL is drawn by the CPU here.");
+            m_probeWaits = true;
+        }
+    }
+    if (gl)
+        setSurface(std::make_unique<GlSurface>());
+    else
+        setSurface(std::make_unique<CpuSurface>());
+}
+
+/// Once the first picture is complete: opening comes before.
+void VolumeView::startProbe() {
+    m_probeWaits = false;
+    if (const auto times = keptTimes(m_machine)) return showTimes(*times); // another window was first
+    m_probe.start(0, tr("the renderers"));
+}
+
+void VolumeView::showTimes(const RendererTimes& times) {
+    const bool drawsGl = dynamic_cast<GlSurface*>(m_surface.get()) != nullptr;
+    m_reason = reasonOf(times, drawsGl);
+    // The other way, a view that has never shown OpenGL would have to make its window anew: it waits for the next one.
+    if (drawsGl && !times.preferGl(m_expectGl)) {
+        m_reason = reasonOf(times, false);
+        setSurface(std::make_unique<CpuSurface>());
+    }
+    Q_EMIT frameShown();
+}
+
+VolumeView::~VolumeView() {
+    m_surface->onFrame = nullptr;
+    m_surface->onFailure = nullptr;
+}
+
+void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
+    m_surface = std::move(surface);
+    m_surface->widget()->setFocusPolicy(Qt::NoFocus);
+    m_surface->widget()->setMouseTracking(true);
+    layout()->addWidget(m_surface->widget());
+    m_overlay->raise();
+    m_surface->onFrame = [this] {
+        Q_EMIT frameShown();
+        if (m_probeWaits && isComplete()) startProbe();
+    };
+    m_surface->onFailure = [this](const Error& error) { surfaceFailed(error); };
+    updateScene();
+}
+
+void VolumeView::surfaceFailed(const Error& error) {
+    const bool gl = dynamic_cast<GlSurface*>(m_surface.get()) != nullptr;
+    if (!gl) {
+        Q_EMIT rendererFailed(error);
+        return;
+    }
+    Q_EMIT rendererFailed({error.problem(), error.where(), tr("the CPU draws the picture from now on").toStdString()});
+    // In a later turn: the one that failed is still on the stack.
+    QMetaObject::invokeMethod(
+        this,
+        [this] {
+            m_reason = tr("OpenGL could not draw this.");
+            setSurface(std::make_unique<CpuSurface>());
+        },
+        Qt::QueuedConnection);
+}
+
+void VolumeView::updateScene() {
+    if (!m_store.hasVolume()) return;
+    PictureInput picture = m_fields ? m_fields->picture(1, 1) : pictureInput(m_store.scene(), 1, 1);
+    if (m_glimpse) picture.camera = *m_glimpse;
+    m_surface->setScene(picture);
+}
+
+void VolumeView::lookFrom(const std::optional<Camera>& camera) {
+    if (camera == m_glimpse) return;
+    m_glimpse = camera;
+    m_overlay->lookFrom(camera);
+    updateScene();
+}
+
+void VolumeView::mousePressEvent(QMouseEvent* event) {
+    if (m_motion != Motion::None || m_overlay->isDragging()) return; // the first button decides until it is released
+    if (event->button() == Qt::LeftButton && m_overlay->press(event->position(), event->modifiers())) {
+        m_button = event->button();
+        return;
+    }
+    const bool shift = event->modifiers().testFlag(Qt::ShiftModifier);
+    switch (event->button()) {
+    case Qt::LeftButton:
+        m_motion = shift ? Motion::Pan : Motion::Rotate;
+        break;
+    case Qt::MiddleButton:
+        m_motion = Motion::Pan;
+        break;
+    case Qt::RightButton:
+        m_motion = Motion::Zoom;
+        break;
+    default:
+        return event->ignore();
+    }
+    m_button = event->button();
+    m_last = m_pressed = event->position();
+    m_moved = false;
+    m_gesture = SessionStore::newGesture();
+}
+
+void VolumeView::mouseMoveEvent(QMouseEvent* event) {
+    if (m_overlay->isDragging()) return m_overlay->drag(event->position(), event->modifiers());
+    if (m_motion == Motion::None) setCursor(m_overlay->cursorAt(event->position()));
+    if (m_motion == Motion::None || !m_store.hasVolume()) return;
+    if (!m_moved && (event->position() - m_pressed).manhattanLength() < QApplication::startDragDistance() / 3) return;
+    m_moved = true;
+    const QPointF way = event->position() - m_last;
+    m_last = event->position();
+    const Geometry& geometry = m_store.scene().volume->geometry();
+    const Camera camera = m_store.scene().camera;
+    const double perPixel = 1.0 / std::max(1, height());
+    switch (m_motion) {
+    case Motion::Rotate: // the volume follows the hand, so the eye goes the other way
+        m_store.setCamera(
+            rotated(camera, geometry, -way.x() * perPixel * kDegreesPerView, way.y() * perPixel * kDegreesPerView),
+            m_gesture);
+        break;
+    case Motion::Pan:
+        m_store.setCamera(panned(camera, geometry, way.x(), way.y(), height()), m_gesture);
+        break;
+    case Motion::Zoom:
+        zoomView(m_store, std::pow(kZoomPerView, -way.y() * perPixel), m_gesture);
+        break;
+    case Motion::None:
+        break;
+    }
+}
+
+void VolumeView::mouseReleaseEvent(QMouseEvent* event) {
+    if (event->button() != m_button) return;
+    const bool click = m_motion == Motion::Rotate && !m_moved && m_store.hasVolume();
+    m_motion = Motion::None;
+    m_overlay->release();
+    if (click) Q_EMIT clicked(event->position());
+}
+
+void VolumeView::mouseDoubleClickEvent(QMouseEvent* event) {
+    if (event->button() == Qt::LeftButton) fitView(m_store);
+}
+
+void VolumeView::wheelEvent(QWheelEvent* event) {
+    if (event->angleDelta().y() == 0) return event->ignore();
+    if (!m_sinceWheel.isValid() || m_sinceWheel.restart() > kWheelPause) m_wheelGesture = SessionStore::newGesture();
+    m_sinceWheel.start();
+    zoomView(m_store, std::pow(kZoomPerNotch, event->angleDelta().y() / 120.0), m_wheelGesture);
+    event->accept();
+}
+
+void VolumeView::resizeEvent(QResizeEvent* event) {
+    QWidget::resizeEvent(event);
+    m_overlay->setGeometry(rect());
+}
+
+void VolumeView::keyPressEvent(QKeyEvent* event) {
+    if (m_overlay->key(event->key())) return;
+    double yaw = 0, pitch = 0;
+    switch (event->key()) {
+    case Qt::Key_Left:
+        yaw = -kDegreesPerKey;
+        break;
+    case Qt::Key_Right:
+        yaw = kDegreesPerKey;
+        break;
+    case Qt::Key_Up:
+        pitch = kDegreesPerKey;
+        break;
+    case Qt::Key_Down:
+        pitch = -kDegreesPerKey;
+        break;
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+        return zoomView(m_store, kZoomPerNotch);
+    case Qt::Key_Minus:
+        return zoomView(m_store, 1.0 / kZoomPerNotch);
+    case Qt::Key_Escape:
+        if (m_overlay->isDragging()) return m_overlay->cancel();
+        return QWidget::keyPressEvent(event);
+    default:
+        return QWidget::keyPressEvent(event);
+    }
+    if (m_store.hasVolume())
+        m_store.setCamera(rotated(m_store.scene().camera, m_store.scene().volume->geometry(), yaw, pitch));
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,89 @@
+// The volume in the middle of the window, and the hands that turn it.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <QElapsedTimer>
+#include <QPointF>
+#include <QWidget>
+
+#include "engines/renderer_probe.h"
+#include "jobs/job.h"
+#include "store/session_store.h"
+#include "view/view_overlay.h"
+#include "view/view_surface.h"
+
+namespace pellucid::gui {
+
+class FieldController;
+
+enum class ViewRenderer { Auto, Gl, Cpu };
+
+/// Shows the store's scene, moves its camera: left-drag rotates, middle or Shift+left pans, wheel and right-drag
+/// zoom, double-click fits, arrow keys rotate; layers of the overlay take the left button first.
+class VolumeView : public QWidget {
+    Q_OBJECT
+public:
+    /// Auto draws with whichever is faster here. As long as that has not been measured, which happens beside the first
+    /// pictures, it is OpenGL on a GPU and the CPU else. Gl throws Error where there is none.
+    /// `fields`, which outlives this, says what is drawn in the place of the data; null: never anything.
+    explicit VolumeView(SessionStore& store, ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr,
+                        FieldController* fields = nullptr);
+    ~VolumeView() override;
+
+    const FrameInfo& frame() const { return m_surface->frame(); }
+    bool isComplete() const { return m_surface->frame().complete; }
+    ViewOverlay& overlay() { return *m_overlay; }
+    /// Shows the scene from another camera for a while; empty: from its own again. The store hears nothing of it.
+    void lookFrom(const std::optional<Camera>& camera);
+    QString rendererName() const { return m_surface->rendererName(); }
+    QString rendererReason() const { return m_reason; } ///< why it draws, a sentence
+
+    QSize sizeHint() const override { return {860, 520}; }
+    QSize minimumSizeHint() const override { return {160, 100}; }
+
+Q_SIGNALS:
+    void frameShown();
+    /// The left button went down and up in one place, logical pixels, which nothing over the picture has taken.
+    void clicked(const QPointF& point);
+    /// OpenGL gave up (a volume too large for the device, say) and the CPU draws from now on; or nobody can draw.
+    void rendererFailed(const pellucid::Error& error);
+
+protected:
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+
+private:
+    enum class Motion { None, Rotate, Pan, Zoom };
+    void setSurface(std::unique_ptr<ViewSurface> surface);
+    void surfaceFailed(const Error& error);
+    void chooseRenderer(ViewRenderer wanted);
+    void startProbe();
+    void showTimes(const RendererTimes& times);
+    void updateScene();
+
+    SessionStore& m_store;
+    FieldController* const m_fields;
+    std::optional<Camera> m_glimpse;
+    std::unique_ptr<ViewSurface> m_surface;
+    ViewOverlay* m_overlay; // a child
+    Motion m_motion = Motion::None;
+    Qt::MouseButton m_button = Qt::NoButton;
+    QPointF m_last, m_pressed;
+    bool m_moved = false;       ///< since the press, by more than a trembling hand
+    int m_gesture = 0;          // one drag is one step of the camera's history
+    QElapsedTimer m_sinceWheel; // and so are turns of the wheel that follow each other
+    int m_wheelGesture = 0;
+    QString m_reason;
+    QString m_machine; ///< renderer, processors and version, for which times are kept
+    bool m_expectGl = false, m_probeWaits = false;
+    Job<int, RendererTimes> m_probe; // last: it ends before the rest goes
+};
+
+} // namespace pellucid::gui

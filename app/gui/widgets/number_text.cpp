@@ -1,0 +1,20 @@
+#include "widgets/number_text.h"
+
+#include <cmath>
+
+namespace pellucid::gui {
+
+QString numberText(double value, double span) { return QString::fromStdString(pellucid::numberText(value, span)); }
+
+QString rangeText(const ValueRange& range) {
+    const double span = range.hi - range.lo;
+    return QStringLiteral("%1 – %2").arg(numberText(range.lo, span), numberText(range.hi, span));
+}
+
+QString stepText(double inD0) {
+    const double per = 1 / inD0;
+    if (inD0 < 1 && std::abs(per - std::round(per)) < 1e-9) return QStringLiteral("1/%1").arg(std::round(per));
+    return QString::fromStdString(shortText(inD0));
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,267 @@
+#include "optimize/answer/verdict.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "optimize/answer/visibility_words.h"
+#include "tf/color.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr double kHelps = 0.005;          ///< of F: less is not worth a word
+constexpr double kAtBound = 1e-3;         ///< of opacity, relative
+constexpr double kNothing = 1e-9;         ///< part of all visibility, or of all saliency
+constexpr std::size_t kMostHelps = 3;     ///< of one kind, in words
+constexpr std::size_t kViewsVerified = 3; ///< on the whole volume, until one helps
+
+/// Around the volume: six sides and eight corners, degrees.
+std::vector<ViewAngles> viewsAround(double zoom) {
+    const double corner = std::atan(std::sqrt(0.5)) * 180 / std::numbers::pi;
+    std::vector<ViewAngles> views{{0, 90, zoom}, {0, -90, zoom}};
+    for (const double azimuth : {0.0, 90.0, 180.0, -90.0}) {
+        views.push_back({azimuth, 0, zoom});
+        for (const double elevation : {corner, -corner}) views.push_back({azimuth - 45, elevation, zoom});
+    }
+    return views;
+}
+
+double objectiveAt(const OptimizeResult& result) { return result.history[result.best].objective; }
+
+/// What holds a feature where it is: its limits at an opacity; empty where none does.
+std::optional<LimitReason> activeLimit(const OpacityLimits& limits, double opacity) {
+    if (limits.locked) return LimitReason::Locked;
+    if (limits.lowest > 0 && opacity <= limits.lowest * (1 + kAtBound)) return LimitReason::Lowest;
+    if (limits.highest < 1 && opacity >= limits.highest * (1 - kAtBound)) return LimitReason::Highest;
+    return {};
+}
+
+/// In sight and salient: of the feature alone, everything else transparent.
+struct Presence {
+    bool inSight = false, salient = false;
+};
+
+std::vector<Presence> presenceOf(VerdictTools& tools, const ReachProblem& problem, const JobControl& job) {
+    const std::size_t n = problem.limits.size();
+    std::vector<std::vector<double>> candidates;
+    for (std::size_t i = 0; i < n; ++i) {
+        candidates.emplace_back(n, 0.0);
+        if (!problem.tf.features[i].hidden) candidates.back()[i] = 0.5;
+    }
+    std::vector<Presence> all;
+    const std::vector<FeatureSums> sums = tools.sums(problem, candidates, job);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double v = sums[i].visibility[i];
+        all.push_back({v > kNothing * std::max(1.0, sums[i].allVisibility),
+                       sums[i].weighted[0][i] > kNothing * v || sums[i].weighted[1][i] > kNothing * v});
+    }
+    return all;
+}
+
+OcclusionMatrix occlusionAt(VerdictTools& tools, const ReachProblem& problem, const std::vector<double>& x,
+                            const JobControl& job) {
+    std::vector<std::vector<double>> candidates{x};
+    for (std::size_t j = 0; j < x.size(); ++j) {
+        candidates.push_back(x);
+        candidates.back()[j] = 0;
+    }
+    return occlusionOf(tools.sums(problem, candidates, job));
+}
+
+/// A colour that nothing nearby has: the opposite hue, bright and saturated.
+Rgb contrasting(const Rgb& color) {
+    const double most = std::max({color.r, color.g, color.b}), least = std::min({color.r, color.g, color.b});
+    if (most - least < 0.05) return {1, 0.6, 0};
+    Rgb opposite{most - color.r, most - color.g, most - color.b};
+    const double top = std::max({opposite.r, opposite.g, opposite.b});
+    for (double* c : {&opposite.r, &opposite.g, &opposite.b}) *c /= top;
+    return opposite;
+}
+
+TransferFunction withColor(TransferFunction tf, std::size_t feature, const Rgb& color) {
+    Feature& f = tf.features[feature];
+    f.color = color;
+    for (ControlPoint& p : tf.points)
+        if (p.x >= f.a && p.x <= f.b) p.color = color;
+    return tf;
+}
+
+std::string fText(double objective) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "F = %.4f", objective);
+    return text.data();
+}
+
+std::string listed(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+    return text;
+}
+
+std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& problem, const std::vector<double>& targets,
+                                     double tolerance) {
+    const std::vector<Feature>& features = problem.tf.features;
+    std::vector<std::string> sentences, shares;
+    for (std::size_t i = 0; i < targets.size(); ++i)
+        if (std::abs(v.vws[i] - targets[i]) > 0.005)
+            shares.push_back(features[i].name + " " + percentText(v.vws[i]) + " (wanted " + percentText(targets[i]) +
+                             ")");
+    sentences.push_back("Out of reach: " + fText(v.objective) + " is the nearest" +
+                        (shares.empty() ? "" : ", with " + listed(shares)) + ".");
+    const auto reached = [&](double objective) {
+        return objective < tolerance ? "the target is reached, " + fText(objective) : fText(objective) + " is reached";
+    };
+    std::size_t told = 0;
+    for (const ReachLimit& limit : v.limits) {
+        if (told++ == kMostHelps) break;
+        const std::string& name = features[limit.feature].name;
+        std::array<char, 64> opacity{};
+        std::snprintf(opacity.data(), opacity.size(), "%.3g", v.opacity[limit.feature]);
+        switch (limit.reason) {
+        case LimitReason::Locked:
+            sentences.push_back(name + " is locked at opacity " + opacity.data() + "; unlocked, " +
+                                reached(limit.objective) + ".");
+            break;
+        case LimitReason::Lowest:
+            sentences.push_back(name + " may not be fainter than " + opacity.data() + "; if it may, " +
+                                reached(limit.objective) + ".");
+            break;
+        case LimitReason::Highest:
+            sentences.push_back(name + " may not be more opaque than " + opacity.data() + "; if it may, " +
+                                reached(limit.objective) + ".");
+            break;
+        case LimitReason::OutOfSight:
+            sentences.push_back("Nothing of " + name + " is in sight from here" +
+                                (problem.view.clipping.isNone() ? "." : ", of what the clipping leaves."));
+            break;
+        case LimitReason::NoContrast:
+            sentences.push_back(name + " is in sight, but its colour does not stand out from its surroundings.");
+            break;
+        }
+    }
+    if (const auto hiding = occlusionWords(v.occlusion, features); !hiding.empty())
+        sentences.push_back("There, " + listed(hiding) + ".");
+    for (const ReachHelp& help : v.helps) {
+        std::array<char, 96> text{};
+        switch (help.kind) {
+        case ReachHelp::Kind::Release:
+            break; // said of the limit
+        case ReachHelp::Kind::View:
+            std::snprintf(text.data(), text.size(), "From azimuth %.0f°, elevation %.0f° ", help.view->azimuth,
+                          help.view->elevation);
+            sentences.push_back(text.data() + reached(help.objective) + ".");
+            break;
+        case ReachHelp::Kind::Color:
+            sentences.push_back("With another colour of " + features[help.feature].name + ", such as " +
+                                hexFromRgb(*help.color) + ", " + reached(help.objective) + ".");
+            break;
+        case ReachHelp::Kind::Clipping:
+            sentences.push_back("Without clipping " + reached(help.objective) + ".");
+            break;
+        }
+    }
+    return sentences;
+}
+
+} // namespace
+
+const char* name(LimitReason reason) {
+    constexpr std::array kNames{"locked", "lowest", "highest", "out-of-sight", "no-contrast"};
+    return kNames[static_cast<std::size_t>(reason)];
+}
+
+const char* name(ReachHelp::Kind kind) {
+    constexpr std::array kNames{"release", "view", "color", "clipping"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vector<double>& targets,
+                const OptimizeResult& found, const VerdictOptions& options, const JobControl& job) {
+    const std::size_t n = problem.tf.features.size();
+    const OptimizeState& nearest = found.history[found.best];
+    Verdict verdict{nearest.objective, nearest.vws, nearest.opacity, {}, {}, {}, {}};
+    verdict.occlusion = occlusionAt(tools, problem, nearest.opacity, job);
+    if (nearest.objective < options.tolerance) {
+        verdict.sentences = {"Within reach: Newton's method gets to " + fText(nearest.objective) + "."};
+        return verdict;
+    }
+
+    const auto helps = [&](double objective) { return objective < nearest.objective - kHelps; };
+    for (std::size_t j = 0; j < n; ++j) {
+        const auto reason = activeLimit(problem.limits[j], nearest.opacity[j]);
+        if (!reason || problem.tf.features[j].hidden) continue;
+        ReachProblem released = problem;
+        released.limits[j] = {};
+        const double objective = objectiveAt(tools.solve(released, false, job));
+        if (!helps(objective)) continue;
+        verdict.limits.push_back({j, *reason, objective});
+        verdict.helps.push_back({ReachHelp::Kind::Release, j, {}, {}, objective});
+    }
+    const auto nearer = [](const auto& a, const auto& b) { return a.objective < b.objective; };
+    std::stable_sort(verdict.limits.begin(), verdict.limits.end(), nearer);
+
+    const std::vector<Presence> presence = presenceOf(tools, problem, job);
+    bool outOfSight = false;
+    std::vector<ReachLimit> absent;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!(targets[i] > 0) || presence[i].salient || problem.tf.features[i].hidden) continue;
+        absent.push_back(
+            {i, presence[i].inSight ? LimitReason::NoContrast : LimitReason::OutOfSight, nearest.objective});
+        outOfSight = outOfSight || !presence[i].inSight;
+        if (!presence[i].inSight) continue;
+        ReachProblem recolored = problem;
+        const Rgb color = contrasting(problem.tf.features[i].color);
+        recolored.tf = withColor(problem.tf, i, color);
+        if (const double objective = objectiveAt(tools.solve(recolored, false, job)); helps(objective))
+            verdict.helps.push_back({ReachHelp::Kind::Color, i, {}, color, objective});
+    }
+    // What is not there limits more than what is held.
+    std::stable_sort(absent.begin(), absent.end(),
+                     [&](const ReachLimit& a, const ReachLimit& b) { return targets[a.feature] > targets[b.feature]; });
+    verdict.limits.insert(verdict.limits.begin(), absent.begin(), absent.end());
+
+    if (!problem.view.clipping.isNone()) {
+        ReachProblem whole = problem;
+        whole.view.clipping = {};
+        if (const double objective = objectiveAt(tools.solve(whole, false, job)); helps(objective))
+            verdict.helps.push_back({ReachHelp::Kind::Clipping, 0, {}, {}, objective});
+    }
+    // Where every limit could be lifted by a word, no other view is needed; elsewhere the best of those around.
+    const bool held = !verdict.limits.empty() || outOfSight;
+    if (options.otherViews && held) {
+        const Camera& camera = problem.view.camera;
+        const double zoom = std::min(viewAngles(camera, tools.geometry()).zoom, 1.0);
+        const auto seenFrom = [&](const ViewAngles& angles) {
+            ReachProblem other = problem;
+            other.view.camera =
+                cameraFromView(tools.geometry(), angles.azimuth, angles.elevation, angles.zoom, camera.projection);
+            return other;
+        };
+        std::vector<ReachHelp> promising;
+        const std::vector<ViewAngles> around = viewsAround(zoom);
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            job.report(static_cast<double>(k) / static_cast<double>(around.size()));
+            const double objective = objectiveAt(tools.solve(seenFrom(around[k]), true, job));
+            promising.push_back({ReachHelp::Kind::View, 0, around[k], {}, objective});
+        }
+        std::stable_sort(promising.begin(), promising.end(), nearer);
+        for (std::size_t k = 0; k < kViewsVerified; ++k) {
+            ReachHelp& help = promising[k];
+            if (!helps(help.objective)) break;
+            help.objective = objectiveAt(tools.solve(seenFrom(*help.view), false, job));
+            if (!helps(help.objective)) continue;
+            verdict.helps.push_back(help);
+            break;
+        }
+    }
+    std::stable_sort(verdict.helps.begin(), verdict.helps.end(), nearer);
+    verdict.sentences = sentencesOf(verdict, problem, targets, options.tolerance);
+    return verdict;
+}
+
+} // namespace pellucid

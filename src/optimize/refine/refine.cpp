@@ -1,0 +1,132 @@
+#include "optimize/refine/refine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "optimize/refine/refine_edges.h"
+#include "optimize/refine/refine_features.h"
+
+namespace pellucid {
+
+namespace {
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// The greedy search (3.4.2). A move changes two edges at most, and nothing else is computed anew.
+RefineResult refineGreedy(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
+                          const JobControl& job) {
+    EdgeLine line(histogram, tf, options.priority);
+    RefineResult result = startOf(line, tf);
+    EnergyCurve curve;
+    curve.add(result.energyMovableBefore);
+
+    // Weights of the participating edges side by side, and where each edge is among them.
+    const std::vector<std::size_t>& which = line.participating;
+    std::vector<double> weights = line.participatingWeights();
+    std::vector<std::size_t> slot(line.edges(), kNone);
+    for (std::size_t i = 0; i < which.size(); ++i) slot[which[i]] = i;
+    const auto updateEdge = [&](std::size_t edge) {
+        if (slot[edge] != kNone)
+            weights[slot[edge]] = line.coefficients[edge].weight(line.opacity[edge], line.opacity[edge + 1]);
+    };
+    const auto move = [&](std::size_t point, double by) {
+        line.opacity[point] = std::clamp(line.opacity[point] + by, 0.0, 1.0);
+        if (point > 0) updateEdge(point - 1);
+        if (point < slot.size()) updateEdge(point);
+    };
+
+    constexpr int kAskEvery = 64; // iterations, each well below a microsecond
+    std::vector<double> best = line.opacity;
+    double bestEnergy = result.energyMovableBefore;
+    const int patience = 2 * static_cast<int>(line.edges());
+    int sinceBest = 0;
+    while (!which.empty() && result.iterations < options.maxIterations &&
+           !(options.untilStable && sinceBest >= patience)) {
+        if (result.iterations % kAskEvery == 0) job.throwIfStopped();
+        std::size_t heaviest = 0, lightest = 0; // of equals the lower index
+        for (std::size_t i = 1; i < weights.size(); ++i) {
+            if (weights[i] > weights[heaviest]) heaviest = i;
+            if (weights[i] < weights[lightest]) lightest = i;
+        }
+        const std::size_t down = line.endToMove(which[heaviest], true), up = line.endToMove(which[lightest], false);
+        const double rise = line.stepUp(options, down, up);
+        move(down, -options.stepDown);
+        move(up, rise);
+        ++result.iterations;
+        ++sinceBest;
+        const double energy = energyOf(weights);
+        curve.add(energy);
+        if (energy < bestEnergy) {
+            bestEnergy = energy;
+            best = line.opacity;
+            sinceBest = 0;
+        }
+    }
+    line.opacity = best;
+    finish(result, line, tf);
+    curve.moveInto(result);
+    return result;
+}
+
+} // namespace
+
+const char* name(RefineMethod method) { return method == RefineMethod::Greedy ? "greedy" : "exact"; }
+
+std::optional<RefineMethod> refineMethodFromName(const std::string& text) {
+    for (const RefineMethod method : {RefineMethod::Greedy, RefineMethod::Exact})
+        if (text == name(method)) return method;
+    return {};
+}
+
+void RefineOptions::validate() const {
+    if (!(stepDown > 0 && stepDown <= 1)) throw UsageError("the step down lies in (0,1]", "refine", "correct the step");
+    if (stepUp && !(*stepUp > 0 && *stepUp <= 1))
+        throw UsageError("the step up lies in (0,1]", "refine", "correct the step");
+    if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "refine", "correct it");
+    if (priority.intensity && !priority.region.empty())
+        throw UsageError("an intensity and a region are prioritized at once", "refine", "choose one of them");
+    if (priority.intensity && !(*priority.intensity >= 0 && *priority.intensity <= 1))
+        throw UsageError("the prioritized intensity lies in [0,1]", "refine",
+                         "normalise it to the range of intensities");
+    if (total && !(*total >= 0)) throw UsageError("the total opacity is not negative", "refine", "correct it");
+}
+
+std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf,
+                                const RefinePriority& priority) {
+    if (movesFeatures(tf)) return FeatureLine(histogram, tf, priority).weights();
+    return EdgeLine(histogram, tf, priority).weights();
+}
+
+double edgeEnergy(const std::vector<double>& edges) { return energyOf(edges); }
+
+double movableOpacity(const TransferFunction& tf) {
+    double sum = 0;
+    for (const ControlPoint& p : tf.points)
+        if (!p.fixed) sum += p.opacity;
+    return sum;
+}
+
+RefineResult refine(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
+                    const JobControl& job) {
+    options.validate();
+    if (movesFeatures(tf, options)) return refineFeatures(histogram, tf, options, job);
+    return options.method == RefineMethod::Exact ? refineExact(histogram, tf, options, job)
+                                                 : refineGreedy(histogram, tf, options, job);
+}
+
+RefineComparison compareMethods(const Histogram& histogram, const TransferFunction& tf, const RefineOptions& options,
+                                const JobControl& job) {
+    RefineOptions by = options;
+    by.method = RefineMethod::Greedy;
+    const RefineResult greedy = refine(histogram, tf, by, job);
+    by.method = RefineMethod::Exact;
+    const bool features = movesFeatures(tf); // both of what greedy moves
+    by.total =
+        features ? FeatureLine(histogram, greedy.tf, options.priority).movableAmount() : movableOpacity(greedy.tf);
+    // From there, so that it is never worse.
+    const RefineResult exact = (features ? refineFeatures : refineExact)(histogram, greedy.tf, by, job);
+    return {*by.total, greedy.energyMovableAfter, exact.energyMovableAfter, exact.tf};
+}
+
+} // namespace pellucid
