@@ -26,8 +26,10 @@ struct Options {
     /// All where none are named; but slices only with a GPU at work, since a software rasterizer takes minutes.
     std::set<BenchRow> rows() const {
         if (only) return *only;
-        std::set<BenchRow> all(kBenchRows.begin(), kBenchRows.end());
-        if (scene.engine.choice == EngineChoice::Cpu || scene.engine.choice == EngineChoice::Reference || !haveGpu())
+        constexpr auto kRows = allOf<BenchRow>();
+        std::set<BenchRow> all(kRows.begin(), kRows.end());
+        if (scene.engine.given.values().engine == EngineChoice::Cpu ||
+            scene.engine.given.values().engine == EngineChoice::Reference || !haveGpu())
             all.erase(BenchRow::Slices);
         return all;
     }
@@ -44,16 +46,16 @@ std::set<BenchRow> parseRows(const std::string& text, const std::string& option)
     std::set<BenchRow> rows;
     for (std::size_t start = 0, end = 0; end != std::string::npos; start = end + 1) {
         end = text.find(',', start);
-        rows.insert(benchRowFromName(text.substr(start, end - start), option));
+        rows.insert(atOption(option, [&] { return fromName<BenchRow>(text.substr(start, end - start)); }));
     }
     return rows;
 }
 
 void check(const Options& o) {
     if (!o.onBuiltIn() && o.full)
-        throw UsageError("--full is about the built-in volumes", "--full", "leave it or VOLUME out");
+        throw UsageError("--full works with the built-in volumes only", "--full", "leave out --full or VOLUME");
     if (o.onBuiltIn() && o.scene.volume.anyDetail())
-        throw UsageError("options of the volume are given, but no volume", "bench", "name a file or sample:NAME");
+        throw UsageError("options for a volume are given, but no volume", "bench", "name a file or sample:NAME");
 }
 
 std::set<BenchRow> both(const std::set<BenchRow>& a, const std::set<BenchRow>& b) {
@@ -310,16 +312,16 @@ Command addBench(CLI::App& program) {
     const auto o = std::make_shared<Options>();
     o->scene.camera.fallback = ViewAngles{30, 20, 1}; // whatever the window opens on: figures stay comparable
     o->scene.volume.add(*app);
-    app->get_option("VOLUME")->description(
-        "what to measure on, as in other commands; without it sample:knee under tents:3, and cubes of 128 and 256 "
-        "voxels along each side");
+    app->get_option("VOLUME")->description("the volume to measure with, as in other commands; without one, sample:knee "
+                                           "under tents:3, and cubes of 128 and 256 "
+                                           "voxels along each side");
     o->scene.session.add(*app);
     o->scene.tf.addSource(*app);
     app->get_option("--tf")->description("transfer function; without it that of the volume, one that gives every voxel "
                                          "a little opacity (dense), and one that gives it to 3 % of them (sparse)");
     o->scene.camera.add(*app);
     o->scene.clip.add(*app);
-    o->scene.engine.add(*app, "high: half the error, more time");
+    o->scene.engine.add(*app);
     addValue(
         *app, "--only", "ROW,...",
         [o](const std::string& text, const std::string& option) { o->only = parseRows(text, option); },
@@ -330,8 +332,8 @@ Command addBench(CLI::App& program) {
         [o](const std::string& text, const std::string& option) {
             o->repeat = static_cast<int>(parseInteger(text, option, 1, 1000));
         },
-        "runs of each row after a first one that does not count; the median is told (default: 3, and more of rows that "
-        "take less than 0.2 s)");
+        "runs of each row after a first one that does not count; the median is reported (default: 3, and more for rows "
+        "that take less than 0.2 s)");
     addValue(
         *app, "--image-size", "WxH",
         [o](const std::string& text, const std::string& option) {
@@ -339,21 +341,22 @@ Command addBench(CLI::App& program) {
             o->picture.width = size.width;
             o->picture.height = size.height;
         },
-        "pixels of the row render (default 512x512)");
+        "pixels of the row \"render\" (default 512x512)");
     addValue(
         *app, "--step", "D",
         [o](const std::string& text, const std::string& option) {
             o->picture.stepInD0 = parseRealAbove(text, option, 0, 16);
         },
-        "largest distance of samples in the row render, in reference lengths (default 0.5)");
-    app->add_flag("--shading", o->picture.light.on, "light from the eye in the row render");
+        "largest distance of samples in the row \"render\", in reference lengths (default 0.5)");
+    app->add_flag("--shading", o->picture.light.on, "draw the row \"render\" with light from the eye");
     addValue(
         *app, "--orbit", "N",
         [o](const std::string& text, const std::string& option) {
             o->orbit = static_cast<int>(parseInteger(text, option, 1, 1000));
         },
-        "views from all around that the row render draws; --json lists the time of each (default 1)");
-    app->add_flag("--full", o->full, "a cube of 512 voxels along each side too: some minutes, 2 GiB of memory");
+        "views from all around that the row \"render\" draws; --json lists the time of each (default 1)");
+    app->add_flag("--full", o->full,
+                  "also measure a cube of 512 voxels along each side, which takes some minutes and 2 GiB of memory");
     return {app, [o, app](Progress& progress) { return run(*o, app->get_option("--threads")->count() > 0, progress); }};
 }
 

@@ -99,11 +99,10 @@ std::vector<Output> outputsOf(const std::vector<FieldKind>& kinds, const std::ve
         for (int n = 2; !taken.insert(file).second; ++n) file = stem + "_" + std::to_string(n) + ".nrrd";
         outputs.push_back({kind, feature, file});
     };
-    for (const FieldKind kind : kinds) add(kind, -1, infoOf(kind).fileStem);
+    for (const FieldKind kind : kinds) add(kind, -1, fileStem(kind));
     for (const FieldKind kind : kinds)
         for (const int f : features)
-            add(kind, f,
-                std::string(infoOf(kind).fileStem) + "_" + safeName(tf.features[static_cast<std::size_t>(f)].name));
+            add(kind, f, fileStem(kind) + "_" + safeName(tf.features[static_cast<std::size_t>(f)].name));
     return outputs;
 }
 
@@ -174,9 +173,9 @@ Command addFields(CLI::App& program) {
         "also the voxels of this feature alone, 0 elsewhere: visibility_NAME.nrrd and so on; repeatable; all: of each "
         "feature");
     addRepeated(
-        *app, "--field", kFieldNames,
+        *app, "--field", listOf<FieldKind>("|"),
         [o](const std::string& text, const std::string& option) {
-            const FieldKind kind = parseField(text, option);
+            const FieldKind kind = atOption(option, [&] { return fromName<FieldKind>(text); });
             if (std::find(o->kinds.begin(), o->kinds.end(), kind) == o->kinds.end()) o->kinds.push_back(kind);
         },
         "this field alone; repeatable (default: all but saliency, the sum of both with the weights u1 and u2)");

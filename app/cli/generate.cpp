@@ -23,7 +23,7 @@ struct Options {
 
 void checkSuffix(const std::string& path) {
     if (std::filesystem::path(path).extension() != ".nrrd")
-        throw UsageError("a sample is written as NRRD, '" + path + "' has another suffix", "--out",
+        throw UsageError("a sample is written as NRRD, but '" + path + "' has another suffix", "--out",
                          "name the file something.nrrd");
 }
 

@@ -35,7 +35,7 @@ struct CommonOptions {
 void addCommonOptions(CLI::App& app, CommonOptions& common) {
     const char* const group = "General";
     app.add_flag("--json", common.json, "print one JSON object")->group(group);
-    app.add_flag("--progress", common.progress, "show progress on stderr even where it is no terminal")->group(group);
+    app.add_flag("--progress", common.progress, "show progress on stderr even if that is not a terminal")->group(group);
     addValue(
         app, "--threads", "N",
         [&common](const std::string& text, const std::string& option) {

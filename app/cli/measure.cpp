@@ -124,8 +124,10 @@ Command addMeasure(CLI::App& program) {
     CLI::App* app = program.add_subcommand("measure", "Visibility and visibility-weighted saliency of each feature");
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app);
-    app->add_flag("--jacobian", o->jacobian, "the derivatives of each VWS with respect to each feature's opacity too");
-    app->add_flag("--occlusion", o->occlusion, "which part of each feature's visibility each other one takes away");
+    app->add_flag("--jacobian", o->jacobian,
+                  "also print the derivatives of each VWS with respect to each feature's opacity");
+    app->add_flag("--occlusion", o->occlusion,
+                  "also print how much of each feature's visibility every other feature takes away");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -51,7 +51,7 @@ public:
         std::string name =
             ((path.has_parent_path() ? path.parent_path() : fs::path(".")) / ".pellucid-XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr)
-            throw FileError("no folder can be made beside it", path.string(), "check permissions and space");
+            throw FileError("no folder can be created beside the file", path.string(), "check permissions and space");
         m_folder = name;
     }
     ~Scratch() {

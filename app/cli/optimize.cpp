@@ -20,31 +20,6 @@ namespace pellucid::cli {
 
 namespace {
 
-/// How to search: what is not given is as in the session.
-struct SearchOptions {
-    std::optional<SearchMethod> method;
-    std::optional<Direction> direction;
-    bool normalize = false, noCoarse = false, noRestarts = false, exactShares = false;
-    std::optional<double> b, step, tolerance, coverage;
-    std::optional<int> maxIterations;
-
-    void add(CLI::App& app);
-    OptimizeOptions over(OptimizeOptions options) const {
-        options.method = method.value_or(options.method);
-        options.direction = direction.value_or(options.direction);
-        options.b = b.value_or(options.b);
-        options.normalize = normalize || options.normalize;
-        options.coarse = options.coarse && !noCoarse;
-        options.restarts = options.restarts && !noRestarts;
-        options.step = step.value_or(options.step);
-        options.tolerance = tolerance.value_or(options.tolerance);
-        options.maxIterations = maxIterations.value_or(options.maxIterations);
-        options.exactShares = exactShares || options.exactShares;
-        if (coverage) options.coverage = coverage;
-        return options;
-    }
-};
-
 /// --limits NAME:LO:HI; --lock NAME.
 struct NamedLimits {
     std::string name;
@@ -54,7 +29,7 @@ struct NamedLimits {
 NamedLimits parseLimits(const std::string& text, const std::string& option) {
     const auto high = text.rfind(':'), low = high == std::string::npos || high == 0 ? high : text.rfind(':', high - 1);
     if (high == std::string::npos || low == std::string::npos || low == 0)
-        throw UsageError("'" + text + "' is no NAME:LO:HI", option, "give such as bone:0.1:0.5");
+        throw UsageError("'" + text + "' is not of the form NAME:LO:HI", option, "write it as in bone:0.1:0.5");
     OpacityLimits limits;
     limits.lowest = parseReal(text.substr(low + 1, high - low - 1), option);
     limits.highest = parseReal(text.substr(high + 1), option);
@@ -65,7 +40,7 @@ NamedLimits parseLimits(const std::string& text, const std::string& option) {
 
 struct Options {
     SceneOptions scene;
-    SearchOptions search;
+    SettingOptions<OptimizeOptions> search;
     std::vector<NamedLimits> limits;
     std::vector<std::string> locked;
     std::optional<TargetInput> targets;
@@ -148,7 +123,8 @@ Answer run(const Options& o, Progress& progress) {
     Scene scene = opened.scene;
     std::vector<std::string> notices = opened.notices();
     const std::vector<double> targets = targetsOf(o.targets, scene, notices);
-    const OptimizeOptions options = o.search.over(*scene.session.optimize);
+    OptimizeOptions options = *scene.session.optimize;
+    o.search.applyTo(options);
     const std::vector<OpacityLimits> limits = limitsOf(o, scene);
     MeasureInput input = measureInput(scene);
     Workspace workspace;
@@ -207,54 +183,6 @@ Answer run(const Options& o, Progress& progress) {
     return answer;
 }
 
-void SearchOptions::add(CLI::App& app) {
-    addValue(
-        app, "--method", "newton|parallel|line|fixed",
-        [this](const std::string& text, const std::string& option) {
-            method = atOption(option, [&] { return searchMethodFromName(text); });
-        },
-        "newton: exact derivatives, first along rays; or the thesis's: fixed step, line search, or line search "
-        "with all steps at once (default newton)");
-    addValue(
-        app, "--direction", "gradient|backward|second|exact",
-        [this](const std::string& text, const std::string& option) {
-            direction = atOption(option, [&] { return directionFromName(text); });
-        },
-        "where the steps of the thesis's methods go: along 2b(W - target), with backward differences, by second "
-        "derivatives, or by exact ones (default gradient)");
-    addValue(
-        app, "--b", "B",
-        [this](const std::string& text, const std::string& option) { b = parseRealAbove(text, option, 0, 1e6); },
-        "the scalar b of the direction (default 1)");
-    app.add_flag("--normalize", normalize, "scale the direction to length 1, as section 5.3.4 prints it");
-    addValue(
-        app, "--step", "S",
-        [this](const std::string& text, const std::string& option) { step = parseRealAbove(text, option, 0, 10); },
-        "base step (default 0.05)");
-    addValue(
-        app, "--tolerance", "F",
-        [this](const std::string& text, const std::string& option) { tolerance = parseRealAbove(text, option, 0, 1); },
-        "converged below this distance from the targets (default 0.03)");
-    addValue(
-        app, "--coverage", "C",
-        [this](const std::string& text, const std::string& option) { coverage = parseRealAbove(text, option, 0, 1); },
-        "mean alpha of the picture, as near as equal shares come to it (default with newton: that of the start, but "
-        "from 0.2 to 0.7)");
-    app.add_flag(
-        "--exact-shares", exactShares,
-        "meet the shares even if the picture becomes too faint to see; otherwise its coverage stays at 0.2 or more, "
-        "and the cover of each wanted feature at 0.02 or more");
-    addValue(
-        app, "--max-iterations", "N",
-        [this](const std::string& text, const std::string& option) {
-            maxIterations = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
-        },
-        "at most so many moves on the volume (default 200)");
-    app.add_flag("--no-coarse", noCoarse,
-                 "newton: every move on the whole volume, none along a few thousand rays first");
-    app.add_flag("--no-restarts", noRestarts, "newton: no other starts where it is stuck");
-}
-
 } // namespace
 
 Command addOptimize(CLI::App& program) {
@@ -284,7 +212,7 @@ Command addOptimize(CLI::App& program) {
         *app, "--out-camera", "FILE", [o](const std::string& path) { o->outCamera = path; },
         "write the camera, such as that of --view best");
     app->add_flag("--require-converged", o->requireConverged,
-                  "exit status 1 where the targets are not reached; the answer is written all the same");
+                  "exit with status 1 if the targets are not reached; the answer is written all the same");
     return {app, [o](Progress& progress) { return run(*o, progress); }};
 }
 

@@ -124,17 +124,7 @@ ImageSize parseImageSize(const std::string& text, const std::string& option) {
 }
 
 Rgb parseColor(const std::string& text, const std::string& option) {
-    try {
-        if (!text.empty() && text[0] == '#') return rgbFromHex(text);
-    } catch (const Error& e) {
-        throw UsageError(e.problem(), option, "give #rrggbb or R,G,B with components from 0 to 1");
-    }
-    const auto v = parseReals(text, option, 3, "R,G,B with components from 0 to 1, or #rrggbb");
-    for (const double c : v)
-        if (c < 0 || c > 1)
-            throw UsageError(plainText(c) + " is not a colour component", option,
-                             "give R,G,B with components from 0 to 1");
-    return {v[0], v[1], v[2]};
+    return atOption(option, [&] { return rgbFromText(text); });
 }
 
 Gradient parseBackground(const std::string& text, const std::string& option) {

@@ -21,22 +21,7 @@ _pellucid_cli() {
     local command=${words[1]}
 
     case $previous in
-        --engine) choices="auto gl cpu slices reference" ;;
-        --quality) choices="normal high" ;;
-        --profile) choices="default published" ;;
-        --along) choices="top bottom front back left right" ;;
-        --kernel) choices="thesis narrow" ;;
-        --method)
-            choices="newton parallel line fixed"
-            [[ $command == refine ]] && choices="greedy exact"
-            ;;
-        --direction) choices="gradient backward second exact" ;;
-        --field)
-            choices="visibility saliency saliency-brightness saliency-saturation vws"
-            [[ $command == render ]] && choices+=" none"
-            ;;
         --field-colormap) choices="feature hue spiral ember sand grey blue-orange blue-red" ;;
-        --step-up | --reduce) choices="auto" ;;
         --scale) choices="linear log log:" ;;
         --paths) choices="newton parallel line fixed runs" ;;
         --show) choices="F" ;;
@@ -53,21 +38,13 @@ _pellucid_cli() {
             [[ $command == bench ]] || return
             choices="setup saliency saliency-direct sweep slices jacobian optimize optimize-newton optimize-whole refine refine-500 refine-direct render"
             ;;
-        --mode)
-            choices="composite mip minip average surface"
-            [[ $command == sequence ]] && choices="static refine optimize"
-            ;;
-        --coherence) choices="inf" ;;
         --slice) choices="x: y: z:" ;;
-        --light-preset) choices="default soft matte metal contrast" ;;
-        --background) choices="transparent" ;;
         --target) choices="equal diagonal inside-out only:" ;;
         --annotate) choices="all cube letters axes scale legend title" ;;
         --view)
             choices="anterior posterior left right superior inferior front back top bottom"
             [[ $command == optimize ]] && choices+=" best"
             ;;
-        --metric) choices="vws visibility" ;;
         --tf)
             choices="auto tents: ramp: $("$program" presets 2>/dev/null | sed -n 's/^\(preset:[^ ]*\) .*/\1/p')"
             COMPREPLY=($(compgen -W "$choices" -- "$current") $(compgen -f -- "$current"))
@@ -79,13 +56,14 @@ _pellucid_cli() {
             compopt -o filenames 2>/dev/null
             return
             ;;
-        --frames | --frame | --array | --cache | --raw | --spacing | --skip | --missing | --range | --component | --size | --sample-size | --seed | --downsample | \
-            --region | --step | --finest-step | --clip | --light | --light-direction | --gradient-opacity | --occlusion | --depth-cue | \
-            --silhouettes | --feature | --field-strength | --field-threshold | --field-top | --density | --hide | --threads | --memory | --sigma | --w1 | --w2 | --u1 | --u2 | \
-            --saliency-background | --step-down | --intensity | --hue | --max-iterations | --repeat | --orbit | --count | \
-            --image-size | --report-size | --fix | --tolerance | --coverage | --window | --tf-strength | \
-            --features | --samples | --space-view | --from | --fps | --ground-raw | --ground-scale | --ground-relief | --variable)
-            return
+        --*)
+            # What the program's help gives as the option's value: its words are choices; of a flag there is none.
+            local value
+            value=$("$program" "$command" --help 2>/dev/null | sed -n "s/^  $previous  *\([^ ]*\).*/\1/p" | head -n 1)
+            if [[ $value == *[A-Z]* || $value == *"|"* ]]; then
+                choices=$(tr '|' '\n' <<<"$value" | grep -E '^[a-z][a-z-]*$')
+                [[ -n $choices ]] || return
+            fi
             ;;
     esac
 

@@ -11,6 +11,7 @@
 #include "optimize/refine/refine_outcome.h"
 #include "optimize/refine/refine_words.h"
 #include "optimize/refine/region_colors.h"
+#include "options/setting_options.h"
 #include "output_files.h"
 #include "parse.h"
 #include "render/image_renderer.h"
@@ -30,7 +31,7 @@ struct PixelRectangle {
 
 struct Options {
     SceneOptions scene;
-    std::vector<std::function<void(RefineOptions&)>> given; ///< over what the session says
+    SettingOptions<RefineSteps> steps;
     std::optional<double> intensity;
     std::optional<double> hue; ///< degrees
     std::optional<PixelRectangle> region;
@@ -58,7 +59,8 @@ PixelRectangle parseRectangle(const std::string& text, const std::string& option
     const std::vector<double> v = parseReals(text, option, 4, "X0,Y0,X1,Y1 in pixels");
     for (const double pixel : v)
         if (!(pixel >= 0 && pixel <= 16384 && pixel == std::floor(pixel)))
-            throw UsageError("'" + text + "' is no region of a picture", option, "give whole numbers of pixels");
+            throw UsageError("'" + text + "' does not name a region of a picture", option,
+                             "give whole numbers of pixels");
     const PixelRectangle r{static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]),
                            static_cast<int>(v[3])};
     if (r.x0 >= r.x1 || r.y0 >= r.y1)
@@ -195,7 +197,7 @@ std::string textOf(const RefineOptions& options, const TransferFunction& before,
 /// Without the priority.
 RefineOptions optionsOf(const Options& o, const RefineSettings& session) {
     RefineOptions options = session.options();
-    for (const auto& set : o.given) set(options);
+    o.steps.applyTo(options);
     return options;
 }
 
@@ -278,42 +280,13 @@ Command addRefine(CLI::App& program) {
     o->scene.camera.add(*app);
     o->scene.clip.add(*app);
     addPriority(*app, o);
-    addValue(
-        *app, "--method", "greedy|exact",
-        [o](const std::string& text, const std::string& option) {
-            const auto method = refineMethodFromName(text);
-            if (!method) throw UsageError("'" + text + "' is no method", option, "use greedy or exact");
-            o->given.emplace_back([method](RefineOptions& r) { r.method = *method; });
-        },
-        "greedy: one opacity down and one up while that helps (default); exact: the most even edges that the same "
-        "total opacity allows");
-    addValue(
-        *app, "--step-down", "D",
-        [o](const std::string& text, const std::string& option) {
-            o->given.emplace_back([step = parseRealAbove(text, option, 0, 1)](RefineOptions& r) { r.stepDown = step; });
-        },
-        "opacity taken from the heaviest edge in an iteration (default 1/256)");
-    addValue(
-        *app, "--step-up", "D|auto",
-        [o](const std::string& text, const std::string& option) {
-            std::optional<double> step;
-            if (text != "auto") step = parseRealAbove(text, option, 0, 1);
-            o->given.emplace_back([step](RefineOptions& r) { r.stepUp = step; });
-        },
-        "opacity given to the lightest one (default 1/256); auto: from --step-down and the two ends' significances");
-    addValue(
-        *app, "--max-iterations", "N",
-        [o](const std::string& text, const std::string& option) {
-            const auto most = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
-            o->given.emplace_back([most](RefineOptions& r) { r.maxIterations = most; });
-        },
-        "at most so many (default 5000)");
+    o->steps.add(*app);
     addRepeated(
         *app, "--fix", "X",
         [o](const std::string& text, const std::string& option) {
             for (const double x : parseReals(text, option)) {
                 if (x < 0 || x > 1)
-                    throw UsageError(plainText(x) + " is no intensity", option, "give numbers from 0 to 1");
+                    throw UsageError(plainText(x) + " is not an intensity", option, "give numbers from 0 to 1");
                 o->fixed.push_back(x);
             }
         },

@@ -52,22 +52,28 @@ bool isJpeg(const std::string& path) {
 /// What can be told before the volume is read.
 void check(const Options& o) {
     if (o.scene.picture.transparent && isJpeg(o.out))
-        throw UsageError("a JPEG file holds no transparency", "--background transparent",
+        throw UsageError("a JPEG file cannot be transparent", "--background transparent",
                          "write a PNG, TIFF or EXR file");
     o.slice.check();
     if (o.slice.at && o.annotate.any())
-        throw UsageError("a slice has no frame of reference", "--annotate", "leave it out");
+        throw UsageError("a slice is drawn without a frame of reference", "--annotate", "leave it out");
     const bool field = o.scene.field.isGiven();
     if (o.slice.at && o.scene.picture.feature && !field)
-        throw UsageError("a slice shows all features", "--feature", "leave it out");
-    const char* const ofData = o.slice.window ? "--window" : o.slice.tfStrength ? "--tf-strength" : nullptr;
+        throw UsageError("a slice always shows all features", "--feature", "leave it out");
+    const char* const ofData = o.slice.window                     ? "--window"
+                               : o.slice.given.has("tf_strength") ? "--tf-strength"
+                                                                  : nullptr;
     if (field && ofData != nullptr)
-        throw UsageError("a field has colours of its own", ofData, "use --field-top or --field-colormap");
-    if (field && o.scene.picture.mode)
-        throw UsageError("a field is drawn by emission and absorption", "--mode", "leave it out");
-    if (o.slice.at && o.scene.ground.path) throw UsageError("a slice has no ground", "--ground", "leave it out");
-    if (field && o.scene.ground.path) throw UsageError("a field is drawn without ground", "--ground", "leave it out");
-    if (o.slice.at && o.scene.picture.mode) throw UsageError("a slice has no rays", "--mode", "leave it out");
+        throw UsageError("a field does not use the colours of the transfer function", ofData,
+                         "use --field-top or --field-colormap");
+    if (field && o.scene.picture.given.has("mode"))
+        throw UsageError("a field is always drawn by emission and absorption", "--mode", "leave it out");
+    if (o.slice.at && o.scene.ground.path)
+        throw UsageError("a slice is drawn without the ground", "--ground", "leave it out");
+    if (field && o.scene.ground.path)
+        throw UsageError("a field is drawn without the ground", "--ground", "leave it out");
+    if (o.slice.at && o.scene.picture.given.has("mode"))
+        throw UsageError("a slice has no rays, so it has no mode", "--mode", "leave it out");
 }
 
 /// What shows where the picture is transparent.
@@ -203,7 +209,7 @@ Command addRender(CLI::App& program) {
     o->scene.tf.add(*app);
     o->scene.camera.add(*app);
     o->scene.clip.add(*app);
-    o->scene.engine.add(*app, "high: samples at half the distance along each ray (unless --step is given)");
+    o->scene.engine.add(*app);
     addOutputFile(
         *app, "--out", "FILE", [o](const std::string& path) { o->out = path; },
         "the picture to write: .png, .tif, .exr or .jpg", checkImageSuffix)

@@ -13,9 +13,9 @@ void SceneOptions::addForFigures(CLI::App& app, VolumeOptions::SizeIs size) {
     tf.add(app);
     camera.add(app);
     clip.add(app);
-    engine.add(app, "high: half the error, more time");
+    engine.add(app);
     saliency.add(app);
-    profile.add(app);
+    engine.addProfile(app);
 }
 
 SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<std::string>& notices) {
@@ -33,8 +33,7 @@ SceneInputs inputsOf(const SceneOptions& options, const Work& work, std::vector<
     options.picture.applyTo(inputs);
     options.ground.applyTo(inputs);
     options.field.applyTo(inputs);
-    options.profile.applyTo(inputs);
-    options.profile.requireNone(inputs, options.engine, options.saliency);
+    options.engine.requireProfile(inputs, options.saliency);
     inputs.then = work.use;
     if (work.byEngine) {
         const MeasureSettings& settings = *inputs.session.measure;

@@ -10,7 +10,6 @@
 #include "options/field_options.h"
 #include "options/ground_options.h"
 #include "options/picture_options.h"
-#include "options/profile_options.h"
 #include "options/saliency_options.h"
 #include "options/session_options.h"
 #include "options/tf_options.h"
@@ -30,7 +29,6 @@ struct SceneOptions {
     ClipOptions clip;
     EngineOptions engine;
     SaliencyInput saliency;
-    ProfileOptions profile;
     PictureOptions picture;
     GroundOptions ground;
     FieldOptions field;

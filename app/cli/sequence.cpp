@@ -39,12 +39,11 @@ using Mode = AdaptSettings::Mode;
 
 struct Options {
     SceneOptions scene;
-    std::optional<Mode> mode;
-    std::optional<double> coherence;
+    SettingOptions<AdaptSettings> adapt;
+    SettingOptions<OptimizeOptions> search;
     std::optional<TargetInput> targets;
-    std::optional<double> tolerance;
     std::optional<int> from;
-    bool compare = false, requireConverged = false, noPictures = false, overGaps = false, exactShares = false;
+    bool compare = false, requireConverged = false, noPictures = false, overGaps = false;
     std::string out;
     std::optional<double> framesPerSecond;
     std::optional<std::string> movie;
@@ -76,11 +75,12 @@ void announceFrames(const Options& o, int from, int size) {
 void check(const Options& o) {
     for (const char* name : kCurves) addOutputFile(o.out, name, "--out");
     if (o.scene.picture.transparent)
-        throw UsageError("flicker is of what is seen on a background", "--background transparent", "give a colour");
+        throw UsageError("flicker cannot be measured on a transparent background", "--background transparent",
+                         "give a colour");
     if (o.framesPerSecond && !o.movie)
-        throw UsageError("--fps is of a film", "--fps", "give --mp4 FILE too, or leave it out");
+        throw UsageError("--fps needs --mp4", "--fps", "add --mp4 FILE, or leave out --fps");
     if (!o.movie) return;
-    if (o.noPictures) throw UsageError("a film is made of the pictures", "--no-pictures", "leave out one of the two");
+    if (o.noPictures) throw UsageError("--mp4 needs the pictures", "--no-pictures", "leave out one of the two");
     requireMovieWriter();
 }
 
@@ -164,12 +164,8 @@ void Sequence::prepareKey() {
     const Stopwatch watch;
     Session& session = m_scene.session;
     m_start = session.frame;
-    session.adapt.edit([&](AdaptSettings& a) {
-        a.mode = m_o.mode.value_or(a.mode);
-        if (m_o.coherence) a.coherence = m_o.coherence;
-    });
-    if (m_o.exactShares) session.optimize.edit([](OptimizeOptions& options) { options.exactShares = true; });
-    if (m_o.tolerance) session.optimize.edit([&](OptimizeOptions& options) { options.tolerance = *m_o.tolerance; });
+    session.adapt.edit([&](AdaptSettings& a) { m_o.adapt.applyTo(a); });
+    session.optimize.edit([&](OptimizeOptions& options) { m_o.search.applyTo(options); });
     if (m_o.targets) {
         const std::vector<double> targets = atOption(
             "--target", [&] { return normalizedTargets(m_o.targets->of(m_scene), m_scene.tf.features.size()); });
@@ -448,7 +444,7 @@ Answer Sequence::run(const Opened& opened) {
     std::error_code failure;
     fs::create_directories(m_o.out, failure);
     if (failure && !fs::is_directory(m_o.out))
-        throw FileError("the folder cannot be made: " + failure.message(), m_o.out, "give another one to --out");
+        throw FileError("the folder cannot be created: " + failure.message(), m_o.out, "give another one to --out");
     const TimeSeries& series = *m_scene.series;
     ReadAhead ahead(m_scene.series, windowOf(m_scene.session.variable(), *m_scene.series, {interruptToken(), {}}));
     if (smooths(settings())) plan(ahead); // all frames are looked at before one is drawn
@@ -504,7 +500,7 @@ Answer Sequence::run(const Opened& opened) {
 
 Answer run(const Options& o, Progress& progress) {
     check(o);
-    const bool optimizes = o.mode == Mode::Optimize;
+    const bool optimizes = o.adapt.values().mode == Mode::Optimize;
     if (optimizes && !o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli sequence", "see pellucid-cli sequence --help");
     Opened opened;
@@ -524,56 +520,38 @@ Command addSequence(CLI::App& program) {
         "sequence", "Draws and measures the frames of a series, each under a transfer function that may follow them");
     const auto o = std::make_shared<Options>();
     o->scene.addForFigures(*app, VolumeOptions::SizeIs::Image);
-    addValue(
-        *app, "--mode", "static|refine|optimize",
-        [o](const std::string& text, const std::string& option) {
-            o->mode = adaptModeFromName(text);
-            if (!o->mode) throw UsageError("'" + text + "' is no mode", option, "use static, refine or optimize");
-        },
-        "one transfer function for all frames; each refined by entropy, or optimized to the targets, from that of the "
-        "frame before (default: the session's, else static)");
+    o->adapt.add(*app);
     addValue(
         *app, "--target", kTargetForms,
         [o](const std::string& text, const std::string& option) { o->targets = TargetInput::parse(text, option); },
         "shares of attention, as in optimize; the first frame's transfer function is optimized to them, in every mode");
-    addValue(
-        *app, "--coherence", "L|inf",
-        [o](const std::string& text, const std::string& option) {
-            o->coherence = text == "inf" ? std::numeric_limits<double>::infinity() : parseReal(text, option, 0, 1e6);
-        },
-        "how much jumps of the transfer function are held back: 0 not at all, inf: as static; with optimize opacities "
-        "change as little over the whole series as a distance of L/100 from the targets on average (RMS) allows "
-        "(default: the session's, else 2 with optimize)");
-    addValue(
-        *app, "--tolerance", "F",
-        [o](const std::string& text, const std::string& option) { o->tolerance = parseRealAbove(text, option, 0, 1); },
-        "a frame is on target below this distance (default 0.03)");
+    o->search.add(*app, "Options", {"tolerance", "exact_shares"});
     addValue(
         *app, "--from", "FRAME",
         [o](const std::string& text, const std::string& option) {
             o->from = static_cast<int>(parseInteger(text, option, 0, 1'000'000'000));
         },
         "begin with this frame of the series (default 0)");
-    app->add_flag("--compare", o->compare, "measure and draw every frame under the first one's transfer function, too");
+    app->add_flag("--compare", o->compare,
+                  "also measure and draw every frame under the transfer function of the first one");
     addOutputFolder(
         *app, "--out", "DIR", [o](const std::string& path) { o->out = path; },
         "write frame_0000.png and frame_0000.tf.json of each frame, curves.csv, curves.svg and curves.png")
         ->required();
-    app->add_flag("--exact-shares", o->exactShares, "meet the targets even where the picture is hardly seen then");
     app->add_flag("--flicker-over-gaps", o->overGaps,
-                  "tell flicker after missing or broken frames, too, against the frame before the gap");
-    app->add_flag("--no-pictures", o->noPictures, "write no pictures of the frames");
+                  "report flicker after missing or broken frames, too, by comparing with the frame before the gap");
+    app->add_flag("--no-pictures", o->noPictures, "do not write pictures of the frames");
     addOutputFile(
         *app, "--mp4", "FILE", [o](const std::string& path) { o->movie = path; },
-        "a film of the pictures too, where ffmpeg is installed", checkMovieSuffix);
+        "also write a film of the pictures; needs ffmpeg", checkMovieSuffix);
     addValue(
         *app, "--fps", "N",
         [o](const std::string& text, const std::string& option) {
             o->framesPerSecond = parseRealAbove(text, option, 0, 240);
         },
-        "frames of the film a second (default 10)");
+        "frames per second of the film (default 10)");
     app->add_flag("--require-converged", o->requireConverged,
-                  "exit status 1 where a frame is not on target; everything is written all the same");
+                  "exit with status 1 if a frame is not on target; everything is written all the same");
     o->scene.picture.add(*app, PictureOptions::Mode::OfSession);
     o->scene.ground.add(*app);
     return {app, [o](Progress& progress) { return run(*o, progress); }};

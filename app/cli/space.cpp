@@ -54,7 +54,7 @@ void parsePaths(const std::string& text, const std::string& option, Options& o) 
         if (word == "runs")
             o.runs = true;
         else
-            o.methods.push_back(atOption(option, [&] { return searchMethodFromName(word); }));
+            o.methods.push_back(atOption(option, [&] { return fromName<SearchMethod>(word); }));
     }
 }
 
@@ -63,7 +63,8 @@ void check(const Options& o) {
     if (!o.targets && !o.scene.session.file)
         throw UsageError("--target is required", "pellucid-cli space", "see pellucid-cli space --help");
     if (o.runs && !o.scene.session.file)
-        throw UsageError("without a session there are no runs", "--paths", "name methods, or give --session FILE");
+        throw UsageError("runs come from a session, and none is given", "--paths",
+                         "name methods, or give --session FILE");
 }
 
 ParameterAxes axesOf(const Options& o, const Scene& scene, const std::vector<double>& targets) {
@@ -266,7 +267,7 @@ Command addSpace(CLI::App& program) {
         *app, "--scale", "linear|log[:LOWEST]",
         [o](const std::string& text, const std::string& option) {
             const auto parts = split(text, ':');
-            o->axes.scale = atOption(option, [&] { return axisScaleFromName(parts.front()); });
+            o->axes.scale = atOption(option, [&] { return fromName<AxisScale>(parts.front()); });
             if (parts.size() > 2 || (parts.size() == 2 && o->axes.scale == AxisScale::Linear))
                 throw UsageError("'" + text + "' is no scale", option, "give linear, log or log:LOWEST");
             if (parts.size() == 2) o->axes.lowest = parseReal(parts[1], option, 1e-6, 0.5);

@@ -241,7 +241,7 @@ int run(int argc, char** argv) {
         return 2;
     }
     if (!o.part.empty()) {
-        o.engine = engineChoiceFromName(engine);
+        o.engine = fromName<EngineChoice>(engine);
         try {
             runThisPart(o);
         } catch (const Error& e) {

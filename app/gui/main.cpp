@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
     // A picture is the same on every machine.
     Theme theme = screenshot.isEmpty() ? keptTheme() : Theme::Dark;
     if (parser.isSet("theme")) {
-        const auto named = themeFromName(parser.value("theme").toStdString());
+        const auto named = findNamed<Theme>(parser.value("theme").toStdString());
         if (!named)
             return complain("no theme \"" + parser.value("theme") + "\", --theme, use dark, light or system", kUsage);
         theme = *named;

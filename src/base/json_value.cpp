@@ -78,12 +78,31 @@ std::string JsonValue::text() const {
     return m_json->get<std::string>();
 }
 
+Rgb JsonValue::color() const {
+    if (m_json->is_array()) {
+        const auto parts = items(3);
+        return {parts[0].number(0, 1), parts[1].number(0, 1), parts[2].number(0, 1)};
+    }
+    if (!m_json->is_string()) fail("a colour is expected", "write \"#rrggbb\" or [r,g,b] from 0 to 1");
+    try {
+        return rgbFromHex(text());
+    } catch (const Error& e) {
+        fail(e.problem(), e.whatToDo());
+    }
+}
+
 std::string JsonValue::unknownKeys(std::initializer_list<const char*> known) const {
     nlohmann::json rest = nlohmann::json::object();
     for (const auto& [key, value] : m_json->items())
         if (std::none_of(known.begin(), known.end(), [k = &key](const char* name) { return *k == name; }))
             rest[key] = value;
     return rest.empty() ? std::string() : rest.dump();
+}
+
+nlohmann::json jsonFromColor(const Rgb& color) {
+    const std::string hex = hexFromRgb(color);
+    if (rgbFromHex(hex) == color) return hex;
+    return {color.r, color.g, color.b};
 }
 
 void requireFormat(const JsonValue& document, const char* format, int version, const char* giveInstead) {

@@ -8,6 +8,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "base/color.h"
+
 namespace pellucid {
 
 /// A value inside a JSON document. Refers to the document, which must outlive it. All readers throw Error ("a finite
@@ -37,6 +39,7 @@ public:
     std::int64_t integer(std::int64_t lo, std::int64_t hi) const;
     bool boolean() const;
     std::string text() const;
+    Rgb color() const; ///< "#rrggbb", or [r,g,b] with components in [0,1]
 
     /// What the object has besides `known`, as one JSON object in text; empty where that is nothing.
     std::string unknownKeys(std::initializer_list<const char*> known) const;
@@ -47,6 +50,9 @@ private:
     const nlohmann::json* m_json;
     std::string m_file, m_pointer;
 };
+
+/// "#rrggbb" where eight bits hold the colour, else three numbers: read back it is the same colour, bit for bit.
+nlohmann::json jsonFromColor(const Rgb& color);
 
 /// Checks "format" and "version" of a document of ours. Throws Error: another format, a newer version.
 void requireFormat(const JsonValue& document, const char* format, int version, const char* giveInstead);

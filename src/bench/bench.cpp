@@ -377,47 +377,6 @@ void measure(Measurement& m, double least, bool counts, const JobControl& job, s
 
 } // namespace
 
-const char* name(BenchRow row) {
-    switch (row) {
-    case BenchRow::Setup:
-        return "setup";
-    case BenchRow::Saliency:
-        return "saliency";
-    case BenchRow::SaliencyDirect:
-        return "saliency-direct";
-    case BenchRow::Sweep:
-        return "sweep";
-    case BenchRow::Slices:
-        return "slices";
-    case BenchRow::Jacobian:
-        return "jacobian";
-    case BenchRow::Optimize:
-        return "optimize";
-    case BenchRow::OptimizeNewton:
-        return "optimize-newton";
-    case BenchRow::OptimizeWhole:
-        return "optimize-whole";
-    case BenchRow::Refine:
-        return "refine";
-    case BenchRow::Refine500:
-        return "refine-500";
-    case BenchRow::RefineDirect:
-        return "refine-direct";
-    case BenchRow::Render:
-        return "render";
-    }
-    return "";
-}
-
-BenchRow benchRowFromName(const std::string& text, const std::string& where) {
-    std::string known;
-    for (const BenchRow row : kBenchRows) {
-        if (text == name(row)) return row;
-        known += std::string(known.empty() ? "" : " ") + name(row);
-    }
-    throw UsageError("there is no row '" + text + "'", where, "known: " + known);
-}
-
 TransferFunction denseTf() {
     TransferFunction tf;
     for (int i = 0; i < 3; ++i) {

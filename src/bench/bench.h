@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/enum_names.h"
 #include "base/job.h"
 #include "engines/engines.h"
 #include "render/render_settings.h"
@@ -35,13 +36,7 @@ enum class BenchRow {
     RefineDirect,
     Render
 };
-inline constexpr std::array kBenchRows{
-    BenchRow::Setup,     BenchRow::Saliency,     BenchRow::SaliencyDirect, BenchRow::Sweep,         BenchRow::Slices,
-    BenchRow::Jacobian,  BenchRow::Optimize,     BenchRow::OptimizeNewton, BenchRow::OptimizeWhole, BenchRow::Refine,
-    BenchRow::Refine500, BenchRow::RefineDirect, BenchRow::Render};
-const char* name(BenchRow row); ///< "setup" … "render"
-/// Throws UsageError that names `where`.
-BenchRow benchRowFromName(const std::string& name, const std::string& where);
+template <> inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "setup", "saliency", "saliency-direct", "sweep", "slices", "jacobian", "optimize", "optimize-newton", "optimize-whole", "refine", "refine-500", "refine-direct", "render");
 
 /// One line of the table.
 struct BenchResult {

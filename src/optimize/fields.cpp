@@ -45,13 +45,16 @@ std::array<double, 2> sumsOf(const WeightFields& weights, const JobControl& job,
 
 } // namespace
 
-FieldKind fieldKindFromName(const std::string& name) {
-    std::string known;
-    for (const FieldKindInfo& info : kFieldKinds) {
-        if (name == info.name) return info.kind;
-        known += (known.empty() ? "" : ", ") + std::string(info.name);
-    }
-    throw UsageError("no field is called '" + name + "'", "", "known: " + known);
+const char* title(FieldKind kind) {
+    constexpr std::array kTitles{"Visibility", "Saliency of brightness", "Saliency of saturation", "Saliency",
+                                 "Visibility-weighted saliency"};
+    return kTitles[static_cast<std::size_t>(kind)];
+}
+
+std::string fileStem(FieldKind kind) {
+    std::string stem = name(kind);
+    std::replace(stem.begin(), stem.end(), '-', '_');
+    return stem;
 }
 
 Grid<float> saliencyGrid(const WeightFields& weights, FieldKind kind, const VwsOptions& options,

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "base/enum_names.h"
 #include "base/job.h"
 #include "saliency/saliency_field.h"
 #include "saliency/vws.h"
@@ -18,24 +19,14 @@ enum class FieldKind {
     Vws                 ///< the voxel's share of the visibility-weighted saliency; those of a feature sum to its W_F
 };
 
-struct FieldKindInfo {
-    FieldKind kind;
-    const char* name;     ///< as one types it: "saliency-brightness"
-    const char* fileStem; ///< of a file with all of it: "saliency_brightness"
-    const char* title;    ///< for people
-};
-inline constexpr std::array<FieldKindInfo, 5> kFieldKinds{
-    {{FieldKind::Visibility, "visibility", "visibility", "Visibility"},
-     {FieldKind::SaliencyBrightness, "saliency-brightness", "saliency_brightness", "Saliency of brightness"},
-     {FieldKind::SaliencySaturation, "saliency-saturation", "saliency_saturation", "Saliency of saturation"},
-     {FieldKind::Saliency, "saliency", "saliency", "Saliency"},
-     {FieldKind::Vws, "vws", "vws", "Visibility-weighted saliency"}}};
-
-constexpr const FieldKindInfo& infoOf(FieldKind kind) { return kFieldKinds[static_cast<std::size_t>(kind)]; }
-inline const char* name(FieldKind kind) { return infoOf(kind).name; }
-/// Throws UsageError that lists them all.
-FieldKind fieldKindFromName(const std::string& name);
-/// Whether it is another one from another side, or under other opacities. Saliency is neither.
+template <>
+inline constexpr auto kNamesOf<FieldKind> = enumNames("field", "visibility", "saliency-brightness",
+                                                      "saliency-saturation", "saliency", "vws");
+/// For people: "Saliency of brightness".
+const char* title(FieldKind kind);
+/// Of a file with all of it: "saliency_brightness".
+std::string fileStem(FieldKind kind);
+/// Whether the field depends on the view and the opacities. Saliency depends on neither.
 constexpr bool dependsOnView(FieldKind kind) { return kind == FieldKind::Visibility || kind == FieldKind::Vws; }
 
 /// One of the three of saliency, over all voxels. Where an attribute is salient nowhere, the other one alone makes the

@@ -222,72 +222,91 @@ StopReason descend(Search& search, const std::vector<OptimizeState>& history, co
 
 } // namespace
 
-const char* name(SearchMethod method) {
-    switch (method) {
-    case SearchMethod::Fixed:
-        return "fixed";
-    case SearchMethod::Line:
-        return "line";
-    case SearchMethod::Parallel:
-        return "parallel";
-    case SearchMethod::Newton:
-        return "newton";
-    }
-    return "";
+template <>
+std::span<const Setting> settingsOf<OptimizeOptions>() {
+    using O = OptimizeOptions;
+    constexpr auto isNewton = [](const void* o) { return static_cast<const O*>(o)->method == SearchMethod::Newton; };
+    constexpr auto isStepped = [](const void* o) { return static_cast<const O*>(o)->method != SearchMethod::Newton; };
+    constexpr auto hasB = [](const void* o) {
+        const O& options = *static_cast<const O*>(o);
+        return options.method != SearchMethod::Newton && options.direction == Direction::Gradient;
+    };
+    static constexpr const char* kMethods[] = {"Fixed step", "Line search", "Parallel line search", "Newton"};
+    static constexpr const char* kDirections[] = {"Toward the targets (method 1)", "Backward differences",
+                                                  "Second order (method 2)", "Exact gradient"};
+    static const Setting kSettings[] = {
+        {.key = "method",
+         .at = member<&O::method>,
+         .words = "&Method",
+         .help = "How opacities are searched: Newton uses exact derivatives, the other three are the thesis's.",
+         .choices = kMethods},
+        {.key = "direction",
+         .at = member<&O::direction>,
+         .words = "&Direction",
+         .help = "Where the steps of the thesis's methods go: along 2b(W − t), with backward differences, by second "
+                 "derivatives, or by exact derivatives.",
+         .choices = kDirections,
+         .used = isStepped},
+        {.key = "step",
+         .at = member<&O::step>,
+         .words = "&Step",
+         .help = "The length of a base step, in opacity per unit of the direction; searches try multiples of it.",
+         .range = {0, 10, NumberRange::Open::Low},
+         .used = isStepped},
+        {.key = "b",
+         .at = member<&O::b>,
+         .words = "&b",
+         .help = "The scalar b of method 1's direction.",
+         .range = {0, 1e6, NumberRange::Open::Low},
+         .used = hasB},
+        {.key = "tolerance",
+         .at = member<&O::tolerance>,
+         .words = "&Tolerance",
+         .help = "Targets count as reached when their root mean square distance F from the VWS is below this.",
+         .range = {0, 1, NumberRange::Open::Low}},
+        {.key = "max_iterations",
+         .at = member<&O::maxIterations>,
+         .words = "&At most",
+         .help = "The most moves on the volume that an optimization makes.",
+         .range = {0, 1e9},
+         .unit = "moves"},
+        {.key = "coverage",
+         .at = member<&O::coverage>,
+         .words = "Co&verage",
+         .help = "The mean opacity of the picture over the pixels whose rays meet what is wanted: of the opacities "
+                 "with the same shares, those that come nearest to it are taken. Without a number, Newton keeps the "
+                 "coverage of the start, within 0.2 and 0.7, and the other methods leave it as it comes.",
+         .range = {0, 1, NumberRange::Open::Low},
+         .none = "auto"},
+        {.key = "normalize",
+         .at = member<&O::normalize>,
+         .words = "&Normalize the direction",
+         .help = "Scales the direction to length 1, as section 5.3.4 prints it.",
+         .used = isStepped},
+        {.key = "coarse",
+         .at = member<&O::coarse>,
+         .words = "&Rays first",
+         .help = "Makes Newton's first moves along a few thousand rays and only the last ones on the whole volume.",
+         .option = "no-coarse",
+         .used = isNewton},
+        {.key = "restarts",
+         .at = member<&O::restarts>,
+         .words = "Restar&ts",
+         .help = "Lets Newton try other starts, spread over all opacities, where it is stuck.",
+         .option = "no-restarts",
+         .used = isNewton},
+        {.key = "exact_shares",
+         .at = member<&O::exactShares>,
+         .words = "E&xact shares",
+         .help =
+             "Meets the shares even where nothing can be seen of them. Otherwise the picture keeps a coverage of at "
+             "least 0.2, and each feature with a target above 0 a cover of at least 0.02: where the shares would go "
+             "below that, the nearest ones that do not are taken, and the exact ones are told beside them."},
+    };
+    return kSettings;
 }
 
-SearchMethod searchMethodFromName(const std::string& text) {
-    for (const SearchMethod m : {SearchMethod::Fixed, SearchMethod::Line, SearchMethod::Parallel, SearchMethod::Newton})
-        if (text == name(m)) return m;
-    throw UsageError("there is no search method '" + text + "'", "search method",
-                     "choose newton, parallel, line or fixed");
-}
-
-const char* name(Direction direction) {
-    switch (direction) {
-    case Direction::Gradient:
-        return "gradient";
-    case Direction::Backward:
-        return "backward";
-    case Direction::Second:
-        return "second";
-    case Direction::Exact:
-        return "exact";
-    }
-    return "";
-}
-
-Direction directionFromName(const std::string& text) {
-    for (const Direction d : {Direction::Gradient, Direction::Backward, Direction::Second, Direction::Exact})
-        if (text == name(d)) return d;
-    throw UsageError("there is no direction '" + text + "'", "direction", "choose gradient, backward, second or exact");
-}
-
-const char* name(StopReason reason) {
-    switch (reason) {
-    case StopReason::Converged:
-        return "converged";
-    case StopReason::MaxIterations:
-        return "max-iterations";
-    case StopReason::NoProgress:
-        return "no-progress";
-    case StopReason::Cancelled:
-        return "cancelled";
-    case StopReason::Visible:
-        return "visible";
-    }
-    return "";
-}
-
-void OptimizeOptions::validate() const {
-    if (!(step > 0 && step <= 10)) throw UsageError("the step lies in (0,10]", "optimize", "correct the step");
-    if (!(tolerance > 0) || !std::isfinite(tolerance))
-        throw UsageError("the tolerance is positive", "optimize", "correct the tolerance");
-    if (!(b > 0 && b <= 1e6)) throw UsageError("b lies in (0,1e6]", "optimize", "correct it");
-    if (coverage && !(*coverage > 0 && *coverage <= 1))
-        throw UsageError("the coverage lies in (0,1]", "optimize", "correct it");
-    if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "optimize", "correct it");
-}
+void OptimizeOptions::validate() const { checkSettings(*this, "optimize"); }
 
 int OptimizeResult::laterSteps() const { return searched == 0 ? 0 : static_cast<int>(history.size() - searched); }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/setting.h"
 #include "optimize/coverage.h"
 #include "optimize/objective.h"
 
@@ -17,8 +18,8 @@ enum class SearchMethod {
     Parallel, ///< eight lengths at once, the best of them
     Newton    ///< Levenberg–Marquardt with exact derivatives
 };
-const char* name(SearchMethod method);                      ///< "fixed", "line", "parallel", "newton"
-SearchMethod searchMethodFromName(const std::string& name); ///< throws UsageError
+template <>
+inline constexpr auto kNamesOf<SearchMethod> = enumNames("search method", "fixed", "line", "parallel", "newton");
 
 /// Where a step of the searches goes (docs/method.md, "Optimization"; thesis 5.3.4). Newton has its own.
 enum class Direction {
@@ -27,8 +28,8 @@ enum class Direction {
     Second,   ///< method 2: ∇F/∇F', differences to the state before
     Exact     ///< Jᵀ·2(W − t), J the exact derivatives
 };
-const char* name(Direction direction);                ///< "gradient", "backward", "second", "exact"
-Direction directionFromName(const std::string& name); ///< throws UsageError
+template <>
+inline constexpr auto kNamesOf<Direction> = enumNames("direction", "gradient", "backward", "second", "exact");
 
 enum class StopReason {
     Converged, ///< F < tolerance
@@ -37,19 +38,22 @@ enum class StopReason {
     Cancelled,
     Visible ///< F < tolerance is to be had, but not with a picture in which everything wanted can be seen
 };
-const char* name(StopReason reason); ///< "converged", "max-iterations", "no-progress", "cancelled", "visible"
+template <>
+inline constexpr auto kNamesOf<StopReason> = enumNames("end", "converged", "max-iterations", "no-progress", "cancelled",
+                                                       "visible");
 
+/// Ranges are those of settingsOf<OptimizeOptions>().
 struct OptimizeOptions {
     SearchMethod method = SearchMethod::Newton;
     Direction direction = Direction::Gradient;
-    double b = 1;            ///< of method 1, (0, 1e6]
-    bool normalize = false;  ///< the direction scaled to unit length, as §5.3.4 prints it
-    double step = 0.05;      ///< (0, 10]
-    double tolerance = 0.03; ///< on F, > 0
-    int maxIterations = 200; ///< moves on the volume, ≥ 0
+    double b = 1;           ///< of method 1
+    bool normalize = false; ///< the direction scaled to unit length, as §5.3.4 prints it
+    double step = 0.05;
+    double tolerance = 0.03; ///< on F
+    int maxIterations = 200; ///< moves on the volume
     bool coarse = true;      ///< Newton: the first moves by estimates, where the problem has some
     bool restarts = true;    ///< Newton: where it is stuck it tries starts spread over all opacities
-    /// Mean alpha that is wanted of the picture, (0, 1]; empty: with Newton that of the start, within
+    /// Mean alpha that is wanted of the picture; empty: with Newton that of the start, within
     /// [kFaintCoverage, kMostCoverage], else as it comes.
     std::optional<double> coverage = {};
     /// Shares are met even where nothing can be seen of them; false: coverage and covers have floors (picture_goal.h).
@@ -60,6 +64,8 @@ struct OptimizeOptions {
     void validate() const; ///< throws UsageError
     bool operator==(const OptimizeOptions&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<OptimizeOptions>();
 
 /// What the search may do to the opacity of a feature.
 struct OpacityLimits {

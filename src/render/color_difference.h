@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/image.h"
-#include "tf/color.h"
+#include "base/color.h"
 
 namespace pellucid {
 

@@ -1,18 +1,15 @@
 // Which engine is asked for, and how carefully it is to work: settings that say nothing of how.
 #pragma once
 
-#include <string>
-
+#include "base/enum_names.h"
 #include "render/visibility.h"
 
 namespace pellucid {
 
 enum class EngineChoice { Auto, Gl, Cpu, Slices, Reference };
 
-const char* name(EngineChoice choice);                      ///< "auto", "gl", "cpu", "slices", "reference"
-EngineChoice engineChoiceFromName(const std::string& name); ///< throws UsageError
+template <> inline constexpr auto kNamesOf<EngineChoice> = enumNames("engine", "auto", "gl", "cpu", "slices", "reference");
 
-const char* name(Quality quality);                ///< "normal", "high"
-Quality qualityFromName(const std::string& name); ///< throws UsageError
+template <> inline constexpr auto kNamesOf<Quality> = enumNames("quality", "normal", "high");
 
 } // namespace pellucid

@@ -9,16 +9,54 @@
 
 namespace pellucid {
 
-namespace {
-constexpr std::array<const char*, 5> kModes{"composite", "mip", "minip", "average", "surface"};
-}
-
-const char* name(RenderMode mode) { return kModes[static_cast<std::size_t>(mode)]; }
-
-std::optional<RenderMode> renderModeFromName(const std::string& name) {
-    for (std::size_t i = 0; i < kModes.size(); ++i)
-        if (name == kModes[i]) return static_cast<RenderMode>(i);
-    return {};
+template <>
+std::span<const Setting> settingsOf<Light>() {
+    constexpr auto isOn = [](const void* light) { return static_cast<const Light*>(light)->on; };
+    static const Setting kSettings[] = {
+        {.key = "on",
+         .at = member<&Light::on>,
+         .words = "&Light",
+         .help = "Light by the gradient of the values; figures do not depend on it.",
+         .option = "shading"},
+        {.key = "ambient",
+         .at = member<&Light::ambient>,
+         .words = "Ambient",
+         .help = "How much light comes from everywhere, as a share of the colour's own brightness.",
+         .range = {0, 2},
+         .used = isOn},
+        {.key = "diffuse",
+         .at = member<&Light::diffuse>,
+         .words = "Diffuse",
+         .help = "How much light falls on what faces it, as a share of the colour's own brightness.",
+         .range = {0, 2},
+         .used = isOn},
+        {.key = "specular",
+         .at = member<&Light::specular>,
+         .words = "Specular",
+         .help = "How bright highlights are.",
+         .range = {0, 2},
+         .used = isOn},
+        {.key = "shininess",
+         .at = member<&Light::shininess>,
+         .words = "Shininess",
+         .help = "The exponent of highlights: the higher it is, the smaller they are.",
+         .range = {1, 1000},
+         .used = isOn},
+        {.key = "silhouettes",
+         .at = member<&Light::silhouettes>,
+         .words = "Silhouettes",
+         .help = "How dark surfaces become that are seen edge-on."},
+        {.key = "occlusion", .at = member<&Light::occlusion>, .words = "Occlusion", .help = "How dark hollows become."},
+        {.key = "depth_cue",
+         .at = member<&Light::depthCue>,
+         .words = "Depth cue",
+         .help = "How much the farthest parts fade into the background."},
+        {.key = "gradient_opacity",
+         .at = member<&Light::gradientOpacity>,
+         .words = "Surfaces",
+         .help = "How much homogeneous regions fade, so that surfaces stay; figures do not depend on it."},
+    };
+    return kSettings;
 }
 
 void RenderSettings::validate() const {
@@ -30,15 +68,7 @@ void RenderSettings::validate() const {
     if (finestInD0 && !(*finestInD0 >= kFinestStep && *finestInD0 <= 16))
         throw UsageError("the finest step lies in [1/256, 16] reference lengths", "finest step", "give such a step");
     clipping.validate();
-    const auto within = [](double value, double lo, double hi) { return value >= lo && value <= hi; };
-    for (const double share : {light.gradientOpacity, light.occlusion, light.depthCue, light.silhouettes})
-        if (!within(share, 0, 1))
-            throw UsageError("a strength of light lies in [0, 1]", "light", "give such a strength");
-    for (const double part : {light.ambient, light.diffuse, light.specular})
-        if (!within(part, 0, 2))
-            throw UsageError("ambient, diffuse and specular light lie in [0, 2]", "light", "give such parts");
-    if (!within(light.shininess, 1, 1000))
-        throw UsageError("the shininess lies in [1, 1000]", "light", "give such an exponent");
+    checkSettings(light, "light");
     const double length = glm::length(light.direction);
     if (!(length > 0) || !std::isfinite(length))
         throw UsageError("the light needs a direction", "light", "give one that is finite and not 0");

@@ -6,8 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "base/color.h"
+#include "base/setting.h"
 #include "render/clipping.h"
-#include "tf/color.h"
 #include "tf/transfer_function.h"
 #include "volume/voxel_colors.h"
 
@@ -25,22 +26,26 @@ enum class RenderMode {
     Average,   ///< the mean along the path
     Surface    ///< the first surface of each feature
 };
-const char* name(RenderMode mode); ///< "composite", "mip", "minip", "average", "surface"
-std::optional<RenderMode> renderModeFromName(const std::string& name);
+template <>
+inline constexpr auto kNamesOf<RenderMode> = enumNames("way to draw", "composite", "mip", "minip", "average",
+                                                       "surface");
 
 /// Light and what helps to see depth (docs/method.md, "Light"). It changes colours; measures, and the alpha of pixels
-/// but for `gradientOpacity`, are those of the unlit transfer function.
+/// but for `gradientOpacity`, are those of the unlit transfer function. Ranges are those of settingsOf<Light>().
 struct Light {
     bool on = false;
-    double ambient = 0.35, diffuse = 0.65, specular = 0.25; ///< [0, 2]
-    double shininess = 24;                                  ///< exponent of the highlight, [1, 1000]
+    double ambient = 0.35, diffuse = 0.65, specular = 0.25;
+    double shininess = 24;      ///< exponent of the highlight
     Vec3 direction{0, 0, 1};    ///< toward the light, in the camera's right, up and toward the viewer; any length but 0
-    double gradientOpacity = 0; ///< [0,1], how far homogeneous regions fade
-    double occlusion = 0;       ///< [0,1], strength of ambient occlusion
-    double depthCue = 0;        ///< [0,1], how far the farthest fades into the background
-    double silhouettes = 0;     ///< [0,1], how dark surfaces get that are seen edge-on
+    double gradientOpacity = 0; ///< how far homogeneous regions fade
+    double occlusion = 0;       ///< strength of ambient occlusion
+    double depthCue = 0;        ///< how far the farthest fades into the background
+    double silhouettes = 0;     ///< how dark surfaces get that are seen edge-on
     bool operator==(const Light&) const = default;
 };
+/// All but the direction.
+template <>
+std::span<const Setting> settingsOf<Light>();
 
 struct RenderSettings {
     int width = 512, height = 512;                ///< pixels, each in [1, 16384]

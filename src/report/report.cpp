@@ -52,7 +52,12 @@ ReportPicture encoded(const Image& image) { return {image.width, image.height, p
 
 std::string lengths(const Vec3& v) { return shortText(v.x) + " × " + shortText(v.y) + " × " + shortText(v.z); }
 
-std::string yesNo(bool value) { return value ? "yes" : "no"; }
+/// Those that count beside the others.
+template <class T>
+void addSettings(std::vector<std::pair<std::string, std::string>>& rows, const T& settings) {
+    for (const Setting& setting : settingsOf<T>())
+        if (setting.isUsed(&settings)) rows.emplace_back(setting.name(), shownText(setting, &settings));
+}
 
 std::vector<std::pair<std::string, std::string>> settingsOf(const ReportRequest& request, const std::string& engine) {
     const Scene& scene = request.scene;
@@ -72,30 +77,13 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const ReportRequest&
         {"View", shortText(view.azimuth) + "°, " + shortText(view.elevation) + "°, zoom " + shortText(view.zoom) +
                      (scene.camera.projection == Projection::Orthographic ? ", orthographic" : ", perspective")}};
     if (!(*scene.session.clipping == Clipping{})) rows.emplace_back("Clipped", "yes");
-    if (m.profile == Profile::Published)
-        rows.emplace_back("Definitions", std::string("published profile, along ") + name(m.along) +
-                                             "; the view is that of the pictures alone");
-    else
-        rows.insert(
-            rows.end(),
-            {{"Engine", engine + ", quality " + name(m.quality)},
-             {"Saliency", "σ = " + shortText(m.saliency.sigma) + " d0, kernel " +
-                              (m.saliency.kernel == SaliencyKernel::Narrow ? "narrow" : "thesis") +
-                              ", w1 = " + shortText(m.saliency.w1) + ", w2 = " + shortText(m.saliency.w2)},
-             {"Shares of brightness and saturation", "u1 = " + shortText(m.vws.u1) + ", u2 = " + shortText(m.vws.u2)}});
-    rows.insert(rows.end(), {{"Method", name(o.method)},
-                             {"Tolerance", "F < " + shortText(o.tolerance)},
-                             {"Most moves", std::to_string(o.maxIterations)}});
-    if (o.method == SearchMethod::Newton) {
-        rows.emplace_back("Rays first", yesNo(o.coarse));
-        rows.emplace_back("Restarts where it is stuck", yesNo(o.restarts));
-    } else {
-        rows.emplace_back("Direction", std::string(name(o.direction)) + ", normalized: " + yesNo(o.normalize));
-        rows.emplace_back("Step", shortText(o.step));
-        if (o.direction == Direction::Gradient) rows.emplace_back("b", shortText(o.b));
+    addSettings(rows, m);
+    if (m.profile == Profile::Default) {
+        rows.emplace_back("Engine that measured", engine);
+        addSettings(rows, m.saliency);
+        addSettings(rows, m.vws);
     }
-    rows.emplace_back("Exact shares", yesNo(o.exactShares));
-    if (o.coverage) rows.emplace_back("Wanted coverage", shortText(*o.coverage));
+    addSettings(rows, o);
     if (request.run.evaluations > 0) rows.emplace_back("Evaluations of W", std::to_string(request.run.evaluations));
     if (request.run.seconds > 0) rows.emplace_back("Time", shortText(request.run.seconds) + " s");
     if (!request.run.started.empty()) rows.emplace_back("Begun", request.run.started);
@@ -228,7 +216,7 @@ void writeReport(const Report& report, const std::string& folder) {
     std::error_code ec;
     fs::create_directories(folder, ec);
     if (ec && !fs::is_directory(folder))
-        throw FileError("the folder cannot be made (" + ec.message() + ")", folder, "choose another name");
+        throw FileError("the folder cannot be created (" + ec.message() + ")", folder, "choose another name");
     const Run* const run = &report.run;
     const std::string html = htmlOf(report), csv = csvOf(std::span(&run, 1));
     writeTextAtomically((fs::path(folder) / kCurvesFile).string(), csv);

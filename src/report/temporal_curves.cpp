@@ -1,25 +1,17 @@
 #include "report/temporal_curves.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
+#include "base/csv.h"
 #include "report/convergence.h"
-#include "report/csv.h"
 
 namespace pellucid {
 
 namespace {
 
 constexpr double kSmallestShown = 1e-5; ///< on logarithmic axes
-
-std::string number(double value) {
-    std::array<char, 64> buffer{};
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-    return {buffer.data(), end};
-}
 
 PlotAxis frameAxis(const TemporalCurves& curves) {
     int first = 0, last = 1;
@@ -178,22 +170,24 @@ std::vector<Plot> temporalPlots(const TemporalCurves& curves) {
 }
 
 std::string csvOf(const TemporalCurves& curves) {
-    std::string csv = "run,frame,file,time,F,flicker,moves,seconds";
+    CsvTable csv;
+    for (const char* column : {"run", "frame", "file", "time", "F", "flicker", "moves", "seconds"}) csv << column;
     for (const std::string& feature : curves.features)
-        for (const char* what : {"VWS ", "target ", "FV ", "opacity "}) csv += "," + csvField(what + feature);
-    csv += ",problem\n";
+        for (const char* what : {"VWS ", "target ", "FV ", "opacity "}) csv << what + feature;
+    csv << "problem";
+    csv.endLine();
     for (const TemporalRun& run : curves.runs)
         for (const FrameFigures& f : run.frames) {
-            const bool known = f.problem.empty();
-            csv += csvField(run.name) + "," + std::to_string(f.frame) + "," + csvField(f.file) + "," + number(f.time) +
-                   "," + (known ? number(f.objective) : "") + "," + (f.flicker ? number(*f.flicker) : "") + "," +
-                   (f.moves ? std::to_string(*f.moves) : "") + "," + (f.moves ? number(f.seconds) : "");
+            const auto when = [](bool known, double value) { return known ? std::optional(value) : std::nullopt; };
+            csv << run.name << f.frame << f.file << f.time << when(f.problem.empty(), f.objective) << f.flicker
+                << f.moves << when(f.moves.has_value(), f.seconds);
             for (std::size_t i = 0; i < curves.features.size(); ++i)
                 for (const std::vector<double>* values : {&f.vws, &f.targets, &f.visibility, &f.opacity})
-                    csv += "," + (i < values->size() ? number((*values)[i]) : "");
-            csv += "," + csvField(f.problem) + "\n";
+                    csv << (i < values->size() ? std::optional((*values)[i]) : std::nullopt);
+            csv << f.problem;
+            csv.endLine();
         }
-    return csv;
+    return csv.text();
 }
 
 } // namespace pellucid

@@ -214,12 +214,45 @@ BallKernel::BallKernel(const Geometry& geometry, double radiusInD0, SaliencyKern
         }
 }
 
-void validate(const SaliencyOptions& o) {
-    if (!(o.sigma > 0) || !(o.sigma <= 8))
-        throw UsageError("sigma lies in (0, 8] reference lengths", "saliency", "give such a sigma");
-    if (!std::isfinite(o.w1) || !std::isfinite(o.w2) || o.w1 < 0 || o.w2 < 0)
-        throw UsageError("w1 and w2 are finite and not negative", "saliency", "correct them");
+template <>
+std::span<const Setting> settingsOf<SaliencyOptions>() {
+    using S = SaliencyOptions;
+    static constexpr const char* kKernels[] = {"Thesis (4.7)", "Narrow"};
+    static const Setting kSettings[] = {
+        {.key = "sigma",
+         .at = member<&S::sigma>,
+         .words = "σ",
+         .help =
+             "The radius of the centre in reference lengths (voxels, where they are cubes); that of the surround is "
+             "twice as large.",
+         .range = {0, 8, NumberRange::Open::Low},
+         .unit = "d0"},
+        {.key = "kernel",
+         .at = member<&S::kernel>,
+         .words = "&Kernel",
+         .help = "The weights within the radius: exp(−d²/(2σ)²), eq. 4.7, or narrow, a Gaussian of √2/8 of the radius, "
+                 "as the author's published programs have it.",
+         .choices = kKernels},
+        {.key = "w1",
+         .at = member<&S::w1>,
+         .words = "w1",
+         .help = "The weight of the centre in |w1·G(σ) − w2·G(2σ)|, eq. 4.8.",
+         .range = {0, 1e6}},
+        {.key = "w2",
+         .at = member<&S::w2>,
+         .words = "w2",
+         .help = "The weight of the surround in |w1·G(σ) − w2·G(2σ)|, eq. 4.8.",
+         .range = {0, 1e6}},
+        {.key = "background",
+         .at = member<&S::background>,
+         .words = "Surroundings",
+         .help = "The colour that voxels in no feature have for saliency; the background of the picture is another.",
+         .option = "saliency-background"},
+    };
+    return kSettings;
 }
+
+void validate(const SaliencyOptions& options) { checkSettings(options, "saliency"); }
 
 TransferFunction colorsOf(const TransferFunction& tf) {
     const std::vector<ControlPoint> points = tf.pointsWithEnds();

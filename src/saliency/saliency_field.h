@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/job.h"
+#include "base/setting.h"
 #include "saliency/weight_fields.h"
 #include "tf/transfer_function.h"
 #include "volume/volume.h"
@@ -15,14 +16,19 @@ enum class SaliencyKernel {
     Thesis, ///< (4.7): weights exp(−d²/(2σ)²)
     Narrow  ///< standard deviation √2/8 · radius, the author's published programs
 };
+template <>
+inline constexpr auto kNamesOf<SaliencyKernel> = enumNames("kernel", "thesis", "narrow");
 
+/// Ranges are those of settingsOf<SaliencyOptions>().
 struct SaliencyOptions {
-    double sigma = 2.0; ///< in d0, (0, 8]
+    double sigma = 2.0; ///< in d0
     SaliencyKernel kernel = SaliencyKernel::Thesis;
-    double w1 = 1.0, w2 = 1.0; ///< of centre and surround (4.8), finite, ≥ 0, no unit
+    double w1 = 1.0, w2 = 1.0; ///< of centre and surround (4.8), no unit
     Rgb background;            ///< colour of voxels in no feature, and of invalid ones
     bool operator==(const SaliencyOptions&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<SaliencyOptions>();
 
 /// All 0, with room for the largest weights possible: L ≤ max(w1, w2)·O (4.8), and no sRGB colour has O_b above 1 or
 /// O_s above 1.34. These bounds do not depend on the colours at hand, so that greys, whose chroma is 0 but for

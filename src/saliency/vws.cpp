@@ -11,6 +11,23 @@ double share(double part, double whole) { return whole > 0 ? part / whole : 0.0;
 
 } // namespace
 
+template <>
+std::span<const Setting> settingsOf<VwsOptions>() {
+    static const Setting kSettings[] = {
+        {.key = "u1",
+         .at = member<&VwsOptions::u1>,
+         .words = "u1, brightness",
+         .help = "The share of brightness in VWS, eq. 4.13; u1 and u2 add up to 1, so that one of them determines the "
+                 "other."},
+        {.key = "u2",
+         .at = member<&VwsOptions::u2>,
+         .words = "u2, saturation",
+         .help = "The share of saturation in VWS, eq. 4.13; u1 and u2 add up to 1, so that one of them determines the "
+                 "other."},
+    };
+    return kSettings;
+}
+
 FeatureSums emptySums(std::size_t features) {
     FeatureSums sums;
     sums.visibility.assign(features, 0.0);

@@ -36,9 +36,11 @@ struct SumsJacobian {
 };
 
 struct VwsOptions {
-    double u1 = 0.5, u2 = 0.5; ///< weights of brightness and saturation, ≥ 0, sum 1
+    double u1 = 0.5, u2 = 0.5; ///< weights of brightness and saturation, in [0,1], sum 1
     bool operator==(const VwsOptions&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<VwsOptions>();
 
 /// The weights that count (docs/method.md, "Visibility-weighted saliency"): an attribute whose sum over all voxels is 0
 /// is nowhere salient and has no say, the other one then carries weight 1; both are 0 where both sums are.

@@ -31,24 +31,6 @@ int TfTrack::keyBefore(int frame) const {
     return next == keys.begin() ? next->first : std::prev(next)->first;
 }
 
-const char* name(AdaptSettings::Mode mode) {
-    switch (mode) {
-    case AdaptSettings::Mode::Static:
-        return "static";
-    case AdaptSettings::Mode::Refine:
-        return "refine";
-    case AdaptSettings::Mode::Optimize:
-        return "optimize";
-    }
-    PELLUCID_CHECK(false);
-}
-
-std::optional<AdaptSettings::Mode> adaptModeFromName(const std::string& text) {
-    for (const auto mode : {AdaptSettings::Mode::Static, AdaptSettings::Mode::Refine, AdaptSettings::Mode::Optimize})
-        if (text == name(mode)) return mode;
-    return {};
-}
-
 std::map<FeatureId, double> targetsBetween(const TargetKeys& keys, int frame) {
     const auto next = keys.upper_bound(frame);
     if (next == keys.begin()) return next->second;
@@ -61,15 +43,6 @@ std::map<FeatureId, double> targetsBetween(const TargetKeys& keys, int frame) {
         if (!isNew) found->second += t * (target - found->second);
     }
     return targets;
-}
-
-RefineOptions RefineSettings::options() const {
-    RefineOptions options;
-    options.stepDown = stepDown;
-    options.stepUp = stepUp;
-    options.maxIterations = maxIterations;
-    options.method = method;
-    return options;
 }
 
 bool HsbMapping::isKeptBy(const HsbMapping& later) const {

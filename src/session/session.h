@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/setting.h"
 #include "optimize/fields.h"
 #include "optimize/optimizer.h"
 #include "optimize/refine/refine.h"
@@ -62,14 +63,16 @@ struct AdaptSettings {
         Optimize ///< each frame to the targets, from the one before (§5.4.1)
     };
     Mode mode = Mode::Static;
-    /// ≥ 0; how much jumps from frame to frame are held back; infinity: as static; empty: kUsualCoherence to optimize,
+    /// How much jumps from frame to frame are held back; infinity: as static; empty: kUsualCoherence to optimize,
     /// else none.
     std::optional<double> coherence = {};
     double usedCoherence() const { return coherence.value_or(mode == Mode::Optimize ? kUsualCoherence : 0); }
     bool operator==(const AdaptSettings&) const = default;
 };
-const char* name(AdaptSettings::Mode mode); ///< "static", "refine", "optimize"
-std::optional<AdaptSettings::Mode> adaptModeFromName(const std::string& name);
+template <>
+std::span<const Setting> settingsOf<AdaptSettings>();
+template <>
+inline constexpr auto kNamesOf<AdaptSettings::Mode> = enumNames("mode", "static", "refine", "optimize");
 
 /// One variable of the data: where it comes from, and how its values are read and drawn.
 struct Variable {
@@ -90,7 +93,7 @@ struct Variable {
 struct HsbMapping {
     bool on = false;
     std::string saturation, brightness, hue; ///< empty: saturation and brightness 1, hue `hueFrom`
-    std::optional<double> a, b;              ///< scales of saturation and darkness, ≥ 0; empty: automaticScale()
+    std::optional<double> a, b;              ///< scales of saturation and darkness; empty: automaticScale()
     double hueFrom = 0, hueTo = 240;         ///< degrees, at intensity 0 and 1 of the variable `hue`
     /// automaticScale() of the variables in the frame where the mapping began, for a and b where they are empty: kept,
     /// so that frames can be compared. Set by resolve(); of other variables it means nothing.
@@ -105,6 +108,8 @@ struct HsbMapping {
     bool isKeptBy(const HsbMapping& later) const;
     bool operator==(const HsbMapping&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<HsbMapping>();
 
 /// A height field under the volume.
 struct GroundView {
@@ -113,10 +118,12 @@ struct GroundView {
     std::optional<double> missing;
     std::optional<double> scale; ///< world units per unit of height; empty: as readGround() says
     std::string colorMap = "terrain";
-    double relief = 1; ///< strength of the shading, [0, 1]
+    double relief = 1; ///< strength of the shading
     bool shown = true;
     bool operator==(const GroundView&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<GroundView>();
 
 /// Targets at key frames, halfway between them in between; before the first and after the last, those of these.
 using TargetKeys = std::map<int, std::map<FeatureId, double>>;
@@ -155,10 +162,11 @@ struct DisplaySettings {
     Rgb background{0, 0, 0};
     std::optional<Rgb> backgroundTop; ///< at the top of the picture; empty: `background` everywhere
     FeatureId onlyFeature = 0;        ///< draw the voxels of this feature alone; 0: all
-    double finestStep =
-        1.0 / 16; ///< RenderSettings::finestInD0, [kFinestStep, 16]: from the usual step on, no refining
+    double finestStep = 1.0 / 16;     ///< RenderSettings::finestInD0: from the usual step on, no refining
     bool operator==(const DisplaySettings&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<DisplaySettings>(); ///< beside those of the light
 
 /// How figures are computed.
 struct MeasureSettings {
@@ -170,20 +178,20 @@ struct MeasureSettings {
     Along along = Along::Front; ///< of the published profile, which looks along an axis of the grid
     bool operator==(const MeasureSettings&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<MeasureSettings>(); ///< beside those of its parts
 
 /// How opacities are refined by entropy (docs/method.md, "Entropy refinement"), and what is favoured: one intensity, or
 /// the colours in a region of the picture, or (both empty) nothing. At most one of the two is set.
-struct RefineSettings {
-    double stepDown = 1.0 / 256;              ///< (0,1]
-    std::optional<double> stepUp = 1.0 / 256; ///< (0,1]; empty: derived, see RefineOptions
-    int maxIterations = 5000;                 ///< 0 and up
-    RefineMethod method = RefineMethod::Greedy;
-    bool live = false;                      ///< after every edit, not only when asked for
-    std::optional<double> intensity = {};   ///< [0,1]
-    std::optional<ImageRegion> region = {}; ///< of the picture as the view shows it
-    RefineOptions options() const;          ///< without what is favoured
+struct RefineSettings : RefineSteps {
+    bool live = false;                                              ///< after every edit, not only when asked for
+    std::optional<double> intensity = {};                           ///< [0,1]
+    std::optional<ImageRegion> region = {};                         ///< of the picture as the view shows it
+    RefineOptions options() const { return {*this, {}, true, {}}; } ///< without what is favoured
     bool operator==(const RefineSettings&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<RefineSettings>(); ///< beside RefineSteps
 
 /// Slices beside the picture. No figure depends on them.
 struct SliceViews {
@@ -191,20 +199,26 @@ struct SliceViews {
     Layout layout = Layout::Volume;
     std::optional<Vec3> crosshair = {};    ///< voxel coordinates, where the three meet; empty: the middle
     std::optional<ValueRange> window = {}; ///< data units of black and white; empty: the variable's window
-    double tfStrength = 0.5;               ///< [0,1]: 0 grey alone, 1 the colours of the transfer function alone
+    double tfStrength = 0.5;               ///< 0: grey alone; 1: the colours of the transfer function alone
     bool operator==(const SliceViews&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<SliceViews>();
+template <>
+inline constexpr auto kNamesOf<SliceViews::Layout> = enumNames("layout", "volume", "four", "volume-large");
 
 /// A field in the place of the data in the picture, under colours of its own. No figure depends on it.
 struct FieldView {
     std::optional<FieldKind> kind;  ///< empty: the data
     FeatureId feature = 0;          ///< of its voxels alone; 0: of all
     std::string colorMap = "ember"; ///< one of colorMaps(), or kFeatureColorMap
-    double strength = 0.3;          ///< opacity of a path of d0 at `top`, (0,1]
-    double threshold = 0;           ///< of `top`, [0,1): up to there nothing is drawn
-    std::optional<double> top;      ///< value that the colours reach to, > 0, in the field's unit; empty: Field::top
+    double strength = 0.3;          ///< opacity of a path of d0 at `top`
+    double threshold = 0;           ///< of `top`: up to there nothing is drawn
+    std::optional<double> top;      ///< value that the colours reach to, in the field's unit; empty: Field::top
     bool operator==(const FieldView&) const = default;
 };
+template <>
+std::span<const Setting> settingsOf<FieldView>();
 /// In place of a colour map: from black over the feature's colour to white; of all features, the default map.
 inline constexpr const char* kFeatureColorMap = "feature";
 /// Throws UsageError where `name` is no colour map and not kFeatureColorMap.

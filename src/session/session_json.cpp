@@ -124,6 +124,20 @@ std::string foundPath(const fs::path& stored, const std::string& folder) {
 
 // ---- writers and readers of the parts, each beside the other
 
+/// What settingsOf<T>() describes of a part.
+template <class T>
+json from(const T& part) {
+    json j = json::object();
+    putSettings(j, part);
+    return j;
+}
+template <class T>
+T to(const JsonValue& j) {
+    T part;
+    takeSettings(j, part);
+    return part;
+}
+
 json fromRange(const ValueRange& r) { return {r.lo, r.hi}; }
 ValueRange toRange(const JsonValue& j) {
     const auto ends = j.items(2);
@@ -180,7 +194,7 @@ RawLayout toRawLayout(const JsonValue& j) {
     constexpr int kMost = std::numeric_limits<int>::max();
     const auto dims = j["dims"].items(3);
     for (int a = 0; a < 3; ++a) raw.dims[a] = static_cast<int>(dims[static_cast<std::size_t>(a)].integer(1, kMost));
-    const auto type = sampleTypeFromName(j["type"].text());
+    const auto type = findNamed<SampleType>(j["type"].text());
     if (!type) j["type"].fail("no such sample type", "write u8 i8 u16 i16 u32 i32 f32 or f64");
     raw.type = *type;
     const std::string endian = j["endian"].text();
@@ -316,48 +330,14 @@ TargetKeys toTargetKeys(const JsonValue& j) {
     return keys;
 }
 
-json fromAdapt(const AdaptSettings& a) {
-    json j{{"mode", name(a.mode)}};
-    if (a.coherence && std::isinf(*a.coherence))
-        j["coherence"] = "infinite";
-    else if (a.coherence)
-        j["coherence"] = *a.coherence;
-    return j;
-}
-AdaptSettings toAdapt(const JsonValue& j) {
-    AdaptSettings a;
-    const auto mode = adaptModeFromName(j["mode"].text());
-    if (!mode) j["mode"].fail("no such mode", "write static, refine or optimize");
-    a.mode = *mode;
-    if (!j.has("coherence")) return a;
-    if (j["coherence"].json().is_string()) {
-        if (j["coherence"].text() != "infinite") j["coherence"].fail("no such coherence", "write a number or infinite");
-        a.coherence = std::numeric_limits<double>::infinity();
-    } else {
-        a.coherence = j["coherence"].number(0, kHuge);
-    }
-    return a;
-}
-
 json fromHsb(const HsbMapping& h) {
-    json j{{"on", h.on},   {"saturation", h.saturation}, {"brightness", h.brightness},
-           {"hue", h.hue}, {"hue_from", h.hueFrom},      {"hue_to", h.hueTo}};
-    if (h.a) j["a"] = *h.a;
-    if (h.b) j["b"] = *h.b;
+    json j = from(h);
     if (h.found.a) j["found_a"] = {{"of", h.found.saturation}, {"scale", *h.found.a}};
     if (h.found.b) j["found_b"] = {{"of", h.found.brightness}, {"scale", *h.found.b}};
     return j;
 }
 HsbMapping toHsb(const JsonValue& j) {
-    HsbMapping h;
-    h.on = j["on"].boolean();
-    h.saturation = j["saturation"].text();
-    h.brightness = j["brightness"].text();
-    h.hue = j["hue"].text();
-    h.hueFrom = j["hue_from"].number(-360, 360);
-    h.hueTo = j["hue_to"].number(-360, 360);
-    if (j.has("a")) h.a = j["a"].number(0, kLargestScale);
-    if (j.has("b")) h.b = j["b"].number(0, kLargestScale);
+    auto h = to<HsbMapping>(j);
     if (j.has("found_a")) {
         h.found.saturation = j["found_a"]["of"].text();
         h.found.a = j["found_a"]["scale"].number(0, kLargestScale);
@@ -374,23 +354,18 @@ json fromGround(const GroundView& g, const std::string& folder, DataPaths paths)
     source.path = g.path;
     source.raw = g.raw;
     source.missing = g.missing;
-    json j{{"color_map", g.colorMap}, {"relief", g.relief}, {"shown", g.shown}};
+    json j = from(g);
     if (!g.path.empty()) j["source"] = fromSource(source, folder, paths);
-    if (g.scale) j["scale"] = *g.scale;
     return j;
 }
 GroundView toGround(const JsonValue& j, const std::string& folder, std::vector<std::string>& notices) {
-    GroundView g;
+    auto g = to<GroundView>(j);
     if (j.has("source")) {
         const VolumeSource source = toSource(j["source"], folder, notices);
         g.path = source.path;
         g.raw = source.raw;
         g.missing = source.missing;
     }
-    if (j.has("scale")) g.scale = j["scale"].number(-kHuge, kHuge);
-    g.colorMap = j["color_map"].text();
-    g.relief = j["relief"].number(0, 1);
-    g.shown = j["shown"].boolean();
     return g;
 }
 
@@ -427,99 +402,25 @@ FeatureGoals toGoals(const JsonValue& j) {
 }
 
 json fromMeasure(const MeasureSettings& m) {
-    return {{"sigma", m.saliency.sigma},
-            {"kernel", m.saliency.kernel == SaliencyKernel::Narrow ? "narrow" : "thesis"},
-            {"w1", m.saliency.w1},
-            {"w2", m.saliency.w2},
-            {"background", jsonFromColor(m.saliency.background)},
-            {"u1", m.vws.u1},
-            {"u2", m.vws.u2},
-            {"quality", name(m.quality)},
-            {"engine", name(m.engine)},
-            {"profile", name(m.profile)},
-            {"along", name(m.along)}};
-}
-
-/// What `parse` makes of a text; what it says against it is said of this place.
-template <class Parse>
-auto named(const JsonValue& j, const Parse& parse) {
-    try {
-        return parse(j.text());
-    } catch (const UsageError& e) {
-        j.fail(e.problem(), e.whatToDo());
-    }
-}
-
-MeasureSettings toMeasure(const JsonValue& j) {
-    j.requireObject();
-    MeasureSettings m;
-    constexpr double kMostWeight = 1e6;
-    if (j.has("sigma")) {
-        m.saliency.sigma = j["sigma"].number(0, 8);
-        if (m.saliency.sigma == 0) j["sigma"].fail("sigma is above 0");
-    }
-    if (j.has("kernel"))
-        m.saliency.kernel = named(j["kernel"], [](const std::string& text) {
-            if (text != "narrow" && text != "thesis") throw UsageError("no such kernel", "", "write thesis or narrow");
-            return text == "narrow" ? SaliencyKernel::Narrow : SaliencyKernel::Thesis;
-        });
-    if (j.has("w1")) m.saliency.w1 = j["w1"].number(0, kMostWeight);
-    if (j.has("w2")) m.saliency.w2 = j["w2"].number(0, kMostWeight);
-    if (j.has("background")) m.saliency.background = colorFromJson(j["background"]);
-    if (j.has("u1") || j.has("u2")) {
-        m.vws = {j["u1"].number(0, 1), j["u2"].number(0, 1)};
-        if (std::abs(m.vws.u1 + m.vws.u2 - 1) > 1e-9) j["u1"].fail("u1 and u2 do not sum to 1");
-    }
-    if (j.has("quality")) m.quality = named(j["quality"], qualityFromName);
-    if (j.has("engine")) m.engine = named(j["engine"], engineChoiceFromName);
-    if (j.has("profile")) m.profile = named(j["profile"], profileFromName);
-    if (j.has("along")) m.along = named(j["along"], alongFromName);
-    return m;
-}
-
-json fromOptimize(const OptimizeOptions& o) {
-    json j{{"method", name(o.method)},
-           {"direction", name(o.direction)},
-           {"b", o.b},
-           {"normalize", o.normalize},
-           {"step", o.step},
-           {"tolerance", o.tolerance},
-           {"coarse", o.coarse},
-           {"restarts", o.restarts},
-           {"exact_shares", o.exactShares},
-           {"max_iterations", o.maxIterations}};
-    if (o.coverage) j["coverage"] = *o.coverage;
+    json j = from(m);
+    putSettings(j, m.saliency);
+    putSettings(j, m.vws);
     return j;
 }
 
-OptimizeOptions toOptimize(const JsonValue& j) {
-    j.requireObject();
-    OptimizeOptions o;
-    if (j.has("method")) o.method = named(j["method"], searchMethodFromName);
-    if (j.has("direction")) o.direction = named(j["direction"], directionFromName);
-    if (j.has("b")) o.b = j["b"].number();
-    if (j.has("coarse")) o.coarse = j["coarse"].boolean();
-    if (j.has("restarts")) o.restarts = j["restarts"].boolean();
-    if (j.has("exact_shares")) o.exactShares = j["exact_shares"].boolean();
-    if (j.has("coverage")) o.coverage = j["coverage"].number();
-    if (j.has("normalize")) o.normalize = j["normalize"].boolean();
-    if (j.has("step")) o.step = j["step"].number();
-    if (j.has("tolerance")) o.tolerance = j["tolerance"].number();
-    if (j.has("max_iterations")) o.maxIterations = static_cast<int>(j["max_iterations"].integer(0, 1'000'000'000));
-    try {
-        o.validate();
-    } catch (const UsageError& e) {
-        j.fail(e.problem(), e.whatToDo());
-    }
-    return o;
+MeasureSettings toMeasure(const JsonValue& j) {
+    auto m = to<MeasureSettings>(j);
+    takeSettings(j, m.saliency);
+    takeSettings(j, m.vws);
+    if (std::abs(m.vws.u1 + m.vws.u2 - 1) > 1e-9) j["u1"].fail("u1 and u2 do not sum to 1");
+    return m;
 }
 
 constexpr std::size_t kMostCorners = 10'000; ///< of a region
 
 json fromRefine(const RefineSettings& r) {
-    json j{
-        {"step_down", r.stepDown}, {"max_iterations", r.maxIterations}, {"method", name(r.method)}, {"live", r.live}};
-    j["step_up"] = r.stepUp ? json(*r.stepUp) : json("auto");
+    json j = from(r);
+    putSettings<RefineSteps>(j, r);
     if (r.intensity) j["intensity"] = *r.intensity;
     if (r.region)
         for (const glm::dvec2& corner : r.region->outline) j["region"].push_back({corner.x, corner.y});
@@ -527,28 +428,8 @@ json fromRefine(const RefineSettings& r) {
 }
 
 RefineSettings toRefine(const JsonValue& j) {
-    j.requireObject();
-    RefineSettings r;
-    const auto step = [](const JsonValue& value) {
-        const double number = value.number(0, 1);
-        if (number == 0) value.fail("a step is above 0");
-        return number;
-    };
-    if (j.has("step_down")) r.stepDown = step(j["step_down"]);
-    if (j.has("step_up")) {
-        if (j["step_up"].json().is_string() && j["step_up"].text() == "auto")
-            r.stepUp.reset();
-        else
-            r.stepUp = step(j["step_up"]);
-    }
-    if (j.has("max_iterations")) r.maxIterations = static_cast<int>(j["max_iterations"].integer(0, 1'000'000'000));
-    if (j.has("method"))
-        r.method = named(j["method"], [](const std::string& text) {
-            const auto method = refineMethodFromName(text);
-            if (!method) throw UsageError("no such method", "", "write greedy or exact");
-            return *method;
-        });
-    if (j.has("live")) r.live = j["live"].boolean();
+    auto r = to<RefineSettings>(j);
+    takeSettings<RefineSteps>(j, r);
     if (j.has("intensity")) r.intensity = j["intensity"].number(0, 1);
     if (j.has("region")) {
         ImageRegion region;
@@ -564,59 +445,29 @@ RefineSettings toRefine(const JsonValue& j) {
     return r;
 }
 
-constexpr std::array kLayouts{"volume", "four", "volume-large"}; ///< in the order of SliceViews::Layout
-
 json fromSlices(const SliceViews& s) {
-    json j{{"layout", kLayouts[static_cast<std::size_t>(s.layout)]}, {"tf_strength", s.tfStrength}};
+    json j = from(s);
     if (s.crosshair) j["crosshair"] = fromVec(*s.crosshair);
     if (s.window) j["window"] = fromRange(*s.window);
     return j;
 }
 
 SliceViews toSlices(const JsonValue& j) {
-    j.requireObject();
-    SliceViews s;
-    if (j.has("layout"))
-        s.layout = named(j["layout"], [](const std::string& text) {
-            const auto at = std::find(kLayouts.begin(), kLayouts.end(), text);
-            if (at == kLayouts.end()) throw UsageError("no such layout", "", "write volume, four or volume-large");
-            return static_cast<SliceViews::Layout>(at - kLayouts.begin());
-        });
-    if (j.has("tf_strength")) s.tfStrength = j["tf_strength"].number(0, 1);
+    auto s = to<SliceViews>(j);
     if (j.has("crosshair")) s.crosshair = toVec(j["crosshair"], -0.5, 1e9);
     if (j.has("window")) s.window = toRange(j["window"]);
     return s;
 }
 
 json fromField(const FieldView& f) {
-    json j{{"feature", f.feature}, {"color_map", f.colorMap}, {"strength", f.strength}, {"threshold", f.threshold}};
-    if (f.kind) j["kind"] = name(*f.kind);
-    if (f.top) j["top"] = *f.top;
+    json j = from(f);
+    j["feature"] = f.feature;
     return j;
 }
 
 FieldView toField(const JsonValue& j) {
-    j.requireObject();
-    FieldView f;
-    if (j.has("kind")) f.kind = named(j["kind"], fieldKindFromName);
+    auto f = to<FieldView>(j);
     if (j.has("feature")) f.feature = static_cast<FeatureId>(j["feature"].integer(0, INT64_MAX / 2));
-    if (j.has("color_map"))
-        f.colorMap = named(j["color_map"], [](const std::string& text) {
-            checkFieldColorMap(text);
-            return text;
-        });
-    if (j.has("strength")) {
-        f.strength = j["strength"].number(0, 1);
-        if (f.strength == 0) j["strength"].fail("a strength is above 0");
-    }
-    if (j.has("threshold")) {
-        f.threshold = j["threshold"].number(0, 1);
-        if (f.threshold == 1) j["threshold"].fail("a threshold is below 1");
-    }
-    if (j.has("top")) {
-        f.top = j["top"].number(0, kHuge);
-        if (*f.top == 0) j["top"].fail("the top is above 0");
-    }
     return f;
 }
 
@@ -624,65 +475,29 @@ FieldView toField(const JsonValue& j) {
 Vec3 toWorld(const JsonValue& j) { return toVec(j, -1e30, 1e30); }
 
 json fromLight(const Light& l) {
-    return {{"on", l.on},
-            {"ambient", l.ambient},
-            {"diffuse", l.diffuse},
-            {"specular", l.specular},
-            {"shininess", l.shininess},
-            {"direction", fromVec(l.direction)},
-            {"gradient_opacity", l.gradientOpacity},
-            {"occlusion", l.occlusion},
-            {"depth_cue", l.depthCue},
-            {"silhouettes", l.silhouettes}};
+    json j = from(l);
+    j["direction"] = fromVec(l.direction);
+    return j;
 }
 
 Light toLight(const JsonValue& j) {
-    j.requireObject();
-    Light l;
-    if (j.has("on")) l.on = j["on"].boolean();
-    const auto number = [&](const char* key, double& value, double lo, double hi) {
-        if (j.has(key)) value = j[key].number(lo, hi);
-    };
-    number("ambient", l.ambient, 0, 2);
-    number("diffuse", l.diffuse, 0, 2);
-    number("specular", l.specular, 0, 2);
-    number("shininess", l.shininess, 1, 1000);
+    auto l = to<Light>(j);
     if (j.has("direction")) l.direction = toWorld(j["direction"]);
     if (!(glm::length(l.direction) > 0)) j["direction"].fail("the light needs a direction that is not 0");
-    number("gradient_opacity", l.gradientOpacity, 0, 1);
-    number("occlusion", l.occlusion, 0, 1);
-    number("depth_cue", l.depthCue, 0, 1);
-    number("silhouettes", l.silhouettes, 0, 1);
     return l;
 }
 
 json fromDisplay(const DisplaySettings& d) {
-    json j{{"mode", name(d.mode)},
-           {"light", fromLight(d.light)},
-           {"background", jsonFromColor(d.background)},
-           {"only_feature", d.onlyFeature},
-           {"finest_step", d.finestStep}};
-    if (d.backgroundTop) j["background_top"] = jsonFromColor(*d.backgroundTop);
+    json j = from(d);
+    j["light"] = fromLight(d.light);
+    j["only_feature"] = d.onlyFeature;
     return j;
 }
 
 DisplaySettings toDisplay(const JsonValue& j) {
-    j.requireObject();
-    DisplaySettings d;
+    auto d = to<DisplaySettings>(j);
     if (j.has("shading")) d.light.on = j["shading"].boolean(); // as files without "light" have it
     if (j.has("light")) d.light = toLight(j["light"]);
-    if (j.has("mode")) {
-        const std::optional<RenderMode> mode = renderModeFromName(j["mode"].text());
-        if (!mode) j["mode"].fail("it is none of composite, mip, minip, average, surface");
-        d.mode = *mode;
-    }
-    if (j.has("background")) d.background = colorFromJson(j["background"]);
-    if (j.has("background_top")) d.backgroundTop = colorFromJson(j["background_top"]);
-    if (j.has("finest_step")) {
-        d.finestStep = j["finest_step"].number();
-        if (!(d.finestStep >= kFinestStep && d.finestStep <= 16))
-            j["finest_step"].fail("the finest step lies in [1/256, 16] reference lengths");
-    }
     if (j.has("only_feature")) d.onlyFeature = static_cast<FeatureId>(j["only_feature"].integer(0, INT64_MAX / 2));
     return d;
 }
@@ -732,9 +547,12 @@ json fromCamera(const Camera& camera) {
 }
 
 json fromRunStart(const RunStart& start) {
-    json j{{"tf", jsonFromTf(start.tf, Identities::Keep)}, {"camera", fromCamera(start.camera)},
-           {"clip", fromClipping(start.clipping)},         {"measure", fromMeasure(start.measure)},
-           {"optimize", fromOptimize(start.options)},      {"limits", json::array()}};
+    json j{{"tf", jsonFromTf(start.tf, Identities::Keep)},
+           {"camera", fromCamera(start.camera)},
+           {"clip", fromClipping(start.clipping)},
+           {"measure", fromMeasure(start.measure)},
+           {"optimize", from(start.options)},
+           {"limits", json::array()}};
     for (const OpacityLimits& l : start.limits)
         j["limits"].push_back({{"lowest", l.lowest}, {"highest", l.highest}, {"locked", l.locked}});
     return j;
@@ -746,7 +564,7 @@ RunStart toRunStart(const JsonValue& j, std::size_t features) {
     start.camera = cameraFromJson(j["camera"]);
     start.clipping = toClipping(j["clip"]);
     start.measure = toMeasure(j["measure"]);
-    start.options = toOptimize(j["optimize"]);
+    start.options = to<OptimizeOptions>(j["optimize"]);
     for (const JsonValue& l : j["limits"].items()) {
         start.limits.push_back({l["lowest"].number(0, 1), l["highest"].number(0, 1), l["locked"].boolean()});
         if (start.limits.back().lowest > start.limits.back().highest) l.fail("its bounds are the wrong way round");
@@ -824,12 +642,12 @@ json jsonFromSession(const Session& s, const std::string& folder, DataPaths path
            {"display", fromDisplay(*s.display)},
            {"reference", fromReference(*s.reference)},
            {"measure", fromMeasure(*s.measure)},
-           {"optimize", fromOptimize(*s.optimize)},
+           {"optimize", from(*s.optimize)},
            {"refine", fromRefine(*s.refine)},
            {"slices", fromSlices(*s.slices)},
            {"field", fromField(*s.field)},
            {"target_keys", fromTargetKeys(*s.targetKeys)},
-           {"adapt", fromAdapt(*s.adapt)},
+           {"adapt", from(*s.adapt)},
            {"hsb", fromHsb(*s.hsb)},
            {"ground", fromGround(*s.ground, folder, paths)},
            {"runs", json::array()}};
@@ -860,12 +678,12 @@ SessionFile sessionFromJson(const JsonValue& j, const std::string& folder) {
     if (j.has("display")) s.display = toDisplay(j["display"]);
     if (j.has("reference")) s.reference = toReference(j["reference"]);
     if (j.has("measure")) s.measure = toMeasure(j["measure"]);
-    if (j.has("optimize")) s.optimize = toOptimize(j["optimize"]);
+    if (j.has("optimize")) s.optimize = to<OptimizeOptions>(j["optimize"]);
     if (j.has("refine")) s.refine = toRefine(j["refine"]);
     if (j.has("slices")) s.slices = toSlices(j["slices"]);
     if (j.has("field")) s.field = toField(j["field"]);
     if (j.has("target_keys")) s.targetKeys = toTargetKeys(j["target_keys"]);
-    if (j.has("adapt")) s.adapt = toAdapt(j["adapt"]);
+    if (j.has("adapt")) s.adapt = to<AdaptSettings>(j["adapt"]);
     if (j.has("hsb")) s.hsb = toHsb(j["hsb"]);
     if (j.has("ground")) s.ground = toGround(j["ground"], folder, file.notices);
     if (j.has("runs")) {

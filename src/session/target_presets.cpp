@@ -9,24 +9,6 @@
 
 namespace pellucid {
 
-const char* name(TargetPreset preset) {
-    switch (preset) {
-    case TargetPreset::Equal:
-        return "equal";
-    case TargetPreset::Diagonal:
-        return "diagonal";
-    case TargetPreset::InsideOut:
-        return "inside-out";
-    }
-    return "";
-}
-
-TargetPreset targetPresetFromName(const std::string& text) {
-    for (const TargetPreset p : {TargetPreset::Equal, TargetPreset::Diagonal, TargetPreset::InsideOut})
-        if (text == name(p)) return p;
-    throw UsageError("there are no targets '" + text + "'", "targets", "choose equal, diagonal or inside-out");
-}
-
 double peakIntensity(const TransferFunction& tf, std::size_t feature) {
     const Feature& f = tf.features.at(feature);
     double most = -1, first = 0, last = 0;

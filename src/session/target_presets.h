@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "session/session.h"
 
 namespace pellucid {
@@ -13,8 +14,8 @@ enum class TargetPreset {
     Diagonal, ///< shares in proportion to the intensity at the feature's peak
     InsideOut ///< the present shares in reverse order; where all are equal, those of Diagonal in reverse order
 };
-const char* name(TargetPreset preset);                      ///< "equal", "diagonal", "inside-out"
-TargetPreset targetPresetFromName(const std::string& name); ///< throws UsageError
+template <>
+inline constexpr auto kNamesOf<TargetPreset> = enumNames("set of targets", "equal", "diagonal", "inside-out");
 
 /// Intensity at which a feature is most opaque, [0,1]; of a plateau its middle, of a feature without a point its own.
 double peakIntensity(const TransferFunction& tf, std::size_t feature);

@@ -195,7 +195,7 @@ Field Workspace::field(const MeasureInput& input, FieldKind kind, int feature, c
             const double top = usualTop(values);
             keepFeature(values, volume, input.tf, feature, rest);
             rest.throwIfStopped();
-            std::string title = infoOf(kind).title;
+            std::string title = pellucid::title(kind);
             if (feature >= 0) title += ", " + input.tf.features[static_cast<std::size_t>(feature)].name;
             return fieldVolume(volume.geometry(), values, top, std::move(title));
         },

@@ -119,26 +119,6 @@ double signedSpread(const std::vector<double>& sorted) {
 
 const char* unitOf(DataKind kind) { return kind == DataKind::Ct ? "HU" : ""; }
 
-const char* name(DataKind kind) {
-    switch (kind) {
-    case DataKind::Continuous:
-        return "continuous";
-    case DataKind::Ct:
-        return "ct";
-    case DataKind::Signed:
-        return "signed";
-    case DataKind::Labels:
-        return "labels";
-    case DataKind::Binary:
-        return "binary";
-    case DataKind::Constant:
-        return "constant";
-    case DataKind::Empty:
-        break;
-    }
-    return "empty";
-}
-
 RecognisedKind recogniseKind(const Volume& data, const VoxelSurvey& survey, const JobControl& job) {
     if (!data.hasValidVoxels()) return {DataKind::Empty, {}, 0};
     if (data.isConstant()) return {DataKind::Constant, {}, 0};

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "base/job.h"
 #include "volume/voxel_survey.h"
 
@@ -18,8 +19,7 @@ enum class DataKind {
     Constant,   ///< one value
     Empty       ///< no valid voxel
 };
-/// "continuous", "ct", "signed", "labels", "binary", "constant", "empty".
-const char* name(DataKind kind);
+template <> inline constexpr auto kNamesOf<DataKind> = enumNames("kind of data", "continuous", "ct", "signed", "labels", "binary", "constant", "empty");
 
 /// Of the values of such data: "HU" of CT, "" where nothing tells.
 const char* unitOf(DataKind kind);

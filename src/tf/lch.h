@@ -1,7 +1,7 @@
 // sRGB and CIELCh(ab), white point D65.
 #pragma once
 
-#include "tf/color.h"
+#include "base/color.h"
 
 namespace pellucid {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tf/color.h"
+#include "base/color.h"
 
 namespace pellucid {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tf/color.h"
+#include "base/color.h"
 
 namespace pellucid {
 

@@ -114,7 +114,7 @@ RawLayout parseRawLayout(const std::string& text) {
             throw fail("'" + part + "' is not a number of voxels");
         layout.dims[a] = static_cast<int>(size);
     }
-    const auto type = sampleTypeFromName(parts[3]);
+    const auto type = findNamed<SampleType>(parts[3]);
     if (!type) throw fail("'" + parts[3] + "' is not a sample type");
     layout.type = *type;
     if (parts.size() == 5) {

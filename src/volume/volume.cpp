@@ -17,15 +17,6 @@ namespace pellucid {
 
 namespace {
 
-struct TypeRow {
-    const char* name;
-    std::size_t bytes;
-};
-constexpr std::array<TypeRow, 8> kTypes{
-    {{"u8", 1}, {"i8", 1}, {"u16", 2}, {"i16", 2}, {"u32", 4}, {"i32", 4}, {"f32", 4}, {"f64", 8}}};
-
-const TypeRow& row(SampleType type) { return kTypes[static_cast<std::size_t>(type)]; }
-
 struct Statistics {
     double lo = std::numeric_limits<double>::infinity();
     double hi = -std::numeric_limits<double>::infinity();
@@ -67,15 +58,6 @@ Statistics statisticsOf(const Samples& samples, std::optional<double> missing) {
 }
 
 } // namespace
-
-const char* name(SampleType type) { return row(type).name; }
-std::size_t bytesPerSample(SampleType type) { return row(type).bytes; }
-
-std::optional<SampleType> sampleTypeFromName(const std::string& name) {
-    for (std::size_t i = 0; i < kTypes.size(); ++i)
-        if (name == kTypes[i].name) return static_cast<SampleType>(i);
-    return {};
-}
 
 Mat3 Geometry::worldFromIndex() const {
     return {directions[0] * spacing.x, directions[1] * spacing.y, directions[2] * spacing.z};

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "volume/grid.h"
 #include "volume/sample_array.h"
 
@@ -17,10 +18,10 @@ namespace pellucid {
 
 enum class SampleType { U8, I8, U16, I16, U32, I32, F32, F64 };
 
-/// "u8" … "f64", as --raw and `info` write them.
-const char* name(SampleType type);
-std::optional<SampleType> sampleTypeFromName(const std::string& name);
-std::size_t bytesPerSample(SampleType type);
+template <> inline constexpr auto kNamesOf<SampleType> = enumNames("sample type", "u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64");
+constexpr std::size_t bytesPerSample(SampleType type) {
+    return std::array<std::size_t, 8>{1, 1, 2, 2, 4, 4, 4, 8}[static_cast<std::size_t>(type)];
+}
 
 using Samples = std::variant<SampleArray<std::uint8_t>, SampleArray<std::int8_t>, SampleArray<std::uint16_t>,
                              SampleArray<std::int16_t>, SampleArray<std::uint32_t>, SampleArray<std::int32_t>,

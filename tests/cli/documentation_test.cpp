@@ -1,6 +1,8 @@
 // --help, the manual and the shell completion know the same options.
 #include <array>
+#include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -8,7 +10,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "base/atomic_file.h"
 #include "cli_runner.h"
+#include "options/setting_options.h"
+#include "session/session.h"
 
 using pellucid::test::Outcome;
 using pellucid::test::Workshop;
@@ -36,6 +41,63 @@ std::set<std::string> optionsIn(const std::string& text) {
 std::string unescaped(std::string text) {
     for (std::size_t at = 0; (at = text.find("\\-", at)) != std::string::npos; ++at) text.erase(at, 1);
     return text;
+}
+
+std::string escaped(const std::string& text) {
+    std::string roff;
+    for (const char c : text) roff += c == '-' ? std::string("\\-") : std::string(1, c);
+    return roff;
+}
+
+/// Lines of at most 120 bytes.
+std::string wrapped(const std::string& text) {
+    std::string lines;
+    std::size_t length = 0;
+    std::istringstream words(text);
+    for (std::string word; words >> word; length += word.size()) {
+        const bool breaks = length > 0 && length + 1 + word.size() > 120;
+        lines += length == 0 ? "" : breaks ? "\n" : " ";
+        length = breaks ? 0 : length + (length == 0 ? 0 : 1);
+        lines += word;
+    }
+    return lines;
+}
+
+/// Entries of the manual for the settings of these keys; without keys, for all that have an option.
+template <class T>
+std::string manualOf(std::initializer_list<const char*> keys = {}) {
+    pellucid::cli::SettingOptions<T> options;
+    CLI::App app;
+    app.set_help_flag();
+    options.add(app, "Options", keys);
+    std::string text;
+    for (const CLI::Option* option : app.get_options())
+        text += ".TP\n" +
+                (option->get_type_size() == 0
+                     ? ".B " + escaped(option->get_name())
+                     : ".BI " + escaped(option->get_name()) + " \" " + escaped(option->get_type_name()) + "\"") +
+                "\n" +
+                wrapped(escaped(static_cast<char>(std::toupper(option->get_description()[0])) +
+                                option->get_description().substr(1) + ".")) +
+                "\n";
+    return text;
+}
+
+std::string manualOf(const std::string& group) {
+    using namespace pellucid;
+    if (group == "engine") return manualOf<MeasureSettings>();
+    if (group == "saliency") return manualOf<SaliencyOptions>() + manualOf<VwsOptions>();
+    if (group == "display") return manualOf<DisplaySettings>();
+    if (group == "light") return manualOf<Light>({"silhouettes", "occlusion", "depth_cue", "gradient_opacity"});
+    if (group == "field") return manualOf<FieldView>();
+    if (group == "ground") return manualOf<GroundView>();
+    if (group == "slice") return manualOf<SliceViews>();
+    if (group == "refine") return manualOf<RefineSteps>();
+    if (group == "optimize") return manualOf<OptimizeOptions>();
+    if (group == "adapt") return manualOf<AdaptSettings>();
+    if (group == "search") return manualOf<OptimizeOptions>({"tolerance", "exact_shares"});
+    FAIL("the manual asks for settings called " << group);
+    return {};
 }
 
 /// What bash offers after `line`, the completion script being loaded.
@@ -97,6 +159,25 @@ TEST_CASE("the manual has every command and option, and no others", "[cli][docum
         known.merge(optionsIn(w.run({command, "--help"}).out));
     }
     CHECK(optionsIn(manual) == known);
+}
+
+TEST_CASE("the manual says of settings what their descriptions say", "[cli][documentation][documents]") {
+    const std::string path = "docs/man/pellucid-cli.1", begin = ".\\\" settings: ", end = ".\\\" end\n";
+    const std::string manual = sourceFile(path);
+    std::string fresh;
+    std::size_t at = 0;
+    for (std::size_t from; (from = manual.find(begin, at)) != std::string::npos;) {
+        const std::size_t line = manual.find('\n', from) + 1, to = manual.find(end, line);
+        REQUIRE(to != std::string::npos);
+        fresh +=
+            manual.substr(at, line - at) + manualOf(manual.substr(from + begin.size(), line - 1 - from - begin.size()));
+        at = to;
+    }
+    fresh += manual.substr(at);
+    if (std::getenv("PELLUCID_REFRESH_DOCS") != nullptr)
+        pellucid::writeTextAtomically(std::string(PELLUCID_SOURCE_DIR) + "/" + path, fresh);
+    else
+        CHECK(manual == fresh); // else scripts/refresh-docs.sh writes it
 }
 
 TEST_CASE("bash completes commands, options, values and samples", "[cli][documentation]") {

@@ -72,12 +72,12 @@ TEST_CASE("the caller's own context stays current", "[gl]") {
 }
 
 TEST_CASE("engines are chosen by name", "[gl]") {
-    CHECK(engineChoiceFromName("auto") == EngineChoice::Auto);
-    CHECK(engineChoiceFromName("gl") == EngineChoice::Gl);
-    CHECK(engineChoiceFromName("cpu") == EngineChoice::Cpu);
-    CHECK(engineChoiceFromName("slices") == EngineChoice::Slices);
-    CHECK(engineChoiceFromName("reference") == EngineChoice::Reference);
-    CHECK_THROWS_AS(engineChoiceFromName("opengl"), UsageError);
+    CHECK(fromName<EngineChoice>("auto") == EngineChoice::Auto);
+    CHECK(fromName<EngineChoice>("gl") == EngineChoice::Gl);
+    CHECK(fromName<EngineChoice>("cpu") == EngineChoice::Cpu);
+    CHECK(fromName<EngineChoice>("slices") == EngineChoice::Slices);
+    CHECK(fromName<EngineChoice>("reference") == EngineChoice::Reference);
+    CHECK_THROWS_AS(fromName<EngineChoice>("opengl"), UsageError);
 
     const auto volume = noise({4, 4, 4}, {1, 1, 1}, 1);
     CHECK(makeEngine(EngineChoice::Cpu, volume)->name() == "cpu");

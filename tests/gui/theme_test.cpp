@@ -146,7 +146,7 @@ TEST_CASE("the View menu switches the theme at once, and back", "[theme]") {
 }
 
 TEST_CASE("themes have names", "[theme]") {
-    for (const Theme theme : {Theme::Dark, Theme::Light, Theme::System}) CHECK(themeFromName(name(theme)) == theme);
-    CHECK_FALSE(themeFromName("pink"));
-    CHECK_FALSE(themeFromName(""));
+    for (const Theme theme : {Theme::Dark, Theme::Light, Theme::System}) CHECK(findNamed<Theme>(name(theme)) == theme);
+    CHECK_FALSE(findNamed<Theme>("pink"));
+    CHECK_FALSE(findNamed<Theme>(""));
 }

@@ -103,7 +103,7 @@ TEST_CASE("every include points down the layers", "[layering]") {
 
 TEST_CASE("the rule itself catches what it should", "[layering]") {
     CHECK(fault({"src/tf/a.cpp", 1, "render/camera.h"}) != "");
-    CHECK(fault({"src/volume/a.cpp", 1, "tf/color.h"}) != "");
+    CHECK(fault({"src/volume/a.cpp", 1, "tf/palette.h"}) != "");
     CHECK(fault({"src/base/a.cpp", 1, "volume/grid.h"}) != "");
     CHECK(fault({"src/render/a.cpp", 1, "epoxy/gl.h"}) != "");
     CHECK(fault({"src/render/a.cpp", 1, "render/gl/gl_engines.h"}) != "");

@@ -23,9 +23,9 @@ double sum(const Grid<float>& field) { return std::accumulate(field.begin(), fie
 TEST_CASE("fields have names", "[fields]") {
     for (std::size_t i = 0; i < kFieldKinds.size(); ++i) {
         CHECK(static_cast<std::size_t>(kFieldKinds[i].kind) == i);
-        CHECK(fieldKindFromName(kFieldKinds[i].name) == kFieldKinds[i].kind);
+        CHECK(fromName<FieldKind>(kFieldKinds[i].name) == kFieldKinds[i].kind);
     }
-    CHECK_THROWS_WITH(fieldKindFromName("depth"), Catch::Contains("saliency-brightness"));
+    CHECK_THROWS_WITH(fromName<FieldKind>("depth"), Catch::Contains("saliency-brightness"));
 }
 
 TEST_CASE("the VWS field of a feature sums to its W, and parts make the whole", "[fields]") {

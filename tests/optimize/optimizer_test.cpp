@@ -220,6 +220,6 @@ TEST_CASE("impossible optimization options are refused", "[optimize]") {
     options = {};
     options.tolerance = std::nan("");
     CHECK_THROWS_AS(optimize({f, {1, 1}}, options), UsageError);
-    CHECK_THROWS_AS(searchMethodFromName("newton2"), UsageError);
-    CHECK(searchMethodFromName("line") == SearchMethod::Line);
+    CHECK_THROWS_AS(fromName<SearchMethod>("newton2"), UsageError);
+    CHECK(fromName<SearchMethod>("line") == SearchMethod::Line);
 }

@@ -257,6 +257,6 @@ TEST_CASE("the exact method keeps the start's total opacity, and all that is fix
 
 TEST_CASE("methods have names", "[refine]") {
     for (const RefineMethod method : {RefineMethod::Greedy, RefineMethod::Exact})
-        CHECK(refineMethodFromName(name(method)) == method);
-    CHECK_FALSE(refineMethodFromName("best"));
+        CHECK(findNamed<RefineMethod>(name(method)) == method);
+    CHECK_FALSE(findNamed<RefineMethod>("best"));
 }

@@ -39,8 +39,8 @@ TEST_CASE("targets are equal, rise with the peaks, or are turned round", "[sessi
     checkShares(presetTargets(TargetPreset::InsideOut, tf, {}), {7 / 16.0, 5 / 16.0, 3 / 16.0, 1 / 16.0});
     checkShares(targetsForOne(tf, goals, 2), {0, 0, 1, 0});
     checkShares(targetsByWeights(tf, goals, {0, 0, 0, 0}), {0.25, 0.25, 0.25, 0.25});
-    CHECK(targetPresetFromName("inside-out") == TargetPreset::InsideOut);
-    CHECK_THROWS_AS(targetPresetFromName("most"), UsageError);
+    CHECK(fromName<TargetPreset>("inside-out") == TargetPreset::InsideOut);
+    CHECK_THROWS_AS(fromName<TargetPreset>("most"), UsageError);
 }
 
 TEST_CASE("locked targets stay under presets, hidden features get nothing", "[session][presets]") {

@@ -260,7 +260,7 @@ SliceViews randomSlices(Random& random) {
 
 FieldView randomField(Random& random) {
     FieldView f;
-    if (random.chance(0.7)) f.kind = kFieldKinds[static_cast<std::size_t>(random.below(5))].kind;
+    if (random.chance(0.7)) f.kind = static_cast<FieldKind>(random.below(5));
     f.feature = static_cast<FeatureId>(random.below(4));
     f.colorMap = oneOf(random, std::array{"ember", "sand", kFeatureColorMap});
     f.strength = random.between(1e-6, 1);

@@ -162,7 +162,7 @@ TEMPLATE_TEST_CASE("downsampling takes the means of blocks", "[large]", std::uin
     auto data = mixed<TestType>(voxelCount(full));
     for (std::size_t i = 0; i < data.size(); i += 3) data[i] = TestType(7); // missing, most of all in the first block:
     for (const std::size_t i : {0u, 1u, 11u, 12u, 77u, 78u, 88u, 89u}) data[i] = TestType(7);
-    const auto name = sampleTypeFromName(std::is_same_v<TestType, float>    ? "f32"
+    const auto name = findNamed<SampleType>(std::is_same_v<TestType, float>    ? "f32"
                                          : std::is_same_v<TestType, double> ? "f64"
                                          : sizeof(TestType) == 1            ? "u8"
                                          : sizeof(TestType) == 2            ? "i16"

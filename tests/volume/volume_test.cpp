@@ -76,14 +76,14 @@ TEST_CASE("the box reaches half a voxel beyond the outer centres", "[volume]") {
 TEST_CASE("sample types have the names of the command line", "[volume]") {
     std::size_t bytes = 0;
     for (const char* text : {"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"}) {
-        const auto type = sampleTypeFromName(text);
+        const auto type = findNamed<SampleType>(text);
         REQUIRE(type);
         CHECK(std::string(name(*type)) == text);
         bytes += bytesPerSample(*type);
     }
     CHECK(bytes == 1 + 1 + 2 + 2 + 4 + 4 + 4 + 8);
-    CHECK(!sampleTypeFromName("u64"));
-    CHECK(!sampleTypeFromName(""));
+    CHECK(!findNamed<SampleType>("u64"));
+    CHECK(!findNamed<SampleType>(""));
     CHECK(Volume(kLine, std::vector<std::uint32_t>(4)).sampleType() == SampleType::U32);
     CHECK(Volume(kLine, std::vector<std::uint32_t>(4)).memoryBytes() == 16);
 }

@@ -1,31 +1,56 @@
 #include "options/engine_options.h"
 
-#include "parse.h"
+#include "options/camera_options.h"
+#include "options/saliency_options.h"
 
 namespace pellucid::cli {
 
-void EngineOptions::add(CLI::App& app, const std::string& qualityHelp) {
-    const char* const group = "Engine";
-    addValue(
-        app, "--engine", "auto|gl|cpu|slices|reference",
-        [this](const std::string& text, const std::string& option) {
-            choice = atOption(option, [&] { return engineChoiceFromName(text); });
-        },
-        "what computes; auto (default): gl on a real GPU, else cpu; slices is the thesis's own method, on OpenGL",
-        group);
-    addValue(
-        app, "--quality", "normal|high",
-        [this](const std::string& text, const std::string& option) {
-            quality = atOption(option, [&] { return qualityFromName(text); });
-        },
-        qualityHelp, group);
-}
+namespace {
+
+constexpr const char* kGroup = "Engine";
+
+bool isPublished(const MeasureSettings& settings) { return settings.profile == Profile::Published; }
+
+} // namespace
+
+void EngineOptions::add(CLI::App& app) { given.add(app, kGroup, {"engine", "quality"}); }
+
+void EngineOptions::addProfile(CLI::App& app) { given.add(app, kGroup, {"profile", "along"}); }
 
 void EngineOptions::applyTo(SceneInputs& inputs) const {
-    inputs.session.measure.edit([this](MeasureSettings& m) {
-        m.engine = choice.value_or(m.engine);
-        m.quality = quality.value_or(m.quality);
-    });
+    inputs.session.measure.edit([this](MeasureSettings& m) { given.applyTo(m); });
+    if (given.has("along") && !isPublished(*inputs.session.measure))
+        throw UsageError("only the published profile looks along an axis", "--along",
+                         "add --profile published, or give --view");
+}
+
+void EngineOptions::requireProfile(const SceneInputs& inputs, const SaliencyInput& saliency) const {
+    if (!isPublished(*inputs.session.measure)) return;
+    std::vector<const Setting*> settings = saliency.options.given();
+    settings.insert(settings.end(), saliency.shares.given().begin(), saliency.shares.given().end());
+    if (given.values().engine != EngineChoice::Auto)
+        settings.push_back(&settingOf(settingsOf<MeasureSettings>(), "engine"));
+    if (given.values().quality != Quality::Normal)
+        settings.push_back(&settingOf(settingsOf<MeasureSettings>(), "quality"));
+    if (!settings.empty())
+        throw UsageError("the published profile has its own definition of this", settings.front()->optionName(),
+                         "leave it out, or give --profile default");
+}
+
+std::optional<std::string> profileNotice(const MeasureSettings& settings, const CameraOptions& camera) {
+    if (!isPublished(settings) || !(camera.file || camera.view || camera.namedView)) return {};
+    return std::string("figures are of the view \"") + name(settings.along) +
+           "\" of the published profile, not of the camera";
+}
+
+void addProfile(Json& json, const MeasureSettings& settings) {
+    if (!isPublished(settings)) return;
+    json["profile"] = name(settings.profile);
+    json["along"] = name(settings.along);
+}
+
+std::string profileText(const MeasureSettings& settings) {
+    return isPublished(settings) ? std::string(" (published profile, ") + name(settings.along) + ")" : std::string();
 }
 
 } // namespace pellucid::cli

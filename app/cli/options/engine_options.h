@@ -1,21 +1,33 @@
-// --engine, --quality: what computes, and how carefully.
+// --engine, --quality: what computes, and how carefully; --profile, --along: by which definitions.
 #pragma once
 
-#include <optional>
-#include <string>
-
-#include <CLI/CLI.hpp>
-
+#include "options/setting_options.h"
+#include "output.h"
 #include "session/scene.h"
 
 namespace pellucid::cli {
 
-struct EngineOptions {
-    std::optional<EngineChoice> choice;
-    std::optional<Quality> quality;
+struct CameraOptions;
+struct SaliencyInput;
 
-    void add(CLI::App& app, const std::string& qualityHelp);
+struct EngineOptions {
+    SettingOptions<MeasureSettings> given;
+
+    void add(CLI::App& app);
+    /// Beside the above; for commands that measure.
+    void addProfile(CLI::App& app);
+    /// Throws UsageError for --along without the published profile.
     void applyTo(SceneInputs& inputs) const;
+    /// The published profile has its own definition of engine, quality and saliency: throws UsageError naming the
+    /// option that was given with it.
+    void requireProfile(const SceneInputs& inputs, const SaliencyInput& saliency) const;
 };
+
+/// What one should know of figures that are not of the camera: empty, or that they are of the profile's own view.
+std::optional<std::string> profileNotice(const MeasureSettings& settings, const CameraOptions& camera);
+/// "profile" and "along", where figures are of the published profile.
+void addProfile(Json& json, const MeasureSettings& settings);
+/// " (published profile, front)", likewise; else empty.
+std::string profileText(const MeasureSettings& settings);
 
 } // namespace pellucid::cli

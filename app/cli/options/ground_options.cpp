@@ -15,7 +15,7 @@ constexpr const char* kGroup = "Ground";
 RawLayout parseGroundLayout(const std::string& text, const std::string& option) {
     std::vector<std::string> parts = split(text, ',');
     if (parts.size() < 3 || parts.size() > 4)
-        throw UsageError("'" + text + "' is no layout of heights", option,
+        throw UsageError("'" + text + "' is not a layout of heights", option,
                          "give NX,NY,TYPE[,little|big], TYPE one of u8 i8 u16 i16 u32 i32 f32 f64");
     parts.insert(parts.begin() + 2, "1");
     std::string layers;
@@ -39,25 +39,7 @@ void GroundOptions::add(CLI::App& app) {
         app, "--ground-raw", "NX,NY,TYPE[,ENDIAN]",
         [this](const std::string& text, const std::string& option) { raw = parseGroundLayout(text, option); },
         "the file of the ground is headerless, see --raw", kGroup);
-    addValue(
-        app, "--ground-scale", "S",
-        [this](const std::string& text, const std::string& option) {
-            scale = parseRealAbove(text, option, 0, std::numeric_limits<double>::max());
-        },
-        "world units per unit of height (default: 1 where the heights fit the box, else the highest rises to a tenth "
-        "of it)",
-        kGroup);
-    addValue(
-        app, "--ground-relief", "R",
-        [this](const std::string& text, const std::string& option) { relief = parseReal(text, option, 0, 1); },
-        "0 to 1: strength of the ground's shading (default: the session's, else 1)", kGroup);
-    addValue(
-        app, "--ground-map", "NAME",
-        [this](const std::string& text, const std::string& option) {
-            atOption(option, [&] { return groundColors(text); });
-            colorMap = text;
-        },
-        "colours of the ground from its lowest to its highest: terrain (default) or a colour map", kGroup);
+    given.add(app, kGroup);
 }
 
 void GroundOptions::applyTo(SceneInputs& inputs) const {
@@ -69,20 +51,14 @@ void GroundOptions::applyTo(SceneInputs& inputs) const {
         named.path = *path;
         ground = named;
     }
-    const char* const detail = raw        ? "--ground-raw"
-                               : scale    ? "--ground-scale"
-                               : relief   ? "--ground-relief"
-                               : colorMap ? "--ground-map"
-                                          : nullptr;
-    if (detail == nullptr) return;
-    if (ground->path.empty()) throw UsageError("there is no ground", detail, "give --ground FILE as well");
+    if (!raw && given.given().empty()) return;
+    const std::string detail = raw ? "--ground-raw" : given.given().front()->optionName();
+    if (ground->path.empty()) throw UsageError("there is no ground", detail, "add --ground FILE");
     if (raw && ground->path.starts_with("sample:"))
-        throw UsageError("a built-in sample is no headerless file", "--ground-raw", "leave it out");
+        throw UsageError("a built-in sample has no headerless file", "--ground-raw", "leave it out");
     ground.edit([&](GroundView& view) {
         if (raw) view.raw = raw;
-        if (scale) view.scale = scale;
-        view.relief = relief.value_or(view.relief);
-        view.colorMap = colorMap.value_or(view.colorMap);
+        given.applyTo(view);
         view.shown = true;
     });
 }

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "options/setting_options.h"
 #include "session/scene.h"
 
 namespace pellucid::cli {
@@ -13,8 +14,7 @@ namespace pellucid::cli {
 struct GroundOptions {
     std::optional<std::string> path;
     std::optional<RawLayout> raw;
-    std::optional<double> scale, relief;
-    std::optional<std::string> colorMap;
+    SettingOptions<GroundView> given;
 
     void add(CLI::App& app);
     /// --ground replaces that of the session; the others change it. Throws UsageError where there is none.

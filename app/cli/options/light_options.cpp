@@ -1,5 +1,8 @@
 #include "options/light_options.h"
 
+#include <algorithm>
+#include <array>
+
 #include <glm/geometric.hpp>
 
 #include "parse.h"
@@ -8,6 +11,9 @@
 namespace pellucid::cli {
 
 namespace {
+
+/// What --light takes: the settings that count where there is light.
+constexpr std::array kParts{"ambient", "diffuse", "specular", "shininess"};
 
 std::string presetNames(const char* separator) {
     std::string names;
@@ -19,7 +25,7 @@ std::string presetNames(const char* separator) {
 Vec3 parseDirection(const std::string& text, const std::string& option) {
     const std::vector<double> v = parseReals(text, option, 3, "X,Y,Z: right, up and toward the viewer");
     const Vec3 direction{v[0], v[1], v[2]};
-    if (!(glm::length(direction) > 0)) throw UsageError("0,0,0 is no direction", option, "0,0,1 comes from the eye");
+    if (!(glm::length(direction) > 0)) throw UsageError("0,0,0 is not a direction", option, "0,0,1 comes from the eye");
     return direction;
 }
 
@@ -30,17 +36,13 @@ void LightOptions::takeParts(const std::string& text, const std::string& option)
     for (const std::string& part : split(text, ',')) {
         const std::vector<std::string> pair = split(part, '=');
         const std::string form = "give ambient=A,diffuse=D,specular=S,shininess=N, or some of them";
-        if (pair.size() != 2) throw UsageError("'" + part + "' is no part of a light", option, form);
-        if (pair[0] == "ambient")
-            ambient = parseReal(pair[1], option, 0, 2);
-        else if (pair[0] == "diffuse")
-            diffuse = parseReal(pair[1], option, 0, 2);
-        else if (pair[0] == "specular")
-            specular = parseReal(pair[1], option, 0, 2);
-        else if (pair[0] == "shininess")
-            shininess = parseReal(pair[1], option, 1, 1000);
-        else
-            throw UsageError("a light has no '" + pair[0] + "'", option, form);
+        if (pair.size() != 2) throw UsageError("'" + part + "' is not a part of the light", option, form);
+        if (std::find(kParts.begin(), kParts.end(), pair[0]) == kParts.end())
+            throw UsageError("the light has no part called '" + pair[0] + "'", option, form);
+        atOption(option, [&] {
+            given.take(settingOf(settingsOf<Light>(), pair[0]), pair[1]);
+            return 0;
+        });
     }
 }
 
@@ -64,34 +66,23 @@ void LightOptions::add(CLI::App& app) {
         app, "--light-direction", "X,Y,Z",
         [this](const std::string& text, const std::string& option) { direction = parseDirection(text, option); },
         "where it comes from: right, up and toward the viewer (default 0,0,1, from the eye)", group);
-    const auto addStrength = [&](const char* name, std::optional<double>& value, const char* help) {
-        addValue(
-            app, name, "S",
-            [&value](const std::string& text, const std::string& option) { value = parseReal(text, option, 0, 1); },
-            help, group);
-    };
-    addStrength("--gradient-opacity", gradientOpacity,
-                "0 to 1: how far what is homogeneous fades; figures do not depend on it");
-    addStrength("--occlusion", occlusion, "0 to 1: how dark hollows get");
-    addStrength("--depth-cue", depthCue, "0 to 1: how far what is far fades into the background");
-    addStrength("--silhouettes", silhouettes, "0 to 1: how dark surfaces get that are seen edge-on");
+    given.add(app, group, {"gradient_opacity", "occlusion", "depth_cue", "silhouettes"});
+}
+
+bool LightOptions::saysHowBright() const {
+    return preset || direction ||
+           std::any_of(kParts.begin(), kParts.end(), [&](const char* key) { return given.has(key); });
 }
 
 void LightOptions::applyTo(Light& light) const {
     if (noShading && (shading || saysHowBright()))
-        throw UsageError("a light is given and no light", "--no-shading", "leave it or the light's options out");
+        throw UsageError("--no-shading does not go with other options of the light", "--no-shading",
+                         "leave out --no-shading or the others");
     if (preset) light = withPreset(light, lightPreset(*preset));
     if (noShading) light.on = false;
     if (shading || saysHowBright()) light.on = true;
-    light.ambient = ambient.value_or(light.ambient);
-    light.diffuse = diffuse.value_or(light.diffuse);
-    light.specular = specular.value_or(light.specular);
-    light.shininess = shininess.value_or(light.shininess);
+    given.applyTo(light);
     light.direction = direction.value_or(light.direction);
-    light.gradientOpacity = gradientOpacity.value_or(light.gradientOpacity);
-    light.occlusion = occlusion.value_or(light.occlusion);
-    light.depthCue = depthCue.value_or(light.depthCue);
-    light.silhouettes = silhouettes.value_or(light.silhouettes);
 }
 
 } // namespace pellucid::cli

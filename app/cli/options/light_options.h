@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "options/setting_options.h"
+#include "render/render_settings.h"
 #include "session/scene.h"
 
 namespace pellucid::cli {
@@ -13,16 +15,15 @@ namespace pellucid::cli {
 struct LightOptions {
     bool shading = false, noShading = false;
     std::optional<std::string> preset;
-    std::optional<double> ambient, diffuse, specular, shininess;
+    SettingOptions<Light> given;
     std::optional<Vec3> direction;
-    std::optional<double> gradientOpacity, occlusion, depthCue, silhouettes;
 
     void add(CLI::App& app);
     /// The preset first, single numbers over it. Throws UsageError for options that do not go together.
     void applyTo(Light& light) const;
 
 private:
-    bool saysHowBright() const { return preset || ambient || diffuse || specular || shininess || direction; }
+    bool saysHowBright() const;
     void takeParts(const std::string& text, const std::string& option);
 };
 

@@ -19,25 +19,8 @@ void PictureOptions::add(CLI::App& app, Mode modeIs) {
         [this](const std::string& text, const std::string& option) { step = parseRealAbove(text, option, 0, 16); },
         "distance of samples in reference lengths, the smallest voxel spacing (default 0.5, and less where "
         "--finest-step says so)");
-    addValue(
-        app, "--finest-step", "D",
-        [this](const std::string& text, const std::string& option) {
-            finest = parseReal(text, option, kFinestStep, 16);
-        },
-        "how small that may become where it would change the picture by 1/255 (default: what the session says, else "
-        "1/16; with --step: no smaller than that)");
-    if (modeIs == Mode::Option)
-        addValue(
-            app, "--mode", "composite|mip|minip|average|surface",
-            [this](const std::string& text, const std::string& option) {
-                mode = renderModeFromName(text);
-                if (!mode)
-                    throw UsageError("'" + text + "' is no way to draw", option,
-                                     "use composite, mip, minip, average or surface");
-            },
-            "what becomes of the intensities along a ray: emission and absorption by the transfer function (default); "
-            "the "
-            "largest, smallest or mean one, as grey; the first surface of each feature");
+    given.add(app, "Options", {"finest_step"});
+    if (modeIs == Mode::Option) given.add(app, "Options", {"mode"});
     app.add_flag("--jitter", jitter, "shift the samples of each pixel, against bands of colour");
     addValue(
         app, "--feature", "NAME", [this](const std::string& text, const std::string&) { feature = text; },
@@ -51,8 +34,7 @@ void PictureOptions::applyTo(SceneInputs& inputs) const {
             d.background = background->bottom;
             d.backgroundTop = background->top;
         }
-        d.mode = mode.value_or(d.mode);
-        d.finestStep = finest.value_or(d.finestStep);
+        given.applyTo(d);
         light.applyTo(d.light);
     });
 }
@@ -67,7 +49,8 @@ void PictureOptions::applyTo(Scene& scene) const {
 void PictureOptions::applyTo(PictureInput& picture) const {
     if (step) {
         picture.settings.stepInD0 = *step;
-        picture.settings.finestInD0 = finest;
+        picture.settings.finestInD0.reset();
+        if (given.has("finest_step")) picture.settings.finestInD0 = given.values().finestStep;
     }
     picture.settings.jitter = jitter;
     picture.settings.validate();

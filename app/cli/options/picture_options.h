@@ -16,8 +16,8 @@ struct PictureOptions {
     ImageSize size;
     std::optional<Gradient> background;
     bool transparent = false;
-    std::optional<double> step, finest;
-    std::optional<RenderMode> mode;
+    std::optional<double> step;
+    SettingOptions<DisplaySettings> given;
     bool jitter = false;
     LightOptions light;
     std::optional<std::string> feature;

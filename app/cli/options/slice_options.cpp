@@ -31,19 +31,18 @@ void SliceOptions::add(CLI::App& app) {
         app, "--window", "LO,HI",
         [this](const std::string& text, const std::string& option) { window = parseRange(text, option); },
         "values that are black and white in a slice (default: the session's, else the intensity range)", kGroup);
-    addValue(
-        app, "--tf-strength", "W",
-        [this](const std::string& text, const std::string& option) { tfStrength = parseReal(text, option, 0, 1); },
-        "of a slice: 0 grey alone, 1 the colours of the transfer function alone (default: the session's, else 0.5)",
-        kGroup);
+    given.add(app, kGroup);
     app.add_flag("--nearest", nearest, "each pixel of a slice has the value of the nearest voxel (default: linear)")
         ->group(kGroup);
 }
 
 void SliceOptions::check() const {
     if (at) return;
-    const char* alone = window ? "--window" : tfStrength ? "--tf-strength" : nearest ? "--nearest" : nullptr;
-    if (alone != nullptr) throw UsageError("it is an option of slices", alone, "give --slice as well");
+    const char* alone = window                     ? "--window"
+                        : given.has("tf_strength") ? "--tf-strength"
+                        : nearest                  ? "--nearest"
+                                                   : nullptr;
+    if (alone != nullptr) throw UsageError("this option needs --slice", alone, "add --slice, or leave it out");
 }
 
 SlicePlane SliceOptions::planeOf(const Geometry& geometry, int width, int height) const {
@@ -52,10 +51,11 @@ SlicePlane SliceOptions::planeOf(const Geometry& geometry, int width, int height
 }
 
 SliceSettings SliceOptions::settingsOf(const Scene& scene) const {
-    const SliceViews& views = *scene.session.slices;
+    SliceViews views = *scene.session.slices;
+    given.applyTo(views);
     SliceSettings settings;
     settings.window = window ? *window : views.window.value_or(scene.volume->range());
-    settings.tfStrength = tfStrength.value_or(views.tfStrength);
+    settings.tfStrength = views.tfStrength;
     settings.linear = !nearest;
     return settings;
 }

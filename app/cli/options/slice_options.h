@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "options/setting_options.h"
 #include "render/slice.h"
 #include "session/scene.h"
 
@@ -17,7 +18,7 @@ struct SliceOptions {
     };
     std::optional<At> at; ///< empty: no slice
     std::optional<ValueRange> window;
-    std::optional<double> tfStrength;
+    SettingOptions<SliceViews> given;
     bool nearest = false;
 
     void add(CLI::App& app);

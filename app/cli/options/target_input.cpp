@@ -19,7 +19,7 @@ TargetInput TargetInput::parse(const std::string& text, const std::string& optio
     else if (!text.empty() && (text[0] >= 'a' && text[0] <= 'z') && text.find(',') == std::string::npos &&
              text.rfind("inf", 0) != 0 && text.rfind("nan", 0) != 0)
         try {
-            input.preset = targetPresetFromName(text);
+            input.preset = fromName<TargetPreset>(text);
         } catch (const UsageError& e) {
             throw UsageError(e.problem(), option, "give numbers, equal, diagonal, inside-out or only:NAME");
         }

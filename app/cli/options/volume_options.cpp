@@ -176,7 +176,7 @@ void VolumeOptions::applyTo(SceneInputs& inputs) const {
     if (spacing && !source.raw) throw UsageError("--spacing is for headerless data", "--spacing", "give --raw as well");
     if (skipBytes && !source.raw) throw UsageError("--skip is for headerless data", "--skip", "give --raw as well");
     if (source.isSample() && source.raw)
-        throw UsageError("a built-in sample is no headerless file", "--raw", "leave it out");
+        throw UsageError("a built-in sample has no headerless file", "--raw", "leave it out");
     if (sampleSize && !source.isSample())
         throw UsageError("only built-in samples come in any size", "--sample-size", "leave it out or use sample:NAME");
     if (spacing) source.raw->spacing = *spacing;

@@ -149,7 +149,7 @@ AnnotationInput FieldController::annotation(const PictureInput& picture, const F
                              : m_state == State::Failed  ? tr("cannot be computed")
                                                          : tr("stopped"))
                                 .toStdString();
-    const std::string present = infoOf(m_wanted.kind).title;
+    const std::string present = title(m_wanted.kind);
     input.title =
         field() ? input.title + " " +
                       tr("of an earlier state; the present one: %1").arg(QString::fromStdString(why)).toStdString()
@@ -158,7 +158,7 @@ AnnotationInput FieldController::annotation(const PictureInput& picture, const F
 }
 
 void FieldController::show(std::optional<FieldKind> kind) {
-    m_bench.store().edit(kind ? tr("Field: %1").arg(QString::fromLatin1(infoOf(*kind).title)) : tr("No field"), {},
+    m_bench.store().edit(kind ? tr("Field: %1").arg(QString::fromLatin1(title(*kind))) : tr("No field"), {},
                          [&](Session& session) { session.field.edit([&](FieldView& f) { f.kind = kind; }); });
 }
 
@@ -171,7 +171,7 @@ void FieldController::save(const QString& path) {
 void FieldController::chooseFile() {
     if (m_state != State::Current) return;
     const QString folder = QSettings().value("fieldFolder").toString();
-    const QString offered = QString::fromLatin1(infoOf(m_shown.kind).fileStem) + ".nrrd";
+    const QString offered = QString::fromStdString(fileStem(m_shown.kind)) + ".nrrd";
     QString path = QFileDialog::getSaveFileName(m_bench.window(), tr("Save field"), QDir(folder).filePath(offered),
                                                 tr("NRRD volumes (*.nrrd)"));
     if (path.isEmpty()) return;

@@ -12,7 +12,7 @@ const QString kSetting = QStringLiteral("theme");
 
 }
 
-Theme keptTheme() { return themeFromName(QSettings().value(kSetting).toString().toStdString()).value_or(Theme::Dark); }
+Theme keptTheme() { return findNamed<Theme>(QSettings().value(kSetting).toString().toStdString()).value_or(Theme::Dark); }
 
 void addThemeActions(Workbench& bench) {
     struct Texts {

@@ -47,7 +47,7 @@ RawLayout guessRawLayout(const QString& path, qint64 bytes) {
     if (const auto match = typeInName.match(name); match.hasMatch()) {
         const QString kind = match.captured(1), bits = match.captured(2);
         const QString letter = kind.startsWith('u') ? "u" : kind.startsWith('f') ? "f" : "i";
-        if (const auto type = sampleTypeFromName((letter + bits).toStdString())) layout.type = *type;
+        if (const auto type = findNamed<SampleType>((letter + bits).toStdString())) layout.type = *type;
     } else if (name.contains("float")) {
         layout.type = SampleType::F32;
     } else if (name.contains("short")) {

@@ -31,7 +31,7 @@ constexpr int kSteps = 200; ///< of sliders
 constexpr double kLeastStrength = 0.001;
 constexpr double kMostThreshold = 99; ///< per cent
 
-/// In the order of kFieldKinds.
+/// By FieldKind.
 const std::array kTips{
     QT_TR_NOOP("How much of each voxel reaches the eye, 0 to 1"),
     QT_TR_NOOP("How much the brightness of each voxel differs from its surroundings, 0 to 1"),
@@ -67,8 +67,9 @@ FieldsPanel::FieldsPanel(Workbench& bench, QWidget* parent)
     m_kind->setObjectName("fieldKindCombo");
     m_kind->setToolTip(tr("What is drawn: the data, or what each voxel contributes to this picture (V)"));
     m_kind->addItem(tr("none: the data"), -1);
-    for (std::size_t i = 0; i < kFieldKinds.size(); ++i) {
-        m_kind->addItem(QString::fromLatin1(kFieldKinds[i].title), static_cast<int>(i));
+    for (const FieldKind kind : allOf<FieldKind>()) {
+        const auto i = static_cast<std::size_t>(kind);
+        m_kind->addItem(QString::fromLatin1(title(kind)), static_cast<int>(i));
         m_kind->setItemData(m_kind->count() - 1, tr(kTips[i]), Qt::ToolTipRole);
     }
     m_feature->setObjectName("fieldFeatureCombo");

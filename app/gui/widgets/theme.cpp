@@ -220,24 +220,6 @@ void applyTheme(QApplication& application, Theme theme) {
 
 Theme appliedTheme() { return s_applied; }
 
-const char* name(Theme theme) {
-    switch (theme) {
-    case Theme::Dark:
-        return "dark";
-    case Theme::Light:
-        return "light";
-    case Theme::System:
-        return "system";
-    }
-    return "";
-}
-
-std::optional<Theme> themeFromName(std::string_view text) {
-    for (const Theme theme : {Theme::Dark, Theme::Light, Theme::System})
-        if (text == name(theme)) return theme;
-    return {};
-}
-
 double contrast(const QColor& a, const QColor& b) {
     const double x = luminance(a), y = luminance(b);
     return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);

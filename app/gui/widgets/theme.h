@@ -6,7 +6,8 @@
 
 #include <QColor>
 
-#include "tf/color.h"
+#include "base/enum_names.h"
+#include "base/color.h"
 
 class QApplication;
 class QLabel;
@@ -14,6 +15,9 @@ class QLabel;
 namespace pellucid::gui {
 
 enum class Theme { Dark, Light, System }; ///< the last: what the desktop is set to
+} // namespace pellucid::gui
+template <> inline constexpr auto pellucid::kNamesOf<pellucid::gui::Theme> = pellucid::enumNames("theme", "dark", "light", "system");
+namespace pellucid::gui {
 
 /// The colours of the present theme: who paints reads them when he paints. Those of marks over the picture belong to no
 /// theme, since the background of the picture is the user's.
@@ -35,8 +39,6 @@ inline const QColor kMark{0xe4, 0xe5, 0xe7}, kMarkAccent{0x4c, 0x9a, 0xff}; ///<
 void applyTheme(QApplication& application, Theme theme = Theme::Dark);
 Theme appliedTheme();
 /// Words of settings and command lines.
-const char* name(Theme theme); ///< "dark", "light", "system"
-std::optional<Theme> themeFromName(std::string_view name);
 
 /// Of relative luminances, WCAG 2.1: from 1 (the same) to 21.
 double contrast(const QColor& a, const QColor& b);

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "optimize/answer/visibility_words.h"
-#include "tf/color.h"
+#include "base/color.h"
 
 namespace pellucid {
 
@@ -169,16 +169,6 @@ std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& probl
 }
 
 } // namespace
-
-const char* name(LimitReason reason) {
-    constexpr std::array kNames{"locked", "lowest", "highest", "out-of-sight", "no-contrast"};
-    return kNames[static_cast<std::size_t>(reason)];
-}
-
-const char* name(ReachHelp::Kind kind) {
-    constexpr std::array kNames{"release", "view", "color", "clipping"};
-    return kNames[static_cast<std::size_t>(kind)];
-}
 
 Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vector<double>& targets,
                 const OptimizeResult& found, const VerdictOptions& options, const JobControl& job) {

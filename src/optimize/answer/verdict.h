@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "optimize/answer/occlusion.h"
 #include "optimize/optimizer.h"
 #include "render/camera_motion.h"
@@ -27,7 +28,7 @@ enum class LimitReason {
     NoContrast  ///< it is in sight, but its colour is that of its surroundings: no saliency
 };
 
-const char* name(LimitReason reason); ///< "locked", "lowest", "highest", "out-of-sight", "no-contrast"
+template <> inline constexpr auto kNamesOf<LimitReason> = enumNames("reason", "locked", "lowest", "highest", "out-of-sight", "no-contrast");
 
 struct ReachLimit {
     std::size_t feature = 0;
@@ -46,7 +47,7 @@ struct ReachHelp {
     double objective = 0;                ///< F that is reached with it
 };
 
-const char* name(ReachHelp::Kind kind); ///< "release", "view", "color", "clipping"
+template <> inline constexpr auto kNamesOf<ReachHelp::Kind> = enumNames("help", "release", "view", "color", "clipping");
 
 struct Verdict {
     double objective = 0;               ///< F of the nearest shares that can be reached

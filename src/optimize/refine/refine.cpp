@@ -71,19 +71,46 @@ RefineResult refineGreedy(const Histogram& histogram, const TransferFunction& tf
 
 } // namespace
 
-const char* name(RefineMethod method) { return method == RefineMethod::Greedy ? "greedy" : "exact"; }
-
-std::optional<RefineMethod> refineMethodFromName(const std::string& text) {
-    for (const RefineMethod method : {RefineMethod::Greedy, RefineMethod::Exact})
-        if (text == name(method)) return method;
-    return {};
+template <>
+std::span<const Setting> settingsOf<RefineSteps>() {
+    using R = RefineSteps;
+    constexpr auto isGreedy = [](const void* r) { return static_cast<const R*>(r)->method == RefineMethod::Greedy; };
+    static constexpr const char* kMethods[] = {"Greedy, step by step", "Exact"};
+    static const Setting kSettings[] = {
+        {.key = "method",
+         .at = member<&R::method>,
+         .words = "&Method",
+         .help = "Greedy takes opacity from the heaviest edge and gives it to the lightest one while that helps; exact "
+                 "finds the most even edges that the same total of movable opacities allows. The answer compares both "
+                 "at one total.",
+         .choices = kMethods},
+        {.key = "step_down",
+         .at = member<&R::stepDown>,
+         .words = "Step &down",
+         .help = "The opacity that an iteration takes from the heaviest edge.",
+         .range = {0, 1, NumberRange::Open::Low},
+         .used = isGreedy},
+        {.key = "step_up",
+         .at = member<&R::stepUp>,
+         .words = "Step &up",
+         .help = "The opacity that an iteration gives to the lightest edge; auto derives it from the step down and the "
+                 "significances of both ends.",
+         .range = {0, 1, NumberRange::Open::Low},
+         .none = "auto",
+         .used = isGreedy},
+        {.key = "max_iterations",
+         .at = member<&R::maxIterations>,
+         .words = "&At most",
+         .help = "The most iterations that a refinement makes.",
+         .range = {0, 1e9},
+         .unit = "iterations",
+         .used = isGreedy},
+    };
+    return kSettings;
 }
 
 void RefineOptions::validate() const {
-    if (!(stepDown > 0 && stepDown <= 1)) throw UsageError("the step down lies in (0,1]", "refine", "correct the step");
-    if (stepUp && !(*stepUp > 0 && *stepUp <= 1))
-        throw UsageError("the step up lies in (0,1]", "refine", "correct the step");
-    if (maxIterations < 0) throw UsageError("the number of iterations is not negative", "refine", "correct it");
+    checkSettings<RefineSteps>(*this, "refine");
     if (priority.intensity && !priority.region.empty())
         throw UsageError("an intensity and a region are prioritized at once", "refine", "choose one of them");
     if (priority.intensity && !(*priority.intensity >= 0 && *priority.intensity <= 1))

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/setting.h"
 #include "tf/transfer_function.h"
 #include "volume/histogram.h"
 
@@ -15,8 +16,8 @@ enum class RefineMethod {
     Greedy, ///< the thesis's: one opacity down, one up, while that helps (3.4.2)
     Exact   ///< the least energy that there is at constant total opacity
 };
-const char* name(RefineMethod method); ///< "greedy", "exact"
-std::optional<RefineMethod> refineMethodFromName(const std::string& name);
+template <>
+inline constexpr auto kNamesOf<RefineMethod> = enumNames("method", "greedy", "exact");
 
 /// Pixels of one colour.
 struct RegionColor {
@@ -33,12 +34,19 @@ struct RefinePriority {
     bool operator==(const RefinePriority&) const = default;
 };
 
-struct RefineOptions {
-    double stepDown = 1.0 / 256;
+/// How refinement goes about it. Ranges are those of settingsOf<RefineSteps>().
+struct RefineSteps {
+    double stepDown = 1.0 / 256; ///< opacity
     /// Empty: derived in each iteration from stepDown and the ratio of the two ends' significances.
     std::optional<double> stepUp = 1.0 / 256;
     int maxIterations = 5000;
     RefineMethod method = RefineMethod::Greedy;
+    bool operator==(const RefineSteps&) const = default;
+};
+template <>
+std::span<const Setting> settingsOf<RefineSteps>();
+
+struct RefineOptions : RefineSteps {
     RefinePriority priority;
     /// Greedy: false goes on to maxIterations whether or not anything still improves.
     bool untilStable = true;
@@ -46,7 +54,7 @@ struct RefineOptions {
     /// what equal steps up and down keep until one of them meets a bound.
     std::optional<double> total;
 
-    /// Throws UsageError: steps in (0,1], maxIterations ≥ 0, one priority at most, the intensity in [0,1], total ≥ 0.
+    /// Throws UsageError: steps out of range, two priorities, an intensity outside [0,1], total < 0.
     void validate() const;
     bool operator==(const RefineOptions&) const = default;
 };

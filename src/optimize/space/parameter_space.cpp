@@ -1,12 +1,11 @@
 #include "optimize/space/parameter_space.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <set>
 
 #include "base/check.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/round_numbers.h"
 
@@ -19,14 +18,6 @@ constexpr int kPerSweep = 8; ///< candidates that one sweep of an engine carries
 constexpr double kVoxelsInAWhile = 3e9; ///< voxels times sweeps that two cores do in about ten seconds
 
 } // namespace
-
-const char* name(AxisScale scale) { return scale == AxisScale::Linear ? "linear" : "log"; }
-
-AxisScale axisScaleFromName(const std::string& text) {
-    for (const AxisScale scale : {AxisScale::Linear, AxisScale::Logarithmic})
-        if (text == name(scale)) return scale;
-    throw UsageError("'" + text + "' is no scale of an axis", "parameter space", "use linear or log");
-}
 
 void ParameterAxes::validate(std::size_t featureCount) const {
     const char* const where = "parameter space";
@@ -193,30 +184,20 @@ int reductionFor(std::size_t voxels, const ParameterAxes& axes) {
 }
 
 std::string csvOf(const ParameterSpace& space, const std::vector<std::string>& featureNames) {
-    const auto quoted = [](const std::string& text) {
-        std::string inside;
-        for (const char c : text) inside += c == '"' ? std::string("\"\"") : std::string(1, c);
-        return "\"" + inside + "\"";
-    };
-    std::string text;
-    for (const std::size_t f : space.axes.features) text += quoted("opacity " + featureNames.at(f)) + ",";
-    for (const std::string& feature : featureNames) text += quoted("W " + feature) + ",";
-    text += "F\n";
-    std::array<char, 32> number{};
-    const auto add = [&](double value, char after) { // the same in every locale
-        text.append(
-            number.data(),
-            std::to_chars(number.data(), number.data() + number.size(), value, std::chars_format::general, 9).ptr);
-        text += after;
-    };
+    CsvTable csv;
+    for (const std::size_t f : space.axes.features) csv << "opacity " + featureNames.at(f);
+    for (const std::string& feature : featureNames) csv << "W " + feature;
+    csv << "F";
+    csv.endLine();
     for (std::size_t s = 0; s < space.objective.size(); ++s) {
         const Vec3 at = space.positionOfSample(s);
         for (std::size_t a = 0; a < space.axes.features.size(); ++a)
-            add(space.axes.opacityAt(at[static_cast<int>(a)]), ',');
-        for (const auto& w : space.vws) add(w[s], ',');
-        add(space.objective[s], '\n');
+            csv << space.axes.opacityAt(at[static_cast<int>(a)]);
+        for (const auto& w : space.vws) csv << w[s];
+        csv << space.objective[s];
+        csv.endLine();
     }
-    return text;
+    return csv.text();
 }
 
 } // namespace pellucid

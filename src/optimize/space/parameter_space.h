@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "optimize/objective.h"
 
 namespace pellucid {
@@ -15,8 +16,7 @@ enum class AxisScale {
     Linear,     ///< the opacity is the position
     Logarithmic ///< lowest^(1 − position): from `lowest` to 1 in equal factors
 };
-const char* name(AxisScale scale);                    ///< "linear", "log"
-AxisScale axisScaleFromName(const std::string& name); ///< throws UsageError
+template <> inline constexpr auto kNamesOf<AxisScale> = enumNames("scale of an axis", "linear", "log");
 
 inline constexpr int kMostAxisSamples = 64;
 

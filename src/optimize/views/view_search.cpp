@@ -156,18 +156,6 @@ std::vector<Vec3> spreadDirections(int count) {
     return ordered;
 }
 
-const char* name(ViewMetric::Figure figure) {
-    switch (figure) {
-    case ViewMetric::Figure::Objective:
-        return "objective";
-    case ViewMetric::Figure::Vws:
-        return "vws";
-    case ViewMetric::Figure::Visibility:
-        return "visibility";
-    }
-    return "";
-}
-
 std::vector<double> ViewMetric::figuresOf(const FeatureSums& sums, const VwsOptions& options) const {
     if (figure != Figure::Visibility) return vwsOf(sums, options);
     std::vector<double> shares = sums.visibility;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "optimize/optimizer.h"
 #include "render/view.h"
 #include "render/visibility.h"
@@ -39,7 +40,7 @@ struct ViewMetric {
     bool operator==(const ViewMetric&) const = default;
 };
 
-const char* name(ViewMetric::Figure figure); ///< "objective", "vws", "visibility"
+template <> inline constexpr auto kNamesOf<ViewMetric::Figure> = enumNames("figure", "objective", "vws", "visibility");
 
 /// What is shown, whatever it is looked at from.
 struct ViewSubject {

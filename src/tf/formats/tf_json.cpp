@@ -22,7 +22,7 @@ ControlPoint pointFromJson(const JsonValue& j) {
     ControlPoint p;
     p.x = j["x"].number();
     p.opacity = j["opacity"].number();
-    p.color = colorFromJson(j["color"]);
+    p.color = j["color"].color();
     if (j.has("fixed")) p.fixed = j["fixed"].boolean();
     p.extraJson = j.unknownKeys({"x", "opacity", "color", "fixed"});
     return p;
@@ -42,7 +42,7 @@ Feature featureFromJson(const JsonValue& j, Identities identities) {
     const ValueRange range = rangeFromJson(j["range"]);
     f.a = range.lo;
     f.b = range.hi;
-    f.color = colorFromJson(j["color"]);
+    f.color = j["color"].color();
     if (j.has("hidden")) f.hidden = j["hidden"].boolean();
     if (identities == Identities::Keep && j.has(kIdentity))
         f.id = static_cast<FeatureId>(j[kIdentity].integer(1, std::numeric_limits<std::int64_t>::max() / 2));
@@ -52,25 +52,6 @@ Feature featureFromJson(const JsonValue& j, Identities identities) {
 }
 
 } // namespace
-
-Rgb colorFromJson(const JsonValue& value) {
-    if (value.json().is_array()) {
-        const auto parts = value.items(3);
-        return {parts[0].number(0, 1), parts[1].number(0, 1), parts[2].number(0, 1)};
-    }
-    if (!value.json().is_string()) value.fail("a colour is expected", "write \"#rrggbb\" or [r,g,b] from 0 to 1");
-    try {
-        return rgbFromHex(value.text());
-    } catch (const Error& e) {
-        value.fail(e.problem(), e.whatToDo());
-    }
-}
-
-json jsonFromColor(const Rgb& color) {
-    const std::string hex = hexFromRgb(color);
-    if (rgbFromHex(hex) == color) return hex;
-    return {color.r, color.g, color.b};
-}
 
 TransferFunction tfFromJson(const JsonValue& j, Identities identities) {
     requireFormat(j, kFormat, kVersion, "give a transfer-function file");

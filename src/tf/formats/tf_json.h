@@ -10,11 +10,6 @@
 
 namespace pellucid {
 
-/// A colour: "#rrggbb", or [r,g,b] with components in [0,1].
-Rgb colorFromJson(const JsonValue& value);
-/// "#rrggbb" where eight bits hold the colour, else three numbers: read back it is the same colour, bit for bit.
-nlohmann::json jsonFromColor(const Rgb& color);
-
 /// Whether features carry their identities ("identity"): inside a session they do, in a file of their own they do not.
 enum class Identities { Keep, Drop };
 

@@ -23,5 +23,7 @@ Hsv hsvFromRgb(const Rgb& rgb);
 std::string hexFromRgb(const Rgb& rgb);
 /// Reads "#rrggbb" or "#rgb"; throws Error.
 Rgb rgbFromHex(const std::string& text);
+/// That, or "R,G,B" with components in [0,1]. Throws UsageError.
+Rgb rgbFromText(const std::string& text);
 
 } // namespace pellucid

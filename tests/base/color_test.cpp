@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/error.h"
-#include "tf/color.h"
+#include "base/color.h"
 
 using namespace pellucid;
 

@@ -1,4 +1,4 @@
-#include "tf/color.h"
+#include "base/color.h"
 
 #include <algorithm>
 #include <array>
@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace pellucid {
 
@@ -61,6 +62,25 @@ Rgb rgbFromHex(const std::string& text) {
                          : (digit(text[1 + 2 * i]) * 16 + digit(text[2 + 2 * i])) / 255.0;
     };
     return {channel(0), channel(1), channel(2)};
+}
+
+Rgb rgbFromText(const std::string& text) {
+    constexpr const char* kForm = "give #rrggbb or R,G,B with components from 0 to 1";
+    if (text.starts_with('#')) try {
+            return rgbFromHex(text);
+        } catch (const Error& e) {
+            throw UsageError(e.problem(), "", kForm);
+        }
+    std::array<double, 3> parts{};
+    std::size_t start = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t end = i < 2 ? text.find(',', start) : text.size();
+        if (end == std::string::npos || !parseNumber(std::string_view(text).substr(start, end - start), parts[i]) ||
+            !(parts[i] >= 0 && parts[i] <= 1))
+            throw UsageError("'" + text + "' is not a colour", "", kForm);
+        start = end + 1;
+    }
+    return {parts[0], parts[1], parts[2]};
 }
 
 } // namespace pellucid

@@ -1,0 +1,272 @@
+#include "panels/setting_rows.h"
+
+#include <cmath>
+
+#include <QCheckBox>
+#include <QColorDialog>
+#include <QComboBox>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QPushButton>
+#include <QSignalBlocker>
+#include <QSlider>
+#include <QSpinBox>
+#include <QToolButton>
+
+#include "services/services.h"
+#include "widgets/number_box.h"
+#include "widgets/theme.h"
+
+namespace pellucid::gui {
+
+namespace {
+
+constexpr int kSliderSteps = 200;
+constexpr int kTipWidth = 90; ///< letters
+
+/// Between what is shown and the places of a slider.
+struct Scale {
+    double lo, hi;
+    bool logarithmic;
+    int placeOf(double number) const {
+        const double part =
+            logarithmic ? std::log(std::max(number, lo) / lo) / std::log(hi / lo) : (number - lo) / (hi - lo);
+        return static_cast<int>(std::lround(part * kSliderSteps));
+    }
+    double numberAt(int place) const {
+        const double part = static_cast<double>(place) / kSliderSteps;
+        return logarithmic ? lo * std::pow(hi / lo, part) : lo + part * (hi - lo);
+    }
+};
+
+/// A number, whether it is optional or not; empty: none.
+std::optional<double> numberIn(const Setting& setting, const void* settings) {
+    const SettingValue value = setting.at(const_cast<void*>(settings));
+    if (const auto* plain = std::get_if<double*>(&value)) return **plain;
+    return **std::get_if<std::optional<double>*>(&value);
+}
+void setNumber(const Setting& setting, void* settings, std::optional<double> number) {
+    const SettingValue value = setting.at(settings);
+    if (const auto* plain = std::get_if<double*>(&value))
+        **plain = *number;
+    else
+        **std::get_if<std::optional<double>*>(&value) = number;
+}
+
+template <class T>
+T& valueIn(const Setting& setting, const void* settings) {
+    return *std::get<T*>(setting.at(const_cast<void*>(settings)));
+}
+
+} // namespace
+
+QString tipOf(const Setting& setting) {
+    QString text = QString::fromUtf8(setting.help);
+    const NumberRange usual; // of what is no number, too
+    if (*setting.unit != '\0' || setting.range.lo != usual.lo || setting.range.hi != usual.hi ||
+        setting.range.open != usual.open)
+        text += QStringLiteral(" (%1%2)").arg(
+            QString::fromStdString(setting.range.text()),
+            *setting.unit == '\0' ? QString() : QStringLiteral(" ") + QString::fromUtf8(setting.unit));
+    QString lines;
+    int length = 0;
+    for (const QString& word : text.split(' ')) {
+        const bool breaks = length > 0 && length + word.size() > kTipWidth;
+        lines += (lines.isEmpty() ? "" : breaks ? "\n" : " ") + word;
+        length = (breaks ? 0 : length + 1) + static_cast<int>(word.size());
+    }
+    return lines;
+}
+
+SettingRows::SettingRows(Services& services, QFormLayout& form, SettingPart part, QString stepText)
+    : QObject(form.parentWidget()), m_services(services), m_form(form), m_part(std::move(part)),
+      m_stepText(std::move(stepText)) {
+    m_commit = [this](const QString& text, const QString& mergeKey, const SessionStore::Change& change) {
+        m_services.store().commit();
+        m_services.store().edit(text, mergeKey, change);
+    };
+}
+
+QWidget* SettingRows::add(const char* key, const RowLook& look) {
+    const Setting& setting = settingOf(m_part.settings, key);
+    const SettingValue kind = setting.at(const_cast<void*>(present()));
+    if (look.then) m_then[&setting] = look.then;
+    std::vector<QWidget*> controls; // the one that has the name first
+    if (std::holds_alternative<bool*>(kind))
+        addCheck(setting, controls);
+    else if (std::holds_alternative<int*>(kind))
+        addWhole(setting, look, controls);
+    else if (std::holds_alternative<Choice>(kind))
+        addChoice(setting, look, controls);
+    else if (std::holds_alternative<Rgb*>(kind))
+        addColor(setting, controls);
+    else
+        addNumber(setting, look, controls);
+    controls.front()->setObjectName(look.id);
+    for (QWidget* control : controls) control->setToolTip(tipOf(setting));
+    m_show.push_back([this, &setting, controls] {
+        for (QWidget* control : controls) control->setEnabled(m_services.isEditable() && setting.isUsed(present()));
+    });
+    return controls.front();
+}
+
+void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
+    auto* box = new QDoubleSpinBox;
+    const double smallest = std::pow(10.0, -look.decimals);
+    const bool isOpen = setting.range.open == NumberRange::Open::Low;
+    const double least = look.least.value_or(setting.range.lo * look.factor + (isOpen ? smallest : 0));
+    const double most = look.most.value_or(std::min(setting.range.hi * look.factor, 1e9));
+    box->setDecimals(look.decimals);
+    box->setRange(least, most);
+    box->setSingleStep(look.step);
+    box->setKeyboardTracking(false);
+    box->setSuffix(!look.suffix.isEmpty()  ? look.suffix
+                   : *setting.unit == '\0' ? QString()
+                                           : QStringLiteral(" ") + QString::fromUtf8(setting.unit));
+    const auto writeOf = [&setting, factor = look.factor](double shown) {
+        return [&setting, number = shown / factor](void* settings) { setNumber(setting, settings, number); };
+    };
+    connect(box, &QDoubleSpinBox::valueChanged, this,
+            [this, &setting, writeOf, id = look.id](double shown) { edit(setting, id, writeOf(shown)); });
+    controls.push_back(box);
+    auto* row = new QHBoxLayout;
+    QSlider* slider = nullptr;
+    const Scale scale{least, most, look.logarithmic};
+    if (look.slider) {
+        slider = new QSlider(Qt::Horizontal);
+        slider->setObjectName(look.id + "Slider");
+        slider->setRange(0, kSliderSteps);
+        slider->setPageStep(kSliderSteps / 10);
+        slider->setMinimumWidth(60);
+        row->addWidget(slider, 1);
+        controls.push_back(slider);
+        connect(slider, &QSlider::valueChanged, this,
+                [this, &setting, slider, scale, writeOf, id = look.id, unit = smallest](int place) {
+                    const auto write = writeOf(std::round(scale.numberAt(place) / unit) * unit);
+                    slider->isSliderDown() ? preview(setting, write) : edit(setting, id, write);
+                });
+        connect(slider, &QSlider::sliderReleased, this, [this] { m_services.store().commit(); });
+    }
+    row->addWidget(box, look.slider ? 0 : 1);
+    QToolButton* automatic = nullptr;
+    if (std::holds_alternative<std::optional<double>*>(setting.at(const_cast<void*>(present())))) {
+        automatic = new QToolButton;
+        automatic->setObjectName(look.id + "Auto");
+        automatic->setText(tr("auto"));
+        automatic->setCheckable(true);
+        row->addWidget(automatic);
+        controls.push_back(automatic);
+        connect(automatic, &QToolButton::clicked, this, [this, &setting, box, writeOf](bool on) {
+            edit(setting, {}, on ? Write([&setting](void* s) { setNumber(setting, s, {}); }) : writeOf(box->value()));
+        });
+    }
+    m_form.addRow(QString::fromUtf8(setting.words), row);
+    if (auto* label = qobject_cast<QLabel*>(m_form.labelForField(row))) label->setBuddy(box);
+    m_show.push_back([this, &setting, box, slider, automatic, scale, factor = look.factor] {
+        const std::optional<double> number = numberIn(setting, present());
+        const QSignalBlocker quiet(box);
+        if (number) showNumber(*box, *number * factor);
+        if (automatic != nullptr) automatic->setChecked(!number);
+        if (slider == nullptr || slider->isSliderDown() || !number) return;
+        const QSignalBlocker still(slider);
+        slider->setValue(scale.placeOf(*number * factor));
+    });
+}
+
+void SettingRows::addWhole(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
+    auto* box = new QSpinBox;
+    box->setRange(static_cast<int>(setting.range.lo), static_cast<int>(setting.range.hi));
+    box->setGroupSeparatorShown(true);
+    box->setKeyboardTracking(false);
+    if (*setting.unit != '\0') box->setSuffix(QStringLiteral(" ") + QString::fromUtf8(setting.unit));
+    m_form.addRow(QString::fromUtf8(setting.words), box);
+    connect(box, &QSpinBox::valueChanged, this, [this, &setting, id = look.id](int number) {
+        edit(setting, id, [&setting, number](void* settings) { valueIn<int>(setting, settings) = number; });
+    });
+    controls.push_back(box);
+    m_show.push_back([this, &setting, box] {
+        const QSignalBlocker quiet(box);
+        if (const int number = valueIn<int>(setting, present()); box->value() != number) box->setValue(number);
+    });
+}
+
+void SettingRows::addCheck(const Setting& setting, std::vector<QWidget*>& controls) {
+    auto* box = new QCheckBox(QString::fromUtf8(setting.words));
+    m_form.addRow(QString(), box);
+    connect(box, &QCheckBox::clicked, this, [this, &setting](bool on) {
+        edit(setting, {}, [&setting, on](void* settings) { valueIn<bool>(setting, settings) = on; });
+    });
+    controls.push_back(box);
+    m_show.push_back([this, &setting, box] { box->setChecked(valueIn<bool>(setting, present())); });
+}
+
+void SettingRows::addChoice(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
+    auto* box = new QComboBox;
+    const Choice choice = std::get<Choice>(setting.at(const_cast<void*>(present())));
+    std::vector<int> order = look.order;
+    if (order.empty())
+        for (std::size_t i = 0; i < choice.names.size(); ++i) order.push_back(static_cast<int>(i));
+    const auto names = setting.choices.empty() ? choice.names : setting.choices;
+    for (const int index : order) box->addItem(QString::fromUtf8(names[static_cast<std::size_t>(index)]), index);
+    m_form.addRow(QString::fromUtf8(setting.words), box);
+    connect(box, &QComboBox::activated, this, [this, &setting, box] {
+        edit(setting, {}, [&setting, index = box->currentData().toInt()](void* settings) {
+            const Choice chosen = std::get<Choice>(setting.at(settings));
+            chosen.set(chosen.value, index);
+        });
+    });
+    controls.push_back(box);
+    m_show.push_back([this, &setting, box] {
+        box->setCurrentIndex(box->findData(std::get<Choice>(setting.at(const_cast<void*>(present()))).index()));
+    });
+}
+
+void SettingRows::addColor(const Setting& setting, std::vector<QWidget*>& controls) {
+    auto* button = new QPushButton;
+    m_form.addRow(QString::fromUtf8(setting.words), button);
+    connect(button, &QPushButton::clicked, this, [this, &setting, button] {
+        const QColor color =
+            QColorDialog::getColor(colorFromRgb(valueIn<Rgb>(setting, present())), button, textOf(setting));
+        if (color.isValid())
+            edit(setting, {}, [&setting, color](void* s) { valueIn<Rgb>(setting, s) = rgbFromColor(color); });
+    });
+    controls.push_back(button);
+    m_show.push_back([this, &setting, button] {
+        const QColor color = colorFromRgb(valueIn<Rgb>(setting, present()));
+        QPixmap swatch(28, 12);
+        swatch.fill(color);
+        button->setIcon(QIcon(swatch));
+        button->setText(color.name());
+    });
+}
+
+const void* SettingRows::present() const { return m_part.read(m_services.store().session()); }
+
+QString SettingRows::textOf(const Setting& setting) const {
+    return m_stepText.isEmpty() ? QString::fromStdString(setting.name()) : m_stepText;
+}
+
+SessionStore::Change SettingRows::changeOf(const Setting& setting, const Write& write) const {
+    const auto found = m_then.find(&setting);
+    return [edit = m_part.edit, write, then = found == m_then.end() ? Write() : found->second](Session& session) {
+        edit(session, [&](void* settings) {
+            write(settings);
+            if (then) then(settings);
+        });
+    };
+}
+
+void SettingRows::edit(const Setting& setting, const QString& mergeKey, const Write& write) {
+    m_commit(textOf(setting), mergeKey, changeOf(setting, write));
+    follow(); // also where nothing has come of it
+}
+
+void SettingRows::preview(const Setting& setting, const Write& write) {
+    m_services.store().preview(textOf(setting), changeOf(setting, write));
+}
+
+void SettingRows::follow() {
+    for (const auto& show : m_show) show();
+}
+
+} // namespace pellucid::gui

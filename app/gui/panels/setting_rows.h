@@ -1,0 +1,103 @@
+// Rows of a form that are bound to settings: each shows its setting, previews it while a slider is held, and edits it
+// as a step of the history.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <QObject>
+#include <QString>
+
+#include "base/setting.h"
+#include "store/session_store.h"
+
+class QFormLayout;
+class QWidget;
+
+namespace pellucid::gui {
+
+class Services;
+
+/// Where a struct of settings lies in a session.
+struct SettingPart {
+    std::span<const Setting> settings;
+    std::function<const void*(const Session&)> read;
+    std::function<void(Session&, const std::function<void(void*)>&)> edit;
+};
+/// `&Session::optimize`.
+template <class T, class Held>
+SettingPart settingPart(Part<Held> Session::*part) {
+    return {settingsOf<T>(), [part](const Session& s) -> const void* { return static_cast<const T*>(&*(s.*part)); },
+            [part](Session& s, const auto& change) {
+                (s.*part).edit([&](Held& held) { change(static_cast<T*>(&held)); });
+            }};
+}
+/// `&Session::measure, &MeasureSettings::saliency`.
+template <class T, class Held>
+SettingPart settingPart(Part<Held> Session::*part, T Held::*member) {
+    return {settingsOf<T>(), [part, member](const Session& s) -> const void* { return &((*(s.*part)).*member); },
+            [part, member](Session& s, const auto& change) {
+                (s.*part).edit([&](Held& held) { change(&(held.*member)); });
+            }};
+}
+
+/// What a row looks like, as far as its setting does not tell.
+struct RowLook {
+    QString id;          ///< object name of its control; that of a slider is id + "Slider"
+    bool slider = false; ///< a number: with a slider, which may be logarithmic
+    bool logarithmic = false;
+    int decimals = 2;
+    double step = 0.05;
+    double factor = 1;                           ///< from the setting to what is shown
+    QString suffix = {};                         ///< in the place of the setting's unit
+    std::optional<double> least = {}, most = {}; ///< that are offered, as shown; else the ends of the range
+    std::function<void(void*)> then = {}; ///< done to the settings after a change of this one: what follows of it
+    std::vector<int> order = {};          ///< of an enumeration's values; empty: their own
+};
+
+class SettingRows : public QObject {
+    Q_OBJECT
+public:
+    /// How a change becomes a step of the history; steps of one `mergeKey` in a row are one.
+    using Commit =
+        std::function<void(const QString& text, const QString& mergeKey, const SessionStore::Change& change)>;
+
+    /// Adds to `form`, whose widget is the owner. `stepText` names the steps; empty: each row names its own.
+    SettingRows(Services& services, QFormLayout& form, SettingPart part, QString stepText = {});
+
+    /// The control of the setting with this key.
+    QWidget* add(const char* key, const RowLook& look);
+    /// In the place of the store's edit().
+    void setCommit(Commit commit) { m_commit = std::move(commit); }
+    /// Shows the present session; what does not count there, and all where nothing can be edited, is grey.
+    void follow();
+
+private:
+    using Write = std::function<void(void*)>;
+    void addNumber(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
+    void addWhole(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
+    void addCheck(const Setting& setting, std::vector<QWidget*>& controls);
+    void addChoice(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
+    void addColor(const Setting& setting, std::vector<QWidget*>& controls);
+    void edit(const Setting& setting, const QString& mergeKey, const Write& write);
+    void preview(const Setting& setting, const Write& write);
+    SessionStore::Change changeOf(const Setting& setting, const Write& write) const;
+    QString textOf(const Setting& setting) const;
+    const void* present() const;
+
+    Services& m_services;
+    QFormLayout& m_form;
+    SettingPart m_part;
+    QString m_stepText;
+    Commit m_commit;
+    std::map<const Setting*, Write> m_then;
+    std::vector<std::function<void()>> m_show;
+};
+
+/// What a setting does, with its range and unit, in lines of a tool tip.
+QString tipOf(const Setting& setting);
+
+} // namespace pellucid::gui

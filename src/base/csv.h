@@ -1,0 +1,33 @@
+// Tables as text (CSV, RFC 4180): commas, texts in quotes where they need them, the same in every locale.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace pellucid {
+
+/// Fields from left to right, line by line.
+class CsvTable {
+public:
+    /// What a spreadsheet would take for a formula (= + − @ in front) gets an apostrophe before it.
+    CsvTable& operator<<(std::string_view field);
+    CsvTable& operator<<(const char* field) { return *this << std::string_view(field); }
+    CsvTable& operator<<(double number); ///< the shortest text that reads back as the same number
+    CsvTable& operator<<(int number) { return *this << static_cast<double>(number); }
+    /// Nothing: an empty field.
+    template <class T>
+    CsvTable& operator<<(const std::optional<T>& value) {
+        return value ? *this << *value : *this << std::string_view();
+    }
+    void endLine();
+
+    const std::string& text() const { return m_text; } ///< lines that have ended
+
+private:
+    void add(std::string_view field);
+    std::string m_text;
+    bool m_isFirst = true; ///< of its line
+};
+
+} // namespace pellucid
