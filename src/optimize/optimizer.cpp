@@ -281,27 +281,26 @@ std::span<const Setting> settingsOf<OptimizeOptions>() {
         {.key = "normalize",
          .at = member<&O::normalize>,
          .words = "&Normalize the direction",
-         .help = "Scales the direction to length 1, as section 5.3.4 prints it.",
+         .help = "Scale the direction to length 1, as section 5.3.4 prints it.",
          .used = isStepped},
         {.key = "coarse",
          .at = member<&O::coarse>,
          .words = "&Rays first",
-         .help = "Makes Newton's first moves along a few thousand rays and only the last ones on the whole volume.",
+         .help = "Make Newton's first moves along a few thousand rays, and only the last ones on the whole volume.",
          .option = "no-coarse",
          .used = isNewton},
         {.key = "restarts",
          .at = member<&O::restarts>,
          .words = "Restar&ts",
-         .help = "Lets Newton try other starts, spread over all opacities, where it is stuck.",
+         .help = "Let Newton try other starts, spread over all opacities, where it is stuck.",
          .option = "no-restarts",
          .used = isNewton},
         {.key = "exact_shares",
          .at = member<&O::exactShares>,
          .words = "E&xact shares",
-         .help =
-             "Meets the shares even where nothing can be seen of them. Otherwise the picture keeps a coverage of at "
-             "least 0.2, and each feature with a target above 0 a cover of at least 0.02: where the shares would go "
-             "below that, the nearest ones that do not are taken, and the exact ones are told beside them."},
+         .help = "Meet the shares even where nothing can be seen of them. Otherwise the picture keeps a coverage of at "
+                 "least 0.2, and each feature with a target above 0 a cover of at least 0.02: where the shares would "
+                 "go below that, the nearest ones that do not are taken, and the exact ones are reported beside them."},
     };
     return kSettings;
 }

@@ -16,7 +16,7 @@ std::span<const Setting> settingsOf<Light>() {
         {.key = "on",
          .at = member<&Light::on>,
          .words = "&Light",
-         .help = "Light by the gradient of the values; figures do not depend on it.",
+         .help = "Light the volume by the gradient of its values; figures do not depend on it.",
          .option = "shading"},
         {.key = "ambient",
          .at = member<&Light::ambient>,

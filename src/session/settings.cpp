@@ -86,7 +86,7 @@ std::span<const Setting> settingsOf<HsbMapping>() {
         {.key = "on",
          .at = member<&H::on>,
          .words = "&Colours from variables",
-         .help = "Takes saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
+         .help = "Take saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
                  "function. Figures are measured with these colours.",
          .option = ""},
         {.key = "saturation",
@@ -148,11 +148,7 @@ template <>
 std::span<const Setting> settingsOf<GroundView>() {
     using G = GroundView;
     static const Setting kSettings[] = {
-        {.key = "shown",
-         .at = member<&G::shown>,
-         .words = "&Ground",
-         .help = "Whether the ground is drawn.",
-         .option = ""},
+        {.key = "shown", .at = member<&G::shown>, .words = "&Ground", .help = "Draw the ground.", .option = ""},
         {.key = "color_map",
          .at = member<&G::colorMap>,
          .words = "Colours",
@@ -217,7 +213,7 @@ std::span<const Setting> settingsOf<RefineSettings>() {
         {.key = "live",
          .at = member<&RefineSettings::live>,
          .words = "Li&ve",
-         .help = "Refines after every edit of the transfer function.",
+         .help = "Refine after every edit of the transfer function.",
          .option = ""},
     };
     return kSettings;

@@ -2,6 +2,7 @@
 
 #include <cctype>
 
+#include "base/round_numbers.h"
 #include "parse.h"
 
 namespace pellucid::cli {
@@ -38,11 +39,12 @@ std::string helpOf(const Setting& setting, const void* usual) {
     help[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(help[0])));
     const SettingValue value = setting.at(const_cast<void*>(usual));
     if (std::holds_alternative<bool*>(value))
-        return setting.optionName().starts_with("--no-") ? "switch off what " + help : help;
+        return setting.optionName().starts_with("--no-") ? "do not " + help : help;
     const std::string unit = *setting.unit == '\0' ? "" : std::string(" ") + setting.unit;
     std::string notes;
     if (isNumber(value)) notes = setting.range.text() + unit;
-    if (const std::string text = textOf(setting, usual); !text.empty())
+    const auto* number = std::get_if<double*>(&value);
+    if (const std::string text = number != nullptr ? plainText(**number) : textOf(setting, usual); !text.empty())
         notes += (notes.empty() ? "" : "; ") + ("default " + text);
     return notes.empty() ? help : help + " (" + notes + ")";
 }
