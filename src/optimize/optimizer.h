@@ -8,6 +8,7 @@
 
 #include "optimize/coverage.h"
 #include "optimize/objective.h"
+#include "optimize/solve/opacity_limits.h"
 
 namespace pellucid {
 
@@ -59,13 +60,6 @@ struct OptimizeOptions {
     bool publishedSteps = false;
     void validate() const; ///< throws UsageError
     bool operator==(const OptimizeOptions&) const = default;
-};
-
-/// What the search may do to the opacity of a feature.
-struct OpacityLimits {
-    double lowest = 0, highest = 1; ///< 0 ≤ lowest ≤ highest ≤ 1
-    bool locked = false;            ///< it stays as it is
-    bool operator==(const OpacityLimits&) const = default;
 };
 
 /// One state of the search: the start first, then one after each move.
