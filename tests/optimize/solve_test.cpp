@@ -5,11 +5,11 @@
 #include <limits>
 #include <random>
 
+#include <Eigen/LU>
+
 #include "optimize/solve/boxed_step.h"
 #include "optimize/solve/least_variance.h"
 #include "optimize/solve/log_depths.h"
-
-#include <Eigen/LU>
 
 using namespace pellucid;
 
@@ -158,9 +158,9 @@ TEST_CASE("a step in a box of special cases", "[solve]") {
     CHECK(boxedStep(one, zero, -ones, ones) == zero);
     CHECK(boxedStep(one, ones, zero, zero) == zero);
     CHECK(boxedStep(one, ones, zero, zero, Sum::Kept) == zero);
-    // A matrix of zeros knows no minimum, but where the box ends there is no harm.
-    const Vector flat = boxedStep(Matrix::Zero(3, 3), zero, -ones, ones);
-    CHECK(flat == zero);
+    // A matrix of zeros knows no minimum, nor do slopes that are no numbers: nothing moves.
+    CHECK(boxedStep(Matrix::Zero(3, 3), ones, -ones, ones) == zero);
+    CHECK(boxedStep(one, ones * std::numeric_limits<double>::quiet_NaN(), -ones, ones) == zero);
     // The sum kept: ½|p|² − p₀ is least at p₀ = ⅔, p₁ = p₂ = −⅓; with p₀ ≤ ½ at −¼ each.
     Vector g = zero;
     g[0] = -1;
