@@ -11,8 +11,6 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kLeastOpacity = 1e-7;                 ///< of a peak that is wanted: a logarithm has no place for 0
-constexpr double kMostOpacity = 1 - 2e-7;              ///< beyond, extinction is capped (docs/method.md, "Visibility")
 constexpr double kCoarseGoal = 1e-3;                   ///< F of estimates, which are farther off than that
 constexpr double kTinyShare = 1e-3;                    ///< added to shares before their logarithm is taken
 constexpr int kMostCoarseMoves = 40;                   ///< of one descent
@@ -26,11 +24,6 @@ constexpr double kNearStrength = 0.1;                  ///< ln of coverages that
 constexpr double kShareStep = 0.1;                     ///< of ln τ, for differences of shares
 constexpr double kLogStep = 0.05;                      ///< of ln τ, for differences of coverages
 
-double depthOf(double x) { return -std::log1p(-std::clamp(x, kLeastOpacity, kMostOpacity)); }
-double logDepth(double x) { return std::log(depthOf(x)); }
-double logOpacity(double x) { return std::log(std::max(x, kLeastOpacity)); }
-double opacityAt(double logDepth) { return -std::expm1(-std::exp(logDepth)); }
-
 /// The n-th number of the van der Corput sequence to a prime base: dimensions of Halton's lattice.
 double halton(int n, int base) {
     double value = 0, digit = 1.0 / base;
@@ -42,37 +35,25 @@ constexpr int kPrimes[] = {2,  3,  5,  7,  11, 13, 17, 19, 23, 29,  31,  37,  41
                            59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107, 109, 113, 127, 131};
 
 /// Of the derivatives `d` at x₀, which after the move to x₁ are to say what was seen there (Broyden).
-void mend(std::vector<std::vector<double>>& d, const OptimizeState& from, const OptimizeState& to) {
-    double square = 0;
-    std::vector<double> dx;
-    for (std::size_t j = 0; j < to.opacity.size(); ++j) {
-        dx.push_back(to.opacity[j] - from.opacity[j]);
-        // Opacities of 0.001 and of 0.9 move alike.
-        const double scale = std::max(to.opacity[j], from.opacity[j]);
-        square += scale > 0 ? dx[j] * dx[j] / (scale * scale) : 0;
-    }
+void mend(Matrix& d, const OptimizeState& from, const OptimizeState& to) {
+    const Vector dx = vectorOf(to.opacity) - vectorOf(from.opacity);
+    // Opacities of 0.001 and of 0.9 move alike.
+    const Vector scale = vectorOf(to.opacity).cwiseMax(vectorOf(from.opacity));
+    const Vector part = (scale.array() > 0).select(dx.array() / scale.array().square(), 0.0);
+    const double square = part.dot(dx);
     if (square < 1e-12) return;
-    for (std::size_t i = 0; i < d.size(); ++i) {
-        double seen = to.vws[i] - from.vws[i];
-        for (std::size_t j = 0; j < dx.size(); ++j) seen -= d[i][j] * dx[j];
-        for (std::size_t j = 0; j < dx.size(); ++j) {
-            const double scale = std::max(to.opacity[j], from.opacity[j]);
-            if (scale > 0) d[i][j] += seen * dx[j] / (scale * scale) / square;
-        }
-    }
+    d += (vectorOf(to.vws) - vectorOf(from.vws) - d * dx) / square * part.transpose();
 }
 
 /// By all that was seen around `at`, the nearest last, so that it counts most.
-void mendBySeen(std::vector<std::vector<double>>& d, const NewtonSearch::Place& at,
-                const std::vector<NewtonSearch::Place>& seen) {
+void mendBySeen(Matrix& d, const NewtonSearch::Place& at, const std::vector<NewtonSearch::Place>& seen) {
     constexpr double kFar = 1; // ln of opacities: beyond, derivatives are others
+    const auto logs = [](const OptimizeState& state) {
+        return vectorOf(state.opacity).array().max(kLeastOpacity).log();
+    };
     std::vector<std::pair<double, const OptimizeState*>> near;
     for (const auto& place : seen) {
-        double distance = 0;
-        for (std::size_t j = 0; j < at.state.opacity.size(); ++j)
-            if (place.state.opacity[j] != at.state.opacity[j])
-                distance =
-                    std::max(distance, std::abs(logOpacity(place.state.opacity[j]) - logOpacity(at.state.opacity[j])));
+        const double distance = (logs(place.state) - logs(at.state)).abs().maxCoeff();
         if (distance > 0 && distance < kFar) near.emplace_back(distance, &place.state);
     }
     std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -84,12 +65,10 @@ void mendBySeen(std::vector<std::vector<double>>& d, const NewtonSearch::Place& 
 NewtonSearch::NewtonSearch(const std::vector<const VwsFunction*>& levels, const std::vector<double>& targets,
                            const std::vector<OpacityLimits>& limits, const OptimizeOptions& options,
                            const PictureGoal* goal, const JobControl& job, Arrive arrive)
-    : m_levels(levels), m_targets(targets), m_limits(limits), m_options(options), m_goal(goal), m_job(job),
-      m_arrive(std::move(arrive)), m_goalDistance(std::min(kNewtonGoal, options.tolerance)) {
-    // A target of 0 is met by the lowest opacity, and x is not moved any more.
-    for (std::size_t f = 0; f < targets.size(); ++f)
-        m_held.push_back(limits[f].locked || targets[f] == 0 || limits[f].lowest == limits[f].highest);
-}
+    : m_levels(levels), m_targets(targets), m_options(options), m_goal(goal), m_job(job), m_arrive(std::move(arrive)),
+      m_goalDistance(std::min(kNewtonGoal, options.tolerance)),
+      // A target of 0 is met by the lowest opacity, and x is not moved any more.
+      m_depths(limits, targets), m_opacities(limits, targets, LogDepths::Log::Opacity) {}
 
 NewtonSearch::Place NewtonSearch::placeOf(const std::vector<double>& vws, const Point& x, std::size_t level,
                                           Coverage look) const {
@@ -114,14 +93,11 @@ std::vector<NewtonSearch::Place> NewtonSearch::evaluate(std::size_t level, const
 }
 
 NewtonSearch::Linear NewtonSearch::linearize(std::size_t level, const Point& x) {
-    Point capped = x;
-    for (std::size_t f = 0; f < x.size(); ++f)
-        if (!m_held[f]) capped[f] = std::min(x[f], kMostOpacity);
     ++m_evaluations;
-    VwsFunction::Linear linear = m_levels[level]->jacobian(capped, m_job);
+    VwsFunction::Linear linear = m_levels[level]->jacobian(m_depths.capped(x), m_job);
     Coverage look;
     if (m_goal) look = m_goal->looks({x}, level == 0 ? PictureGoal::Rays::All : PictureGoal::Rays::Some)[0];
-    Linear at{placeOf(linear.vws, x, level, std::move(look)), std::move(linear.derivative)};
+    Linear at{placeOf(linear.vws, x, level, std::move(look)), matrixOf(linear.derivative)};
     if (level == 0) m_places.push_back(at.place);
     return at;
 }
@@ -129,19 +105,18 @@ NewtonSearch::Linear NewtonSearch::linearize(std::size_t level, const Point& x) 
 NewtonSearch::GoalRows NewtonSearch::goalRows(const Place& at, const Weights& weights) const {
     GoalRows rows;
     if (!m_goal || (weights.floor == 0 && weights.strength == 0)) return rows;
-    const std::size_t n = m_targets.size();
+    const std::vector<std::size_t>& features = m_depths.features();
     std::vector<Point> points{at.state.opacity};
-    std::vector<std::size_t> moved;
-    for (std::size_t j = 0; j < n; ++j) {
-        if (m_held[j]) continue;
-        const double y = logDepth(at.state.opacity[j]), forth = opacityAt(y + kLogStep);
+    Vector changes(m_depths.count());
+    for (std::size_t p = 0; p < features.size(); ++p) {
+        const double y = logDepthOf(at.state.opacity[features[p]]);
+        changes[p] = y + kLogStep <= logDepthOf(kMostOpacity) ? kLogStep : -kLogStep;
         points.push_back(at.state.opacity);
-        points.back()[j] = forth <= kMostOpacity ? forth : opacityAt(y - kLogStep);
-        moved.push_back(j);
+        points.back()[features[p]] = opacityOfLogDepth(y + changes[p]);
     }
     const std::vector<Coverage> looks = m_goal->looks(points, PictureGoal::Rays::Some);
-    std::vector<std::vector<double>> values; // per point: those that count, the strength last
     const std::vector<double> here = m_goal->shortfalls(looks[0]);
+    std::vector<std::vector<double>> values; // per point: those that count, the strength last
     for (const Coverage& look : looks) {
         std::vector<double>& v = values.emplace_back();
         const std::vector<double> shortfalls = m_goal->shortfalls(look);
@@ -149,14 +124,10 @@ NewtonSearch::GoalRows NewtonSearch::goalRows(const Place& at, const Weights& we
             if (weights.floor > 0 && here[k] > 0) v.push_back(weights.floor * shortfalls[k]);
         if (weights.strength > 0) v.push_back(weights.strength * m_goal->excess(look));
     }
-    for (std::size_t k = 0; k < values[0].size(); ++k) {
-        rows.residuals.push_back(values[0][k]);
-        std::vector<double>& row = rows.byLogDepth.emplace_back(n, 0.0);
-        for (std::size_t p = 0; p < moved.size(); ++p) {
-            const double change = logDepth(points[p + 1][moved[p]]) - logDepth(at.state.opacity[moved[p]]);
-            if (change != 0) row[moved[p]] = (values[p + 1][k] - values[0][k]) / change;
-        }
-    }
+    rows.residuals = vectorOf(values[0]);
+    rows.byLogDepth.resize(rows.residuals.size(), m_depths.count());
+    for (std::size_t p = 0; p < features.size(); ++p)
+        rows.byLogDepth.col(p) = (vectorOf(values[p + 1]) - rows.residuals) / changes[p];
     return rows;
 }
 
@@ -225,38 +196,13 @@ NewtonSearch::Place NewtonSearch::visible() const {
     return m_options.coverage || !startShows || best.state.objective <= start().state.objective ? best : start();
 }
 
-/// Where the search begins: targets of 0 at the lowest opacity, wanted features above 0.
-NewtonSearch::Point NewtonSearch::inside(Point x) const {
-    double sum = 0;
-    int wanted = 0;
-    for (std::size_t f = 0; f < x.size(); ++f)
-        if (!m_held[f] && x[f] > 0) {
-            sum += std::log(x[f]);
-            ++wanted;
-        }
-    const double usual = wanted > 0 ? std::clamp(std::exp(sum / wanted), 1e-3, 0.5) : 0.1;
-    for (std::size_t f = 0; f < x.size(); ++f) {
-        if (m_limits[f].locked) continue;
-        if (m_targets[f] == 0)
-            x[f] = m_limits[f].lowest;
-        else if (x[f] < kLeastOpacity)
-            x[f] = usual;
-        x[f] = std::clamp(x[f], m_limits[f].lowest, m_limits[f].highest);
-    }
-    return x;
-}
-
-/// The same with all optical depths times one factor, so that the picture has about the wanted coverage times `part`.
+/// `x` with all optical depths times one factor, so that the picture has about the wanted coverage times `part`.
 NewtonSearch::Point NewtonSearch::atStrength(const Point& x, double part) const {
     if (!m_goal) return x;
     std::vector<Point> points{x};
-    for (double change = -8; change <= 5; change += 0.5) {
-        points.push_back(x);
-        for (std::size_t f = 0; f < x.size(); ++f)
-            if (!m_held[f] && x[f] > 0)
-                points.back()[f] =
-                    std::clamp(opacityAt(logDepth(x[f]) + change), m_limits[f].lowest, m_limits[f].highest);
-    }
+    const Vector y = m_depths.from(x);
+    for (double change = -8; change <= 5; change += 0.5)
+        points.push_back(m_depths.opacities((y.array() + change).matrix(), x));
     const std::vector<Coverage> looks = m_goal->looks(points, PictureGoal::Rays::Some);
     const auto off = [&](const Coverage& look) { return std::abs(m_goal->excess(look) - std::log(part)); };
     std::size_t best = 0;
@@ -266,110 +212,61 @@ NewtonSearch::Point NewtonSearch::atStrength(const Point& x, double part) const 
 }
 
 NewtonSearch::Point NewtonSearch::stepped(const Linear& at, const GoalRows& rows, const Step& step) const {
-    const std::size_t n = m_targets.size();
-    const auto logOf = step.variable == Variable::Depth ? logDepth : logOpacity;
-    std::vector<double> byLog(n, 0.0); // dx/dy
-    for (std::size_t j = 0; j < n; ++j) {
-        const double x = std::clamp(at.place.state.opacity[j], kLeastOpacity, kMostOpacity);
-        if (!m_held[j]) byLog[j] = step.variable == Variable::Depth ? (1 - x) * depthOf(x) : x;
-    }
-    Matrix a(n, std::vector<double>(n, 0.0));
-    std::vector<double> g(n, 0.0), lowest(n, 0.0), highest(n, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-        const double w = at.place.state.vws[i], t = m_targets[i];
+    const Point& x = at.place.state.opacity;
+    const auto w = vectorOf(at.place.state.vws).array(), t = vectorOf(m_targets).array();
+    const Eigen::Index n = t.size(), goals = rows.residuals.size();
+    Matrix j(n + goals, m_depths.count());
+    Vector r(n + goals);
+    j.topRows(n) = step.unknowns.derivatives(at.derivative, x);
+    r.head(n) = w - t;
+    if (step.residual == Residual::Ratio) {
         // ln((W + ε)/(t + ε)), weighted by t: linear in y where features do not hide each other.
-        const bool ratio = step.residual == Residual::Ratio;
-        const double scale = ratio ? 1 / (w + kTinyShare) : 1, weight = ratio ? t + kTinyShare : 1;
-        const double residual = ratio ? std::log((w + kTinyShare) / (t + kTinyShare)) : w - t;
-        for (std::size_t j = 0; j < n; ++j) {
-            const double d = at.derivative[i][j] * byLog[j] * scale * weight;
-            if (d == 0) continue;
-            g[j] += d * residual;
-            for (std::size_t k = 0; k < n; ++k) a[j][k] += d * at.derivative[i][k] * byLog[k] * scale;
-        }
+        const Vector root = (t + kTinyShare).sqrt();
+        r.head(n) = root.array() * ((w + kTinyShare) / (t + kTinyShare)).log();
+        j.topRows(n).array().colwise() *= root.array() / (w + kTinyShare);
     }
-    for (std::size_t r = 0; r < rows.residuals.size(); ++r)
-        for (std::size_t j = 0; j < n; ++j) {
-            if (byLog[j] == 0) continue;
-            // From ln τ to the variable at hand.
-            const auto slope = [&](std::size_t k) {
-                const double x = std::clamp(at.place.state.opacity[k], kLeastOpacity, kMostOpacity);
-                return byLog[k] == 0 ? 0 : rows.byLogDepth[r][k] * byLog[k] / ((1 - x) * depthOf(x));
-            };
-            const double d = slope(j);
-            g[j] += d * rows.residuals[r];
-            for (std::size_t k = 0; k < n; ++k) a[j][k] += d * slope(k);
-        }
-    double most = 0;
-    for (std::size_t j = 0; j < n; ++j) most = std::max(most, a[j][j]);
-    for (std::size_t j = 0; j < n; ++j) {
-        a[j][j] += std::max(step.damping * most, 1e-200);
-        if (m_held[j]) continue;
-        const double y = logOf(at.place.state.opacity[j]);
-        lowest[j] = std::clamp(logOf(m_limits[j].lowest) - y, -step.reach, 0.0);
-        highest[j] = std::clamp(logOf(m_limits[j].highest) - y, 0.0, step.reach);
+    if (goals > 0) { // from ln τ to the unknowns at hand
+        j.bottomRows(goals) =
+            rows.byLogDepth * (step.unknowns.slopes(x).cwiseQuotient(m_depths.slopes(x))).asDiagonal();
+        r.tail(goals) = rows.residuals;
     }
-    const std::vector<double> p = boxedStep(a, g, lowest, highest);
-    Point x = at.place.state.opacity;
-    for (std::size_t j = 0; j < n; ++j) {
-        if (p[j] == 0) continue;
-        const double y = std::exp(logOf(x[j]) + p[j]);
-        x[j] =
-            std::clamp(step.variable == Variable::Depth ? -std::expm1(-y) : y, m_limits[j].lowest, m_limits[j].highest);
-    }
-    return x;
+    const double most = m_depths.count() > 0 ? j.colwise().squaredNorm().maxCoeff() : 0;
+    const Vector y = step.unknowns.from(x);
+    const auto [lowest, highest] = step.unknowns.stepsFrom(y, step.reach);
+    const Vector p = leastSquaresStep(j, r, lowest, highest, std::max(step.damping * most, 1e-200));
+    return step.unknowns.opacities(y + p, x);
 }
 
 /// Steps of one batch, the boldest first; those whose residuals, as the derivatives foretell them, differ by less than
 /// a twentieth of what they are here count as one.
 std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, const GoalRows& rows,
                                                           double caution) const {
-    double here = at.place.state.objective * at.place.state.objective;
-    for (const double r : rows.residuals) here += r * r;
+    const Point& x = at.place.state.opacity;
+    const double here = at.place.state.objective * at.place.state.objective + rows.residuals.squaredNorm();
     const auto same = [&](const Point& a, const Point& b) {
-        for (const Variable variable : {Variable::Depth, Variable::Opacity}) {
-            double square = 0;
-            for (std::size_t i = 0; i < a.size(); ++i) {
-                double w = 0;
-                for (std::size_t j = 0; j < a.size(); ++j) {
-                    if (a[j] == b[j]) continue;
-                    const double x = std::clamp(at.place.state.opacity[j], kLeastOpacity, kMostOpacity);
-                    w += at.derivative[i][j] * (variable == Variable::Depth
-                                                    ? (1 - x) * depthOf(x) * (logDepth(a[j]) - logDepth(b[j]))
-                                                    : x * (logOpacity(a[j]) - logOpacity(b[j])));
-                }
-                square += w * w / static_cast<double>(a.size());
-            }
-            for (const auto& row : rows.byLogDepth) {
-                double r = 0;
-                for (std::size_t j = 0; j < a.size(); ++j)
-                    if (a[j] != b[j]) r += row[j] * (logDepth(a[j]) - logDepth(b[j]));
-                square += r * r;
-            }
-            if (square > 0.05 * 0.05 * here) return false;
+        const Vector byDepth = m_depths.from(a) - m_depths.from(b);
+        const double goals = rows.residuals.size() > 0 ? (rows.byLogDepth * byDepth).squaredNorm() : 0;
+        for (const LogDepths* unknowns : {&m_depths, &m_opacities}) {
+            const Vector change = unknowns->derivatives(at.derivative, x) * (unknowns->from(a) - unknowns->from(b));
+            if (change.squaredNorm() / static_cast<double>(change.size()) + goals > 0.05 * 0.05 * here) return false;
         }
         return true;
     };
     std::vector<Point> points;
     for (const auto& [damping, reach] : {std::pair{1e-7, 4.0}, {1e-3, 2.0}, {3e-2, 1.0}, {0.3, 0.4}})
-        for (const Variable variable : {Variable::Depth, Variable::Opacity})
+        for (const LogDepths* unknowns : {&m_depths, &m_opacities})
             for (const Residual residual : {Residual::Ratio, Residual::Difference}) {
-                const Point x = stepped(at, rows, {variable, residual, damping / caution, reach * caution});
-                if (points.size() < kBatch && x != at.place.state.opacity &&
-                    std::none_of(points.begin(), points.end(), [&](const Point& p) { return same(p, x); }))
-                    points.push_back(x);
+                const Point next = stepped(at, rows, {*unknowns, residual, damping / caution, reach * caution});
+                if (points.size() < kBatch && next != x &&
+                    std::none_of(points.begin(), points.end(), [&](const Point& p) { return same(p, next); }))
+                    points.push_back(next);
             }
     // What a straight line over- or undershoots: lanes that are left cost nothing.
     const std::size_t whole = points.size();
+    const Vector y = m_depths.from(x);
     for (const double part : {0.85, 1.15, 0.7, 1.3})
-        for (std::size_t p = 0; p < whole && points.size() < kBatch; ++p) {
-            Point x = at.place.state.opacity;
-            for (std::size_t j = 0; j < x.size(); ++j)
-                if (points[p][j] != x[j])
-                    x[j] = std::clamp(opacityAt(logDepth(x[j]) + part * (logDepth(points[p][j]) - logDepth(x[j]))),
-                                      m_limits[j].lowest, m_limits[j].highest);
-            points.push_back(std::move(x));
-        }
+        for (std::size_t p = 0; p < whole && points.size() < kBatch; ++p)
+            points.push_back(m_depths.opacities(y + part * (m_depths.from(points[p]) - y), x));
     return points;
 }
 
@@ -498,20 +395,16 @@ NewtonSearch::Place NewtonSearch::byEstimates(const std::vector<Point>& starts, 
 
 /// Starts spread over all opacities: the best few of them, on a level.
 std::vector<NewtonSearch::Place> NewtonSearch::spread(std::size_t level, const Point& best, const Weights& weights) {
-    const double least = opacityAt(std::log(kLeastSpread)), most = opacityAt(std::log(kMostSpread));
+    const Vector least = m_depths.clamped(Vector::Constant(m_depths.count(), std::log(kLeastSpread)));
+    const Vector most = m_depths.highest().cwiseMin(std::log(kMostSpread)).cwiseMax(least);
     std::vector<Place> places;
     for (int first = 0; first < kSpread; first += static_cast<int>(kBatch)) {
         std::vector<Point> points;
         for (int p = first; p < first + static_cast<int>(kBatch); ++p) {
-            Point x = best;
-            for (std::size_t f = 0; f < x.size(); ++f) {
-                if (m_held[f]) continue;
-                const double lo = logDepth(std::max(m_limits[f].lowest, std::min(least, m_limits[f].highest)));
-                const double hi = std::max(lo, logDepth(std::min(m_limits[f].highest, most)));
-                x[f] = std::clamp(opacityAt(lo + (hi - lo) * halton(p + 1, kPrimes[f % std::size(kPrimes)])),
-                                  m_limits[f].lowest, m_limits[f].highest);
-            }
-            points.push_back(std::move(x));
+            Vector y = least;
+            for (Eigen::Index i = 0; i < y.size(); ++i)
+                y[i] += (most[i] - least[i]) * halton(p + 1, kPrimes[m_depths.features()[i] % std::size(kPrimes)]);
+            points.push_back(m_depths.opacities(y, best));
         }
         for (Place& place : evaluate(level, points)) places.push_back(std::move(place));
     }
@@ -533,20 +426,14 @@ void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
     if (first) points.push_back(start);
     points.push_back(from.state.opacity);
     const std::size_t base = points.size() - 1;
-    std::vector<std::size_t> free;
-    for (std::size_t j = 0; j < start.size(); ++j)
-        if (!m_held[j]) free.push_back(j);
+    const std::vector<std::size_t>& free = m_depths.features();
     const bool differs = points.size() + free.size() <= kBatch;
-    if (differs)
-        for (const std::size_t j : free) {
-            const Point& x = points[base];
-            const double y = logDepth(x[j]), forth = opacityAt(y + kShareStep);
-            Point moved = x;
-            moved[j] = forth <= std::min(kMostOpacity, m_limits[j].highest)
-                           ? forth
-                           : std::max(opacityAt(y - kShareStep), m_limits[j].lowest);
-            points.push_back(std::move(moved));
-        }
+    const Vector y = m_depths.from(from.state.opacity);
+    for (Eigen::Index i = 0; differs && i < y.size(); ++i) {
+        Vector moved = y;
+        moved[i] += y[i] + kShareStep <= m_depths.highest()[i] ? kShareStep : -kShareStep;
+        points.push_back(m_depths.opacities(m_depths.clamped(moved), from.state.opacity));
+    }
     std::vector<Place> places = evaluate(0, points);
     if (first) {
         begin();
@@ -561,8 +448,7 @@ void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
         for (std::size_t k = 0; k < free.size(); ++k) {
             const OptimizeState& moved = places[base + 1 - (first ? 1 : 0) + k].state;
             const double change = moved.opacity[free[k]] - here.opacity[free[k]];
-            for (std::size_t i = 0; change != 0 && i < here.vws.size(); ++i)
-                at.derivative[i][free[k]] = (moved.vws[i] - here.vws[i]) / change;
+            if (change != 0) at.derivative.col(free[k]) = (vectorOf(moved.vws) - vectorOf(here.vws)) / change;
         }
     } else {
         mendBySeen(at.derivative, *best, places);
@@ -586,7 +472,7 @@ void NewtonSearch::begin() {
 
 void NewtonSearch::toShares(const std::vector<Point>& starts) {
     const Point& start = starts.front();
-    const Point x = inside(start);
+    const Point x = m_depths.inside(start);
     const bool coarse = m_levels.size() > 1;
     const auto done = [&] { return bestOf(false).state.objective < m_goalDistance || !mayMove(0); };
     const auto down = [&](Linear at) {
@@ -636,7 +522,7 @@ void NewtonSearch::follow(const Point& start) {
     evaluate(0, {start});
     begin();
     if (isGood(this->start()) && this->start().lack <= kShownLack) return;
-    Point x = inside(start);
+    Point x = m_depths.inside(start);
     for (const Weights& weights : phases(true)) {
         if (!mayMove(0)) return;
         const Place end = descend(linearize(0, x), weights);
@@ -648,7 +534,7 @@ void NewtonSearch::follow(const Point& start) {
 void NewtonSearch::toFloors(const std::vector<Point>& starts) {
     if (!m_goal || !mayMove(0)) return;
     std::vector<Point> from;
-    for (const Point& x : starts) from.push_back(atStrength(inside(x), 1));
+    for (const Point& x : starts) from.push_back(atStrength(m_depths.inside(x), 1));
     if (m_levels.size() > 1) {
         m_forFloors = true;
         refine(byEstimates(from, true), starts.front(), true);

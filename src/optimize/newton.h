@@ -4,6 +4,7 @@
 
 #include "optimize/optimizer.h"
 #include "optimize/picture_goal.h"
+#include "optimize/solve/log_depths.h"
 
 namespace pellucid {
 
@@ -50,24 +51,23 @@ public:
 
 private:
     using Point = std::vector<double>;
-    /// A place with ∂W_i/∂x_j as [i][j].
+    /// A place with ∂W_i/∂x_j as (i, j).
     struct Linear {
         Place place;
-        std::vector<std::vector<double>> derivative;
+        Matrix derivative;
     };
     /// What counts besides F: floors times `floor`, the distance from the wanted coverage times `strength`.
     struct Weights {
         double floor = 0, strength = 0;
     };
-    /// The goal's residuals at a place and their derivatives by ln τ.
+    /// The goal's residuals at a place and their derivatives by the unknowns m_depths.
     struct GoalRows {
-        std::vector<double> residuals;
-        std::vector<std::vector<double>> byLogDepth;
+        Vector residuals;
+        Matrix byLogDepth;
     };
-    enum class Variable { Depth, Opacity };    ///< ln τ, τ = −ln(1 − x), or ln x
     enum class Residual { Ratio, Difference }; ///< ln (W/t) or W − t
     struct Step {
-        Variable variable;
+        const LogDepths& unknowns;
         Residual residual;
         double damping, reach;
     };
@@ -87,7 +87,6 @@ private:
     double rank(const Place& place, bool floors) const;
     Place bestOf(bool floors) const;
     std::vector<Weights> phases(bool floors) const;
-    Point inside(Point x) const;
     Point atStrength(const Point& x, double part) const;
     std::vector<Point> startsFor(const Point& x) const;
     std::vector<Point> candidates(const Linear& at, const GoalRows& rows, double caution) const;
@@ -101,14 +100,13 @@ private:
 
     const std::vector<const VwsFunction*>& m_levels;
     const std::vector<double>& m_targets;
-    const std::vector<OpacityLimits>& m_limits;
     const OptimizeOptions& m_options;
     const PictureGoal* m_goal;
     const JobControl& m_job;
     Arrive m_arrive;
-    double m_goalDistance;       ///< F on the volume that is good enough
-    std::vector<bool> m_held;    ///< features that no move changes
-    std::vector<Place> m_places; ///< all that was evaluated on the volume, the start first
+    double m_goalDistance;                 ///< F on the volume that is good enough
+    const LogDepths m_depths, m_opacities; ///< the unknowns, both ways
+    std::vector<Place> m_places;           ///< all that was evaluated on the volume, the start first
     bool m_forFloors = false;
     std::vector<OptimizeState> m_waiting; ///< for the start, which comes first
     int m_evaluations = 0, m_spreadStarts = 0;

@@ -96,8 +96,8 @@ private:
     std::vector<double> stepped(const OptimizeState& at, const std::vector<double>& d, double step) const {
         std::vector<double> x = at.opacity;
         for (std::size_t i = 0; i < x.size(); ++i)
-            if (!m_limits[i].locked) x[i] = std::clamp(x[i] - step * d[i], m_limits[i].lowest, m_limits[i].highest);
-        return x;
+            if (!m_limits[i].locked) x[i] -= step * d[i];
+        return within(m_limits, std::move(x));
     }
 
     OptimizeState trial(const OptimizeState& at, const std::vector<double>& d, double step) {
@@ -195,12 +195,6 @@ std::vector<OpacityLimits> fullLimits(const VwsFunction& function, std::vector<O
         if (base.features[f].hidden || most[f] == 0) limits[f].locked = true;
     }
     return limits;
-}
-
-std::vector<double> within(const std::vector<OpacityLimits>& limits, std::vector<double> x) {
-    for (std::size_t f = 0; f < x.size(); ++f)
-        if (!limits[f].locked) x[f] = std::clamp(x[f], limits[f].lowest, limits[f].highest);
-    return x;
 }
 
 /// Moves until the targets are met or nothing helps any more.

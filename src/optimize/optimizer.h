@@ -9,6 +9,7 @@
 #include "base/setting.h"
 #include "optimize/coverage.h"
 #include "optimize/objective.h"
+#include "optimize/solve/opacity_limits.h"
 
 namespace pellucid {
 
@@ -66,13 +67,6 @@ struct OptimizeOptions {
 };
 template <>
 std::span<const Setting> settingsOf<OptimizeOptions>();
-
-/// What the search may do to the opacity of a feature.
-struct OpacityLimits {
-    double lowest = 0, highest = 1; ///< 0 ≤ lowest ≤ highest ≤ 1
-    bool locked = false;            ///< it stays as it is
-    bool operator==(const OpacityLimits&) const = default;
-};
 
 /// One state of the search: the start first, then one after each move.
 struct OptimizeState {

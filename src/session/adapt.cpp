@@ -374,7 +374,7 @@ std::string modelBasis(const TransferFunction& tf, const std::string& basis) {
 /// Not so in a frame in which no feature has a voxel.
 /// Of the scene's frame at `opacity`. `metric`: pictureMetric() under the transfer function of the frame before.
 FrameModel modelOf(const Scene& scene, const VwsFunction& function, std::vector<double> opacity,
-                   const AdaptSettings& settings, Matrix metric, const JobControl& job) {
+                   const AdaptSettings& settings, std::vector<std::vector<double>> metric, const JobControl& job) {
     std::vector<double> below1 = opacity; // where derivatives are
     for (double& x : below1) x = std::min(x, kMaxOpacity);
     VwsFunction::Linear linear = function.jacobian(below1, job);
@@ -508,7 +508,7 @@ AdaptedFrame FrameAdapter::adapt(const Scene& basis, const AdaptTask& task, Work
         const EngineVws function(engine, input.view, input.tf, workspace.weights(input, quiet), input.settings.vws);
         TrackOptions track;
         track.coherence = settings.usedCoherence();
-        std::optional<Matrix> metric;
+        std::optional<std::vector<std::vector<double>>> metric;
         if (smooths(settings)) track.metric = [&] { return *(metric = pictureMetric(scene, quiet)); };
         Tracked found = pellucid::track(function, targets, limits, track, quiet);
         // Moves downhill are stuck far from the targets: other starts may not be.
@@ -604,7 +604,7 @@ SmoothedFrames FrameAdapter::smooth(const Scene& basis, const SmoothTask& task, 
         if (const auto known = m_models.find(frames[i]); known != m_models.end() && known->second.basis == of) {
             model = known->second.model;
         } else {
-            Matrix metric = pictureMetric(sceneAt(basis, frames[i], before, quiet), quiet);
+            auto metric = pictureMetric(sceneAt(basis, frames[i], before, quiet), quiet);
             withFunction(i, [&](const Scene& scene, const EngineVws& function) {
                 model = modelOf(scene, function, featureOpacities(function.base()), settings, std::move(metric), quiet);
             });

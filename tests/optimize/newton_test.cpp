@@ -7,7 +7,6 @@
 #include "optimize/measure.h"
 #include "optimize/newton.h"
 #include "optimize/optimizer.h"
-#include "optimize/solve/boxed_step.h"
 #include "support/random_cases.h"
 #include "support/volumes.h"
 
@@ -104,55 +103,6 @@ std::shared_ptr<const VwsFunction> borrowed(const VwsFunction& function) {
 }
 
 } // namespace
-
-TEST_CASE("a step in a box is the minimum over it", "[optimize]") {
-    // ½(p₀² + 4p₁²) − 2p₀ − 4p₁: at (2, 1) without bounds; with p₀ ≤ 1 at (1, 1), for they are not coupled.
-    const Matrix a{{1, 0}, {0, 4}};
-    CHECK(boxedStep(a, {-2, -4}, {-9, -9}, {9, 9}) == std::vector<double>{2, 1});
-    CHECK(boxedStep(a, {-2, -4}, {-9, -9}, {1, 9}) == std::vector<double>{1, 1});
-    CHECK(boxedStep(a, {-2, -4}, {0, 0}, {0, 0.5}) == std::vector<double>{0, 0.5});
-    // Coupled: ½(2p₀² + 2p₀p₁ + 2p₁²) − 3p₀ with p₀ ≤ ½. On that side 2p₁ + ½ = 0.
-    const std::vector<double> p = boxedStep({{2, 1}, {1, 2}}, {-3, 0}, {-1, -1}, {0.5, 1});
-    CHECK(p[0] == 0.5);
-    CHECK(p[1] == Approx(-0.25));
-    // Against many points of random boxes.
-    Random random(5);
-    for (int n = 0; n < 50; ++n) {
-        const std::size_t size = 1 + static_cast<std::size_t>(random.below(6));
-        Matrix m(size, std::vector<double>(size, 0.0)), root = m;
-        std::vector<double> g(size), lo(size), hi(size);
-        for (auto& row : root)
-            for (double& v : row) v = random.between(-1, 1);
-        for (std::size_t i = 0; i < size; ++i) {
-            for (std::size_t j = 0; j < size; ++j)
-                for (std::size_t k = 0; k < size; ++k) m[i][j] += root[i][k] * root[j][k];
-            m[i][i] += 0.01;
-            g[i] = random.between(-1, 1);
-            lo[i] = -random.unit();
-            hi[i] = random.unit();
-        }
-        const auto value = [&](const std::vector<double>& x) {
-            double sum = 0;
-            for (std::size_t i = 0; i < size; ++i) {
-                sum += g[i] * x[i];
-                for (std::size_t j = 0; j < size; ++j) sum += 0.5 * m[i][j] * x[i] * x[j];
-            }
-            return sum;
-        };
-        const std::vector<double> best = boxedStep(m, g, lo, hi);
-        for (std::size_t i = 0; i < size; ++i) {
-            CHECK(best[i] >= lo[i]);
-            CHECK(best[i] <= hi[i]);
-        }
-        for (int k = 0; k < 200; ++k) {
-            std::vector<double> other(size);
-            for (std::size_t i = 0; i < size; ++i) // near it, and anywhere
-                other[i] = std::clamp(k % 2 == 0 ? best[i] + random.between(-1e-3, 1e-3) : random.between(lo[i], hi[i]),
-                                      lo[i], hi[i]);
-            CHECK(value(other) >= value(best) - 1e-9);
-        }
-    }
-}
 
 TEST_CASE("every method goes along every direction to the targets", "[optimize]") {
     for (const auto method : {SearchMethod::Newton, SearchMethod::Parallel, SearchMethod::Line, SearchMethod::Fixed})

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimize/solve/boxed_step.h"
 #include "optimize/solve/log_depths.h"
 
 namespace pellucid {
@@ -24,30 +25,38 @@ constexpr double kHeld = 3e-4;     // F at which shares count as held
 constexpr double kDropped = 0.008; // F at which they do not
 constexpr int kCorrections = 4;
 constexpr double kMostCorrection = 0.5;
+constexpr double kSolid = 0.999; // as good as 1: ln τ goes on from here without that anything changes
 
 /// A place on the way, as the function that is followed has it.
 struct Place {
-    Numbers y;
-    Rows derivative; ///< of W with respect to y
+    Vector y;
+    Matrix derivative; ///< of W with respect to y
     double coverage = 0;
 };
 
-Numbers differences(const Numbers& a, const Numbers& b) { return plus(a, -1, b); }
+std::vector<OpacityLimits> belowSolid(std::vector<OpacityLimits> limits, std::size_t features) {
+    limits.resize(features);
+    for (OpacityLimits& limit : limits) limit.highest = std::max(limit.lowest, std::min(limit.highest, kSolid));
+    return limits;
+}
+
+double largestOf(const Vector& v) { return v.size() == 0 ? 0 : v.lpNorm<Eigen::Infinity>(); }
 
 class Tracer {
 public:
     Tracer(const DensityProblem& problem, const std::vector<double>& start, const JobControl& job)
-        : m_problem(problem), m_along(problem.coarse ? *problem.coarse : problem.full), m_depths(problem.limits, start),
+        : m_problem(problem), m_along(problem.coarse ? *problem.coarse : problem.full),
+          m_start(within(belowSolid(problem.limits, start.size()), start)),
+          m_depths(belowSolid(problem.limits, start.size()), m_start),
           m_drawn(drawnFeatures(withFeatureOpacities(problem.full.base(), start))), m_job(job) {}
 
-    const LogDepths& depths() const { return m_depths; }
     const std::vector<char>& drawn() const { return m_drawn; }
+    std::vector<double> opacities(const Vector& y) const { return m_depths.opacities(y, m_start); }
     int evaluations = 0;
 
-    double coverageAt(const Numbers& y) const { return coveragesAt({y})[0]; }
-    std::vector<double> coveragesAt(const std::vector<Numbers>& places) const {
+    std::vector<double> coveragesAt(const std::vector<Vector>& places) const {
         std::vector<TransferFunction> tfs;
-        for (const Numbers& y : places) tfs.push_back(withFeatureOpacities(m_problem.full.base(), m_depths.opacity(y)));
+        for (const Vector& y : places) tfs.push_back(withFeatureOpacities(m_problem.full.base(), opacities(y)));
         std::vector<double> coverages;
         for (const auto& a : m_problem.rays.appearances(tfs, m_drawn)) coverages.push_back(a.alpha);
         return coverages;
@@ -55,21 +64,14 @@ public:
 
     /// Both ways from the start, coverage ascending. `least`: of coverage, as a part of the largest.
     std::vector<Place> trace(double least) {
-        Place start{m_depths.start(), {}, 0}; // later the strongest of a way
-        start.coverage = coverageAt(start.y);
+        Place start{m_depths.from(m_start), {}, 0}; // later the strongest of a way
+        start.coverage = coveragesAt({start.y})[0];
         if (m_depths.count() == 0 || m_problem.rays.rays() == 0) return {start};
-        const VwsFunction::Linear linear = at(start.y);
-        m_shares = linear.vws;
-        start.derivative = m_depths.derivatives(linear.derivative, start.y);
-        Numbers up(m_depths.count(), 1.0);
-        if (Numbers v = onCurve(start, up, false); largestOf(v) > kFreedom) {
-            for (double& x : v) x /= largestOf(v);
-            up = v;
-        }
-        if (const auto c = coveragesAt({plus(start.y, 0.1, up), plus(start.y, -0.1, up)}); c[0] < c[1])
-            for (double& x : up) x = -x;
-        Numbers down = up;
-        for (double& x : down) x = -x;
+        m_shares = lookAt(start);
+        Vector up = Vector::Ones(m_depths.count());
+        if (const Vector v = onCurve(start, up, false); largestOf(v) > kFreedom) up = v / largestOf(v);
+        if (const auto c = coveragesAt({start.y + 0.1 * up, start.y - 0.1 * up}); c[0] < c[1]) up = -up;
+        const Vector down = -up;
         std::vector<Place> stronger = follow(start, up, kPast), fainter;
         const auto most = [&] {
             const auto at = std::max_element(stronger.begin(), stronger.end(), weaker);
@@ -100,6 +102,14 @@ public:
         return ascending(std::move(path), start.coverage);
     }
 
+    /// The step from a place of shares `vws` to `wanted`.
+    Vector correction(const Place& place, const std::vector<double>& vws, const std::vector<double>& wanted) const {
+        const auto [lowest, highest] = m_depths.stepsFrom(place.y, kMostCorrection);
+        return leastSquaresStep(place.derivative, vectorOf(vws) - vectorOf(wanted), lowest, highest, kRidge);
+    }
+
+    Vector clamped(const Vector& y) const { return m_depths.clamped(y); }
+
 private:
     static bool weaker(const Place& a, const Place& b) { return a.coverage < b.coverage; }
 
@@ -114,56 +124,56 @@ private:
         return kept;
     }
 
-    VwsFunction::Linear at(const Numbers& y) {
+    /// W at the place, whose derivatives it fills in.
+    std::vector<double> lookAt(Place& place) {
         m_job.throwIfStopped();
-        VwsFunction::Linear linear = m_along.jacobian(m_depths.opacity(y), {m_job.stop, {}});
+        const std::vector<double> x = opacities(place.y);
+        VwsFunction::Linear linear = m_along.jacobian(x, {m_job.stop, {}});
         ++evaluations;
         m_job.report(1 - 1.0 / (1 + evaluations / 8.0));
-        return linear;
+        place.derivative = m_depths.derivatives(matrixOf(linear.derivative), x);
+        return std::move(linear.vws);
     }
 
     /// What is left of `direction` where no W may change, nor, where `bounded`, an unknown leave its bounds.
-    Numbers onCurve(const Place& place, const Numbers& direction, bool bounded) const {
+    Vector onCurve(const Place& place, const Vector& direction, bool bounded) const {
         constexpr double kAny = 1e9;
-        Numbers change(place.derivative.size(), 0.0), lowest(direction.size(), -kAny), highest(direction.size(), kAny);
-        for (std::size_t r = 0; r < change.size(); ++r)
-            for (std::size_t i = 0; i < direction.size(); ++i) change[r] += place.derivative[r][i] * direction[i];
-        if (bounded)
-            for (std::size_t i = 0; i < direction.size(); ++i) {
-                if (place.y[i] >= m_depths.highest()[i] - 1e-9) highest[i] = -direction[i];
-                if (place.y[i] <= m_depths.lowest()[i] + 1e-9) lowest[i] = -direction[i];
-            }
-        return plus(direction, 1, leastSquaresStep(place.derivative, change, lowest, highest, kRidge));
+        Vector lowest = Vector::Constant(direction.size(), -kAny), highest = -lowest;
+        for (Eigen::Index i = 0; bounded && i < direction.size(); ++i) {
+            if (place.y[i] >= m_depths.highest()[i] - 1e-9) highest[i] = 0;
+            if (place.y[i] <= m_depths.lowest()[i] + 1e-9) lowest[i] = 0;
+        }
+        Matrix a = place.derivative.transpose() * place.derivative;
+        a.diagonal().array() += kRidge;
+        return boxedStep(a, -kRidge * direction, lowest, highest);
     }
 
     /// Ends where a bound leaves no way on, or the coverage is `past` of the largest; upwards also where it stays.
-    std::vector<Place> follow(const Place& start, Numbers direction, double past) {
+    std::vector<Place> follow(const Place& start, Vector direction, double past) {
         std::vector<Place> path;
         Place place = start;
         double step = kFirstStep, best = start.coverage;
         int still = 0;
         for (int n = 0; n < kMostSteps; ++n) {
-            Numbers v = onCurve(place, direction, true);
+            Vector v = onCurve(place, direction, true);
             const double length = largestOf(v);
             if (length < kFreedom) break;
             double reach = step;
-            for (std::size_t i = 0; i < v.size(); ++i) {
-                v[i] /= length;
+            v /= length;
+            for (Eigen::Index i = 0; i < v.size(); ++i) {
                 if (v[i] > 0) reach = std::min(reach, (m_depths.highest()[i] - place.y[i]) / v[i]);
                 if (v[i] < 0) reach = std::min(reach, (m_depths.lowest()[i] - place.y[i]) / v[i]);
             }
-            const Numbers y = m_depths.clamped(plus(place.y, reach, v));
-            const VwsFunction::Linear linear = at(y);
-            const Numbers residual = differences(linear.vws, m_shares);
-            const double off = objectiveOf(linear.vws, m_shares);
+            Place next{m_depths.clamped(place.y + reach * v), {}, 0};
+            const std::vector<double> vws = lookAt(next);
+            const double off = objectiveOf(vws, m_shares);
             if (off > kOff) {
                 if (reach < kShortest) break;
                 step = reach / 2;
                 continue;
             }
-            Place next{y, m_depths.derivatives(linear.derivative, y), 0};
-            next.y = m_depths.clamped(plus(y, 1, correction(next, residual)));
-            next.coverage = coverageAt(next.y);
+            next.y = m_depths.clamped(next.y + correction(next, vws, m_shares));
+            next.coverage = coveragesAt({next.y})[0];
             const double gain = (next.coverage - place.coverage) / std::max(place.coverage, 1e-9);
             place = next;
             direction = v;
@@ -176,36 +186,25 @@ private:
         return path;
     }
 
-    Numbers correction(const Place& place, const Numbers& residual) const {
-        Numbers lowest, highest;
-        for (std::size_t i = 0; i < place.y.size(); ++i) {
-            lowest.push_back(std::max(-kMostCorrection, m_depths.lowest()[i] - place.y[i]));
-            highest.push_back(std::min(kMostCorrection, m_depths.highest()[i] - place.y[i]));
-        }
-        return leastSquaresStep(place.derivative, residual, lowest, highest, kRidge);
-    }
-
     const DensityProblem& m_problem;
     const VwsFunction& m_along;
+    const std::vector<double> m_start; ///< within limits
     const LogDepths m_depths;
     const std::vector<char> m_drawn; ///< features that the coverage is of
     const JobControl& m_job;
-    Numbers m_shares;
+    std::vector<double> m_shares;
 };
 
 Place between(const Place& a, const Place& b, double t) {
     Place p = a;
     p.coverage += t * (b.coverage - a.coverage);
-    for (std::size_t i = 0; i < p.y.size(); ++i) p.y[i] += t * (b.y[i] - a.y[i]);
-    for (std::size_t r = 0; r < p.derivative.size(); ++r)
-        for (std::size_t i = 0; i < p.y.size(); ++i)
-            p.derivative[r][i] += t * (b.derivative[r][i] - a.derivative[r][i]);
+    p.y += t * (b.y - a.y);
+    p.derivative += t * (b.derivative - a.derivative);
     return p;
 }
 
 double distance(const Place& a, const Place& b) {
-    return std::max(largestOf(differences(a.y, b.y)),
-                    std::abs(std::log(std::max(b.coverage, 1e-9) / std::max(a.coverage, 1e-9))));
+    return std::max(largestOf(a.y - b.y), std::abs(std::log(std::max(b.coverage, 1e-9) / std::max(a.coverage, 1e-9))));
 }
 
 /// Evenly along the way, ends included.
@@ -252,20 +251,15 @@ std::vector<double> DensityCurve::at(double coverage) const {
 }
 
 DensityCurve::Nearest DensityCurve::nearest(const std::vector<double>& opacity) const {
-    const LogDepths depths({}, points.front().opacity);
-    const Numbers y = depths.from(opacity);
+    const LogDepths depths(belowSolid({}, opacity.size()), points.front().opacity);
+    const Vector y = depths.from(opacity);
     Nearest best{faintest().coverage.coverage, 1e9};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const DensityPoint &a = points[i == 0 ? 0 : i - 1], &b = points[i];
-        const Numbers from = depths.from(a.opacity), way = plus(depths.from(b.opacity), -1, from);
-        const Numbers offset = plus(y, -1, from);
-        double along = 0, square = 0;
-        for (std::size_t k = 0; k < y.size(); ++k) {
-            along += offset[k] * way[k];
-            square += way[k] * way[k];
-        }
-        const double t = square > 0 ? std::clamp(along / square, 0.0, 1.0) : 0;
-        const double distance = largestOf(plus(offset, -t, way));
+        const Vector from = depths.from(a.opacity), way = depths.from(b.opacity) - from, offset = y - from;
+        const double square = way.squaredNorm();
+        const double t = square > 0 ? std::clamp(offset.dot(way) / square, 0.0, 1.0) : 0;
+        const double distance = largestOf(offset - t * way);
         if (distance < best.distance)
             best = {a.coverage.coverage * std::pow(b.coverage.coverage / a.coverage.coverage, t), distance};
     }
@@ -278,7 +272,6 @@ DensityCurve::Nearest DensityCurve::nearest(const std::vector<double>& opacity) 
 DensityCurve densityCurve(const DensityProblem& problem, const std::vector<double>& start,
                           const std::vector<double>& shares, const JobControl& job) {
     Tracer tracer(problem, start, job);
-    const LogDepths& depths = tracer.depths();
     std::vector<Place> places = spread(tracer.trace(kFaintest));
     DensityCurve curve;
     curve.evaluations = tracer.evaluations;
@@ -293,7 +286,7 @@ DensityCurve densityCurve(const DensityProblem& problem, const std::vector<doubl
         for (std::size_t p = 0; p < places.size(); ++p)
             if (vws[p].empty()) {
                 open.push_back(p);
-                candidates.push_back(depths.opacity(places[p].y));
+                candidates.push_back(tracer.opacities(places[p].y));
             }
         if (open.empty()) break;
         if (curve.shares.empty()) candidates.push_back(start);
@@ -303,27 +296,22 @@ DensityCurve densityCurve(const DensityProblem& problem, const std::vector<doubl
         for (std::size_t n = 0; n < open.size(); ++n) {
             Place& p = places[open[n]];
             vws[open[n]] = found[n];
-            if (round == kCorrections || p.derivative.empty() || objectiveOf(found[n], curve.shares) < kHeld) continue;
-            Numbers lowest, highest;
-            for (std::size_t i = 0; i < p.y.size(); ++i) {
-                lowest.push_back(std::max(-kMostCorrection, depths.lowest()[i] - p.y[i]));
-                highest.push_back(std::min(kMostCorrection, depths.highest()[i] - p.y[i]));
-            }
-            const Numbers d =
-                leastSquaresStep(p.derivative, differences(found[n], curve.shares), lowest, highest, kRidge);
+            if (round == kCorrections || p.derivative.size() == 0 || objectiveOf(found[n], curve.shares) < kHeld)
+                continue;
+            const Vector d = tracer.correction(p, found[n], curve.shares);
             if (largestOf(d) < 1e-9) continue;
-            p.y = depths.clamped(plus(p.y, 1, d));
+            p.y = tracer.clamped(p.y + d);
             vws[open[n]].clear();
         }
     }
 
     std::vector<TransferFunction> tfs;
-    for (const Place& p : places) tfs.push_back(withFeatureOpacities(problem.full.base(), depths.opacity(p.y)));
+    for (const Place& p : places) tfs.push_back(withFeatureOpacities(problem.full.base(), tracer.opacities(p.y)));
     const std::vector<Coverage> coverages = coverageOf(problem.rays, tfs, tracer.drawn());
     std::vector<DensityPoint> all;
     std::size_t best = 0;
     for (std::size_t p = 0; p < places.size(); ++p) {
-        all.push_back({depths.opacity(places[p].y), vws[p], objectiveOf(vws[p], curve.shares), coverages[p]});
+        all.push_back({tracer.opacities(places[p].y), vws[p], objectiveOf(vws[p], curve.shares), coverages[p]});
         if (all[p].objective < all[best].objective) best = p;
     }
     // From the best outwards, as long as shares are held.

@@ -19,21 +19,23 @@ RefineResult refineExact(const Histogram& histogram, const TransferFunction& tf,
         }
 
     LeastVariance problem;
-    problem.variables = movable.size();
+    problem.rows = Matrix::Zero(line.participating.size(), movable.size());
+    problem.constants = Vector::Zero(line.participating.size());
+    problem.lowest = Vector::Zero(movable.size());
+    problem.highest = Vector::Ones(movable.size());
     problem.total = options.total.value_or(movableOpacity(tf));
-    for (const std::size_t edge : line.participating) {
-        problem.rows.emplace_back(problem.variables, 0.0);
-        problem.constants.push_back(0);
+    for (std::size_t row = 0; row < line.participating.size(); ++row) {
+        const std::size_t edge = line.participating[row];
         const auto add = [&](std::size_t point, double coefficient) {
             if (line.fixed[point])
-                problem.constants.back() += coefficient * line.opacity[point];
+                problem.constants[row] += coefficient * line.opacity[point];
             else
-                problem.rows.back()[variableOf[point]] += coefficient;
+                problem.rows(row, variableOf[point]) += coefficient;
         };
         add(edge, line.coefficients[edge].left);
         add(edge + 1, line.coefficients[edge].right);
     }
-    const LeastVarianceAnswer answer = solve(problem, start, job);
+    const LeastVarianceAnswer answer = solve(problem, vectorOf(start), job);
     for (std::size_t v = 0; v < movable.size(); ++v) line.opacity[movable[v]] = answer.x[v];
     result.iterations = answer.steps;
     finish(result, line, tf);

@@ -155,23 +155,21 @@ std::vector<double> exactPeaks(const FeatureLine& line, const RefineOptions& opt
         }
     std::vector<double> peaks = line.peak;
     if (movable.empty()) return peaks;
-    LeastVariance problem; // in parts of `largest`
-    problem.variables = movable.size();
-    problem.total = options.total.value_or(line.movableAmount()) / largest;
-    std::vector<double> start;
-    for (std::size_t v = 0; v < movable.size(); ++v) {
+    const std::size_t n = movable.size();
+    Vector start(n);
+    LeastVariance problem{Matrix::Zero(n, n), Vector::Zero(n), start, start,
+                          options.total.value_or(line.movableAmount()) / largest}; // in parts of `largest`
+    for (std::size_t v = 0; v < n; ++v) {
         const std::size_t f = movable[v];
         const double now = line.peak[f] * line.amount[f];
-        start.push_back(now / largest);
-        problem.bounds.lower.push_back(line.lowest(f) / largest);
-        problem.bounds.upper.push_back((line.meant && f != line.meant ? now : line.amount[f]) / largest);
-        problem.rows.emplace_back(movable.size(), 0.0);
-        problem.rows.back()[v] = line.weight[f] / line.amount[f] * largest;
-        problem.constants.push_back(0);
+        start[v] = now / largest;
+        problem.lowest[v] = line.lowest(f) / largest;
+        problem.highest[v] = (line.meant && f != line.meant ? now : line.amount[f]) / largest;
+        problem.rows(v, v) = line.weight[f] / line.amount[f] * largest;
     }
     const LeastVarianceAnswer answer = solve(problem, start, job);
     result.iterations = answer.steps;
-    for (std::size_t v = 0; v < movable.size(); ++v)
+    for (std::size_t v = 0; v < n; ++v)
         if (answer.x[v] != start[v]) peaks[movable[v]] = std::min(1.0, answer.x[v] * largest / line.amount[movable[v]]);
     return peaks;
 }

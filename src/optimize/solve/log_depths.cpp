@@ -9,129 +9,83 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kLeastOpacity = 1e-6;
-constexpr double kMostOpacity = 0.999; // as good as 1: ln τ goes on from here without that anything changes
-
-/// Solves A x = b of a positive definite A, by Cholesky's method.
-Numbers solvePositive(Rows a, Numbers b) {
-    const std::size_t n = b.size();
-    for (std::size_t j = 0; j < n; ++j) {
-        for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
-        a[j][j] = std::sqrt(std::max(a[j][j], 1e-300));
-        for (std::size_t i = j + 1; i < n; ++i) {
-            for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
-            a[i][j] /= a[j][j];
-        }
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
-        b[i] /= a[i][i];
-    }
-    for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t k = i + 1; k < n; ++k) b[i] -= a[k][i] * b[k];
-        b[i] /= a[i][i];
-    }
-    return b;
-}
+double inPlace(double opacity) { return std::clamp(opacity, kLeastOpacity, kMostOpacity); }
 
 } // namespace
 
-double logDepthOf(double opacity) { return std::log(opticalDepthOfOpacity(opacity)); }
+double logDepthOf(double opacity) { return std::log(opticalDepthOfOpacity(inPlace(opacity))); }
 double opacityOfLogDepth(double y) { return -std::expm1(-std::exp(y)); }
 
-LogDepths::LogDepths(const std::vector<OpacityLimits>& limits, const std::vector<double>& start) : m_opacity(start) {
-    for (std::size_t f = 0; f < start.size(); ++f) {
-        const OpacityLimits limit = limits.empty() ? OpacityLimits{} : limits[f];
-        if (limit.locked) continue;
-        m_opacity[f] = std::clamp(start[f], limit.lowest, limit.highest);
-        if (m_opacity[f] <= 0 || limit.lowest == limit.highest) continue;
-        m_features.push_back(f);
-        const double least = std::max(limit.lowest, std::min(kLeastOpacity, m_opacity[f]));
-        m_lowest.push_back(logDepthOf(std::min(least, kMostOpacity)));
-        m_highest.push_back(logDepthOf(std::max(least, std::min(limit.highest, kMostOpacity))));
-        m_start.push_back(std::clamp(logDepthOf(m_opacity[f]), m_lowest.back(), m_highest.back()));
+LogDepths::LogDepths(std::vector<OpacityLimits> limits, const std::vector<double>& wanted, Log log)
+    : m_limits(std::move(limits)), m_log(log) {
+    m_limits.resize(wanted.size());
+    for (std::size_t f = 0; f < wanted.size(); ++f)
+        if (wanted[f] > 0 && !m_limits[f].locked && m_limits[f].lowest < m_limits[f].highest) m_features.push_back(f);
+    m_lowest.resize(m_features.size());
+    m_highest.resize(m_features.size());
+    for (std::size_t i = 0; i < m_features.size(); ++i) {
+        m_lowest[i] = yOf(m_limits[m_features[i]].lowest);
+        m_highest[i] = yOf(m_limits[m_features[i]].highest);
     }
 }
 
-Numbers LogDepths::clamped(Numbers y) const {
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] = std::clamp(y[i], m_lowest[i], m_highest[i]);
-    return y;
+double LogDepths::yOf(double opacity) const {
+    return m_log == Log::Depth ? logDepthOf(opacity) : std::log(std::max(opacity, kLeastOpacity));
 }
 
-std::vector<double> LogDepths::opacity(const Numbers& y) const {
-    std::vector<double> x = m_opacity;
-    for (std::size_t i = 0; i < y.size(); ++i) x[m_features[i]] = opacityOfLogDepth(y[i]);
-    return x;
+Vector LogDepths::from(const std::vector<double>& opacity) const {
+    Vector y(count());
+    for (std::size_t i = 0; i < m_features.size(); ++i) y[i] = yOf(opacity[m_features[i]]);
+    return clamped(y);
 }
 
-Numbers LogDepths::from(const std::vector<double>& opacity) const {
-    Numbers y;
-    for (const std::size_t f : m_features) y.push_back(logDepthOf(std::max(opacity[f], kLeastOpacity)));
-    return clamped(std::move(y));
-}
-
-Rows LogDepths::derivatives(const Rows& byOpacity, const Numbers& y) const {
-    Rows rows;
-    for (const Numbers& row : byOpacity) {
-        Numbers& out = rows.emplace_back();
-        for (std::size_t i = 0; i < y.size(); ++i) // ∂α/∂y = (1 − α) τ
-            out.push_back(row[m_features[i]] * std::exp(y[i] - std::exp(y[i])));
+std::vector<double> LogDepths::opacities(const Vector& y, std::vector<double> opacity) const {
+    const Vector there = from(opacity);
+    for (std::size_t i = 0; i < m_features.size(); ++i) {
+        if (y[i] == there[i]) continue;
+        const OpacityLimits& limit = m_limits[m_features[i]];
+        const double x = m_log == Log::Depth ? opacityOfLogDepth(y[i]) : std::exp(y[i]);
+        opacity[m_features[i]] = std::clamp(x, limit.lowest, limit.highest);
     }
-    return rows;
+    return opacity;
 }
 
-Numbers leastSquaresStep(const Rows& jacobian, const Numbers& residual, const Numbers& lowest, const Numbers& highest,
-                         double ridge) {
-    const std::size_t n = lowest.size();
-    Numbers d(n, 0.0);
-    std::vector<char> held(n, 0);
-    for (std::size_t round = 0; round <= n; ++round) {
-        std::vector<std::size_t> free;
-        for (std::size_t i = 0; i < n; ++i)
-            if (!held[i]) free.push_back(i);
-        Numbers rest = residual; // with what is held already taken
-        for (std::size_t r = 0; r < rest.size(); ++r)
-            for (std::size_t i = 0; i < n; ++i)
-                if (held[i]) rest[r] += jacobian[r][i] * d[i];
-        Rows normal(free.size(), Numbers(free.size(), 0.0));
-        Numbers right(free.size(), 0.0);
-        for (std::size_t a = 0; a < free.size(); ++a) {
-            for (std::size_t r = 0; r < rest.size(); ++r) {
-                right[a] -= jacobian[r][free[a]] * rest[r];
-                for (std::size_t b = 0; b < free.size(); ++b)
-                    normal[a][b] += jacobian[r][free[a]] * jacobian[r][free[b]];
-            }
-            normal[a][a] += ridge;
+LogDepths::Steps LogDepths::stepsFrom(const Vector& y, double reach) const {
+    return {(m_lowest - y).cwiseMax(-reach).cwiseMin(0.0), (m_highest - y).cwiseMin(reach).cwiseMax(0.0)};
+}
+
+Vector LogDepths::slopes(const std::vector<double>& opacity) const {
+    Vector slopes(count());
+    for (std::size_t i = 0; i < m_features.size(); ++i) {
+        const double x = inPlace(opacity[m_features[i]]);
+        slopes[i] = m_log == Log::Depth ? (1 - x) * opticalDepthOfOpacity(x) : x;
+    }
+    return slopes;
+}
+
+Matrix LogDepths::derivatives(const Matrix& byOpacity, const std::vector<double>& opacity) const {
+    return byOpacity(Eigen::all, m_features) * slopes(opacity).asDiagonal();
+}
+
+std::vector<double> LogDepths::capped(std::vector<double> opacity) const {
+    for (const std::size_t f : m_features) opacity[f] = std::min(opacity[f], kMostOpacity);
+    return opacity;
+}
+
+std::vector<double> LogDepths::inside(const std::vector<double>& opacity) const {
+    double sum = 0;
+    int above = 0;
+    for (const std::size_t f : m_features)
+        if (opacity[f] > 0) {
+            sum += std::log(opacity[f]);
+            ++above;
         }
-        const Numbers solved = solvePositive(std::move(normal), std::move(right));
-        std::size_t worst = n;
-        double beyond = 0;
-        for (std::size_t a = 0; a < free.size(); ++a) {
-            const std::size_t i = free[a];
-            d[i] = solved[a];
-            const double over = std::max(lowest[i] - d[i], d[i] - highest[i]);
-            if (over > beyond) {
-                beyond = over;
-                worst = i;
-            }
-        }
-        if (worst == n) break;
-        d[worst] = std::clamp(d[worst], lowest[worst], highest[worst]);
-        held[worst] = 1;
-    }
-    return d;
-}
-
-double largestOf(const Numbers& v) {
-    double most = 0;
-    for (const double x : v) most = std::max(most, std::abs(x));
-    return most;
-}
-
-Numbers plus(const Numbers& a, double factor, const Numbers& b) {
-    Numbers sum = a;
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * b[i];
-    return sum;
+    const double usual = above > 0 ? std::clamp(std::exp(sum / above), 1e-3, 0.5) : 0.1;
+    std::vector<double> x = opacity;
+    for (std::size_t f = 0; f < x.size(); ++f)
+        if (!m_limits[f].locked) x[f] = m_limits[f].lowest;
+    for (const std::size_t f : m_features) x[f] = opacity[f] < kLeastOpacity ? usual : opacity[f];
+    return within(m_limits, std::move(x));
 }
 
 } // namespace pellucid

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "optimize/optimizer.h"
-#include "optimize/solve/boxed_step.h"
 
 namespace pellucid {
 
 /// A frame near the opacities it has.
 struct FrameModel {
-    std::vector<double> opacity;       ///< per feature
-    std::vector<double> vws;           ///< W_i there
-    Matrix derivative;                 ///< [i][j]: ∂W_i/∂x_j there
-    Matrix metric;                     ///< what a jump to this frame is, see TrackOptions::metric; empty: likewise
+    std::vector<double> opacity;                 ///< per feature
+    std::vector<double> vws;                     ///< W_i there
+    std::vector<std::vector<double>> derivative; ///< [i][j]: ∂W_i/∂x_j there
+    std::vector<std::vector<double>>
+        metric;                        ///< what a jump to this frame is, see TrackOptions::metric; empty: likewise
     std::vector<double> targets;       ///< shares; a feature with target 0 stays
     std::vector<OpacityLimits> limits; ///< one per feature
     double distance = 0;               ///< F that it may have

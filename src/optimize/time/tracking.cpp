@@ -6,46 +6,31 @@
 
 #include "base/error.h"
 #include "optimize/solve/boxed_step.h"
-#include "tf/opacity.h"
+#include "optimize/solve/log_depths.h"
 
 namespace pellucid {
 
 namespace {
 
 using Point = std::vector<double>;
-using Rows = std::vector<Point>;
 
-constexpr double kLeastOpacity = 1e-7;    ///< a logarithm has no place for 0
-constexpr double kMostOpacity = 1 - 2e-7; ///< beyond, extinction is capped
-constexpr double kSlow = 0.98;            ///< of F that a move leaves, where it is time to end
-constexpr double kFarWithin = 0.8;        ///< of the wanted F, below which a shorter way is looked for
-constexpr double kSafety = 0.97;          ///< of the wanted F that a step aims at: models are not exact
-
-double logDepth(double x) { return std::log(opticalDepthOfOpacity(std::clamp(x, kLeastOpacity, kMostOpacity))); }
-double opacityAt(double y) { return -std::expm1(-std::exp(y)); }
-
-std::vector<std::size_t> movable(const std::vector<double>& targets, const std::vector<OpacityLimits>& limits) {
-    std::vector<std::size_t> all;
-    for (std::size_t f = 0; f < targets.size(); ++f)
-        if (targets[f] > 0 && (limits.empty() || (!limits[f].locked && limits[f].lowest < limits[f].highest)))
-            all.push_back(f);
-    return all;
-}
+constexpr double kSlow = 0.98;     ///< of F that a move leaves, where it is time to end
+constexpr double kFarWithin = 0.8; ///< of the wanted F, below which a shorter way is looked for
+constexpr double kSafety = 0.97;   ///< of the wanted F that a step aims at: models are not exact
 
 /// One frame's search. Unknowns: y = ln τ of the movable features.
 class Tracker {
 public:
     Tracker(const VwsFunction& function, std::vector<double> targets, std::vector<OpacityLimits> limits,
             const TrackOptions& options, const JobControl& job)
-        : m_function(function), m_targets(std::move(targets)), m_limits(std::move(limits)), m_options(options),
-          m_job(job), m_features(movable(m_targets, m_limits)) {
-        m_start = inside(featureOpacities(function.base()));
-    }
+        : m_function(function), m_targets(std::move(targets)), m_options(options), m_job(job),
+          m_depths(std::move(limits), m_targets), m_start(m_depths.inside(featureOpacities(function.base()))),
+          m_startDepths(m_depths.from(m_start)) {}
 
     Tracked run() {
         Tracked at;
         at.opacity = m_start;
-        if (std::isinf(m_options.coherence) || m_options.maxMoves == 0 || m_features.empty()) {
+        if (std::isinf(m_options.coherence) || m_options.maxMoves == 0 || m_depths.count() == 0) {
             at.vws = m_function.evaluate({&at.opacity, 1}, m_job)[0];
             at.objective = objectiveOf(at.vws, m_targets);
             at.evaluations = ++m_evaluations;
@@ -57,7 +42,7 @@ public:
         for (bool known = false;;) {
             if (!known) {
                 m_job.throwIfStopped();
-                VwsFunction::Linear linear = m_function.jacobian(capped(at.opacity), m_job);
+                VwsFunction::Linear linear = m_function.jacobian(m_depths.capped(at.opacity), m_job);
                 ++m_evaluations;
                 at.vws = std::move(linear.vws);
                 at.objective = objectiveOf(at.vws, m_targets);
@@ -69,7 +54,7 @@ public:
             }
             if (at.objective <= m_goal || at.moves >= m_options.maxMoves) break;
             findMetric();
-            const std::vector<Point> candidates = candidatesFrom(at, derivative, caution);
+            const std::vector<Point> candidates = candidatesFrom(at, matrixOf(derivative), caution);
             if (candidates.empty()) break;
             const auto vws = m_function.evaluate(candidates, m_job);
             m_evaluations += static_cast<int>(candidates.size());
@@ -96,41 +81,15 @@ public:
     }
 
 private:
-    /// Targets of 0 at the lowest opacity, wanted features above 0.
-    Point inside(Point x) const {
-        double sum = 0;
-        int wanted = 0;
-        for (const std::size_t f : m_features)
-            if (x[f] > 0) {
-                sum += std::log(x[f]);
-                ++wanted;
-            }
-        const double usual = wanted > 0 ? std::clamp(std::exp(sum / wanted), 1e-3, 0.5) : 0.1;
-        for (std::size_t f = 0; f < x.size(); ++f) {
-            if (m_limits[f].locked) continue;
-            if (m_targets[f] == 0)
-                x[f] = 0;
-            else if (x[f] < kLeastOpacity)
-                x[f] = usual;
-            x[f] = std::clamp(x[f], m_limits[f].lowest, m_limits[f].highest);
-        }
-        return x;
-    }
-
-    Point capped(Point x) const {
-        for (const std::size_t f : m_features) x[f] = std::min(x[f], kMostOpacity);
-        return x;
-    }
-
     void findMetric() {
-        if (!m_metric.empty()) return;
-        std::vector<std::vector<double>> all;
-        if (m_options.metric) all = m_options.metric();
-        for (const std::size_t f : m_features) {
-            Point& row = m_metric.emplace_back();
-            for (const std::size_t g : m_features)
-                row.push_back(!all.empty() ? all[f][g] : f == g ? 1.0 / static_cast<double>(m_features.size()) : 0.0);
-        }
+        if (m_metric.size() > 0) return;
+        Matrix all;
+        if (m_options.metric) all = matrixOf(m_options.metric());
+        const Eigen::Index n = m_depths.count();
+        if (all.size() > 0)
+            m_metric = all(m_depths.features(), m_depths.features());
+        else
+            m_metric = Matrix::Identity(n, n) / static_cast<double>(n);
     }
 
     /// A long step may end farther within the wanted distance than it must: then part of the way will do.
@@ -138,17 +97,11 @@ private:
         const double near =
             std::clamp((*first - m_goal) / (*first - at.objective), 0.0, 1.0); // where F is m_goal, about
         const double rest = 1 - near;
+        const Vector way = m_depths.from(at.opacity) - m_startDepths;
         std::vector<Point> points;
         for (const double part : {0.6 * near, 0.68 * near, 0.76 * near, 0.84 * near, 0.92 * near, near,
-                                  near + 0.3 * rest, near + 0.65 * rest}) {
-            Point x = at.opacity;
-            for (const std::size_t f : m_features) {
-                const double y = logDepth(m_start[f]);
-                x[f] = std::clamp(opacityAt(y + part * (logDepth(at.opacity[f]) - y)), m_limits[f].lowest,
-                                  m_limits[f].highest);
-            }
-            points.push_back(std::move(x));
-        }
+                                  near + 0.3 * rest, near + 0.65 * rest})
+            points.push_back(m_depths.opacities(m_startDepths + part * way, m_start));
         const auto vws = m_function.evaluate(points, m_job);
         m_evaluations += static_cast<int>(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) { // the shortest first
@@ -163,12 +116,8 @@ private:
 
     /// The square of a jump.
     double jump(const Point& x) const {
-        Point v;
-        for (const std::size_t f : m_features) v.push_back(logDepth(x[f]) - logDepth(m_start[f]));
-        double square = 0;
-        for (std::size_t p = 0; p < v.size(); ++p)
-            for (std::size_t q = 0; q < v.size(); ++q) square += v[p] * m_metric[p][q] * v[q];
-        return square;
+        const Vector v = m_depths.from(x) - m_startDepths;
+        return v.dot(m_metric * v);
     }
 
     /// Within the wanted distance the nearer one, else the one of smaller F. NaN never wins.
@@ -179,75 +128,38 @@ private:
         return f < g || (std::isnan(g) && !std::isnan(f));
     }
 
-    /// The step d with |d_j| ≤ reach and within limits that minimises |r + J d|²/n + μ·jump(y + d)².
-    Point step(const Rows& j, const Point& r, const Point& v, double mu, double reach, const Point& y) const {
-        const std::size_t m = m_features.size();
-        const double n = static_cast<double>(r.size());
-        Matrix a(m, Point(m, 0.0));
-        Point g(m, 0.0), lowest(m), highest(m);
-        for (std::size_t row = 0; row < r.size(); ++row)
-            for (std::size_t p = 0; p < m; ++p) {
-                g[p] += j[row][p] * r[row] / n;
-                for (std::size_t q = 0; q < m; ++q) a[p][q] += j[row][p] * j[row][q] / n;
-            }
-        double most = 0;
-        for (std::size_t p = 0; p < m; ++p) most = std::max(most, a[p][p]);
-        for (std::size_t p = 0; p < m; ++p) {
-            for (std::size_t q = 0; q < m; ++q) {
-                a[p][q] += mu * m_metric[p][q];
-                g[p] += mu * m_metric[p][q] * v[q];
-            }
-            a[p][p] += std::max(1e-9 * most, 1e-200);
-            const OpacityLimits& limit = m_limits[m_features[p]];
-            lowest[p] = std::clamp(logDepth(limit.lowest) - y[p], -reach, 0.0);
-            highest[p] = std::clamp(logDepth(limit.highest) - y[p], 0.0, reach);
-        }
-        return boxedStep(a, g, lowest, highest);
-    }
-
     /// Steps to where the model has the wanted distance, and to its minimum, of several lengths.
-    std::vector<Point> candidatesFrom(const Tracked& at, const Rows& byOpacity, double caution) const {
-        const std::size_t n = m_targets.size(), m = m_features.size();
-        Point y(m), v(m), r(n);
-        Rows j(n, Point(m, 0.0));
-        for (std::size_t p = 0; p < m; ++p) {
-            const double x = std::clamp(at.opacity[m_features[p]], kLeastOpacity, kMostOpacity);
-            y[p] = logDepth(x);
-            v[p] = y[p] - logDepth(m_start[m_features[p]]);
-            for (std::size_t row = 0; row < n; ++row)
-                j[row][p] = byOpacity[row][m_features[p]] * (1 - x) * opticalDepthOfOpacity(x);
-        }
-        for (std::size_t row = 0; row < n; ++row) r[row] = at.vws[row] - m_targets[row];
-        const auto foretold = [&](const Point& d) {
-            double square = 0;
-            for (std::size_t row = 0; row < n; ++row) {
-                double w = r[row];
-                for (std::size_t p = 0; p < m; ++p) w += j[row][p] * d[p];
-                square += w * w;
-            }
-            return std::sqrt(square / static_cast<double>(n));
+    std::vector<Point> candidatesFrom(const Tracked& at, const Matrix& byOpacity, double caution) const {
+        const double root = std::sqrt(static_cast<double>(m_targets.size()));
+        const Vector y = m_depths.from(at.opacity), v = y - m_startDepths;
+        const Vector r = (vectorOf(at.vws) - vectorOf(m_targets)) / root; // F is its length
+        const Matrix j = m_depths.derivatives(byOpacity, at.opacity) / root;
+        const Matrix square = j.transpose() * j;
+        const double ridge = std::max(1e-9 * square.diagonal().maxCoeff(), 1e-200);
+        const auto foretold = [&](const Vector& d) { return (r + j * d).norm(); };
+        // The step d with |d_j| ≤ reach and within limits that minimises |r + J d|² + μ·jump(y + d)².
+        const auto step = [&](double mu, double reach) {
+            Matrix a = square + mu * m_metric;
+            a.diagonal().array() += ridge;
+            const auto [lowest, highest] = m_depths.stepsFrom(y, reach);
+            return boxedStep(a, j.transpose() * r + mu * m_metric * v, lowest, highest);
         };
         std::vector<Point> points;
-        const auto add = [&](const Point& d) {
-            Point x = at.opacity;
-            for (std::size_t p = 0; p < m; ++p) {
-                if (d[p] == 0) continue;
-                const OpacityLimits& limit = m_limits[m_features[p]];
-                x[m_features[p]] = std::clamp(opacityAt(y[p] + d[p]), limit.lowest, limit.highest);
-            }
+        const auto add = [&](const Vector& d) {
+            const Point x = m_depths.opacities(y + d, at.opacity);
             if (x != at.opacity && std::find(points.begin(), points.end(), x) == points.end()) points.push_back(x);
         };
         const double wanted = std::hypot(kSafety * m_options.distance(), at.least);
         for (const double length : {3.0, 1.0, 0.3, 0.1}) {
             const double reach = length * caution;
-            const Point most = step(j, r, v, 0, reach, y); // the smallest F of the model
-            if (foretold(most) < wanted) {                 // of those that are near enough the one nearest to the start
-                double lo = -16, hi = 6;                   // log10 μ: F of the model grows with it
+            const Vector most = step(0, reach); // the smallest F of the model
+            if (foretold(most) < wanted) {      // of those that are near enough the one nearest to the start
+                double lo = -16, hi = 6;        // log10 μ: F of the model grows with it
                 for (int i = 0; i < 40; ++i) {
                     const double middle = (lo + hi) / 2;
-                    (foretold(step(j, r, v, std::pow(10, middle), reach, y)) < wanted ? lo : hi) = middle;
+                    (foretold(step(std::pow(10, middle), reach)) < wanted ? lo : hi) = middle;
                 }
-                add(step(j, r, v, std::pow(10, lo), reach, y));
+                add(step(std::pow(10, lo), reach));
             }
             add(most);
         }
@@ -256,12 +168,12 @@ private:
 
     const VwsFunction& m_function;
     const std::vector<double> m_targets;
-    const std::vector<OpacityLimits> m_limits;
     const TrackOptions& m_options;
     const JobControl& m_job;
-    const std::vector<std::size_t> m_features;
-    Point m_start;
-    Matrix m_metric;   // of the movable features
+    const LogDepths m_depths;
+    const Point m_start;
+    const Vector m_startDepths;
+    Matrix m_metric;   // of the unknowns
     double m_goal = 0; // F that is good enough
     int m_evaluations = 0;
 };
