@@ -177,11 +177,11 @@ int main(int argc, char** argv) {
             if (screenshot.isEmpty()) window.restoreLayout();
             if (!size.isEmpty()) window.resize(size);
             window.show();
-            OpenController& opening = window.workbench().opening();
+            OpenController& opening = window.services().opening();
             if (screenshot.isEmpty()) {
-                window.workbench().recovery().start();
+                window.services().recovery().start();
                 if (onSample) window.welcome();
-                if (windows.size() == 1) window.workbench().recovery().offerWhenOpen();
+                if (windows.size() == 1) window.services().recovery().offerWhenOpen();
             } else {
                 QObject::connect(
                     &window, &MainWindow::settledChanged, &window,

@@ -122,12 +122,12 @@ struct OpenWindow {
     void settle() {
         REQUIRE(waitFor([this] { return window.isSettled(); }));
     }
-    Workbench& bench() { return window.workbench(); }
-    OpenController& opening() { return bench().opening(); }
-    SaveController& saving() { return bench().saving(); }
-    OptimizeController& optimizing() { return bench().optimizing(); }
-    RefineController& refining() { return bench().refining(); }
-    Document document() { return {bench().store(), bench().results()}; }
+    Services& services() { return window.services(); }
+    OpenController& opening() { return services().opening(); }
+    SaveController& saving() { return services().saving(); }
+    OptimizeController& optimizing() { return services().optimizing(); }
+    RefineController& refining() { return services().refining(); }
+    Document document() { return {services().store(), services().results()}; }
     VolumeView& view() { return window.view(); }
     TfCanvas& canvas() { return child<TfCanvas>("tfCanvas"); }
     QImage picture() {

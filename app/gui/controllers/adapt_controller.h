@@ -11,7 +11,7 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// While the session's transfer functions adapt, those that are missing or of other inputs than the present ones are
 /// made one after the other on a thread of its own, beside what one looks at. Each is put in as it comes and is no step
@@ -20,7 +20,7 @@ class Workbench;
 class AdaptController : public QObject {
     Q_OBJECT
 public:
-    explicit AdaptController(Workbench& bench);
+    explicit AdaptController(Services& services);
     ~AdaptController() override;
 
     void addActions();
@@ -71,7 +71,7 @@ private:
     void finish(const Scene& basis, Answer& answer);
     bool isWanted() const;
 
-    Workbench& m_bench;
+    Services& m_services;
     AdaptProgress m_progress;
     int m_firstStale = -1, m_staleKey = -1;
     double m_smoothing = 0;

@@ -3,8 +3,8 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
-void addAnnotationActions(Workbench& bench);
+void addAnnotationActions(Services& services);
 
 } // namespace pellucid::gui

@@ -13,7 +13,7 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// While Session::holdTargets is set and anything changes that VWS or targets depend on, updates follow it, the latest
 /// state first, each a move or two; when all rests, one goes as far as it gets. What they do to the opacities belongs
@@ -21,7 +21,7 @@ class Workbench;
 class LiveController : public QObject {
     Q_OBJECT
 public:
-    explicit LiveController(Workbench& bench);
+    explicit LiveController(Services& services);
     ~LiveController() override;
 
     void addActions();
@@ -48,7 +48,7 @@ private:
     void finish(const Task& task, const LiveUpdate& update);
     void pinWhatWasSet(const Scene& before, const Scene& after);
 
-    Workbench& m_bench;
+    Services& m_services;
     std::set<FeatureId> m_pinned;         ///< whose opacity was set by hand in the latest change
     std::map<FeatureId, double> m_wanted; ///< opacities of the latest update
     bool m_applying = false;              ///< what happens to the scene is an update

@@ -12,12 +12,12 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class OpenController : public QObject {
     Q_OBJECT
 public:
-    explicit OpenController(Workbench& bench);
+    explicit OpenController(Services& services);
     ~OpenController() override;
 
     void addActions();
@@ -116,7 +116,7 @@ private:
     void addRecent(const QString& entry);
     void openRecent(const QString& entry);
 
-    Workbench& m_bench;
+    Services& m_services;
     QString m_tfPath, m_sessionPath, m_busyText;
     Edit m_edit;              ///< the one under way
     std::deque<Edit> m_edits; ///< those that wait for it

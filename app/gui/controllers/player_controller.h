@@ -18,7 +18,7 @@
 namespace pellucid::gui {
 
 class AdaptController;
-class Workbench;
+class Services;
 
 /// Plays, steps and scrubs. Frames are read on a thread of their own, ahead in the direction of play within the budget
 /// of the series; the window never waits for one. While it plays a clock says which frame is due: those that came too
@@ -28,7 +28,7 @@ class PlayerController : public QObject {
 public:
     static constexpr double kSlowest = 1, kFastest = 60; ///< frames a second
 
-    explicit PlayerController(Workbench& bench);
+    explicit PlayerController(Services& services);
     ~PlayerController() override;
 
     void addActions();
@@ -105,7 +105,7 @@ private:
     void reportProblems();
     bool isHeldUp() const;
 
-    Workbench& m_bench;
+    Services& m_services;
     QTimer m_timer;
     QElapsedTimer m_clock, m_sinceShown;
     int m_clockFrom = 0; ///< frame that was due when the clock began

@@ -11,14 +11,14 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Writes the session to a recovery file within two seconds of every change that is not saved, and offers at the next
 /// start what a crash left behind.
 class RecoveryController : public QObject {
     Q_OBJECT
 public:
-    explicit RecoveryController(Workbench& bench);
+    explicit RecoveryController(Services& services);
     ~RecoveryController() override;
 
     /// Where recovery files lie for this user.
@@ -38,7 +38,7 @@ private:
     };
     void save();
 
-    Workbench& m_bench;
+    Services& m_services;
     std::shared_ptr<RecoveryFile> m_file; // shared with the thread that writes it
     QTimer m_timer;
     std::vector<std::string> m_restored; ///< files of others whose work is here now, until it is written

@@ -11,7 +11,7 @@
 #include "optimize/refine/refine_features.h"
 #include "optimize/refine/refine_words.h"
 #include "optimize/refine/region_colors.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "view/picture_pair.h"
 
 namespace pellucid::gui {
@@ -105,8 +105,8 @@ QString evennessText(double energyBefore, double energyAfter) {
         .arg(ratio < 100 ? QString::number(ratio, 'g', 3) : QStringLiteral("%L1").arg(std::lround(ratio)));
 }
 
-RefineController::RefineController(Workbench& bench)
-    : m_bench(bench), m_renderer(std::make_shared<KeptRenderer>()),
+RefineController::RefineController(Services& services)
+    : m_services(services), m_renderer(std::make_shared<KeptRenderer>()),
       m_look(
           [renderer = m_renderer](const Look& look, const JobControl& job) {
               return regionColors(renderer->render(look.picture, job), look.region);
@@ -138,7 +138,7 @@ RefineController::RefineController(Workbench& bench)
                   say(QString::fromStdString(darkeningText(*dark)));
               Q_EMIT refined();
           }) {
-    bench.store().setConsequence(
+    services.store().setConsequence(
         [this](const Scene& before, const Scene& after, Session& session) { return follow(before, after, session); });
     connect(&m_look, &JobBase::busyChanged, this, &RefineController::busyChanged);
     connect(&m_look, &JobBase::cancelled, this, [this] { m_pending.reset(); });
@@ -148,13 +148,13 @@ RefineController::RefineController(Workbench& bench)
                 .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.whatToDo())));
         Q_EMIT busyChanged();
     });
-    connect(&bench.store(), &SessionStore::historyChanged, this, [this] {
-        if (m_bench.store().isPreviewing()) return;
+    connect(&services.store(), &SessionStore::historyChanged, this, [this] {
+        if (m_services.store().isPreviewing()) return;
         m_latestIsPreview = false;
         m_dragStart.reset(); // whoever has ended the preview has ended the drag
         examine();
     });
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume) {
             m_look.cancel();
             m_examine.cancel();
@@ -167,13 +167,13 @@ RefineController::RefineController(Workbench& bench)
     });
 }
 
-RefineController::~RefineController() { m_bench.store().setConsequence({}); }
+RefineController::~RefineController() { m_services.store().setConsequence({}); }
 
 void RefineController::addActions() {
     const QString menu = tr("&Transfer function");
-    Actions& actions = m_bench.actions();
+    Actions& actions = m_services.actions();
     const auto ready = [this] { return isReady(); };
-    const auto settings = [this]() -> const RefineSettings& { return *m_bench.store().session().refine; };
+    const auto settings = [this]() -> const RefineSettings& { return *m_services.store().session().refine; };
     actions.add({.id = "refineAction",
                  .menu = menu,
                  .text = tr("&Refine by entropy"),
@@ -189,7 +189,7 @@ void RefineController::addActions() {
                  .tip = tr("Refine after every edit; what you move stays where you put it, the other points give way"),
                  .trigger =
                      [this] {
-                         m_bench.store().edit(tr("Live refinement"), {}, [](Session& session) {
+                         m_services.store().edit(tr("Live refinement"), {}, [](Session& session) {
                              session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
                              if (session.refine->live) session.holdTargets = false; // both set opacities
                          });
@@ -229,8 +229,8 @@ void RefineController::addActions() {
                  .menu = menu,
                  .text = tr("Before and after, side by &side…"),
                  .tip = tr("The picture before and after the latest refinement, from the present camera"),
-                 .trigger = [this] { showPicturePair(m_bench); },
-                 .enabled = [this] { return m_bench.store().hasVolume() && latest() != nullptr; }});
+                 .trigger = [this] { showPicturePair(m_services); },
+                 .enabled = [this] { return m_services.store().hasVolume() && latest() != nullptr; }});
     connect(this, &RefineController::refined, &actions, &Actions::refresh);
     connect(this, &RefineController::selectingChanged, &actions, &Actions::refresh);
     const QString volume = tr("Volume");
@@ -238,7 +238,7 @@ void RefineController::addActions() {
                          {volume, tr("Delete or Esc, with a selection"), tr("remove it")}});
 }
 
-bool RefineController::isReady() const { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); }
+bool RefineController::isReady() const { return m_services.store().hasVolume() && !m_services.isReadOnly(); }
 
 const std::vector<RegionColor>* RefineController::colorsOf(const ImageRegion& region) const {
     for (const auto& [known, colors] : m_colors)
@@ -258,14 +258,14 @@ std::optional<RefinePriority> RefineController::priorityOf(const RefineSettings&
 }
 
 RefineOptions RefineController::options() const {
-    const RefineSettings& settings = *m_bench.store().session().refine;
+    const RefineSettings& settings = *m_services.store().session().refine;
     RefineOptions options = settings.options();
     options.priority = priorityOf(settings).value_or(RefinePriority());
     return options;
 }
 
 const Refinement* RefineController::current() const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     for (auto r = m_kept.rbegin(); r != m_kept.rend(); ++r)
         if (r->volume == scene.volume && !hasMoved(r->after, scene.tf, true)) return &*r;
     return nullptr;
@@ -273,12 +273,12 @@ const Refinement* RefineController::current() const {
 
 const Refinement* RefineController::latest() const {
     if (const Refinement* now = current()) return now;
-    return m_kept.empty() || m_kept.back().volume != m_bench.scene().volume ? nullptr : &m_kept.back();
+    return m_kept.empty() || m_kept.back().volume != m_services.scene().volume ? nullptr : &m_kept.back();
 }
 
 TransferFunction RefineController::startOfPriority() const {
     const Refinement* now = current();
-    return now != nullptr && now->options.priority.any() ? now->before : m_bench.scene().tf;
+    return now != nullptr && now->options.priority.any() ? now->before : m_services.scene().tf;
 }
 
 Refinement RefineController::refineFrom(const TransferFunction& before, const TransferFunction& start,
@@ -301,14 +301,14 @@ Refinement RefineController::refineFrom(const TransferFunction& before, const Tr
 
 void RefineController::keep(Refinement refinement) {
     if (m_latestIsPreview && !m_kept.empty()) m_kept.pop_back();
-    m_latestIsPreview = m_bench.store().isPreviewing();
+    m_latestIsPreview = m_services.store().isPreviewing();
     m_kept.push_back(std::move(refinement));
     if (m_kept.size() > kMostKept) m_kept.pop_front();
 }
 
 void RefineController::say(const QString& text) {
-    m_bench.optimizing().say(text);
-    Q_EMIT m_bench.message(text);
+    m_services.optimizing().say(text);
+    Q_EMIT m_services.message(text);
 }
 
 void RefineController::sayRefined(const Refinement& refinement) {
@@ -323,9 +323,9 @@ void RefineController::sayRefined(const Refinement& refinement) {
 
 void RefineController::examine() {
     const Refinement* now = current();
-    if (now == nullptr || !m_bench.scene().histogram || m_examined == now->after) return;
+    if (now == nullptr || !m_services.scene().histogram || m_examined == now->after) return;
     m_examined = now->after;
-    m_examine.start({m_bench.scene(), *now}, tr("the picture of the refinement"));
+    m_examine.start({m_services.scene(), *now}, tr("the picture of the refinement"));
 }
 
 void RefineController::takeHelp() {
@@ -339,10 +339,10 @@ void RefineController::takeHelp() {
     else
         by.maxIterations = iterations;
     try {
-        Refinement r = refineFrom(now->before, now->start, m_bench.scene(), by);
+        Refinement r = refineFrom(now->before, now->start, m_services.scene(), by);
         const QScopedValueRollback quiet(m_quiet, true);
         keep(r);
-        m_bench.store().edit(tr("Refine, keeping the picture visible"), {}, [&](Session& session) {
+        m_services.store().edit(tr("Refine, keeping the picture visible"), {}, [&](Session& session) {
             session.refine.edit([&](RefineSettings& s) {
                 if (exact)
                     s.method = RefineMethod::Exact;
@@ -354,12 +354,12 @@ void RefineController::takeHelp() {
         });
         sayRefined(r);
     } catch (const Error& error) {
-        m_bench.showError(tr("Refinement failed"), error);
+        m_services.showError(tr("Refinement failed"), error);
     }
 }
 
 void RefineController::refine() {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     if (!isReady() || !store.scene().histogram) return;
     store.commit();
     const RefineSettings& settings = *store.session().refine;
@@ -375,7 +375,7 @@ void RefineController::refine() {
         });
         sayRefined(r);
     } catch (const Error& error) {
-        m_bench.showError(tr("Refinement failed"), error);
+        m_services.showError(tr("Refinement failed"), error);
     }
 }
 
@@ -383,12 +383,12 @@ void RefineController::prioritize(double x, const QString& mergeKey) {
     if (!isReady() || m_dragStart) return;
     dragPriority(x);
     m_dragStart.reset();
-    m_bench.store().commit(mergeKey);
+    m_services.store().commit(mergeKey);
     if (const Refinement* now = current()) sayRefined(*now);
 }
 
 void RefineController::dragPriority(double x) {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     if (!isReady() || !store.scene().histogram) return;
     if (!m_dragStart) {
         store.commit();
@@ -412,14 +412,14 @@ void RefineController::dragPriority(double x) {
         Q_EMIT refined();
     } catch (const Error& error) {
         cancelDrag();
-        m_bench.showError(tr("Refinement failed"), error);
+        m_services.showError(tr("Refinement failed"), error);
     }
 }
 
 void RefineController::endDrag() {
     if (!m_dragStart) return;
     m_dragStart.reset();
-    m_bench.store().commit();
+    m_services.store().commit();
     if (const Refinement* now = current()) sayRefined(*now);
 }
 
@@ -428,16 +428,16 @@ void RefineController::cancelDrag() {
     m_dragStart.reset();
     if (m_latestIsPreview && !m_kept.empty()) m_kept.pop_back();
     m_latestIsPreview = false;
-    m_bench.store().cancel();
+    m_services.store().cancel();
 }
 
 std::optional<ImageRegion> RefineController::region() const {
-    return m_pending ? m_pending : m_bench.store().session().refine->region;
+    return m_pending ? m_pending : m_services.store().session().refine->region;
 }
 
 void RefineController::prioritize(const ImageRegion& region, const QString& text) {
     if (!isReady()) return;
-    m_bench.store().commit();
+    m_services.store().commit();
     look(region, text);
 }
 
@@ -445,13 +445,14 @@ void RefineController::look(const ImageRegion& region, const QString& text) {
     m_pending = region;
     const double longer = std::max({m_viewSize.width(), m_viewSize.height(), 1});
     const auto pixels = [&](int side) { return std::max(1, static_cast<int>(side * kLookSize / longer + 0.5)); };
-    PictureInput picture = plainPictureInput(m_bench.scene(), pixels(m_viewSize.width()), pixels(m_viewSize.height()));
+    PictureInput picture =
+        plainPictureInput(m_services.scene(), pixels(m_viewSize.width()), pixels(m_viewSize.height()));
     m_look.start({std::move(picture), region, text}, tr("the region"));
     Q_EMIT busyChanged();
 }
 
 void RefineController::refineForRegion(const Look& look) {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     if (!isReady() || !store.scene().histogram) return;
     store.commit();
     try {
@@ -473,14 +474,14 @@ void RefineController::refineForRegion(const Look& look) {
         sayRefined(r);
         Q_EMIT refined();
     } catch (const Error& error) {
-        m_bench.showError(tr("Refinement failed"), error);
+        m_services.showError(tr("Refinement failed"), error);
     }
 }
 
 void RefineController::prioritizeNothing() {
     if (!isReady()) return;
     m_look.cancel();
-    m_bench.store().edit(tr("Prioritize nothing"), {}, [](Session& session) {
+    m_services.store().edit(tr("Prioritize nothing"), {}, [](Session& session) {
         session.refine.edit([](RefineSettings& r) {
             r.intensity.reset();
             r.region.reset();
@@ -492,8 +493,9 @@ void RefineController::prioritizeNothing() {
 void RefineController::setSelecting(Selecting what) {
     if (what == m_selecting) return;
     m_selecting = what;
-    if (what == Selecting::Rectangle) Q_EMIT m_bench.message(tr("Drag a rectangle over what shall stand out; Esc: no"));
-    if (what == Selecting::Lasso) Q_EMIT m_bench.message(tr("Draw round what shall stand out; Esc: no"));
+    if (what == Selecting::Rectangle)
+        Q_EMIT m_services.message(tr("Drag a rectangle over what shall stand out; Esc: no"));
+    if (what == Selecting::Lasso) Q_EMIT m_services.message(tr("Draw round what shall stand out; Esc: no"));
     Q_EMIT selectingChanged();
 }
 
@@ -510,7 +512,7 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
         before.data != after.data)
         return {};
     // An optimization has found what it was asked for.
-    if (m_bench.optimizing().isAnswering() || before.session.frame != after.session.frame) return {};
+    if (m_services.optimizing().isAnswering() || before.session.frame != after.session.frame) return {};
     const auto was = before.session.tf(), is = after.session.tf();
     if (was == nullptr || is == nullptr) return {};
     const bool edited = hasMoved(*was, *is, settings.region.has_value());

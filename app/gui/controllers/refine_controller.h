@@ -16,7 +16,7 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// One refinement, with all that is told of it.
 struct Refinement {
@@ -38,7 +38,7 @@ struct Refinement {
 class RefineController : public QObject {
     Q_OBJECT
 public:
-    explicit RefineController(Workbench& bench);
+    explicit RefineController(Services& services);
     ~RefineController() override;
 
     void addActions();
@@ -111,7 +111,7 @@ private:
     void say(const QString& text);
     void examine(); ///< whether the picture of current() is dark
 
-    Workbench& m_bench;
+    Services& m_services;
     std::deque<Refinement> m_kept;  ///< the latest last
     bool m_latestIsPreview = false; ///< the next one of the same preview takes its place
     bool m_quiet = false;           ///< what happens is refinement: nothing follows of it

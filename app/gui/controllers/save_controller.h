@@ -9,12 +9,12 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class SaveController : public QObject {
     Q_OBJECT
 public:
-    explicit SaveController(Workbench& bench);
+    explicit SaveController(Services& services);
     ~SaveController() override;
 
     void addActions();
@@ -63,7 +63,7 @@ private:
     bool chooseTf(bool askForName);
     void chooseImage();
 
-    Workbench& m_bench;
+    Services& m_services;
     QString m_busyText;
     QSize m_seen;
     Job<Picture, QString> m_images;

@@ -6,7 +6,7 @@
 
 #include <glm/common.hpp>
 
-#include "services/workbench.h"
+#include "services/services.h"
 
 namespace pellucid::gui {
 namespace {
@@ -79,11 +79,11 @@ void resetGreyWindow(SessionStore& store) {
                [](Session& session) { session.slices.edit([](SliceViews& s) { s.window.reset(); }); });
 }
 
-void addSliceActions(Workbench& bench) {
-    SessionStore& store = bench.store();
-    Actions& actions = bench.actions();
+void addSliceActions(Services& services) {
+    SessionStore& store = services.store();
+    Actions& actions = services.actions();
     const QString menu = QObject::tr("&View") + "/" + QObject::tr("La&yout");
-    const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
+    const auto editable = [&services] { return services.store().hasVolume() && !services.isReadOnly(); };
     struct Texts {
         Layout layout;
         QString id, text, tip;

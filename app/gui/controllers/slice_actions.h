@@ -6,7 +6,7 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Where the slices meet, voxel coordinates within the grid; the scene has a volume.
 Vec3 crosshairOf(const Scene& scene);
@@ -19,6 +19,6 @@ void moveCrosshairToWorld(SessionStore& store, const Vec3& world);
 void setLayout(SessionStore& store, SliceViews::Layout layout);
 void resetGreyWindow(SessionStore& store); ///< to the range of values that the transfer function covers
 
-void addSliceActions(Workbench& bench);
+void addSliceActions(Services& services);
 
 } // namespace pellucid::gui

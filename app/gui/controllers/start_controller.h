@@ -8,14 +8,14 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// After a volume has been opened under a proposed transfer function its opacities are tuned beside the first picture,
 /// and come as one step, "Automatic opacities", unless the transfer function has been edited meanwhile.
 class StartController : public QObject {
     Q_OBJECT
 public:
-    explicit StartController(Workbench& bench);
+    explicit StartController(Services& services);
     ~StartController() override;
 
     void addActions();
@@ -38,7 +38,7 @@ private:
     void say(const Proposal& proposal);
     void showTuned(const Scene& scene, const FirstSight& start);
 
-    Workbench& m_bench;
+    Services& m_services;
     Job<Scene, FirstSight> m_tuning;
     Job<Request, AutomaticStart> m_again;
 };

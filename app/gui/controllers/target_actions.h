@@ -5,12 +5,12 @@ class QMenu;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
-void addTargetActions(Workbench& bench);
+void addTargetActions(Services& services);
 /// The entries of the menu of targets.
-void fillTargetMenu(QMenu& menu, Workbench& bench);
+void fillTargetMenu(QMenu& menu, Services& services);
 /// Those of a feature's opacity in an optimization: lock and limits.
-void fillLimitsMenu(QMenu& menu, Workbench& bench);
+void fillLimitsMenu(QMenu& menu, Services& services);
 
 } // namespace pellucid::gui

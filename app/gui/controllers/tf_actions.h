@@ -3,7 +3,7 @@
 
 namespace pellucid::gui {
 
-class Workbench;
-void addTfActions(Workbench& bench);
+class Services;
+void addTfActions(Services& services);
 
 } // namespace pellucid::gui

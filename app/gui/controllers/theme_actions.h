@@ -5,10 +5,10 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// The theme of the latest choice on this machine; dark before the first.
 Theme keptTheme();
-void addThemeActions(Workbench& bench);
+void addThemeActions(Services& services);
 
 } // namespace pellucid::gui

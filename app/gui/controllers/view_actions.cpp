@@ -1,7 +1,7 @@
 #include "controllers/view_actions.h"
 
 #include "render/camera_motion.h"
-#include "services/workbench.h"
+#include "services/services.h"
 
 namespace pellucid::gui {
 namespace {
@@ -77,9 +77,9 @@ void zoomView(SessionStore& store, double factor, int gesture) {
         store.setCamera(zoomed(store.scene().camera, store.scene().volume->geometry(), factor), gesture);
 }
 
-void addViewActions(Workbench& bench) {
-    SessionStore& store = bench.store();
-    Actions& actions = bench.actions();
+void addViewActions(Services& services) {
+    SessionStore& store = services.store();
+    Actions& actions = services.actions();
     const QString menu = QObject::tr("&View");
     const auto open = [&store] { return store.hasVolume(); };
     const auto add = [&](const QString& id, const QString& text, const QList<QKeySequence>& keys, const QString& tip,

@@ -6,7 +6,7 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 void fitView(SessionStore& store);   ///< the same direction, the whole box
 void resetView(SessionStore& store); ///< as a volume opens
@@ -14,6 +14,6 @@ void setStandardView(SessionStore& store, StandardView view);
 void setProjection(SessionStore& store, Projection projection);
 void zoomView(SessionStore& store, double factor, int gesture = 0);
 
-void addViewActions(Workbench& bench);
+void addViewActions(Services& services);
 
 } // namespace pellucid::gui

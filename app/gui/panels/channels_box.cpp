@@ -16,7 +16,7 @@
 
 #include "controllers/open_controller.h"
 #include "panels/variables_panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 
 namespace pellucid::gui {
@@ -54,8 +54,8 @@ QString channelTitle(Channel channel) {
 
 } // namespace
 
-ChannelsBox::ChannelsBox(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_on(new QCheckBox(tr("&Colours from variables"), this)),
+ChannelsBox::ChannelsBox(Services& services, QWidget* parent)
+    : QWidget(parent), m_services(services), m_on(new QCheckBox(tr("&Colours from variables"), this)),
       m_frames(new QSpinBox(this)), m_swap(new QPushButton(tr("S&wap opacity and brightness"), this)),
       m_hueSlider(new QSlider(Qt::Horizontal, this)), m_hueFrom(new QDoubleSpinBox(this)),
       m_hueTo(new QDoubleSpinBox(this)), m_hueSwatch(new QLabel(this)), m_note(new QLabel(this)) {
@@ -99,18 +99,18 @@ ChannelsBox::ChannelsBox(Workbench& bench, QWidget* parent)
     connect(m_on, &QCheckBox::clicked, this, &ChannelsBox::setOn);
     connect(m_frames, &QSpinBox::valueChanged, this, [this](int frames) {
         if (m_showing) return;
-        m_bench.opening().editInJob(tr("Frames of volatility"),
-                                    [frames](Session& session) { setVolatilityFrames(session, frames); });
+        m_services.opening().editInJob(tr("Frames of volatility"),
+                                       [frames](Session& session) { setVolatilityFrames(session, frames); });
     });
     connect(m_swap, &QPushButton::clicked, this, [this] {
-        m_bench.opening().editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); });
+        m_services.opening().editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); });
     });
-    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.colors != after.colors ||
             !before.session.variables.isSame(after.session.variables) || !before.session.hsb.isSame(after.session.hsb))
             follow();
     });
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &ChannelsBox::follow);
+    connect(&m_services, &Services::readOnlyChanged, this, &ChannelsBox::follow);
     follow();
 }
 
@@ -125,9 +125,9 @@ void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* nam
     form.addRow(label, combo);
     connect(combo, &QComboBox::activated, this, [this, combo, channel] {
         const std::string driver = combo->currentData().toString().toStdString();
-        if (m_showing || driver == channelOf(m_bench.store().session(), channel)) return;
-        m_bench.opening().editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
-                                    [channel, driver](Session& s) { setChannel(s, channel, driver); });
+        if (m_showing || driver == channelOf(m_services.store().session(), channel)) return;
+        m_services.opening().editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
+                                       [channel, driver](Session& s) { setChannel(s, channel, driver); });
     });
 }
 
@@ -167,7 +167,7 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
     });
     connect(scale.slider, &QSlider::sliderReleased, this, [this, index] {
         const Scale& s = m_scales[index];
-        if (isFast()) return m_bench.store().commit();
+        if (isFast()) return m_services.store().commit();
         edit(s.name, {}, [&s, value = scaleAt(s.slider->value())](HsbMapping& h) { h.*s.value = value; });
     });
     connect(scale.box, &QDoubleSpinBox::valueChanged, this, [this, index](double value) {
@@ -176,8 +176,8 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
     });
     connect(scale.automatic, &QToolButton::clicked, this, [this, index](bool automatic) {
         const Scale& s = m_scales[index];
-        const double present = m_bench.scene().*s.present;
-        m_bench.opening().editInJob(s.name, [&s, automatic, present](Session& session) {
+        const double present = m_services.scene().*s.present;
+        m_services.opening().editInJob(s.name, [&s, automatic, present](Session& session) {
             session.hsb.edit([&](HsbMapping& h) { h.*s.value = automatic ? std::nullopt : std::optional(present); });
         });
     });
@@ -215,36 +215,36 @@ void ChannelsBox::addHue(QFormLayout& form) {
     connect(m_hueSlider, &QSlider::valueChanged, this,
             [this](int hue) { slide(*m_hueSlider, tr("Hue"), [hue](HsbMapping& h) { h.hueFrom = hue; }); });
     connect(m_hueSlider, &QSlider::sliderReleased, this, [this] {
-        if (isFast()) return m_bench.store().commit();
+        if (isFast()) return m_services.store().commit();
         edit(tr("Hue"), {}, [hue = m_hueSlider->value()](HsbMapping& h) { h.hueFrom = hue; });
     });
 }
 
-void ChannelsBox::toggle() { setOn(!m_bench.store().session().hsb->on); }
+void ChannelsBox::toggle() { setOn(!m_services.store().session().hsb->on); }
 
 void ChannelsBox::setOn(bool on) {
-    const bool varies = m_bench.scene().series && m_bench.scene().series->varies();
+    const bool varies = m_services.scene().series && m_services.scene().series->varies();
     const auto change = [on, varies](Session& session) {
         if (on) startMapping(session, varies);
         session.hsb.edit([on](HsbMapping& h) { h.on = on; });
     };
-    m_bench.opening().editInJob(on ? tr("Colours from variables") : tr("Colours of the transfer function"), change);
-    m_on->setChecked(m_bench.store().session().hsb->on); // until it has been done
+    m_services.opening().editInJob(on ? tr("Colours from variables") : tr("Colours of the transfer function"), change);
+    m_on->setChecked(m_services.store().session().hsb->on); // until it has been done
 }
 
 bool ChannelsBox::isFast() const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     return !scene.session.hsb->on || (scene.volume && scene.volume->size() <= kFastVoxels);
 }
 
 void ChannelsBox::edit(const QString& text, const QString& mergeKey, const Change& change) {
     if (m_showing) return;
     const auto all = [change](Session& session) { session.hsb.edit(change); };
-    if (!isFast()) return m_bench.opening().editInJob(text, all);
+    if (!isFast()) return m_services.opening().editInJob(text, all);
     try {
-        m_bench.store().edit(text, mergeKey, all);
+        m_services.store().edit(text, mergeKey, all);
     } catch (const Error& error) { // a frame that has gone since
-        m_bench.showError(tr("Cannot make the colours"), error);
+        m_services.showError(tr("Cannot make the colours"), error);
     }
 }
 
@@ -253,15 +253,15 @@ void ChannelsBox::slide(const QSlider& slider, const QString& text, const Change
     if (!slider.isSliderDown()) return edit(text, slider.objectName(), change); // by keys
     if (!isFast()) return;                                                      // when it is released
     try {
-        m_bench.store().preview(text, [&](Session& session) { session.hsb.edit(change); });
+        m_services.store().preview(text, [&](Session& session) { session.hsb.edit(change); });
     } catch (const Error& error) {
-        m_bench.store().cancel();
-        m_bench.showError(tr("Cannot make the colours"), error);
+        m_services.store().cancel();
+        m_services.showError(tr("Cannot make the colours"), error);
     }
 }
 
 void ChannelsBox::followChannel(Channel channel) {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     const Session& session = scene.session;
     QComboBox& combo = *m_channels[indexOf(channel)];
     combo.clear();
@@ -291,9 +291,9 @@ void ChannelsBox::followChannel(Channel channel) {
 }
 
 void ChannelsBox::follow() {
-    const Scene& scene = m_bench.scene();
-    setEnabled(m_bench.store().hasVolume() && !m_bench.isReadOnly());
-    if (!m_bench.store().hasVolume()) return;
+    const Scene& scene = m_services.scene();
+    setEnabled(m_services.store().hasVolume() && !m_services.isReadOnly());
+    if (!m_services.store().hasVolume()) return;
     const HsbMapping& hsb = *scene.session.hsb;
     m_showing = true;
     m_on->setChecked(hsb.on);
@@ -354,8 +354,8 @@ QString featuresTitle(const Session& session) {
     return QObject::tr("Features of %1").arg(QString::fromStdString(session.variable().name));
 }
 
-void followTitle(Workbench& bench, QWidget* dock, QString (*title)(const Session&)) {
-    QObject::connect(&bench.store(), &SessionStore::changed, dock,
+void followTitle(Services& services, QWidget* dock, QString (*title)(const Session&)) {
+    QObject::connect(&services.store(), &SessionStore::changed, dock,
                      [dock, title](const Scene& before, const Scene& after) {
                          if (!before.session.variables.isSame(after.session.variables) ||
                              !before.session.hsb.isSame(after.session.hsb))

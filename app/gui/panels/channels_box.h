@@ -21,12 +21,12 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class ChannelsBox : public QWidget {
     Q_OBJECT
 public:
-    explicit ChannelsBox(Workbench& bench, QWidget* parent = nullptr);
+    explicit ChannelsBox(Services& services, QWidget* parent = nullptr);
     /// Colours of variables or of the transfer function, the one or the other.
     void toggle();
 
@@ -52,7 +52,7 @@ private:
     void slide(const QSlider& slider, const QString& text, const Change& change);
     bool isFast() const;
 
-    Workbench& m_bench;
+    Services& m_services;
     QCheckBox* m_on;
     std::array<QComboBox*, 4> m_channels{}; ///< by Channel
     std::array<Scale, 2> m_scales{};
@@ -69,6 +69,6 @@ QString curveTitle(const Session& session);
 /// In words, whose features those of the list are.
 QString featuresTitle(const Session& session);
 /// Keeps the title of a dock so; a title takes no room from the picture, whatever it says.
-void followTitle(Workbench& bench, QWidget* dock, QString (*title)(const Session&));
+void followTitle(Services& services, QWidget* dock, QString (*title)(const Session&));
 
 } // namespace pellucid::gui

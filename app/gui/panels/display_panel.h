@@ -13,19 +13,19 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class DisplayPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit DisplayPanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit DisplayPanel(Services& services, QWidget* parent = nullptr);
 
 private:
     void follow();
     void chooseBackground(bool top);
     void editWindow();
 
-    Workbench& m_bench;
+    Services& m_services;
     QComboBox* m_mode;
     QToolButton* m_background;
     QCheckBox* m_gradient;

@@ -17,12 +17,12 @@ class QToolButton;
 namespace pellucid::gui {
 
 class DensitySlider;
-class Workbench;
+class Services;
 
 class FeaturesPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit FeaturesPanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit FeaturesPanel(Services& services, QWidget* parent = nullptr);
 
 protected:
     bool eventFilter(QObject* watched, QEvent* event) override; ///< the mouse on eyes and colours
@@ -40,7 +40,7 @@ private:
     void showMessage();
     void adjustTable();
 
-    Workbench& m_bench;
+    Services& m_services;
     FeaturesModel* m_model;
     QTableView* m_table;
     TargetBars* m_bars;

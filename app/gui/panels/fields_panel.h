@@ -19,12 +19,12 @@ struct FieldView;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class FieldsPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit FieldsPanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit FieldsPanel(Services& services, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
 
@@ -37,7 +37,7 @@ private:
     void follow();      ///< the session
     void followField(); ///< what has become of the field
 
-    Workbench& m_bench;
+    Services& m_services;
     QComboBox *m_kind, *m_feature, *m_colorMap;
     QSlider *m_strengthSlider, *m_thresholdSlider;
     QDoubleSpinBox *m_strength, *m_threshold; ///< opacity; per cent of the top

@@ -15,12 +15,12 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class GroundBox : public QWidget {
     Q_OBJECT
 public:
-    explicit GroundBox(Workbench& bench, QWidget* parent = nullptr);
+    explicit GroundBox(Services& services, QWidget* parent = nullptr);
 
 private:
     using Change = std::function<void(GroundView&)>;
@@ -29,7 +29,7 @@ private:
     void lay(const VolumeSource& source);
     void edit(const QString& text, const QString& mergeKey, const Change& change);
 
-    Workbench& m_bench;
+    Services& m_services;
     QLabel* m_file;
     QToolButton* m_choose;
     QPushButton* m_remove;

@@ -15,7 +15,7 @@
 #include <QVBoxLayout>
 
 #include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -38,19 +38,20 @@ QColor blend(const QColor& from, const QColor& to, double share) {
 } // namespace
 
 PanelInfo influencePanel() {
-    return {.id = "influence",
-            .title = QObject::tr("Influence"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = false, // costs a sweep more
-            .size = 0,
-            .keys = QKeySequence("Ctrl+I"),
-            .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
-            .make =
-                [](Workbench& bench, QWidget* parent) {
-                    bench.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
-                    return new InfluencePanel(bench.store(), bench.results(), parent);
-                },
-            .shown = [](Workbench& bench, bool visible) { bench.results().setInfluenceWanted(visible); }};
+    return {
+        .id = "influence",
+        .title = QObject::tr("Influence"),
+        .area = Qt::RightDockWidgetArea,
+        .visible = false, // costs a sweep more
+        .size = 0,
+        .keys = QKeySequence("Ctrl+I"),
+        .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
+        .make =
+            [](Services& services, QWidget* parent) {
+                services.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
+                return new InfluencePanel(services.store(), services.results(), parent);
+            },
+        .shown = [](Services& services, bool visible) { services.results().setInfluenceWanted(visible); }};
 }
 
 InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)

@@ -16,12 +16,12 @@ class QSlider;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class LightPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit LightPanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit LightPanel(Services& services, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
 
@@ -43,7 +43,7 @@ private:
     void edit(const Row& row, double number);
     void editDirection();
 
-    Workbench& m_bench;
+    Services& m_services;
     QCheckBox* m_on;
     QComboBox* m_preset;
     std::vector<Row> m_rows;

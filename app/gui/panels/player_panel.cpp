@@ -19,7 +19,7 @@
 #include "controllers/player_controller.h"
 #include "panels/time_strip.h"
 #include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/theme.h"
 
@@ -115,20 +115,20 @@ PanelInfo playerPanel() {
             .below = "tf",
             .keys = QKeySequence("Ctrl+3"),
             .tip = QObject::tr("The frames of a series: play, step, key frames, transfer functions over time"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                bench.actions().addGestures(
+            .make = [](Services& services, QWidget* parent) {
+                services.actions().addGestures(
                     {{QObject::tr("Time"), QObject::tr("Drag over the frames"), QObject::tr("go to the frame")},
                      {QObject::tr("Time"), QObject::tr("Wheel, ← and →"), QObject::tr("one frame back, forward")},
                      {QObject::tr("Time"), QObject::tr("Page up, page down"), QObject::tr("ten frames")}});
-                return new PlayerPanel(bench, parent);
+                return new PlayerPanel(services, parent);
             }};
 }
 
-PlayerPanel::PlayerPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_strip(new TimeStrip(this)), m_frame(new QLabel(this)),
+PlayerPanel::PlayerPanel(Services& services, QWidget* parent)
+    : QWidget(parent), m_services(services), m_strip(new TimeStrip(this)), m_frame(new QLabel(this)),
       m_rate(new QLabel(this)), m_surveyText(new QLabel(this)), m_stopSurvey(new QToolButton(this)),
       m_speed(new QDoubleSpinBox(this)), m_survey(new QProgressBar(this)) {
-    PlayerController& player = bench.player();
+    PlayerController& player = services.player();
     auto* row = new QHBoxLayout;
     row->setSpacing(2);
     for (const auto& [action, name, sign] : std::initializer_list<std::tuple<const char*, const char*, Sign>>{
@@ -184,7 +184,7 @@ PlayerPanel::PlayerPanel(Workbench& bench, QWidget* parent)
 
     connect(m_strip, &TimeStrip::frameWanted, &player, &PlayerController::goTo);
     connect(m_strip, &TimeStrip::stepWanted, &player, &PlayerController::step);
-    connect(&bench.store(), &SessionStore::changed, this, &PlayerPanel::follow);
+    connect(&services.store(), &SessionStore::changed, this, &PlayerPanel::follow);
     connect(&player, &PlayerController::changed, this, &PlayerPanel::followPlayer);
     connect(&player, &PlayerController::surveyed, this, &PlayerPanel::followSurvey);
     connect(&player, &PlayerController::heldChanged, this, &PlayerPanel::followMarks);
@@ -200,7 +200,7 @@ QToolButton* PlayerPanel::button(const char* action, const char* name, const QIc
     made->setIcon(icon);
     made->setText(text);
     made->setAutoRaise(true);
-    QAction* const does = m_bench.actions().find(action);
+    QAction* const does = m_services.actions().find(action);
     made->setToolTip(does->toolTip());
     made->setAccessibleName(does->toolTip());
     made->setCheckable(does->isCheckable());
@@ -218,7 +218,7 @@ QToolButton* PlayerPanel::button(const char* action, const char* name, const QIc
 }
 
 QWidget* PlayerPanel::adaptRow() {
-    AdaptController& adapting = m_bench.player().adapting();
+    AdaptController& adapting = m_services.player().adapting();
     auto* widget = new QWidget(this);
     auto* row = new QHBoxLayout(widget);
     row->setContentsMargins(0, 0, 0, 0);
@@ -279,10 +279,10 @@ QWidget* PlayerPanel::adaptRow() {
 }
 
 void PlayerPanel::followAdapting() {
-    AdaptController& adapting = m_bench.player().adapting();
-    const Session& session = m_bench.store().session();
+    AdaptController& adapting = m_services.player().adapting();
+    const Session& session = m_services.store().session();
     const AdaptSettings& settings = *session.adapt;
-    const bool open = m_bench.player().hasSeries() && !m_bench.isReadOnly();
+    const bool open = m_services.player().hasSeries() && !m_services.isReadOnly();
     const bool adapts = settings.mode != AdaptSettings::Mode::Static;
     m_mode->setEnabled(open);
     m_mode->setCurrentIndex(static_cast<int>(settings.mode));
@@ -313,7 +313,7 @@ void PlayerPanel::followAdapting() {
 }
 
 void PlayerPanel::showDock(bool shown) {
-    auto* dock = m_bench.window()->findChild<QDockWidget*>("playerDock");
+    auto* dock = m_services.window()->findChild<QDockWidget*>("playerDock");
     if (dock == nullptr || dock->isHidden() == !shown) return;
     dock->setVisible(shown);
     m_shownByItself = shown;
@@ -337,7 +337,7 @@ void PlayerPanel::follow(const Scene& before, const Scene& after) {
 }
 
 void PlayerPanel::followPlayer() {
-    const PlayerController& player = m_bench.player();
+    const PlayerController& player = m_services.player();
     const bool series = player.hasSeries();
     m_play->setIcon(signOf(player.isPlaying() ? Sign::Pause : Sign::Play));
     m_strip->setEnabled(series);
@@ -353,7 +353,7 @@ void PlayerPanel::followPlayer() {
 }
 
 void PlayerPanel::followSurvey() {
-    const PlayerController& player = m_bench.player();
+    const PlayerController& player = m_services.player();
     const int known = player.knownCount(), count = player.frameCount();
     const bool open = player.hasSeries() && known < count;
     for (QWidget* widget : std::initializer_list<QWidget*>{m_surveyText, m_survey, m_stopSurvey})
@@ -369,9 +369,9 @@ void PlayerPanel::followSurvey() {
 }
 
 void PlayerPanel::followMarks() {
-    PlayerController& player = m_bench.player();
+    PlayerController& player = m_services.player();
     if (!player.hasSeries()) return;
-    const Session& session = m_bench.store().session();
+    const Session& session = m_services.store().session();
     const TfTrack& track = session.variable().track;
     std::vector<FrameMark> marks(static_cast<std::size_t>(player.frameCount()));
     const bool keys = track.keys.size() > 1 || session.adapt->mode != AdaptSettings::Mode::Static;

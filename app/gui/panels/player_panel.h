@@ -18,13 +18,13 @@ struct Scene;
 namespace pellucid::gui {
 
 class TimeStrip;
-class Workbench;
+class Services;
 
 /// Comes up by itself where a series is opened, and goes with it.
 class PlayerPanel : public QWidget {
     Q_OBJECT
 public:
-    PlayerPanel(Workbench& bench, QWidget* parent);
+    PlayerPanel(Services& services, QWidget* parent);
 
 private:
     void follow(const Scene& before, const Scene& after);
@@ -36,7 +36,7 @@ private:
     QToolButton* button(const char* action, const char* name, const QIcon& icon, const QString& text = {});
     void showDock(bool shown);
 
-    Workbench& m_bench;
+    Services& m_services;
     TimeStrip* m_strip;
     QLabel *m_frame, *m_rate, *m_surveyText;
     QToolButton *m_play = nullptr, *m_stopSurvey;

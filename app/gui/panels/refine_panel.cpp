@@ -21,7 +21,7 @@
 
 #include "optimize/refine/refine_features.h"
 #include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 #include "widgets/scrolled.h"
@@ -57,7 +57,7 @@ PanelInfo refinePanel() {
             .size = 0,
             .keys = QKeySequence("Ctrl+Shift+R"),
             .tip = QObject::tr("Opacities by entropy: how, for what, and what came of it"),
-            .make = [](Workbench& bench, QWidget* parent) { return new RefinePanel(bench, parent); }};
+            .make = [](Services& services, QWidget* parent) { return new RefinePanel(services, parent); }};
 }
 
 void EdgeBars::setBars(std::vector<Bar> bars) {
@@ -166,8 +166,8 @@ void EnergyPlot::paintEvent(QPaintEvent*) {
                      tr("least %1").arg(shortNumber(least)));
 }
 
-RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_refine(new QPushButton(tr("&Refine"), this)),
+RefinePanel::RefinePanel(Services& services, QWidget* parent)
+    : QWidget(parent), m_services(services), m_refine(new QPushButton(tr("&Refine"), this)),
       m_pair(new QPushButton(tr("&Side by side…"), this)), m_live(new QCheckBox(tr("Li&ve"), this)),
       m_auto(new QCheckBox(tr("auto"), this)), m_ghost(new QCheckBox(tr("&Ghost of the curve"), this)),
       m_priority(new QLabel(this)), m_nothing(new QToolButton(this)), m_method(new QComboBox(this)),
@@ -260,7 +260,7 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     auto* selecting = new QHBoxLayout;
     for (const auto& [id, text] :
          {std::pair{"rectangleAction", tr("Select rectangle")}, std::pair{"lassoAction", tr("Select with lasso")}}) {
-        QAction* action = m_bench.actions().find(id);
+        QAction* action = m_services.actions().find(id);
         auto* button = new QToolButton(this);
         button->setObjectName(QString(id).replace("Action", "Button"));
         button->setText(text);
@@ -300,7 +300,8 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     fillScrolled(this, content);
 
     const auto triggers = [this](QAbstractButton* button, const char* action) {
-        connect(button, &QAbstractButton::clicked, this, [this, action] { m_bench.actions().find(action)->trigger(); });
+        connect(button, &QAbstractButton::clicked, this,
+                [this, action] { m_services.actions().find(action)->trigger(); });
     };
     triggers(m_refine, "refineAction");
     triggers(m_live, "liveRefineAction");
@@ -308,21 +309,21 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     triggers(m_ghost, "ghostAction");
     triggers(m_nothing, "prioritizeNothingAction");
     m_help->setObjectName("refineHelpButton");
-    connect(m_help, &QPushButton::clicked, this, [this] { m_bench.refining().takeHelp(); });
+    connect(m_help, &QPushButton::clicked, this, [this] { m_services.refining().takeHelp(); });
     connect(m_method, &QComboBox::activated, this, &RefinePanel::editSettings);
     connect(m_auto, &QCheckBox::clicked, this, &RefinePanel::editSettings);
     connect(m_limit, &QSpinBox::valueChanged, this, &RefinePanel::editSettings);
     m_wait.setSingleShot(true);
     m_wait.setInterval(kRest);
     connect(&m_wait, &QTimer::timeout, this, &RefinePanel::compare);
-    RefineController& refining = m_bench.refining();
-    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    RefineController& refining = m_services.refining();
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || !before.session.refine.isSame(after.session.refine)) follow();
     });
     connect(&refining, &RefineController::refined, this, &RefinePanel::follow);
     connect(&refining, &RefineController::busyChanged, this, &RefinePanel::showPriority);
     connect(&refining, &RefineController::ghostChanged, this, &RefinePanel::follow);
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &RefinePanel::follow);
+    connect(&m_services, &Services::readOnlyChanged, this, &RefinePanel::follow);
     follow();
 }
 
@@ -334,7 +335,7 @@ void RefinePanel::showEvent(QShowEvent* event) {
 void RefinePanel::editSettings() {
     if (m_showing) return;
     QObject* const by = sender();
-    m_bench.store().edit(tr("Refinement settings"), "refine-settings", [&](Session& session) {
+    m_services.store().edit(tr("Refinement settings"), "refine-settings", [&](Session& session) {
         session.refine.edit([&](RefineSettings& r) {
             // Only the box that was edited counts: the others show rounded numbers.
             if (by == m_method) r.method = static_cast<RefineMethod>(m_method->currentData().toInt());
@@ -354,7 +355,7 @@ void RefinePanel::follow() {
 }
 
 void RefinePanel::showSettings() {
-    const RefineSettings& r = *m_bench.store().session().refine;
+    const RefineSettings& r = *m_services.store().session().refine;
     m_showing = true;
     m_live->setChecked(r.live);
     m_method->setCurrentIndex(m_method->findData(static_cast<int>(r.method)));
@@ -362,37 +363,38 @@ void RefinePanel::showSettings() {
     showNumber(*m_up, 256 * r.stepUp.value_or(r.stepDown));
     m_auto->setChecked(!r.stepUp);
     if (m_limit->value() != r.maxIterations) m_limit->setValue(r.maxIterations);
-    m_ghost->setChecked(m_bench.refining().isGhostShown());
+    m_ghost->setChecked(m_services.refining().isGhostShown());
     m_showing = false;
-    const bool ready = m_bench.store().hasVolume() && !m_bench.isReadOnly(), greedy = r.method == RefineMethod::Greedy;
+    const bool ready = m_services.store().hasVolume() && !m_services.isReadOnly(),
+               greedy = r.method == RefineMethod::Greedy;
     for (QWidget* widget : std::initializer_list<QWidget*>{m_refine, m_live, m_method}) widget->setEnabled(ready);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_down, m_auto, m_limit})
         widget->setEnabled(ready && greedy);
     m_up->setEnabled(ready && greedy && r.stepUp);
-    m_pair->setEnabled(m_bench.refining().latest() != nullptr);
+    m_pair->setEnabled(m_services.refining().latest() != nullptr);
 }
 
 void RefinePanel::showPriority() {
-    const RefineSettings& r = *m_bench.store().session().refine;
+    const RefineSettings& r = *m_services.store().session().refine;
     QString text = tr("Prioritized: nothing");
-    if (m_bench.refining().isBusy()) {
+    if (m_services.refining().isBusy()) {
         text = tr("Looking at the region…");
-    } else if (r.intensity && m_bench.store().hasVolume()) {
-        const Volume& volume = *m_bench.scene().volume;
+    } else if (r.intensity && m_services.store().hasVolume()) {
+        const Volume& volume = *m_services.scene().volume;
         text = tr("Prioritized: value %1")
                    .arg(numberText(volume.valueOfIntensity(*r.intensity), volume.range().hi - volume.range().lo));
     } else if (r.region) {
         text = tr("Prioritized: a region");
     }
     m_priority->setText(text);
-    m_nothing->setEnabled((r.intensity || r.region) && !m_bench.isReadOnly());
+    m_nothing->setEnabled((r.intensity || r.region) && !m_services.isReadOnly());
 }
 
 void RefinePanel::showOutcome() {
     if (!isVisible()) return;
     m_compare.cancel();
     m_comparison->clear();
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     if (!scene.volume || !scene.histogram) {
         m_edges->setBars({});
         m_plot->setCurve({}, 0, true);
@@ -401,11 +403,11 @@ void RefinePanel::showOutcome() {
         m_figures->clear();
         return;
     }
-    const Refinement* now = m_bench.refining().current();
-    const Refinement* any = m_bench.refining().latest();
+    const Refinement* now = m_services.refining().current();
+    const Refinement* any = m_services.refining().latest();
     const std::vector<double> weights =
         now != nullptr ? now->result.edgesAfter
-                       : edgeWeights(*scene.histogram, scene.tf, m_bench.refining().options().priority);
+                       : edgeWeights(*scene.histogram, scene.tf, m_services.refining().options().priority);
     const std::vector<RefineEdge> edges =
         now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
     const TfSampler sampler(scene.tf);
@@ -456,13 +458,13 @@ void RefinePanel::showNote(const Refinement* refinement) {
     m_help->setText(dark->help == Darkening::Help::Exact
                         ? tr("Refine by Exact instead")
                         : tr("Stop after %L1 iterations instead").arg(dark->iterations));
-    m_help->setEnabled(refinement == m_bench.refining().current() && !m_bench.isReadOnly());
+    m_help->setEnabled(refinement == m_services.refining().current() && !m_services.isReadOnly());
 }
 
 void RefinePanel::compare() {
-    const Refinement* now = m_bench.refining().current();
-    if (now == nullptr || m_bench.store().isPreviewing() || !isVisible() || !m_bench.scene().histogram) return;
-    m_compare.start({m_bench.scene().histogram, now->start, now->options}, tr("the comparison"));
+    const Refinement* now = m_services.refining().current();
+    if (now == nullptr || m_services.store().isPreviewing() || !isVisible() || !m_services.scene().histogram) return;
+    m_compare.start({m_services.scene().histogram, now->start, now->options}, tr("the comparison"));
 }
 
 } // namespace pellucid::gui

@@ -20,7 +20,7 @@ class QTreeWidgetItem;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// What is known of a variable once its present frame has been read.
 struct VariableInfo {
@@ -41,7 +41,7 @@ QString driverText(const Session& session, const std::string& name);
 class VariablesPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit VariablesPanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit VariablesPanel(Services& services, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
     std::string selected() const;    ///< name of the variable in the list; empty: none
@@ -58,7 +58,7 @@ private:
     void remove();
     void editRange();
 
-    Workbench& m_bench;
+    Services& m_services;
     QTreeWidget* m_list;
     QToolButton* m_add;
     QMenu* m_addMenu;

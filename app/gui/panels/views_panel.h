@@ -16,13 +16,13 @@ namespace pellucid::gui {
 
 class ViewGlobe;
 class ViewSearchController;
-class Workbench;
+class Services;
 
 /// What is judged, the sphere in its colours, the best view in words, and the ways there.
 class ViewsPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit ViewsPanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit ViewsPanel(Services& services, QWidget* parent = nullptr);
 
     ViewSearchController& search() { return *m_search; }
 
@@ -32,7 +32,7 @@ private:
     QString words() const;
     std::optional<double> measuredHere(const ViewMetric& metric) const; ///< empty: not of the present state
 
-    Workbench& m_bench;
+    Services& m_services;
     ViewSearchController* m_search; ///< a child
     QComboBox* m_figure;
     ViewGlobe* m_globe;

@@ -10,10 +10,10 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// What the frame needs to know of a panel. `make` is called once; the widget takes everything else (the store,
-/// results, actions, jobs) from the workbench, and adds its own actions there.
+/// results, actions, jobs) from the services, and adds its own actions there.
 struct PanelInfo {
     const char* id; ///< the dock's object name is "<id>Dock", its toggle's "<id>Action"
     QString title;
@@ -24,8 +24,8 @@ struct PanelInfo {
     int size = 0;                ///< width (or height, at the bottom) at the first start, pixels; 0: as it likes
     QKeySequence keys;           ///< show or hide it
     QString tip;
-    std::function<QWidget*(Workbench&, QWidget* parent)> make;
-    std::function<void(Workbench&, bool visible)> shown = {}; ///< it was shown or hidden; may be empty
+    std::function<QWidget*(Services&, QWidget* parent)> make;
+    std::function<void(Services&, bool visible)> shown = {}; ///< it was shown or hidden; may be empty
 };
 
 /// All panels, in the order of the View menu. To add one: its own files, and its line in panels.cpp.

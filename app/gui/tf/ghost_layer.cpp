@@ -4,7 +4,7 @@
 #include <QPainterPath>
 
 #include "controllers/refine_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -12,11 +12,11 @@ namespace {
 
 class GhostLayer : public CanvasLayer {
 public:
-    explicit GhostLayer(Workbench& bench) : m_bench(bench) {}
+    explicit GhostLayer(Services& services) : m_services(services) {}
 
     void paint(QPainter& painter, const CanvasGeometry& where) override {
-        const Refinement* refinement = m_bench.refining().latest();
-        if (refinement == nullptr || !m_bench.refining().isGhostShown()) return;
+        const Refinement* refinement = m_services.refining().latest();
+        if (refinement == nullptr || !m_services.refining().isGhostShown()) return;
         painter.save();
         painter.setClipRect(where.plot().adjusted(-1, -1, 1, 1));
         painter.setBrush(Qt::NoBrush);
@@ -28,15 +28,15 @@ public:
     }
 
 private:
-    Workbench& m_bench;
+    Services& m_services;
 };
 
 } // namespace
 
-void addGhostLayer(Workbench& bench, TfCanvas& canvas) {
-    canvas.addLayer(std::make_unique<GhostLayer>(bench));
-    QObject::connect(&bench.refining(), &RefineController::refined, &canvas, qOverload<>(&QWidget::update));
-    QObject::connect(&bench.refining(), &RefineController::ghostChanged, &canvas, qOverload<>(&QWidget::update));
+void addGhostLayer(Services& services, TfCanvas& canvas) {
+    canvas.addLayer(std::make_unique<GhostLayer>(services));
+    QObject::connect(&services.refining(), &RefineController::refined, &canvas, qOverload<>(&QWidget::update));
+    QObject::connect(&services.refining(), &RefineController::ghostChanged, &canvas, qOverload<>(&QWidget::update));
 }
 
 } // namespace pellucid::gui

@@ -19,7 +19,7 @@
 #include "controllers/feature_actions.h"
 #include "panels/channels_box.h"
 #include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "store/edits.h"
 #include "tf/ghost_layer.h"
 #include "tf/palette_bar.h"
@@ -43,13 +43,14 @@ QIcon swatch(const QColor& color, const QSize& size = {22, 14}) {
 }
 
 /// What can be done to the feature under the mouse, which is selected for it.
-void addFeatureMenu(QMenu& menu, Workbench& bench, FeatureId id) {
-    const int feature = featureWithId(bench.scene().tf, id);
-    if (feature < 0) return fillShapeMenu(*menu.addMenu(QObject::tr("Add feature")), bench);
-    bench.selection().setFeature(id);
-    const std::string& name = bench.scene().tf.features[static_cast<std::size_t>(feature)].name;
+void addFeatureMenu(QMenu& menu, Services& services, FeatureId id) {
+    const int feature = featureWithId(services.scene().tf, id);
+    if (feature < 0) return fillShapeMenu(*menu.addMenu(QObject::tr("Add feature")), services);
+    services.selection().setFeature(id);
+    const std::string& name = services.scene().tf.features[static_cast<std::size_t>(feature)].name;
     const bool onBar = menu.isEmpty();
-    fillFeatureMenu(onBar ? menu : *menu.addMenu(QObject::tr("Feature %1").arg(QString::fromStdString(name))), bench);
+    fillFeatureMenu(onBar ? menu : *menu.addMenu(QObject::tr("Feature %1").arg(QString::fromStdString(name))),
+                    services);
 }
 
 } // namespace
@@ -62,17 +63,18 @@ PanelInfo transferFunctionPanel() {
             .size = 250,
             .keys = QKeySequence("Ctrl+1"),
             .tip = QObject::tr("The curve of opacity and colour over the histogram"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                auto* editor = new TfEditorWidget(bench.store(), bench.results(), bench.selection(), parent);
-                QObject::connect(&bench, &Workbench::readOnlyChanged, editor,
-                                 [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
-                addGhostLayer(bench, editor->canvas());
-                editor->addRow(new PaletteBar(bench, editor->canvas(), editor));
-                followTitle(bench, parent, curveTitle);
-                QObject::connect(&editor->canvas(), &TfCanvas::menuOpening, editor,
-                                 [&bench](QMenu& menu, double, FeatureId id) { addFeatureMenu(menu, bench, id); });
+            .make = [](Services& services, QWidget* parent) {
+                auto* editor = new TfEditorWidget(services.store(), services.results(), services.selection(), parent);
+                QObject::connect(&services, &Services::readOnlyChanged, editor,
+                                 [editor, &services] { editor->setReadOnly(services.isReadOnly()); });
+                addGhostLayer(services, editor->canvas());
+                editor->addRow(new PaletteBar(services, editor->canvas(), editor));
+                followTitle(services, parent, curveTitle);
+                QObject::connect(
+                    &editor->canvas(), &TfCanvas::menuOpening, editor,
+                    [&services](QMenu& menu, double, FeatureId id) { addFeatureMenu(menu, services, id); });
                 const QString place = QObject::tr("Transfer function");
-                bench.actions().addGestures(
+                services.actions().addGestures(
                     {{place, QObject::tr("Drag a point (Shift: along one axis, Ctrl: finely)"),
                       QObject::tr("change its value and opacity, and of all that are selected")},
                      {place, QObject::tr("Drag over points, Ctrl+click, Ctrl+A"), QObject::tr("select several")},

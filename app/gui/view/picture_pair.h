@@ -16,14 +16,14 @@ class QLabel;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Both are drawn by the CPU off this thread, from the present camera and in the present light, and follow camera,
 /// display and refinement while the window is open.
 class PicturePair : public QDialog {
     Q_OBJECT
 public:
-    explicit PicturePair(Workbench& bench, QWidget* parent);
+    explicit PicturePair(Services& services, QWidget* parent);
     ~PicturePair() override;
 
     bool isComplete() const { return !m_wait.isActive() && !m_job.isRunning() && !m_pictures[0].isNull(); }
@@ -38,7 +38,7 @@ private:
     void start();
     void showPictures();
 
-    Workbench& m_bench;
+    Services& m_services;
     std::array<QLabel*, 2> m_labels, m_captions;
     QLabel* m_words;
     Pictures m_pictures;
@@ -48,6 +48,6 @@ private:
 };
 
 /// Shows the one of the window, which is made where there is none yet.
-void showPicturePair(Workbench& bench);
+void showPicturePair(Services& services);
 
 } // namespace pellucid::gui

@@ -1,4 +1,4 @@
-#include "services/workbench.h"
+#include "services/services.h"
 
 #include "controllers/annotation_actions.h"
 #include "controllers/feature_actions.h"
@@ -20,7 +20,7 @@
 
 namespace pellucid::gui {
 
-Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
+Services::Services(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
     m_optimizing = std::make_unique<OptimizeController>(*this);
     m_refining = std::make_unique<RefineController>(*this);
     m_fields = std::make_unique<FieldController>(*this);
@@ -57,7 +57,7 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
             !before.session.slices.isSame(after.session.slices) || !before.session.field.isSame(after.session.field))
             m_actions.refresh();
     });
-    connect(&m_results, &Results::changed, this, &Workbench::idleChanged);
+    connect(&m_results, &Results::changed, this, &Services::idleChanged);
     connect(&m_results, &Results::failed, this, [this](const Error& error) {
         m_notices.add({tr("The figures could not be computed: %1").arg(QString::fromUtf8(error.what())), {}});
     });
@@ -66,17 +66,17 @@ Workbench::Workbench(QWidget* window) : m_results(m_store, m_compute, m_workspac
         Q_EMIT readOnlyChanged();
         Q_EMIT idleChanged();
     });
-    connect(m_optimizing.get(), &OptimizeController::messageChanged, this, &Workbench::idleChanged);
-    connect(m_opening.get(), &OpenController::busyChanged, this, &Workbench::idleChanged);
-    connect(m_refining.get(), &RefineController::busyChanged, this, &Workbench::idleChanged);
-    connect(m_live.get(), &LiveController::busyChanged, this, &Workbench::idleChanged);
-    connect(m_start.get(), &StartController::busyChanged, this, &Workbench::idleChanged);
-    connect(m_saving.get(), &SaveController::busyChanged, this, &Workbench::idleChanged);
-    connect(m_fields.get(), &FieldController::busyChanged, this, &Workbench::idleChanged);
-    connect(m_player.get(), &PlayerController::changed, this, &Workbench::idleChanged);
+    connect(m_optimizing.get(), &OptimizeController::messageChanged, this, &Services::idleChanged);
+    connect(m_opening.get(), &OpenController::busyChanged, this, &Services::idleChanged);
+    connect(m_refining.get(), &RefineController::busyChanged, this, &Services::idleChanged);
+    connect(m_live.get(), &LiveController::busyChanged, this, &Services::idleChanged);
+    connect(m_start.get(), &StartController::busyChanged, this, &Services::idleChanged);
+    connect(m_saving.get(), &SaveController::busyChanged, this, &Services::idleChanged);
+    connect(m_fields.get(), &FieldController::busyChanged, this, &Services::idleChanged);
+    connect(m_player.get(), &PlayerController::changed, this, &Services::idleChanged);
 }
 
-Workbench::~Workbench() {
+Services::~Services() {
     m_store.disconnect(); // what ends below must not be heard by what has ended already
     m_results.disconnect();
     m_player.reset();
@@ -90,7 +90,7 @@ Workbench::~Workbench() {
     m_optimizing.reset();
 }
 
-void Workbench::addEditActions() {
+void Services::addEditActions() {
     const auto keys = [](auto... texts) { return QList<QKeySequence>{QKeySequence(texts)...}; };
     m_actions.add({.id = "undoAction",
                    .menu = tr("&Edit"),
@@ -110,7 +110,7 @@ void Workbench::addEditActions() {
                    .inToolBar = true});
 }
 
-void Workbench::goBack(const std::function<void()>& step, const QString& failure) {
+void Services::goBack(const std::function<void()>& step, const QString& failure) {
     try {
         step();
     } catch (const Error& error) { // a file of that state has gone: the present state stays
@@ -118,16 +118,14 @@ void Workbench::goBack(const std::function<void()>& step, const QString& failure
     }
 }
 
-bool Workbench::isReadOnly() const { return m_optimizing->isRunning(); }
+bool Services::isReadOnly() const { return m_optimizing->isRunning(); }
 
-bool Workbench::isIdle() const {
+bool Services::isIdle() const {
     return m_store.hasVolume() && !m_opening->isBusy() && !m_start->isBusy() && !m_saving->isBusy() &&
            !m_optimizing->isRunning() && !m_optimizing->isExplaining() && !m_refining->isBusy() && !m_live->isBusy() &&
            !m_results.isBusy() && !m_fields->isBusy() && !m_player->isBusy();
 }
 
-void Workbench::showError(const QString& title, const Error& error) {
-    pellucid::gui::showError(m_window, title, error);
-}
+void Services::showError(const QString& title, const Error& error) { pellucid::gui::showError(m_window, title, error); }
 
 } // namespace pellucid::gui

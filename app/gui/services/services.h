@@ -26,7 +26,7 @@ class SaveController;
 class StartController;
 
 /// The services of one window. Panels and controllers get it, and know nothing of each other.
-class Workbench : public QObject {
+class Services : public QObject {
     Q_OBJECT
     // The order is that of making; what uses something comes after it, and goes before it.
     SessionStore m_store;
@@ -39,8 +39,8 @@ class Workbench : public QObject {
 
 public:
     /// `window` is the parent of dialogs.
-    explicit Workbench(QWidget* window);
-    ~Workbench() override;
+    explicit Services(QWidget* window);
+    ~Services() override;
 
     QWidget* window() const { return m_window; }
     SessionStore& store() { return m_store; }
