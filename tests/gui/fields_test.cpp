@@ -19,7 +19,7 @@ namespace {
 
 using State = FieldController::State;
 
-FieldController& fieldsOf(OpenWindow& w) { return w.services().fields(); }
+FieldController& fieldsOf(OpenWindow& w) { return w.controllers().fields; }
 const FieldView& viewOf(OpenWindow& w) { return *w.services().store().session().field; }
 
 /// With the panel of fields in front, so that the view has its size for good.

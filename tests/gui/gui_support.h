@@ -7,11 +7,7 @@
 #include <QSignalSpy>
 #include <QTest>
 
-#include "controllers/open_controller.h"
-#include "controllers/optimize_controller.h"
-#include "controllers/recovery_controller.h"
-#include "controllers/refine_controller.h"
-#include "controllers/save_controller.h"
+#include "controllers/controllers.h"
 #include "frame/main_window.h"
 #include "panels/features_panel.h"
 #include "panels/target_bars.h"
@@ -123,10 +119,11 @@ struct OpenWindow {
         REQUIRE(waitFor([this] { return window.isSettled(); }));
     }
     Services& services() { return window.services(); }
-    OpenController& opening() { return services().opening(); }
-    SaveController& saving() { return services().saving(); }
-    OptimizeController& optimizing() { return services().optimizing(); }
-    RefineController& refining() { return services().refining(); }
+    Controllers& controllers() { return window.controllers(); }
+    OpenController& opening() { return controllers().opening; }
+    SaveController& saving() { return controllers().saving; }
+    OptimizeController& optimizing() { return controllers().optimizing; }
+    RefineController& refining() { return controllers().refining; }
     Document document() { return {services().store(), services().results()}; }
     VolumeView& view() { return window.view(); }
     TfCanvas& canvas() { return child<TfCanvas>("tfCanvas"); }

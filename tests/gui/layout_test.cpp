@@ -21,7 +21,7 @@
 
 #include "frame/dock_space.h"
 #include "panels/density_slider.h"
-#include "services/panel.h"
+#include "panels/panel.h"
 #include "session/session_json.h"
 #include "tf/edit.h"
 #include "widgets/theme.h"

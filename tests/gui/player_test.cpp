@@ -98,8 +98,8 @@ struct SeriesWindow : OpenWindow {
         REQUIRE(waitFor([&] { return window.isActiveWindow(); }));
         settle();
     }
-    PlayerController& player() { return services().player(); }
-    AdaptController& adapting() { return services().player().adapting(); }
+    PlayerController& player() { return controllers().player; }
+    AdaptController& adapting() { return controllers().adapting; }
     TimeStrip& strip() { return child<TimeStrip>("timeStrip"); }
     const Session& session() { return services().store().session(); }
     int frame() { return session().frame; }
@@ -561,16 +561,16 @@ TEST_CASE("a session with a series comes back at its frame", "[player]") {
     source.frames = FrameRange{0, 9, 3}; // 0, 3, 6, 9
     w.open(source);
     w.settle();
-    PlayerController& player = w.services().player();
+    PlayerController& player = w.controllers().player;
     REQUIRE(player.frameCount() == 4);
     player.goTo(2);
     REQUIRE(waitFor([&] { return w.services().scene().session.frame == 2; }));
     w.settle();
     CHECK(w.child<QLabel>("volumeLabel").text().contains("(3 of 4)"));
-    player.adapting().setTfKey();
+    w.controllers().adapting.setTfKey();
     w.document().setTarget(0, 0.5);
-    player.adapting().setTargetKey();
-    player.adapting().setMode(AdaptSettings::Mode::Refine);
+    w.controllers().adapting.setTargetKey();
+    w.controllers().adapting.setMode(AdaptSettings::Mode::Refine);
     w.settle();
     const QImage before = w.picture();
     const Session saved = w.services().store().session();
@@ -616,12 +616,12 @@ TEST_CASE("pictures of a series for the guide", "[.pictures]") {
         w.settle();
         REQUIRE(w.window.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + name));
     };
-    PlayerController& player = w.services().player();
+    PlayerController& player = w.controllers().player;
     REQUIRE(waitFor([&] { return player.knownCount() == player.frameCount(); }));
     w.optimizing().start();
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
-    player.adapting().setMode(AdaptSettings::Mode::Optimize);
-    player.adapting().setCoherence(0.3);
+    w.controllers().adapting.setMode(AdaptSettings::Mode::Optimize);
+    w.controllers().adapting.setCoherence(0.3);
     w.settle();
     player.goTo(20);
     w.settle();

@@ -17,11 +17,7 @@ using namespace pellucid::gui;
 
 namespace {
 
-ProbeController& probeOf(OpenWindow& w) {
-    auto* probe = w.services().findChild<ProbeController*>();
-    REQUIRE(probe != nullptr);
-    return *probe;
-}
+ProbeController& probeOf(OpenWindow& w) { return w.controllers().probe; }
 
 /// Press and release without a motion.
 void click(QWidget& widget, const QPointF& at) {

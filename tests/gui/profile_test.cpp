@@ -94,5 +94,5 @@ TEST_CASE("a transfer function of Voreen opens in the window", "[window][publish
     CHECK(document.tf().features[0].a == 0.2);
     CHECK(document.tf().opacity(0.4) == Approx(0.4)); // 102/255
     CHECK_FALSE(w.picture() == before);
-    CHECK(w.opening().tfPath().isEmpty()); // saving asks for a name of its own
+    CHECK(w.saving().tfPath().isEmpty()); // saving asks for a name of its own
 }

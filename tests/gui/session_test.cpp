@@ -374,7 +374,8 @@ TEST_CASE("edits without end", "[.crash-child]") {
     if (log.isEmpty()) return;
     QWidget window;
     Services services(&window);
-    services.recovery().start();
+    Controllers controllers(services);
+    controllers.recovery.start();
     services.results().setPaused(true);
     services.store().open(sampleScene("shells", 10, tents(3)));
     std::ofstream out(log.toStdString());
@@ -452,8 +453,8 @@ TEST_CASE("work that a crash left behind is offered, restored and kept", "[sessi
         if (path.ends_with(".copy")) std::filesystem::rename(path, path.substr(0, path.size() - 5));
     }
     OpenWindow w;
-    w.services().recovery().start();
-    w.services().recovery().offer();
+    w.controllers().recovery.start();
+    w.controllers().recovery.offer();
     auto& restore = w.child<QPushButton>("noticeChoice0");
     QSignalSpy opened(&w.opening(), &OpenController::opened);
     QTest::mouseClick(&restore, Qt::LeftButton);

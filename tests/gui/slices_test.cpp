@@ -10,7 +10,7 @@
 #include <QToolButton>
 
 #include "controllers/probe_controller.h"
-#include "controllers/slice_actions.h"
+#include "store/view_edits.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -191,10 +191,9 @@ TEST_CASE("a click in the volume moves the crosshair to what is seen there", "[s
     const QImage before = w.slice(2);
     const QPoint point(w.view().width() / 2 - 30, w.view().height() / 2 - 20);
     QTest::mouseClick(&w.view(), Qt::LeftButton, {}, point);
-    const auto* probe = w.services().findChild<ProbeController*>();
-    REQUIRE(probe != nullptr);
-    REQUIRE(probe->isActive());
-    const Vec3 place = w.services().scene().volume->geometry().voxelFromWorld(probe->place());
+    const ProbeController& probe = w.controllers().probe;
+    REQUIRE(probe.isActive());
+    const Vec3 place = w.services().scene().volume->geometry().voxelFromWorld(probe.place());
     // Slices go through middles of voxels: the nearest one.
     for (int a = 0; a < 3; ++a) CHECK(std::abs(w.crosshair()[a] - std::clamp(place[a], 0.0, 23.0)) <= 0.5 + 1e-9);
     CHECK(w.crosshair() != Vec3(12));

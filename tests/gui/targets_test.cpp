@@ -372,7 +372,7 @@ TEST_CASE("live targets are held while the view turns, and undo brings back what
     const std::vector<double> before = featureOpacities(w.document().tf());
     const QImage picture = w.picture();
     int updates = 0;
-    QObject::connect(&w.services().live(), &LiveController::updated, &w.window, [&] { ++updates; });
+    QObject::connect(&w.controllers().live, &LiveController::updated, &w.window, [&] { ++updates; });
     const int steps = w.document().stepCount();
     QTest::mouseClick(&w.child<QToolButton>("liveTargetsButton"), Qt::LeftButton);
     CHECK(w.services().store().session().holdTargets);

@@ -9,7 +9,7 @@
 #include <QSettings>
 #include <QStatusBar>
 
-#include "controllers/theme_actions.h"
+#include "controllers/menu_actions.h"
 #include "widgets/theme.h"
 
 using namespace pellucid;

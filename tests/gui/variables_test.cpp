@@ -273,7 +273,7 @@ TEST_CASE("colours from any variable, at any frame, read each frame once and lea
     REQUIRE(sessionOfWindow(w).variables->size() == 4);
     for (int f = 2; f < kFrames; ++f) QFile::remove(weather.folder.filePath(QStringLiteral("rain%1.nrrd").arg(f)));
     w.window.resize(700, 500); // little to draw
-    PlayerController& player = w.services().player();
+    PlayerController& player = w.controllers().player;
     QSignalSpy read(&player, &PlayerController::heldChanged);
     const auto rest = [&] { // until no frame comes any more: each is read a few times at most, not for ever
         REQUIRE(waitFor([&] { return w.services().isIdle(); }));
@@ -324,13 +324,13 @@ TEST_CASE("with volatility from the first frame on its scale is found where ther
     REQUIRE(hsbOf(w).on);
     CHECK(hsbOf(w).saturation == "volatility:cloud:10");
     CHECK_FALSE(hsbOf(w).found.a); // nothing has changed yet
-    w.services().player().goTo(1);
+    w.controllers().player.goTo(1);
     w.settle();
     REQUIRE(sessionOfWindow(w).frame == 1);
     REQUIRE(hsbOf(w).found.a);
     const double a = *hsbOf(w).found.a;
     CHECK(w.services().scene().hsbA == a);
-    w.services().player().goTo(kFrames - 1);
+    w.controllers().player.goTo(kFrames - 1);
     w.settle();
     REQUIRE(sessionOfWindow(w).frame == kFrames - 1);
     CHECK(w.services().scene().hsbA == a); // frames are compared

@@ -27,7 +27,7 @@ struct OpenGlobe : OpenWindow {
         REQUIRE_FALSE(child<QDockWidget>("viewsDock").isHidden());
         found();
     }
-    ViewSearchController& search() { return child<ViewsPanel>("viewsPanel").search(); }
+    ViewSearchController& search() { return controllers().views; }
     ViewGlobe& globe() { return child<ViewGlobe>("viewGlobe"); }
     QString words() { return child<QLabel>("viewsWords").text(); }
     QPushButton& button(const char* name) { return child<QPushButton>(name); }

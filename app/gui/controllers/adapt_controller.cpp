@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controllers/open_controller.h"
 #include "controllers/player_controller.h"
 #include "services/services.h"
 
@@ -28,8 +27,8 @@ void editTrack(Session& session, const std::function<void(TfTrack&)>& change) {
 
 } // namespace
 
-AdaptController::AdaptController(Services& services)
-    : m_services(services),
+AdaptController::AdaptController(Services& services, PlayerController& player)
+    : m_services(services), m_player(player),
       m_job(
           [this](const Scene& basis, const JobControl& job) {
               Answer answer;
@@ -77,7 +76,7 @@ AdaptController::~AdaptController() = default;
 void AdaptController::addActions() {
     const QString menu = tr("T&ime");
     Actions& actions = m_services.actions();
-    const auto open = [this] { return m_services.player().hasSeries() && !m_services.isReadOnly(); };
+    const auto open = [this] { return m_player.hasSeries() && !m_services.isReadOnly(); };
     const auto mode = [&](const char* id, const QString& text, const QString& tip, Mode which, bool separator) {
         actions.add({.id = id,
                      .menu = menu,
@@ -95,39 +94,42 @@ void AdaptController::addActions() {
          Mode::Refine, false);
     mode("adaptOptimizeAction", tr("&Optimize every frame"),
          tr("Each frame's opacities bring VWS to the targets, from those of the frame before"), Mode::Optimize, false);
-    actions.add({.id = "tfKeyAction",
-                 .menu = menu,
-                 .text = tr("Transfer function &key here"),
-                 .keys = {QKeySequence("K")},
-                 .tip = tr("This frame's transfer function is made by hand; what is made for frames begins at keys"),
-                 .trigger = [this] { hasTfKey() ? removeTfKey() : setTfKey(); },
-                 .enabled = open,
-                 .checked = [this] { return hasTfKey(); },
-                 .separatorBefore = true});
-    actions.add({.id = "targetKeyAction",
-                 .menu = menu,
-                 .text = tr("&Target key here"),
-                 .keys = {QKeySequence("Shift+K")},
-                 .tip = tr("The targets are those of this frame; between keys they go from the one to the other"),
-                 .trigger = [this] { hasTargetKey() ? removeTargetKey() : setTargetKey(); },
-                 .enabled = open,
-                 .checked = [this] { return hasTargetKey(); }});
+    m_keyActions << actions.add(
+        {.id = "tfKeyAction",
+         .menu = menu,
+         .text = tr("Transfer function &key here"),
+         .keys = {QKeySequence("K")},
+         .tip = tr("This frame's transfer function is made by hand; what is made for frames begins at keys"),
+         .trigger = [this] { hasTfKey() ? removeTfKey() : setTfKey(); },
+         .enabled = open,
+         .checked = [this] { return hasTfKey(); },
+         .separatorBefore = true});
+    m_keyActions << actions.add(
+        {.id = "targetKeyAction",
+         .menu = menu,
+         .text = tr("&Target key here"),
+         .keys = {QKeySequence("Shift+K")},
+         .tip = tr("The targets are those of this frame; between keys they go from the one to the other"),
+         .trigger = [this] { hasTargetKey() ? removeTargetKey() : setTargetKey(); },
+         .enabled = open,
+         .checked = [this] { return hasTargetKey(); }});
     const auto go = [&](const char* id, const QString& text, const char* keys, int direction) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .keys = {QKeySequence(keys)},
-                     .trigger = [this, direction] { goToKey(direction); },
-                     .enabled = [this] { return m_services.player().hasSeries(); }});
+        m_keyActions << actions.add({.id = id,
+                                     .menu = menu,
+                                     .text = text,
+                                     .keys = {QKeySequence(keys)},
+                                     .trigger = [this, direction] { goToKey(direction); },
+                                     .enabled = [this] { return m_player.hasSeries(); }});
     };
     go("previousKeyAction", tr("Pre&vious key"), "Ctrl+,", -1);
     go("nextKeyAction", tr("Ne&xt key"), "Ctrl+.", 1);
-    actions.add({.id = "fromHereAction",
-                 .menu = menu,
-                 .text = tr("From this frame o&n"),
-                 .tip = tr("This frame's transfer function is where those of all frames after it begin: later keys go"),
-                 .trigger = [this] { fromHereOn(); },
-                 .enabled = open});
+    m_keyActions << actions.add(
+        {.id = "fromHereAction",
+         .menu = menu,
+         .text = tr("From this frame o&n"),
+         .tip = tr("This frame's transfer function is where those of all frames after it begin: later keys go"),
+         .trigger = [this] { fromHereOn(); },
+         .enabled = open});
 }
 
 // ---- edits
@@ -152,7 +154,7 @@ void AdaptController::setCoherence(double coherence) {
 
 bool AdaptController::hasTfKey() const {
     const Session& session = m_services.store().session();
-    return m_services.player().hasSeries() && session.variable().track.keys.contains(session.frame);
+    return m_player.hasSeries() && session.variable().track.keys.contains(session.frame);
 }
 
 bool AdaptController::hasTargetKey() const {
@@ -208,15 +210,15 @@ void AdaptController::fromHereOn() {
 }
 
 void AdaptController::goToKey(int direction) {
-    if (!m_services.player().hasSeries()) return;
+    if (!m_player.hasSeries()) return;
     const Session& session = m_services.store().session();
     std::set<int> frames;
     for (const auto& [frame, tf] : session.variable().track.keys) frames.insert(frame);
     for (const auto& [frame, targets] : *session.targetKeys) frames.insert(frame);
-    const int now = m_services.player().awaited().value_or(session.frame);
+    const int now = m_player.awaited().value_or(session.frame);
     const auto after = frames.upper_bound(now), here = frames.lower_bound(now);
-    if (direction > 0 && after != frames.end()) return m_services.player().goTo(*after);
-    if (direction < 0 && here != frames.begin()) return m_services.player().goTo(*std::prev(here));
+    if (direction > 0 && after != frames.end()) return m_player.goTo(*after);
+    if (direction < 0 && here != frames.begin()) return m_player.goTo(*std::prev(here));
     Q_EMIT m_services.message(direction > 0 ? tr("There is no key after this frame.")
                                             : tr("There is no key before this frame."));
 }
@@ -229,7 +231,7 @@ bool AdaptController::isStale(int frame) const {
 }
 
 bool AdaptController::isWanted() const {
-    return !m_stopped && m_services.player().hasSeries() && !m_services.isReadOnly() &&
+    return !m_stopped && m_player.hasSeries() && !m_services.isReadOnly() &&
            m_services.store().session().adapt->mode != Mode::Static;
 }
 
@@ -277,7 +279,7 @@ void AdaptController::look() {
     if (!isWanted()) return;
     if (m_job.isRunning()) return; // its end looks again
     // What the hand holds is not committed: no frame needs it yet.
-    if (m_services.opening().isBusy() || m_services.store().isPreviewing()) return m_timer.start();
+    if (m_player.isHeldUp() || m_services.store().isPreviewing()) return m_timer.start();
     m_smoothing = 0;
     m_job.start(m_services.store().committed(), tr("the frames"));
 }

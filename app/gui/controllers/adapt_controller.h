@@ -9,8 +9,11 @@
 #include "jobs/job.h"
 #include "session/adapt.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
+class PlayerController;
 class Services;
 
 /// While the session's transfer functions adapt, those that are missing or of other inputs than the present ones are
@@ -20,10 +23,12 @@ class Services;
 class AdaptController : public QObject {
     Q_OBJECT
 public:
-    explicit AdaptController(Services& services);
+    AdaptController(Services& services, PlayerController& player);
     ~AdaptController() override;
 
     void addActions();
+    /// Key of the transfer function, of targets, previous key, next key, from here on.
+    const QList<QAction*>& keyActions() const { return m_keyActions; }
 
     /// All of these are undo steps.
     void setMode(AdaptSettings::Mode mode);
@@ -72,6 +77,8 @@ private:
     bool isWanted() const;
 
     Services& m_services;
+    PlayerController& m_player;
+    QList<QAction*> m_keyActions;
     AdaptProgress m_progress;
     int m_firstStale = -1, m_staleKey = -1;
     double m_smoothing = 0;

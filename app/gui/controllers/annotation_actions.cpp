@@ -1,4 +1,4 @@
-#include "controllers/annotation_actions.h"
+#include "controllers/menu_actions.h"
 
 #include "services/services.h"
 
@@ -39,7 +39,7 @@ Texts textsOf(FramePart part) {
 void addAnnotationActions(Services& services) {
     SessionStore& store = services.store();
     const QString menu = QObject::tr("&View") + "/" + QObject::tr("Frame of re&ference");
-    const auto editable = [&services] { return services.store().hasVolume() && !services.isReadOnly(); };
+    const auto editable = [&services] { return services.isEditable(); };
     services.actions().add({.id = "frameAction",
                             .menu = menu,
                             .text = QObject::tr("S&how frame of reference"),

@@ -183,7 +183,7 @@ void FieldController::chooseFile() {
 void FieldController::addActions() {
     Actions& actions = m_services.actions();
     SessionStore& store = m_services.store();
-    const auto open = [this, &store] { return store.hasVolume() && !m_services.isReadOnly(); };
+    const auto open = [this, &store] { return m_services.isEditable(); };
     const QString menu = tr("&View") + "/" + tr("F&ield");
     actions.add(
         {.id = "fieldAction",

@@ -22,15 +22,16 @@ bool sameFeatures(const TransferFunction& a, const TransferFunction& b) {
 
 } // namespace
 
-LiveController::LiveController(Services& services)
-    : m_services(services), m_job(
-                                [&workspace = services.workspace()](const Task& task, const JobControl& job) {
-                                    const JobControl quiet{job.stop, {}};
-                                    return task.settles ? settleTargets(workspace, task.held, quiet)
-                                                        : followTargets(workspace, task.held, quiet);
-                                },
-                                [this](const Task& task, LiveUpdate& update) { finish(task, update); },
-                                WhenBusy::StopOld, &services.compute()) {
+LiveController::LiveController(Services& services, OptimizeController& optimizing)
+    : m_services(services), m_optimizing(optimizing),
+      m_job(
+          [&workspace = services.workspace()](const Task& task, const JobControl& job) {
+              const JobControl quiet{job.stop, {}};
+              return task.settles ? settleTargets(workspace, task.held, quiet)
+                                  : followTargets(workspace, task.held, quiet);
+          },
+          [this](const Task& task, LiveUpdate& update) { finish(task, update); }, WhenBusy::StopOld,
+          &services.compute()) {
     m_rest.setSingleShot(true);
     m_rest.setInterval(kRest);
     connect(&m_rest, &QTimer::timeout, this, [this] {
@@ -43,9 +44,8 @@ LiveController::LiveController(Services& services)
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_settled = present().held; // not again and again
         stop();
-        m_services.optimizing().say(
-            tr("The targets are not held: %1 (%2).")
-                .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.whatToDo())));
+        m_optimizing.say(tr("The targets are not held: %1 (%2).")
+                             .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.whatToDo())));
     });
     connect(&m_job, &JobBase::busyChanged, this, &LiveController::busyChanged);
 }
@@ -53,7 +53,7 @@ LiveController::LiveController(Services& services)
 LiveController::~LiveController() = default;
 
 void LiveController::addActions() {
-    m_services.actions().add(
+    m_action = m_services.actions().add(
         {.id = "liveTargetsAction",
          .menu = tr("&Transfer function"),
          .text = tr("Hold targets &live"),
@@ -69,10 +69,10 @@ void LiveController::addActions() {
                      session.adapt.edit([](AdaptSettings& a) { a.mode = AdaptSettings::Mode::Static; });
                  });
              },
-         .enabled = [this] { return m_services.store().hasVolume() && !m_services.isReadOnly(); },
+         .enabled = [this] { return m_services.isEditable(); },
          .checked = [this] { return isOn(); }});
-    connect(&m_services.optimizing(), &OptimizeController::runningChanged, this, [this] {
-        if (m_services.optimizing().isRunning())
+    connect(&m_optimizing, &OptimizeController::runningChanged, this, [this] {
+        if (m_optimizing.isRunning())
             stop();
         else
             follow(m_services.scene(), m_services.scene());
@@ -112,8 +112,7 @@ void LiveController::pinWhatWasSet(const Scene& before, const Scene& after) {
 
 void LiveController::follow(const Scene& before, const Scene& after) {
     if (m_applying) return;
-    if (!isOn() || !m_services.store().hasVolume() || after.tf.features.empty() ||
-        m_services.optimizing().isRunning()) {
+    if (!isOn() || !m_services.store().hasVolume() || after.tf.features.empty() || m_optimizing.isRunning()) {
         m_settled.reset();
         m_pinned.clear();
         return stop();
@@ -145,7 +144,7 @@ void LiveController::stop() {
     m_rest.stop();
     m_job.cancel();
     if (!was) return;
-    m_services.results().setPaused(m_services.optimizing().isRunning());
+    m_services.results().setPaused(m_optimizing.isRunning());
     Q_EMIT busyChanged();
 }
 
@@ -176,8 +175,7 @@ void LiveController::finish(const Task& task, const LiveUpdate& update) {
     m_settled = present().held;
     m_services.results().setPaused(false);
     if (update.objective >= task.held.options.tolerance)
-        m_services.optimizing().say(
-            tr("Live: the targets are not held from this view; F = %1.").arg(update.objective, 0, 'f', 4));
+        m_optimizing.say(tr("Live: the targets are not held from this view; F = %1.").arg(update.objective, 0, 'f', 4));
     Q_EMIT busyChanged();
 }
 

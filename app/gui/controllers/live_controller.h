@@ -11,8 +11,11 @@
 #include "jobs/job.h"
 #include "session/live_targets.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
+class OptimizeController;
 class Services;
 
 /// While Session::holdTargets is set and anything changes that VWS or targets depend on, updates follow it, the latest
@@ -21,10 +24,11 @@ class Services;
 class LiveController : public QObject {
     Q_OBJECT
 public:
-    explicit LiveController(Services& services);
+    LiveController(Services& services, OptimizeController& optimizing);
     ~LiveController() override;
 
     void addActions();
+    QAction* action() const { return m_action; } ///< on and off
 
     bool isOn() const;
     /// The targets are not held yet, or nobody knows.
@@ -49,6 +53,8 @@ private:
     void pinWhatWasSet(const Scene& before, const Scene& after);
 
     Services& m_services;
+    OptimizeController& m_optimizing;
+    QAction* m_action = nullptr;
     std::set<FeatureId> m_pinned;         ///< whose opacity was set by hand in the latest change
     std::map<FeatureId, double> m_wanted; ///< opacities of the latest update
     bool m_applying = false;              ///< what happens to the scene is an update

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "controllers/save_controller.h"
-#include "controllers/start_controller.h"
 #include "dialogs/raw_dialog.h"
 #include "dialogs/series_dialog.h"
 #include "dialogs/series_files.h"
@@ -71,8 +70,9 @@ bool isTfFile(const QString& specOrPath) {
 
 } // namespace
 
-OpenController::OpenController(Services& services)
-    : m_services(services), m_open(&OpenController::load, [this](const Request& r, Opened& o) { show(r, o); }),
+OpenController::OpenController(Services& services, SaveController& saving)
+    : m_services(services), m_saving(saving),
+      m_open(&OpenController::load, [this](const Request& r, Opened& o) { show(r, o); }),
       m_data(
           [](const DataChange& change, const JobControl& job) {
               Session session = change.basis.session;
@@ -131,7 +131,7 @@ void OpenController::addActions() {
         QSettings().remove(kRecentKey);
         updateRecentFiles();
     });
-    actions.add(clearRecent);
+    m_clearRecent = actions.add(clearRecent);
     for (const SampleInfo& sample : samples()) {
         const QString name = QString::fromStdString(sample.name);
         actions.add(add("sample_" + name, menu + "/" + tr("&Samples"),
@@ -140,12 +140,12 @@ void OpenController::addActions() {
                         {}, {}, [this, name] {
                             VolumeSource source;
                             source.path = "sample:" + name.toStdString();
-                            if (m_services.saving().maybeSave()) openVolume(source);
+                            if (m_saving.maybeSave()) openVolume(source);
                         }));
     }
     ActionSpec openTf = add(
         "openTfAction", menu, tr("Open &transfer function…"), {QKeySequence("Ctrl+Shift+O")}, {},
-        [this] { chooseTf(); }, [this] { return m_services.store().hasVolume() && !m_services.isReadOnly(); });
+        [this] { chooseTf(); }, [this] { return m_services.isEditable(); });
     openTf.separatorBefore = true;
     actions.add(openTf);
     ActionSpec region = add(
@@ -154,7 +154,7 @@ void OpenController::addActions() {
         [this] { openRegion(); },
         [this] {
             const SessionStore& store = m_services.store();
-            if (!store.hasVolume() || m_services.isReadOnly()) return false;
+            if (!m_services.isEditable()) return false;
             const Clipping& clipping = *store.session().clipping;
             const auto& excerpt = store.scene().volume->excerpt;
             return excerpt && excerpt->factor > 1 && (clipping.lo != Vec3(0) || clipping.hi != Vec3(1));
@@ -166,8 +166,7 @@ void OpenController::addActions() {
         [this] { openWhole(); },
         [this] {
             const SessionStore& store = m_services.store();
-            return store.hasVolume() && !m_services.isReadOnly() &&
-                   store.session().variable().source.region.has_value();
+            return m_services.isEditable() && store.session().variable().source.region.has_value();
         }));
 }
 
@@ -235,22 +234,20 @@ void OpenController::show(const Request& request, Opened& opened) {
     m_edits.clear(); // they were of what was open
     m_data.cancel();
     const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && isTfFile(request.tfPath);
-    m_tfPath = tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString();
+    m_saving.setTfPath(tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString());
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
     const VolumeSource source = opened.scene.session.variable().source;
-    const Scene scene = opened.scene;
     m_services.store().open(std::move(opened.scene));
     if (request.unsaved) m_services.store().setUnsaved();
-    setSessionPath(request.sessionPath);
+    m_saving.setSessionPath(request.sessionPath);
     if (!request.sessionPath.isEmpty()) {
         addRecent(QFileInfo(request.sessionPath).absoluteFilePath());
     } else if (!source.isSample() && !request.unsaved) {
         addRecent(source);
     }
     if (tfFromFile) noteWindow(*m_services.store().session().tf());
-    m_services.start().follow(scene);
     Q_EMIT this->opened();
     if (opened.tfError) {
         m_services.showError(tr("Cannot open the transfer function"), *opened.tfError);
@@ -291,8 +288,8 @@ void OpenController::openWhole() {
 
 void OpenController::openTf(const QString& specOrPath) {
     SessionStore& store = m_services.store();
-    if (m_services.isReadOnly() || !store.hasVolume()) return;
-    if (specOrPath == kAutomaticTf) return m_services.start().startAgain();
+    if (!m_services.isEditable()) return;
+    if (specOrPath == kAutomaticTf) return automaticStartWanted();
     try {
         const TransferFunction tf = loadTf(specOrPath.toStdString());
         const bool isFile = isTfFile(specOrPath);
@@ -306,7 +303,7 @@ void OpenController::openTf(const QString& specOrPath) {
         };
         editData(tr("Open transfer function"), change, [this, tf, isFile, specOrPath] {
             if (isFile) {
-                m_tfPath = isForeignTf(specOrPath.toStdString()) ? QString() : specOrPath;
+                m_saving.setTfPath(isForeignTf(specOrPath.toStdString()) ? QString() : specOrPath);
                 m_services.store().setTfSaved();
             }
             noteWindow(tf);
@@ -319,7 +316,7 @@ void OpenController::openTf(const QString& specOrPath) {
 void OpenController::editData(const QString& text, const SessionStore::Change& change,
                               const std::function<void()>& then) {
     SessionStore& store = m_services.store();
-    if (!store.hasVolume() || m_services.isReadOnly()) return;
+    if (!m_services.isEditable()) return;
     Session next = store.session();
     change(next);
     if (!needsData(next, store.scene())) {
@@ -333,7 +330,7 @@ void OpenController::editData(const QString& text, const SessionStore::Change& c
 void OpenController::editInJob(const QString& text, const SessionStore::Change& change,
                                const std::function<void()>& then) {
     SessionStore& store = m_services.store();
-    if (!store.hasVolume() || m_services.isReadOnly()) return;
+    if (!m_services.isEditable()) return;
     store.commit();
     Session next = store.session();
     change(next);
@@ -387,12 +384,12 @@ void OpenController::showChanged(const DataChange& change, Scene& scene) {
 void OpenController::openPath(const QString& path) {
     if (isTf(path)) return openTf(path);
     if (isSession(path)) {
-        if (m_services.saving().maybeSave()) openSession(path);
+        if (m_saving.maybeSave()) openSession(path);
         return;
     }
     VolumeSource source;
     source.path = path.toStdString();
-    if (askRawLayout(source) && m_services.saving().maybeSave()) openVolume(source);
+    if (askRawLayout(source) && m_saving.maybeSave()) openVolume(source);
 }
 
 void OpenController::openPaths(QStringList paths) {
@@ -416,7 +413,7 @@ void OpenController::openPaths(QStringList paths) {
         }
         if (volumes.isEmpty()) throw UsageError("there are no volumes here", paths.front().toStdString(), "");
         VolumeSource source = sourceOf(volumes);
-        if (askRawLayout(source) && m_services.saving().maybeSave()) openVolume(source, tf);
+        if (askRawLayout(source) && m_saving.maybeSave()) openVolume(source, tf);
     } catch (const Error& error) {
         m_services.showError(tr("Cannot open the files"), error);
         Q_EMIT failed(error);
@@ -505,7 +502,7 @@ std::optional<VolumeSource> OpenController::askSeries() {
 }
 
 void OpenController::chooseSeries() {
-    if (const auto source = askSeries(); source && m_services.saving().maybeSave()) openVolume(*source);
+    if (const auto source = askSeries(); source && m_saving.maybeSave()) openVolume(*source);
 }
 
 void OpenController::chooseRaw() {
@@ -514,7 +511,7 @@ void OpenController::chooseRaw() {
     if (paths.isEmpty()) return;
     QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
     VolumeSource source = sourceOf(paths);
-    if (askLayout(source, filesOfFrames(source)) && m_services.saving().maybeSave()) openVolume(source);
+    if (askLayout(source, filesOfFrames(source)) && m_saving.maybeSave()) openVolume(source);
 }
 
 void OpenController::chooseTf() {
@@ -543,11 +540,10 @@ void OpenController::addRecent(const QString& entry) {
 void OpenController::updateRecentFiles() {
     QMenu* menu = m_services.actions().menu(recentMenuName());
     if (menu == nullptr) return;
-    QAction* clear = m_services.actions().find("clearRecentAction");
     for (QAction* action : menu->actions()) {
-        if (action != clear) delete action;
+        if (action != m_clearRecent) delete action;
     }
-    menu->removeAction(clear);
+    menu->removeAction(m_clearRecent);
     const QStringList files = QSettings().value(kRecentKey).toStringList();
     for (const QString& entry : files) {
         VolumeSource source;
@@ -562,7 +558,7 @@ void OpenController::updateRecentFiles() {
         action->setStatusTip(path);
     }
     if (!files.isEmpty()) menu->addSeparator();
-    menu->addAction(clear);
+    menu->addAction(m_clearRecent);
     menu->setEnabled(!files.isEmpty());
 }
 
@@ -570,7 +566,7 @@ void OpenController::openRecent(const QString& entry) {
     if (!entry.startsWith('{')) return openPath(entry);
     try {
         const VolumeSource source = recentSource(entry);
-        if (m_services.saving().maybeSave()) openVolume(source);
+        if (m_saving.maybeSave()) openVolume(source);
     } catch (const Error& error) {
         m_services.showError(tr("Cannot open the file"), error);
     }
@@ -578,17 +574,10 @@ void OpenController::openRecent(const QString& entry) {
 
 // ---- state
 
-QString OpenController::busyText() const { return m_busyText; }
-
 void OpenController::cancel() {
     m_open.cancel();
     m_edits.clear();
     m_data.cancel();
-}
-
-void OpenController::setSessionPath(const QString& path) {
-    m_sessionPath = path;
-    Q_EMIT busyChanged(); // the title shows it
 }
 
 } // namespace pellucid::gui

@@ -42,6 +42,7 @@ public:
 
     /// Whether the reason is being looked for why the latest run is not on target.
     bool isExplaining() const { return m_question || m_explaining.isRunning(); }
+    bool isBusy() const { return isRunning() || isExplaining(); }
 
     /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present
     /// state any more.

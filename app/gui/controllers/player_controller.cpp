@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controllers/adapt_controller.h"
 #include "controllers/open_controller.h"
 #include "render/memory_needs.h"
 #include "services/services.h"
@@ -20,13 +19,13 @@ constexpr std::size_t kMostNotices = 3; // of frames that cannot be read, each w
 
 } // namespace
 
-PlayerController::PlayerController(Services& services)
-    : m_services(services), m_adapting(std::make_unique<AdaptController>(services)),
+PlayerController::PlayerController(Services& services, OpenController& opening)
+    : m_services(services), m_opening(opening),
       m_reading(&PlayerController::read, [this](const Ask& ask, Got& got) { deliver(ask, got); }) {
     m_timer.setTimerType(Qt::PreciseTimer);
     connect(&m_timer, &QTimer::timeout, this, &PlayerController::tick);
     connect(&services.store(), &SessionStore::changed, this, &PlayerController::follow);
-    connect(&services.opening(), &OpenController::busyChanged, this, &PlayerController::next);
+    connect(&opening, &OpenController::busyChanged, this, &PlayerController::next);
     connect(&services, &Services::readOnlyChanged, this, &PlayerController::next);
     connect(&m_reading, &JobBase::failed, this, [this](const Error& error) { // memory, for example
         pause();
@@ -35,7 +34,6 @@ PlayerController::PlayerController(Services& services)
         m_services.notices().add({tr("Frames cannot be read ahead: %1").arg(QString::fromUtf8(error.what())), {}});
         Q_EMIT changed();
     });
-    connect(m_adapting.get(), &AdaptController::changed, this, &PlayerController::changed);
     m_sinceStart.start();
 }
 
@@ -47,41 +45,42 @@ void PlayerController::addActions() {
     const auto series = [this] { return hasSeries(); };
     const auto add = [&](const char* id, const QString& text, const char* keys, const QString& tip,
                          std::function<void()> trigger) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .keys = {QKeySequence(keys)},
-                     .tip = tip,
-                     .trigger = std::move(trigger),
-                     .enabled = series});
+        return actions.add({.id = id,
+                            .menu = menu,
+                            .text = text,
+                            .keys = {QKeySequence(keys)},
+                            .tip = tip,
+                            .trigger = std::move(trigger),
+                            .enabled = series});
     };
-    actions.add({.id = "playAction",
-                 .menu = menu,
-                 .text = tr("&Play"),
-                 .keys = {QKeySequence("Space")},
-                 .tip = tr("Play the frames of the series, or pause"),
-                 .trigger = [this] { m_playing ? pause() : play(); },
-                 .enabled = series,
-                 .caption = [this] { return m_playing ? tr("&Pause") : tr("&Play"); }});
-    add("nextFrameAction", tr("&Next frame"), ".", tr("One frame forward"), [this] { step(1); });
-    add("previousFrameAction", tr("P&revious frame"), ",", tr("One frame back"), [this] { step(-1); });
-    add("firstFrameAction", tr("&First frame"), "Ctrl+Home", {}, [this] { goTo(goodFrame(0, 1)); });
-    add("lastFrameAction", tr("&Last frame"), "Ctrl+End", {}, [this] { goTo(goodFrame(frameCount() - 1, -1)); });
-    actions.add({.id = "loopAction",
-                 .menu = menu,
-                 .text = tr("L&oop"),
-                 .tip = tr("After the last frame the first one plays again"),
-                 .trigger = [this] { setLoops(!m_loops); },
-                 .enabled = series,
-                 .checked = [this] { return m_loops; },
-                 .separatorBefore = true});
-    actions.add({.id = "backwardAction",
-                 .menu = menu,
-                 .text = tr("Play &backward"),
-                 .trigger = [this] { setBackward(!m_backward); },
-                 .enabled = series,
-                 .checked = [this] { return m_backward; }});
-    m_adapting->addActions();
+    m_actions.play = actions.add({.id = "playAction",
+                                  .menu = menu,
+                                  .text = tr("&Play"),
+                                  .keys = {QKeySequence("Space")},
+                                  .tip = tr("Play the frames of the series, or pause"),
+                                  .trigger = [this] { m_playing ? pause() : play(); },
+                                  .enabled = series,
+                                  .caption = [this] { return m_playing ? tr("&Pause") : tr("&Play"); }});
+    m_actions.next = add("nextFrameAction", tr("&Next frame"), ".", tr("One frame forward"), [this] { step(1); });
+    m_actions.previous =
+        add("previousFrameAction", tr("P&revious frame"), ",", tr("One frame back"), [this] { step(-1); });
+    m_actions.first = add("firstFrameAction", tr("&First frame"), "Ctrl+Home", {}, [this] { goTo(goodFrame(0, 1)); });
+    m_actions.last =
+        add("lastFrameAction", tr("&Last frame"), "Ctrl+End", {}, [this] { goTo(goodFrame(frameCount() - 1, -1)); });
+    m_actions.loops = actions.add({.id = "loopAction",
+                                   .menu = menu,
+                                   .text = tr("L&oop"),
+                                   .tip = tr("After the last frame the first one plays again"),
+                                   .trigger = [this] { setLoops(!m_loops); },
+                                   .enabled = series,
+                                   .checked = [this] { return m_loops; },
+                                   .separatorBefore = true});
+    m_actions.backward = actions.add({.id = "backwardAction",
+                                      .menu = menu,
+                                      .text = tr("Play &backward"),
+                                      .trigger = [this] { setBackward(!m_backward); },
+                                      .enabled = series,
+                                      .checked = [this] { return m_backward; }});
     connect(this, &PlayerController::changed, &actions, [this, was = false]() mutable {
         if (std::exchange(was, m_playing) != m_playing) m_services.actions().refresh();
     });
@@ -122,10 +121,7 @@ int PlayerController::goodFrame(int from, int direction) const {
     return from;
 }
 
-/// An optimization shows its moves, or other data is being fetched: the frame stays.
-bool PlayerController::isHeldUp() const { return m_services.isReadOnly() || m_services.opening().isBusy(); }
-
-bool PlayerController::isBusy() const { return m_playing || m_wanted.has_value() || m_adapting->isBusy(); }
+bool PlayerController::isHeldUp() const { return m_services.isReadOnly() || m_opening.isBusy(); }
 
 // ---- what is wanted
 

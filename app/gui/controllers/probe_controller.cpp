@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controllers/slice_actions.h"
 #include "render/clip_handles.h"
 #include "render/slice.h"
 #include "services/services.h"
 #include "store/edits.h"
+#include "store/view_edits.h"
 #include "tf/emphasis.h"
 #include "tf/shown_tf.h"
 
@@ -21,7 +21,7 @@ constexpr int kMostSteps = 8;
 
 } // namespace
 
-ProbeController::ProbeController(Services& services) : QObject(&services), m_services(services) {
+ProbeController::ProbeController(Services& services) : m_services(services) {
     connect(&services.store(), &SessionStore::changed, this, &ProbeController::follow);
     connect(&services.selection(), &Selection::featureChanged, this, [this] {
         if (isActive()) Q_EMIT changed();

@@ -19,7 +19,7 @@ class Services;
 class ProbeController : public QObject {
     Q_OBJECT
 public:
-    explicit ProbeController(Services& services); ///< a child of it
+    explicit ProbeController(Services& services);
     void addActions();
 
     /// Probes the pixel under `point` of a view of `size`, both logical; clears where nothing is visible there. The

@@ -14,21 +14,21 @@ constexpr int kDelay = 800; // milliseconds from the first change to the file: w
 
 }
 
-RecoveryController::RecoveryController(Services& services)
-    : m_services(services), m_writing(
-                                [this](const Work& work, const JobControl&) {
-                                    if (work.session) {
-                                        m_file->write(*work.session, work.title.toStdString());
-                                    } else {
-                                        m_file->remove();
-                                    }
-                                    return true;
-                                },
-                                [this](const Work&, bool&) {
-                                    for (const std::string& path : std::exchange(m_restored, {}))
-                                        discardRecovered(path);
-                                },
-                                WhenBusy::FinishOld) {
+RecoveryController::RecoveryController(Services& services, OpenController& opening, SaveController& saving)
+    : m_services(services), m_opening(opening), m_saving(saving),
+      m_writing(
+          [this](const Work& work, const JobControl&) {
+              if (work.session) {
+                  m_file->write(*work.session, work.title.toStdString());
+              } else {
+                  m_file->remove();
+              }
+              return true;
+          },
+          [this](const Work&, bool&) {
+              for (const std::string& path : std::exchange(m_restored, {})) discardRecovered(path);
+          },
+          WhenBusy::FinishOld) {
     m_timer.setSingleShot(true);
     m_timer.setInterval(kDelay);
     connect(&m_timer, &QTimer::timeout, this, &RecoveryController::save);
@@ -73,8 +73,8 @@ void RecoveryController::discard() {
 }
 
 void RecoveryController::offerWhenOpen() {
-    connect(&m_services.opening(), &OpenController::opened, this, &RecoveryController::offer, Qt::SingleShotConnection);
-    connect(&m_services.opening(), &OpenController::failed, this, &RecoveryController::offer, Qt::SingleShotConnection);
+    connect(&m_opening, &OpenController::opened, this, &RecoveryController::offer, Qt::SingleShotConnection);
+    connect(&m_opening, &OpenController::failed, this, &RecoveryController::offer, Qt::SingleShotConnection);
 }
 
 void RecoveryController::offer() {
@@ -86,11 +86,11 @@ void RecoveryController::offer() {
                                     [this, path = left.path] {
                                         try {
                                             const SessionFile file = readSession(path);
-                                            if (!m_services.saving().maybeSave()) return offer();
-                                            m_services.opening().openRecovered(file);
+                                            if (!m_saving.maybeSave()) return offer();
+                                            m_opening.openRecovered(file);
                                             // Once it is there again and written, this window keeps it.
                                             connect(
-                                                &m_services.opening(), &OpenController::opened, this,
+                                                &m_opening, &OpenController::opened, this,
                                                 [this, path] { m_restored.push_back(path); }, Qt::SingleShotConnection);
                                         } catch (const Error& error) {
                                             m_services.showError(tr("Cannot restore the work"), error);

@@ -11,6 +11,8 @@
 
 namespace pellucid::gui {
 
+class OpenController;
+class SaveController;
 class Services;
 
 /// Writes the session to a recovery file within two seconds of every change that is not saved, and offers at the next
@@ -18,7 +20,7 @@ class Services;
 class RecoveryController : public QObject {
     Q_OBJECT
 public:
-    explicit RecoveryController(Services& services);
+    RecoveryController(Services& services, OpenController& opening, SaveController& saving);
     ~RecoveryController() override;
 
     /// Where recovery files lie for this user.
@@ -39,6 +41,8 @@ private:
     void save();
 
     Services& m_services;
+    OpenController& m_opening;
+    SaveController& m_saving;
     std::shared_ptr<RecoveryFile> m_file; // shared with the thread that writes it
     QTimer m_timer;
     std::vector<std::string> m_restored; ///< files of others whose work is here now, until it is written

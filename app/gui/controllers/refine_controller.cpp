@@ -12,7 +12,6 @@
 #include "optimize/refine/refine_words.h"
 #include "optimize/refine/region_colors.h"
 #include "services/services.h"
-#include "view/picture_pair.h"
 
 namespace pellucid::gui {
 namespace {
@@ -105,8 +104,8 @@ QString evennessText(double energyBefore, double energyAfter) {
         .arg(ratio < 100 ? QString::number(ratio, 'g', 3) : QStringLiteral("%L1").arg(std::lround(ratio)));
 }
 
-RefineController::RefineController(Services& services)
-    : m_services(services), m_renderer(std::make_shared<KeptRenderer>()),
+RefineController::RefineController(Services& services, OptimizeController& optimizing)
+    : m_services(services), m_optimizing(optimizing), m_renderer(std::make_shared<KeptRenderer>()),
       m_look(
           [renderer = m_renderer](const Look& look, const JobControl& job) {
               return regionColors(renderer->render(look.picture, job), look.region);
@@ -172,73 +171,78 @@ RefineController::~RefineController() { m_services.store().setConsequence({}); }
 void RefineController::addActions() {
     const QString menu = tr("&Transfer function");
     Actions& actions = m_services.actions();
-    const auto ready = [this] { return isReady(); };
+    const auto ready = [this] { return m_services.isEditable(); };
     const auto settings = [this]() -> const RefineSettings& { return *m_services.store().session().refine; };
-    actions.add({.id = "refineAction",
-                 .menu = menu,
-                 .text = tr("&Refine by entropy"),
-                 .keys = {QKeySequence("Ctrl+R")},
-                 .tip = tr("Opacities by entropy: values that are common get less, rare ones more; with a priority, "
-                           "what is like it gets more"),
-                 .trigger = [this] { refine(); },
-                 .enabled = ready,
-                 .separatorBefore = true});
-    actions.add({.id = "liveRefineAction",
-                 .menu = menu,
-                 .text = tr("Refine &live"),
-                 .tip = tr("Refine after every edit; what you move stays where you put it, the other points give way"),
-                 .trigger =
-                     [this] {
-                         m_services.store().edit(tr("Live refinement"), {}, [](Session& session) {
-                             session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
-                             if (session.refine->live) session.holdTargets = false; // both set opacities
-                         });
-                     },
-                 .enabled = ready,
-                 .checked = [settings] { return settings().live; }});
+    m_actions.refine = actions.add(
+        {.id = "refineAction",
+         .menu = menu,
+         .text = tr("&Refine by entropy"),
+         .keys = {QKeySequence("Ctrl+R")},
+         .tip = tr("Opacities by entropy: values that are common get less, rare ones more; with a priority, "
+                   "what is like it gets more"),
+         .trigger = [this] { refine(); },
+         .enabled = ready,
+         .separatorBefore = true});
+    m_actions.live = actions.add(
+        {.id = "liveRefineAction",
+         .menu = menu,
+         .text = tr("Refine &live"),
+         .tip = tr("Refine after every edit; what you move stays where you put it, the other points give way"),
+         .trigger =
+             [this] {
+                 m_services.store().edit(tr("Live refinement"), {}, [](Session& session) {
+                     session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
+                     if (session.refine->live) session.holdTargets = false; // both set opacities
+                 });
+             },
+         .enabled = ready,
+         .checked = [settings] { return settings().live; }});
     const auto select = [&](const char* id, const QString& text, const char* keys, const QString& tip, Selecting what) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .keys = {QKeySequence(keys)},
-                     .tip = tip,
-                     .trigger = [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); },
-                     .enabled = ready,
-                     .checked = [this, what] { return m_selecting == what; },
-                     .inToolBar = true});
+        return actions.add({.id = id,
+                            .menu = menu,
+                            .text = text,
+                            .keys = {QKeySequence(keys)},
+                            .tip = tip,
+                            .trigger = [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); },
+                            .enabled = ready,
+                            .checked = [this, what] { return m_selecting == what; },
+                            .inToolBar = true});
     };
-    select("rectangleAction", tr("Select re&ctangle"), "Shift+R",
-           tr("Draw a rectangle in the picture: what has its colours becomes more opaque, everything else less"),
-           Selecting::Rectangle);
-    select("lassoAction", tr("Select with la&sso"), "Shift+L",
-           tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
-           Selecting::Lasso);
-    actions.add({.id = "prioritizeNothingAction",
-                 .menu = menu,
-                 .text = tr("Prioritize &nothing"),
-                 .tip = tr("Forget the intensity or region that refinement brings out; opacities stay"),
-                 .trigger = [this] { prioritizeNothing(); },
-                 .enabled = [this, settings] { return isReady() && (settings().intensity || settings().region); }});
-    actions.add({.id = "ghostAction",
-                 .menu = menu,
-                 .text = tr("&Ghost of the curve before"),
-                 .tip = tr("Behind the curve: what it was before the latest refinement"),
-                 .trigger = [this] { setGhostShown(!m_ghost); },
-                 .checked = [this] { return m_ghost; }});
-    actions.add({.id = "sideBySideAction",
-                 .menu = menu,
-                 .text = tr("Before and after, side by &side…"),
-                 .tip = tr("The picture before and after the latest refinement, from the present camera"),
-                 .trigger = [this] { showPicturePair(m_services); },
-                 .enabled = [this] { return m_services.store().hasVolume() && latest() != nullptr; }});
+    m_actions.rectangle =
+        select("rectangleAction", tr("Select re&ctangle"), "Shift+R",
+               tr("Draw a rectangle in the picture: what has its colours becomes more opaque, everything else less"),
+               Selecting::Rectangle);
+    m_actions.lasso =
+        select("lassoAction", tr("Select with la&sso"), "Shift+L",
+               tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
+               Selecting::Lasso);
+    m_actions.nothing = actions.add(
+        {.id = "prioritizeNothingAction",
+         .menu = menu,
+         .text = tr("Prioritize &nothing"),
+         .tip = tr("Forget the intensity or region that refinement brings out; opacities stay"),
+         .trigger = [this] { prioritizeNothing(); },
+         .enabled = [this,
+                     settings] { return m_services.isEditable() && (settings().intensity || settings().region); }});
+    m_actions.ghost = actions.add({.id = "ghostAction",
+                                   .menu = menu,
+                                   .text = tr("&Ghost of the curve before"),
+                                   .tip = tr("Behind the curve: what it was before the latest refinement"),
+                                   .trigger = [this] { setGhostShown(!m_ghost); },
+                                   .checked = [this] { return m_ghost; }});
+    m_actions.pair =
+        actions.add({.id = "sideBySideAction",
+                     .menu = menu,
+                     .text = tr("Before and after, side by &side…"),
+                     .tip = tr("The picture before and after the latest refinement, from the present camera"),
+                     .trigger = [this] { Q_EMIT pairWanted(); },
+                     .enabled = [this] { return m_services.store().hasVolume() && latest() != nullptr; }});
     connect(this, &RefineController::refined, &actions, &Actions::refresh);
     connect(this, &RefineController::selectingChanged, &actions, &Actions::refresh);
     const QString volume = tr("Volume");
     actions.addGestures({{volume, tr("Drag a corner, an edge or the inside of a selection"), tr("change it, move it")},
                          {volume, tr("Delete or Esc, with a selection"), tr("remove it")}});
 }
-
-bool RefineController::isReady() const { return m_services.store().hasVolume() && !m_services.isReadOnly(); }
 
 const std::vector<RegionColor>* RefineController::colorsOf(const ImageRegion& region) const {
     for (const auto& [known, colors] : m_colors)
@@ -307,7 +311,7 @@ void RefineController::keep(Refinement refinement) {
 }
 
 void RefineController::say(const QString& text) {
-    m_services.optimizing().say(text);
+    m_optimizing.say(text);
     Q_EMIT m_services.message(text);
 }
 
@@ -330,7 +334,7 @@ void RefineController::examine() {
 
 void RefineController::takeHelp() {
     const Refinement* now = current();
-    if (!isReady() || now == nullptr || !now->dark || now->dark->help == Darkening::Help::None) return;
+    if (!m_services.isEditable() || now == nullptr || !now->dark || now->dark->help == Darkening::Help::None) return;
     const bool exact = now->dark->help == Darkening::Help::Exact;
     const int iterations = now->dark->iterations;
     RefineOptions by = now->options;
@@ -360,7 +364,7 @@ void RefineController::takeHelp() {
 
 void RefineController::refine() {
     SessionStore& store = m_services.store();
-    if (!isReady() || !store.scene().histogram) return;
+    if (!m_services.isEditable() || !store.scene().histogram) return;
     store.commit();
     const RefineSettings& settings = *store.session().refine;
     if (!priorityOf(settings)) return look(*settings.region, tr("Refine"));
@@ -380,7 +384,7 @@ void RefineController::refine() {
 }
 
 void RefineController::prioritize(double x, const QString& mergeKey) {
-    if (!isReady() || m_dragStart) return;
+    if (!m_services.isEditable() || m_dragStart) return;
     dragPriority(x);
     m_dragStart.reset();
     m_services.store().commit(mergeKey);
@@ -389,7 +393,7 @@ void RefineController::prioritize(double x, const QString& mergeKey) {
 
 void RefineController::dragPriority(double x) {
     SessionStore& store = m_services.store();
-    if (!isReady() || !store.scene().histogram) return;
+    if (!m_services.isEditable() || !store.scene().histogram) return;
     if (!m_dragStart) {
         store.commit();
         m_dragStart = startOfPriority();
@@ -436,7 +440,7 @@ std::optional<ImageRegion> RefineController::region() const {
 }
 
 void RefineController::prioritize(const ImageRegion& region, const QString& text) {
-    if (!isReady()) return;
+    if (!m_services.isEditable()) return;
     m_services.store().commit();
     look(region, text);
 }
@@ -453,7 +457,7 @@ void RefineController::look(const ImageRegion& region, const QString& text) {
 
 void RefineController::refineForRegion(const Look& look) {
     SessionStore& store = m_services.store();
-    if (!isReady() || !store.scene().histogram) return;
+    if (!m_services.isEditable() || !store.scene().histogram) return;
     store.commit();
     try {
         RefineOptions by = options();
@@ -479,7 +483,7 @@ void RefineController::refineForRegion(const Look& look) {
 }
 
 void RefineController::prioritizeNothing() {
-    if (!isReady()) return;
+    if (!m_services.isEditable()) return;
     m_look.cancel();
     m_services.store().edit(tr("Prioritize nothing"), {}, [](Session& session) {
         session.refine.edit([](RefineSettings& r) {
@@ -508,11 +512,11 @@ void RefineController::setGhostShown(bool shown) {
 // Live: after every edit that refinement may answer differently, as part of it.
 QString RefineController::follow(const Scene& before, const Scene& after, Session& session) {
     const RefineSettings& settings = *after.session.refine;
-    if (m_quiet || !settings.live || after.session.holdTargets || !isReady() || !after.histogram ||
+    if (m_quiet || !settings.live || after.session.holdTargets || !m_services.isEditable() || !after.histogram ||
         before.data != after.data)
         return {};
     // An optimization has found what it was asked for.
-    if (m_services.optimizing().isAnswering() || before.session.frame != after.session.frame) return {};
+    if (m_optimizing.isAnswering() || before.session.frame != after.session.frame) return {};
     const auto was = before.session.tf(), is = after.session.tf();
     if (was == nullptr || is == nullptr) return {};
     const bool edited = hasMoved(*was, *is, settings.region.has_value());

@@ -7,7 +7,6 @@
 #include <QSettings>
 
 #include "controllers/field_controller.h"
-#include "controllers/open_controller.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "render/annotation_raster.h"
@@ -26,8 +25,8 @@ QString baseName(const Scene& scene) {
 
 } // namespace
 
-SaveController::SaveController(Services& services)
-    : m_services(services),
+SaveController::SaveController(Services& services, FieldController& fields)
+    : m_services(services), m_fields(fields),
       m_images(
           [](const Picture& picture, const JobControl& job) {
               const auto renderer = makeRenderer(EngineChoice::Auto, picture.input.volume);
@@ -109,11 +108,16 @@ void SaveController::addActions() {
     });
 }
 
+void SaveController::setSessionPath(const QString& path) {
+    m_sessionPath = path;
+    Q_EMIT sessionPathChanged();
+}
+
 bool SaveController::saveSession(const QString& path) {
     if (!m_services.store().hasVolume()) return false;
     try {
         writeSession(m_services.store().committed().session, path.toStdString());
-        m_services.opening().setSessionPath(path);
+        setSessionPath(path);
         m_services.store().setClean();
         Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
         Q_EMIT sessionSaved();
@@ -128,7 +132,7 @@ bool SaveController::saveTf(const QString& path) {
     if (!m_services.store().hasVolume()) return false;
     try {
         writeTf(*m_services.store().committed().session.tf(), path.toStdString());
-        m_services.opening().setTfPath(path);
+        setTfPath(path);
         m_services.store().setTfSaved();
         Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
         return true;
@@ -140,11 +144,10 @@ bool SaveController::saveTf(const QString& path) {
 
 void SaveController::saveImage(const SaveImageOptions& options) {
     if (!m_services.store().hasVolume()) return;
-    Picture picture{m_services.fields().picture(options.size.width(), options.size.height(), options.transparent),
-                    {},
-                    options.path};
+    Picture picture{
+        m_fields.picture(options.size.width(), options.size.height(), options.transparent), {}, options.path};
     if (options.reference)
-        picture.around = m_services.fields().annotation(picture.input, *m_services.scene().session.reference);
+        picture.around = m_fields.annotation(picture.input, *m_services.scene().session.reference);
     else
         picture.around.show = FrameOfReference::none();
     try {
@@ -188,7 +191,7 @@ void SaveController::chooseReport(const Run& run) {
 
 bool SaveController::chooseSession(bool askForName) {
     if (!m_services.store().hasVolume()) return false;
-    QString path = m_services.opening().sessionPath();
+    QString path = m_sessionPath;
     if (askForName || path.isEmpty()) {
         const QString folder = QSettings().value("sessionFolder").toString();
         const QString offered =
@@ -204,7 +207,7 @@ bool SaveController::chooseSession(bool askForName) {
 
 bool SaveController::chooseTf(bool askForName) {
     if (!m_services.store().hasVolume()) return false;
-    QString path = m_services.opening().tfPath();
+    QString path = m_tfPath;
     if (askForName || path.isEmpty()) {
         const QString folder = QSettings().value("tfFolder").toString();
         const QString offered =
@@ -222,7 +225,7 @@ void SaveController::chooseImage() {
     if (!m_services.store().hasVolume()) return;
     const QString folder = QSettings().value("imageFolder", QDir::homePath()).toString();
     SaveImageDialog dialog(QDir(folder).filePath(baseName(m_services.scene()) + ".png"), m_seen,
-                           m_services.scene().session.reference->any() || m_services.fields().field() != nullptr,
+                           m_services.scene().session.reference->any() || m_fields.field() != nullptr,
                            m_services.window());
     while (dialog.exec() == QDialog::Accepted) {
         const SaveImageOptions options = dialog.options();

@@ -52,9 +52,10 @@ QString beyondText(const Proposal& proposal, const ValueRange& data) {
         .arg(rangeText(window), percentText(proposal.outside), ends);
 }
 
-StartController::StartController(Services& services)
-    : m_services(services), m_tuning([](const Scene& scene, const JobControl& job) { return tunedStart(scene, job); },
-                                     [this](const Scene& scene, FirstSight& start) { showTuned(scene, start); }),
+StartController::StartController(Services& services, OpenController& opening)
+    : m_services(services), m_opening(opening),
+      m_tuning([](const Scene& scene, const JobControl& job) { return tunedStart(scene, job); },
+               [this](const Scene& scene, FirstSight& start) { showTuned(scene, start); }),
       m_again([](const Request& request,
                  const JobControl& job) { return automaticStart(request.scene, request.view, job); },
               [this](const Request& request, AutomaticStart& start) {
@@ -63,9 +64,11 @@ StartController::StartController(Services& services)
                       session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
                       setStart(session, sight);
                   };
-                  m_services.opening().editData(tr("Automatic start"), change,
-                                                [this, proposal = start.proposal] { say(proposal); });
+                  m_opening.editData(tr("Automatic start"), change,
+                                     [this, proposal = start.proposal] { say(proposal); });
               }) {
+    connect(&opening, &OpenController::opened, this, &StartController::follow);
+    connect(&opening, &OpenController::automaticStartWanted, this, &StartController::startAgain);
     connect(&m_tuning, &JobBase::busyChanged, this, &StartController::busyChanged);
     connect(&m_again, &JobBase::busyChanged, this, &StartController::busyChanged);
     connect(&m_again, &JobBase::failed, this,
@@ -75,16 +78,16 @@ StartController::StartController(Services& services)
 StartController::~StartController() = default;
 
 void StartController::addActions() {
-    m_services.actions().add(
-        {.id = "automaticStartAction",
-         .menu = tr("&Transfer function"),
-         .text = tr("&Automatic start"),
-         .tip = tr("Window and features from the data, opacities for this view"),
-         .trigger = [this] { startAgain(); },
-         .enabled = [this] { return m_services.store().hasVolume() && !m_services.isReadOnly(); }});
+    m_services.actions().add({.id = "automaticStartAction",
+                              .menu = tr("&Transfer function"),
+                              .text = tr("&Automatic start"),
+                              .tip = tr("Window and features from the data, opacities for this view"),
+                              .trigger = [this] { startAgain(); },
+                              .enabled = [this] { return m_services.isEditable(); }});
 }
 
-void StartController::follow(const Scene& scene) {
+void StartController::follow() {
+    const Scene& scene = m_services.scene();
     m_tuning.cancel();
     m_again.cancel();
     if (!scene.proposal) return;
@@ -93,7 +96,7 @@ void StartController::follow(const Scene& scene) {
 }
 
 void StartController::startAgain() {
-    if (!m_services.store().hasVolume() || m_services.isReadOnly()) return;
+    if (!m_services.isEditable()) return;
     m_services.store().commit();
     const Scene& scene = m_services.scene();
     m_again.start({scene, {scene.camera, *scene.session.clipping}}, QString::fromStdString(scene.volume->title));
@@ -109,7 +112,7 @@ void StartController::say(const Proposal& proposal) {
     const QString beyond = beyondText(proposal, m_services.scene().data->dataRange());
     if (beyond.isEmpty()) return;
     m_services.notices().add({beyond, {{tr("Show full range"), [this] {
-                                            m_services.opening().editData(tr("Full range"), [](Session& session) {
+                                            m_opening.editData(tr("Full range"), [](Session& session) {
                                                 session.variables.edit(
                                                     [](std::vector<Variable>& all) { all.front().window.reset(); });
                                             });

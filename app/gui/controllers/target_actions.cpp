@@ -9,17 +9,12 @@
 #include <QLabel>
 #include <QMenu>
 
-#include "controllers/feature_actions.h"
 #include "services/services.h"
 #include "session/target_presets.h"
 #include "store/edits.h"
 
 namespace pellucid::gui {
 namespace {
-
-constexpr const char* kEntries[] = {"targetsEqual",    "targetsDiagonal",  "targetsAsNow",
-                                    "targetsOnlyThis", "targetsInsideOut", "",
-                                    "targetLock",      "targetsUnlock"};
 
 QString targetMenu() { return QObject::tr("&Transfer function") + "/" + QObject::tr("Tar&gets"); }
 
@@ -70,17 +65,17 @@ void askLimits(Services& services, int feature) {
 
 } // namespace
 
-void addTargetActions(Services& services) {
+void TargetActions::addActions() {
+    Services& services = m_services;
     Actions& actions = services.actions();
-    const auto editable = [&services] {
-        return services.store().hasVolume() && !services.isReadOnly() && !services.scene().tf.features.empty();
-    };
+    const auto editable = [&services] { return services.isEditable() && !services.scene().tf.features.empty(); };
     const auto selected = [&services, editable] {
-        const int f = selectedFeature(services);
+        const int f = services.selectedFeature();
         return editable() && f >= 0 && !services.scene().wantedTf().features[static_cast<std::size_t>(f)].hidden;
     };
     const auto add = [&](const char* id, const QString& text, const QString& tip, auto trigger, auto enabled) {
-        actions.add({.id = id, .menu = targetMenu(), .text = text, .tip = tip, .trigger = trigger, .enabled = enabled});
+        m_entries << actions.add(
+            {.id = id, .menu = targetMenu(), .text = text, .tip = tip, .trigger = trigger, .enabled = enabled});
     };
     add(
         "targetsEqual", QObject::tr("&Equal"), QObject::tr("The same share for each feature; locked targets stay"),
@@ -105,7 +100,7 @@ void addTargetActions(Services& services) {
         [&services] {
             setTargets(services, QObject::tr("Target of one feature"),
                        targetsForOne(services.scene().wantedTf(), *services.scene().session.goals,
-                                     static_cast<std::size_t>(selectedFeature(services))));
+                                     static_cast<std::size_t>(services.selectedFeature())));
         },
         selected);
     add(
@@ -117,22 +112,26 @@ void addTargetActions(Services& services) {
         const auto goal = goals.find(services.scene().tf.features[static_cast<std::size_t>(f)].id);
         return goal == goals.end() ? FeatureGoal() : goal->second;
     };
-    actions.add({.id = "targetLock",
-                 .menu = targetMenu(),
-                 .text = QObject::tr("&Lock target"),
-                 .tip = QObject::tr("The selected feature's target stays where others are set (L in the bars)"),
-                 .trigger =
-                     [&services, goalOf] {
-                         const int f = selectedFeature(services);
-                         if (f >= 0) setTargetLocked(services.store(), f, !goalOf(f).targetLocked);
-                     },
-                 .enabled = selected,
-                 .checked =
-                     [&services, goalOf] {
-                         const int f = selectedFeature(services);
-                         return f >= 0 && goalOf(f).targetLocked;
-                     },
-                 .separatorBefore = true});
+    auto* const gap = new QAction(&actions);
+    gap->setSeparator(true);
+    m_entries << gap;
+    m_entries << actions.add(
+        {.id = "targetLock",
+         .menu = targetMenu(),
+         .text = QObject::tr("&Lock target"),
+         .tip = QObject::tr("The selected feature's target stays where others are set (L in the bars)"),
+         .trigger =
+             [&services, goalOf] {
+                 const int f = services.selectedFeature();
+                 if (f >= 0) setTargetLocked(services.store(), f, !goalOf(f).targetLocked);
+             },
+         .enabled = selected,
+         .checked =
+             [&services, goalOf] {
+                 const int f = services.selectedFeature();
+                 return f >= 0 && goalOf(f).targetLocked;
+             },
+         .separatorBefore = true});
     add(
         "targetsUnlock", QObject::tr("&Unlock all"), QObject::tr("No target is locked; shares stay as they are"),
         [&services] {
@@ -145,35 +144,36 @@ void addTargetActions(Services& services) {
         },
         editable);
     const QString menu = QObject::tr("&Transfer function") + "/" + QObject::tr("Feat&ure");
-    actions.add({.id = "opacityLock",
-                 .menu = menu,
-                 .text = QObject::tr("Loc&k opacity"),
-                 .tip = QObject::tr("Optimize leaves the opacity of the selected feature as it is"),
-                 .trigger =
-                     [&services] {
-                         const int f = selectedFeature(services);
-                         if (f < 0) return;
-                         OpacityLimits limits = opacityLimits(services.store(), f);
-                         limits.locked = !limits.locked;
-                         editOpacityLimits(services.store(), f, limits,
-                                           limits.locked ? QObject::tr("Lock opacity") : QObject::tr("Unlock opacity"));
-                     },
-                 .enabled = selected,
-                 .checked =
-                     [&services, goalOf] {
-                         const int f = selectedFeature(services);
-                         return f >= 0 && goalOf(f).locked;
-                     },
-                 .separatorBefore = true});
-    actions.add({.id = "opacityLimits",
-                 .menu = menu,
-                 .text = QObject::tr("L&imits of opacity…"),
-                 .tip = QObject::tr("Between which opacities Optimize may move the selected feature"),
-                 .trigger =
-                     [&services] {
-                         if (const int f = selectedFeature(services); f >= 0) askLimits(services, f);
-                     },
-                 .enabled = selected});
+    m_limits << actions.add({.id = "opacityLock",
+                             .menu = menu,
+                             .text = QObject::tr("Loc&k opacity"),
+                             .tip = QObject::tr("Optimize leaves the opacity of the selected feature as it is"),
+                             .trigger =
+                                 [&services] {
+                                     const int f = services.selectedFeature();
+                                     if (f < 0) return;
+                                     OpacityLimits limits = opacityLimits(services.store(), f);
+                                     limits.locked = !limits.locked;
+                                     editOpacityLimits(services.store(), f, limits,
+                                                       limits.locked ? QObject::tr("Lock opacity")
+                                                                     : QObject::tr("Unlock opacity"));
+                                 },
+                             .enabled = selected,
+                             .checked =
+                                 [&services, goalOf] {
+                                     const int f = services.selectedFeature();
+                                     return f >= 0 && goalOf(f).locked;
+                                 },
+                             .separatorBefore = true});
+    m_limits << actions.add({.id = "opacityLimits",
+                             .menu = menu,
+                             .text = QObject::tr("L&imits of opacity…"),
+                             .tip = QObject::tr("Between which opacities Optimize may move the selected feature"),
+                             .trigger =
+                                 [&services] {
+                                     if (const int f = services.selectedFeature(); f >= 0) askLimits(services, f);
+                                 },
+                             .enabled = selected});
     QObject::connect(&services.store(), &SessionStore::changed, &actions,
                      [&actions](const Scene& before, const Scene& after) {
                          if (!before.session.goals.isSame(after.session.goals) ||
@@ -184,21 +184,6 @@ void addTargetActions(Services& services) {
         if (was != services.results().vwsIsCurrent()) actions.refresh();
         was = services.results().vwsIsCurrent();
     });
-}
-
-void fillTargetMenu(QMenu& menu, Services& services) {
-    menu.setToolTipsVisible(true);
-    for (const char* id : kEntries) {
-        if (*id == 0)
-            menu.addSeparator();
-        else
-            menu.addAction(services.actions().find(id));
-    }
-}
-
-void fillLimitsMenu(QMenu& menu, Services& services) {
-    menu.addSeparator();
-    for (const char* id : {"opacityLock", "opacityLimits"}) menu.addAction(services.actions().find(id));
 }
 
 } // namespace pellucid::gui

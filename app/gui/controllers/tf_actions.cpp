@@ -1,4 +1,4 @@
-#include "controllers/tf_actions.h"
+#include "controllers/menu_actions.h"
 
 #include "services/services.h"
 #include "store/edits.h"
@@ -13,7 +13,7 @@ QString menuName() { return QObject::tr("&Transfer function"); }
 
 void addTfActions(Services& services) {
     Actions& actions = services.actions();
-    const auto editable = [&services] { return services.store().hasVolume() && !services.isReadOnly(); };
+    const auto editable = [&services] { return services.isEditable(); };
     const auto add = [&](const QString& id, const QString& menu, const QString& text, const QString& tip,
                          bool separator, std::function<void()> trigger) {
         actions.add({.id = id,

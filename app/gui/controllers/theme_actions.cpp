@@ -1,4 +1,4 @@
-#include "controllers/theme_actions.h"
+#include "controllers/menu_actions.h"
 
 #include <QApplication>
 #include <QSettings>

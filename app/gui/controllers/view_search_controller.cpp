@@ -29,8 +29,8 @@ bool ViewSearchController::Question::operator==(const Question& other) const {
            metric == other.metric;
 }
 
-ViewSearchController::ViewSearchController(Services& services, QObject* parent)
-    : QObject(parent), m_services(services),
+ViewSearchController::ViewSearchController(Services& services, OptimizeController& optimizing)
+    : m_services(services), m_optimizing(optimizing),
       m_judging(
           [this, &workspace = services.workspace()](const Judgement& task, const JobControl& job) {
               return m_views.best(workspace, task.input, task.search, {job.stop, {}});
@@ -271,13 +271,12 @@ void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities&
     const ViewAngles angles = viewAngles(found.input.view.camera, task.input.volume->geometry());
     const auto degrees = [](double value) { return QString::number(value, 'f', 0); };
     const std::string kept = keptText(found.result);
-    m_services.optimizing().say(
-        (kept.empty() ? QString() : QString::fromStdString(kept) + ' ') +
-        (found.result.converged()
-             ? tr("On target from azimuth %1°, elevation %2°: F = %3, from %4.")
-             : tr("Not on target; the nearest view found is azimuth %1°, elevation %2°: F = %3, from %4."))
-            .arg(degrees(angles.azimuth), degrees(angles.elevation), QString::number(best.objective, 'f', 4),
-                 QString::number(start.objective, 'f', 4)));
+    m_optimizing.say((kept.empty() ? QString() : QString::fromStdString(kept) + ' ') +
+                     (found.result.converged()
+                          ? tr("On target from azimuth %1°, elevation %2°: F = %3, from %4.")
+                          : tr("Not on target; the nearest view found is azimuth %1°, elevation %2°: F = %3, from %4."))
+                         .arg(degrees(angles.azimuth), degrees(angles.elevation),
+                              QString::number(best.objective, 'f', 4), QString::number(start.objective, 'f', 4)));
 }
 
 void ViewSearchController::setGlimpse(const std::optional<Camera>& camera) { Q_EMIT glimpsed(camera); }

@@ -13,6 +13,7 @@
 
 namespace pellucid::gui {
 
+class OptimizeController;
 class Services;
 
 /// Looks from all over the sphere, off the window's thread, and keeps the map until what it depends on has changed:
@@ -21,7 +22,7 @@ class Services;
 class ViewSearchController : public QObject {
     Q_OBJECT
 public:
-    ViewSearchController(Services& services, QObject* parent);
+    ViewSearchController(Services& services, OptimizeController& optimizing);
     ~ViewSearchController() override;
 
     void addActions();
@@ -91,6 +92,7 @@ private:
     void grow(int number, const ViewMap& map);
 
     Services& m_services;
+    OptimizeController& m_optimizing;
     FeatureId m_feature = 0;
     bool m_wanted = false;
     bool m_stopped = false;                     ///< by the user: it is not begun again before something changes

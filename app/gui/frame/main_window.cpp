@@ -9,26 +9,23 @@
 #include <QHBoxLayout>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPointer>
 #include <QScreen>
 #include <QSettings>
 #include <QStatusBar>
 #include <QVBoxLayout>
 
-#include "controllers/open_controller.h"
-#include "controllers/optimize_controller.h"
-#include "controllers/player_controller.h"
-#include "controllers/recovery_controller.h"
-#include "controllers/refine_controller.h"
-#include "controllers/save_controller.h"
+#include "controllers/controllers.h"
 #include "frame/dock_space.h"
 #include "frame/keys_dialog.h"
 #include "frame/notice_bar.h"
 #include "frame/status_line.h"
 #include "frame/welcome_card.h"
+#include "panels/panel.h"
 #include "panels/probe_panel.h"
-#include "services/panel.h"
 #include "view/clip_layer.h"
 #include "view/light_layer.h"
+#include "view/picture_pair.h"
 #include "view/region_layer.h"
 #include "view/slice_layer.h"
 #include "widgets/scrolled.h"
@@ -37,7 +34,8 @@ namespace pellucid::gui {
 
 MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_services(std::make_unique<Services>(this)),
-      m_view(new VolumeView(m_services->store(), renderer, this, &m_services->fields())),
+      m_controllers(std::make_unique<Controllers>(*m_services)),
+      m_view(new VolumeView(m_services->store(), renderer, this, &m_controllers->fields)),
       m_views(new ViewGrid(*m_services, *m_view, this)), m_row(new QHBoxLayout) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
@@ -52,20 +50,20 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     setCentralWidget(middle);
 
     m_view->overlay().add(std::make_unique<SliceLayer>());
-    addClipHandles(*m_services, m_view->overlay());
+    addClipHandles(*m_services, *m_controllers->clipHandles, m_view->overlay());
     m_view->overlay().add(std::make_unique<LightLayer>(*m_services, m_view->overlay()));
-    addProbe(*m_services, *m_view);
-    m_view->overlay().add(std::make_unique<RegionLayer>(*m_services, m_view->overlay()));
+    addProbe(*m_services, m_controllers->probe, *m_view);
+    m_view->overlay().add(std::make_unique<RegionLayer>(*m_services, m_controllers->refining, m_view->overlay()));
     addPanels();
     addHelpActions();
     m_services->actions().build(*this);
-    m_services->opening().updateRecentFiles();
-    new StatusLine(*m_services, *m_view, *statusBar());
+    m_controllers->opening.updateRecentFiles();
+    new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, *m_view, *statusBar());
 
     connect(m_view, &VolumeView::frameShown, this, [this] {
-        m_services->saving().setSeenSize({m_view->frame().width, m_view->frame().height});
-        m_services->refining().setViewSize({m_view->frame().width, m_view->frame().height});
-        m_services->player().pictureShown(m_view->frame().volume);
+        m_controllers->saving.setSeenSize({m_view->frame().width, m_view->frame().height});
+        m_controllers->refining.setViewSize({m_view->frame().width, m_view->frame().height});
+        m_controllers->player.pictureShown(m_view->frame().volume);
         Q_EMIT settledChanged();
     });
     connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
@@ -74,7 +72,15 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     });
     connect(m_services.get(), &Services::idleChanged, this, &MainWindow::settledChanged);
     connect(&m_services->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
-    connect(&m_services->opening(), &OpenController::busyChanged, this, &MainWindow::updateTitle);
+    connect(&m_controllers->saving, &SaveController::sessionPathChanged, this, &MainWindow::updateTitle);
+    connect(&m_controllers->views, &ViewSearchController::glimpsed, m_view, &VolumeView::lookFrom);
+    connect(&m_controllers->refining, &RefineController::pairWanted, this,
+            [this, pair = QPointer<PicturePair>()]() mutable {
+                if (!pair) pair = new PicturePair(*m_services, m_controllers->refining, this);
+                pair->show();
+                pair->raise();
+                pair->activateWindow();
+            });
     updateTitle();
     resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
 }
@@ -82,6 +88,7 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
 MainWindow::~MainWindow() {
     // Widgets refer to the services, its jobs to nothing of theirs: so widgets go first.
     m_services->disconnect();
+    m_services->panels().disconnect();
     delete takeCentralWidget();
     for (QDialog* dialog : findChildren<QDialog*>(QString(), Qt::FindDirectChildrenOnly)) delete dialog;
     for (QDockWidget* dock : findChildren<QDockWidget*>()) delete dock;
@@ -96,23 +103,19 @@ void MainWindow::addPanels() {
     for (const PanelInfo& panel : panelRegistry()) {
         auto* dock = new QDockWidget(panel.title, this);
         dock->setObjectName(QString(panel.id) + "Dock");
-        auto* const content = new DockScroll(panel.make(*m_services, dock), panel.area);
+        auto* const content = new DockScroll(panel.make(*m_services, *m_controllers, dock), panel.area);
         dock->setWidget(content);
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
         space->watch(*dock);
         if (panel.tabOf != nullptr) {
-            auto* beside = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
+            auto* beside = m_services->panels().dock(panel.tabOf);
             tabifyDockWidget(beside, dock);
             beside->raise();
         }
-        if (panel.below != nullptr)
-            splitDockWidget(findChild<QDockWidget*>(QString(panel.below) + "Dock"), dock, Qt::Vertical);
+        if (panel.below != nullptr) splitDockWidget(m_services->panels().dock(panel.below), dock, Qt::Vertical);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
-        if (panel.shown)
-            connect(dock, &QDockWidget::visibilityChanged, m_services.get(),
-                    [this, shown = panel.shown](bool visible) { shown(*m_services, visible); });
         actions.add({.id = QString(panel.id) + "Action",
                      .menu = tr("&View"),
                      .text = tr("%1 panel").arg(panel.title),
@@ -131,8 +134,9 @@ void MainWindow::addPanels() {
                          },
                      .checked = [dock] { return isInFront(*dock); },
                      .separatorBefore = std::exchange(first, false)});
-        connect(dock, &QDockWidget::visibilityChanged, &actions, &Actions::refresh);
+        m_services->panels().add(panel.id, *dock);
     }
+    connect(&m_services->panels(), &Panels::visibilityChanged, &actions, &Actions::refresh);
 }
 
 void MainWindow::addHelpActions() {
@@ -186,7 +190,7 @@ void MainWindow::updateTitle() {
     SessionStore& store = m_services->store();
     if (!store.hasVolume()) return setWindowTitle(tr("Pellucid"));
     const QString title = QString::fromStdString(store.scene().volume->title),
-                  file = m_services->opening().sessionPath();
+                  file = m_controllers->saving.sessionPath();
     setWindowTitle(file.isEmpty() ? tr("%1[*] – Pellucid").arg(title)
                                   : tr("%1 – %2[*] – Pellucid").arg(title, QFileInfo(file).fileName()));
     setWindowModified(!store.isClean());
@@ -198,11 +202,11 @@ void MainWindow::changeEvent(QEvent* event) {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-    m_services->optimizing().cancel();
-    if (!m_services->saving().maybeSave()) return event->ignore();
-    m_services->recovery().discard();
-    m_services->opening().cancel();
-    m_services->saving().cancel();
+    m_controllers->optimizing.cancel();
+    if (!m_controllers->saving.maybeSave()) return event->ignore();
+    m_controllers->recovery.discard();
+    m_controllers->opening.cancel();
+    m_controllers->saving.cancel();
     QSettings settings;
     settings.setValue("geometry", saveGeometry());
     settings.setValue("windowState", saveState());
@@ -222,7 +226,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
     event->acceptProposedAction();
     // In a later turn: a dialog must not keep the program waiting that the file was dragged from.
     QMetaObject::invokeMethod(
-        this, [this, paths] { m_services->opening().openPaths(paths); }, Qt::QueuedConnection);
+        this, [this, paths] { m_controllers->opening.openPaths(paths); }, Qt::QueuedConnection);
 }
 
 } // namespace pellucid::gui

@@ -13,6 +13,8 @@ class QHBoxLayout;
 
 namespace pellucid::gui {
 
+struct Controllers;
+
 class MainWindow : public QMainWindow {
     Q_OBJECT
 public:
@@ -20,6 +22,7 @@ public:
     ~MainWindow() override;
 
     Services& services() { return *m_services; }
+    Controllers& controllers() { return *m_controllers; }
     VolumeView& view() { return *m_view; }
     ViewGrid& views() { return *m_views; }
 
@@ -45,6 +48,7 @@ private:
     void updateTitle();
 
     std::unique_ptr<Services> m_services;
+    std::unique_ptr<Controllers> m_controllers;
     VolumeView* m_view;
     ViewGrid* m_views;  // with m_view in it
     QHBoxLayout* m_row; // with m_views in it

@@ -6,7 +6,6 @@
 #include <QToolButton>
 
 #include "controllers/open_controller.h"
-#include "controllers/optimize_controller.h"
 #include "controllers/save_controller.h"
 #include "render/camera_motion.h"
 #include "services/services.h"
@@ -21,9 +20,10 @@ constexpr int kMessageTime = 4000; // milliseconds
 
 } // namespace
 
-StatusLine::StatusLine(Services& services, VolumeView& view, QStatusBar& bar)
-    : QObject(&bar), m_services(services), m_view(view), m_bar(bar), m_volume(new QLabel(&bar)),
-      m_camera(new QLabel(&bar)), m_renderer(new QLabel(&bar)), m_engine(new QLabel(&bar)),
+StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, VolumeView& view,
+                       QStatusBar& bar)
+    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_view(view), m_bar(bar),
+      m_volume(new QLabel(&bar)), m_camera(new QLabel(&bar)), m_renderer(new QLabel(&bar)), m_engine(new QLabel(&bar)),
       m_background(new QLabel(&bar)), m_progress(new QProgressBar(&bar)), m_cancel(new QToolButton(&bar)) {
     m_volume->setObjectName("volumeLabel");
     m_camera->setObjectName("cameraLabel");
@@ -43,8 +43,6 @@ StatusLine::StatusLine(Services& services, VolumeView& view, QStatusBar& bar)
     bar.addWidget(m_cancel);
     for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine}) bar.addPermanentWidget(label);
 
-    OpenController& opening = services.opening();
-    SaveController& saving = services.saving();
     connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving] {
         opening.cancel();
         saving.cancel();
@@ -64,7 +62,7 @@ StatusLine::StatusLine(Services& services, VolumeView& view, QStatusBar& bar)
             [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
     connect(&services.store(), &SessionStore::changed, this, &StatusLine::followScene);
     connect(&services.results(), &Results::changed, this, &StatusLine::followFigures);
-    connect(&services.optimizing(), &OptimizeController::runningChanged, this, &StatusLine::followFigures);
+    connect(&services, &Services::readOnlyChanged, this, &StatusLine::followFigures);
     connect(&view, &VolumeView::frameShown, this, &StatusLine::followView);
     followBackground();
     followScene();
@@ -115,7 +113,7 @@ void StatusLine::followView() {
 
 void StatusLine::followFigures() {
     const Results& results = m_services.results();
-    if (m_services.optimizing().isRunning()) {
+    if (m_services.isReadOnly()) {
         m_engine->setText(tr("optimizing"));
         return;
     }
@@ -132,8 +130,8 @@ void StatusLine::followFigures() {
 }
 
 void StatusLine::followBackground() {
-    const bool opening = m_services.opening().isBusy(), busy = opening || m_services.saving().isBusy();
-    const QString text = opening ? m_services.opening().busyText() : m_services.saving().busyText();
+    const bool opening = m_opening.isBusy(), busy = opening || m_saving.isBusy();
+    const QString text = opening ? m_opening.busyText() : m_saving.busyText();
     if (busy && (m_cancel->isHidden() || text != m_background->text())) m_progress->setRange(0, 0);
     m_background->setText(text);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_background, m_progress, m_cancel})

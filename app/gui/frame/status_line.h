@@ -11,12 +11,14 @@ class QToolButton;
 namespace pellucid::gui {
 
 class VolumeView;
+class OpenController;
+class SaveController;
 class Services;
 
 class StatusLine : public QObject {
     Q_OBJECT
 public:
-    StatusLine(Services& services, VolumeView& view, QStatusBar& bar);
+    StatusLine(Services& services, OpenController& opening, SaveController& saving, VolumeView& view, QStatusBar& bar);
 
 private:
     void followScene();
@@ -25,6 +27,8 @@ private:
     void followBackground();
 
     Services& m_services;
+    OpenController& m_opening;
+    SaveController& m_saving;
     VolumeView& m_view;
     QStatusBar& m_bar;
     QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background;

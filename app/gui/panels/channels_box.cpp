@@ -54,11 +54,12 @@ QString channelTitle(Channel channel) {
 
 } // namespace
 
-ChannelsBox::ChannelsBox(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_on(new QCheckBox(tr("&Colours from variables"), this)),
-      m_frames(new QSpinBox(this)), m_swap(new QPushButton(tr("S&wap opacity and brightness"), this)),
-      m_hueSlider(new QSlider(Qt::Horizontal, this)), m_hueFrom(new QDoubleSpinBox(this)),
-      m_hueTo(new QDoubleSpinBox(this)), m_hueSwatch(new QLabel(this)), m_note(new QLabel(this)) {
+ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* parent)
+    : QWidget(parent), m_services(services), m_opening(opening),
+      m_on(new QCheckBox(tr("&Colours from variables"), this)), m_frames(new QSpinBox(this)),
+      m_swap(new QPushButton(tr("S&wap opacity and brightness"), this)), m_hueSlider(new QSlider(Qt::Horizontal, this)),
+      m_hueFrom(new QDoubleSpinBox(this)), m_hueTo(new QDoubleSpinBox(this)), m_hueSwatch(new QLabel(this)),
+      m_note(new QLabel(this)) {
     setObjectName("channelsBox");
     m_on->setObjectName("hsbCheck");
     m_on->setToolTip(tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
@@ -99,12 +100,11 @@ ChannelsBox::ChannelsBox(Services& services, QWidget* parent)
     connect(m_on, &QCheckBox::clicked, this, &ChannelsBox::setOn);
     connect(m_frames, &QSpinBox::valueChanged, this, [this](int frames) {
         if (m_showing) return;
-        m_services.opening().editInJob(tr("Frames of volatility"),
-                                       [frames](Session& session) { setVolatilityFrames(session, frames); });
+        m_opening.editInJob(tr("Frames of volatility"),
+                            [frames](Session& session) { setVolatilityFrames(session, frames); });
     });
-    connect(m_swap, &QPushButton::clicked, this, [this] {
-        m_services.opening().editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); });
-    });
+    connect(m_swap, &QPushButton::clicked, this,
+            [this] { m_opening.editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); }); });
     connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.colors != after.colors ||
             !before.session.variables.isSame(after.session.variables) || !before.session.hsb.isSame(after.session.hsb))
@@ -126,8 +126,8 @@ void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* nam
     connect(combo, &QComboBox::activated, this, [this, combo, channel] {
         const std::string driver = combo->currentData().toString().toStdString();
         if (m_showing || driver == channelOf(m_services.store().session(), channel)) return;
-        m_services.opening().editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
-                                       [channel, driver](Session& s) { setChannel(s, channel, driver); });
+        m_opening.editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
+                            [channel, driver](Session& s) { setChannel(s, channel, driver); });
     });
 }
 
@@ -177,7 +177,7 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
     connect(scale.automatic, &QToolButton::clicked, this, [this, index](bool automatic) {
         const Scale& s = m_scales[index];
         const double present = m_services.scene().*s.present;
-        m_services.opening().editInJob(s.name, [&s, automatic, present](Session& session) {
+        m_opening.editInJob(s.name, [&s, automatic, present](Session& session) {
             session.hsb.edit([&](HsbMapping& h) { h.*s.value = automatic ? std::nullopt : std::optional(present); });
         });
     });
@@ -228,7 +228,7 @@ void ChannelsBox::setOn(bool on) {
         if (on) startMapping(session, varies);
         session.hsb.edit([on](HsbMapping& h) { h.on = on; });
     };
-    m_services.opening().editInJob(on ? tr("Colours from variables") : tr("Colours of the transfer function"), change);
+    m_opening.editInJob(on ? tr("Colours from variables") : tr("Colours of the transfer function"), change);
     m_on->setChecked(m_services.store().session().hsb->on); // until it has been done
 }
 
@@ -240,7 +240,7 @@ bool ChannelsBox::isFast() const {
 void ChannelsBox::edit(const QString& text, const QString& mergeKey, const Change& change) {
     if (m_showing) return;
     const auto all = [change](Session& session) { session.hsb.edit(change); };
-    if (!isFast()) return m_services.opening().editInJob(text, all);
+    if (!isFast()) return m_opening.editInJob(text, all);
     try {
         m_services.store().edit(text, mergeKey, all);
     } catch (const Error& error) { // a frame that has gone since
@@ -292,7 +292,7 @@ void ChannelsBox::followChannel(Channel channel) {
 
 void ChannelsBox::follow() {
     const Scene& scene = m_services.scene();
-    setEnabled(m_services.store().hasVolume() && !m_services.isReadOnly());
+    setEnabled(m_services.isEditable());
     if (!m_services.store().hasVolume()) return;
     const HsbMapping& hsb = *scene.session.hsb;
     m_showing = true;

@@ -21,12 +21,13 @@ class QToolButton;
 
 namespace pellucid::gui {
 
+class OpenController;
 class Services;
 
 class ChannelsBox : public QWidget {
     Q_OBJECT
 public:
-    explicit ChannelsBox(Services& services, QWidget* parent = nullptr);
+    ChannelsBox(Services& services, OpenController& opening, QWidget* parent = nullptr);
     /// Colours of variables or of the transfer function, the one or the other.
     void toggle();
 
@@ -53,6 +54,7 @@ private:
     bool isFast() const;
 
     Services& m_services;
+    OpenController& m_opening;
     QCheckBox* m_on;
     std::array<QComboBox*, 4> m_channels{}; ///< by Channel
     std::array<Scale, 2> m_scales{};

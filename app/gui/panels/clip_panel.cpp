@@ -10,8 +10,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "render/clip_handles.h"
-#include "services/panel.h"
 #include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
@@ -22,21 +23,20 @@ namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z"};
 
-bool isReady(Services& services) { return services.store().hasVolume() && !services.isReadOnly(); }
+bool isReady(Services& services) { return services.isEditable(); }
 
-void addPlane(Services& services) {
+void addPlane(Services& services, QAction& handles) {
     const Scene& scene = services.scene();
     const ClipPlane plane = planeFacing(scene.camera, scene.volume->geometry());
     services.store().edit(QObject::tr("Clip plane"), {}, [&](Session& session) {
         session.clipping.edit([&](Clipping& c) { c.planes.push_back(plane); });
     });
-    QAction* handles = services.actions().find("clipHandlesAction");
-    if (!handles->isChecked()) handles->trigger(); // it is there to be moved
+    if (!handles.isChecked()) handles.trigger(); // it is there to be moved
 }
 
 } // namespace
 
-ClipPanel::ClipPanel(Services& services, QWidget* parent)
+ClipPanel::ClipPanel(Services& services, QAction& handles, QWidget* parent)
     : QWidget(parent), m_services(services), m_add(new QPushButton(tr("&Add plane"), this)),
       m_reset(new QPushButton(tr("&Whole box"), this)) {
     setObjectName("clipPanel");
@@ -44,9 +44,9 @@ ClipPanel::ClipPanel(Services& services, QWidget* parent)
     m_add->setToolTip(tr("Cut away what is nearer than the middle; at most %1 planes (Shift+C)").arg(kMostClipPlanes));
     m_reset->setObjectName("resetClipButton");
     m_reset->setToolTip(tr("Cut nothing away"));
-    auto* handles = new QToolButton(this);
-    handles->setObjectName("clipHandlesButton");
-    handles->setDefaultAction(m_services.actions().find("clipHandlesAction"));
+    auto* button = new QToolButton(this);
+    button->setObjectName("clipHandlesButton");
+    button->setDefaultAction(&handles);
 
     auto* content = new QWidget;
     auto* rows = new QVBoxLayout(content);
@@ -61,11 +61,11 @@ ClipPanel::ClipPanel(Services& services, QWidget* parent)
     buttons->addWidget(m_add, 1);
     buttons->addWidget(m_reset, 1);
     rows->addLayout(buttons);
-    rows->addWidget(handles);
+    rows->addWidget(button);
     rows->addStretch(1);
     fillScrolled(this, content);
 
-    connect(m_add, &QPushButton::clicked, this, [this] { addPlane(m_services); });
+    connect(m_add, &QPushButton::clicked, this, [this, &handles] { addPlane(m_services, handles); });
     connect(m_reset, &QPushButton::clicked, this, [this] {
         m_services.store().edit(tr("Whole box"), {}, [](Session& session) { session.clipping.set({}); });
     });
@@ -227,18 +227,18 @@ PanelInfo clipPanel() {
         .tabOf = "display",
         .keys = QKeySequence("Ctrl+K"),
         .tip = QObject::tr("The part of the box that is left, oblique planes"),
-        .make = [](Services& services, QWidget* parent) {
-            services.actions().add({.id = "addPlaneAction",
-                                    .menu = QObject::tr("&View"),
-                                    .text = QObject::tr("Add clip p&lane"),
-                                    .keys = {QKeySequence("Shift+C")},
-                                    .tip = QObject::tr("Cut away what is nearer than the middle of the volume"),
-                                    .trigger = [&services] { addPlane(services); },
-                                    .enabled =
-                                        [&services] {
-                                            return isReady(services) &&
-                                                   services.scene().session.clipping->planes.size() < kMostClipPlanes;
-                                        }});
+        .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+            services.actions().add(
+                {.id = "addPlaneAction",
+                 .menu = QObject::tr("&View"),
+                 .text = QObject::tr("Add clip p&lane"),
+                 .keys = {QKeySequence("Shift+C")},
+                 .tip = QObject::tr("Cut away what is nearer than the middle of the volume"),
+                 .trigger = [&services, &handles = *controllers.clipHandles] { addPlane(services, handles); },
+                 .enabled =
+                     [&services] {
+                         return isReady(services) && services.scene().session.clipping->planes.size() < kMostClipPlanes;
+                     }});
             services.actions().add(
                 {.id = "resetClipAction",
                  .menu = QObject::tr("&View"),
@@ -256,7 +256,7 @@ PanelInfo clipPanel() {
                                  if (old.isNone() != now.isNone() || old.planes.size() != now.planes.size())
                                      services.actions().refresh();
                              });
-            return new ClipPanel(services, parent);
+            return new ClipPanel(services, *controllers.clipHandles, parent);
         }};
 }
 

@@ -9,6 +9,7 @@
 
 #include "render/clipping.h"
 
+class QAction;
 class QDoubleSpinBox;
 class QPushButton;
 
@@ -19,7 +20,8 @@ class Services;
 class ClipPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit ClipPanel(Services& services, QWidget* parent = nullptr);
+    /// `handles` shows them in the picture.
+    ClipPanel(Services& services, QAction& handles, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
 

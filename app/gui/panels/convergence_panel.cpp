@@ -5,7 +5,6 @@
 #include <QBoxLayout>
 #include <QCheckBox>
 #include <QDir>
-#include <QDockWidget>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QHeaderView>
@@ -18,12 +17,11 @@
 #include <QTreeWidget>
 
 #include "base/atomic_file.h"
-#include "controllers/optimize_controller.h"
-#include "controllers/save_controller.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "report/convergence.h"
 #include "report/csv.h"
 #include "report/svg_plot.h"
-#include "services/panel.h"
 #include "services/services.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
@@ -88,31 +86,27 @@ PanelInfo convergencePanel() {
             .tabOf = "tf",
             .keys = QKeySequence("Ctrl+Shift+C"),
             .tip = QObject::tr("How optimizations go: distance, VWS and opacities over the moves; runs compared"),
-            .make = [](Services& services, QWidget* parent) {
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
                 services.actions().add({.id = "showConvergence",
                                         .menu = QObject::tr("&Transfer function"),
                                         .text = QObject::tr("Con&vergence of the optimization"),
                                         .tip = QObject::tr("Distance, VWS and opacities over the moves"),
-                                        .trigger =
-                                            [&services] {
-                                                auto* dock =
-                                                    services.window()->findChild<QDockWidget*>("convergenceDock");
-                                                dock->show();
-                                                dock->raise();
-                                            },
+                                        .trigger = [&services] { services.panels().show("convergence"); },
                                         .enabled = [&services] { return services.store().hasVolume(); }});
                 services.actions().addGestures(
                     {{QObject::tr("Convergence"), QObject::tr("Click on a dot"), QObject::tr("show that move")},
                      {QObject::tr("Convergence"), QObject::tr("Double-click"), QObject::tr("export")},
                      {QObject::tr("Convergence"), "F2, Del", QObject::tr("rename, delete the run")}});
-                return new ConvergencePanel(services, parent);
+                return new ConvergencePanel(services, controllers.optimizing, controllers.saving, parent);
             }};
 }
 
-ConvergencePanel::ConvergencePanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_row(new QBoxLayout(QBoxLayout::LeftToRight)),
-      m_list(new QTreeWidget(this)), m_log(new QCheckBox(tr("Logarithmic"), this)), m_readOut(new QLabel(this)),
-      m_start(new QToolButton(this)), m_export(new QToolButton(this)) {
+ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optimizing, SaveController& saving,
+                                   QWidget* parent)
+    : QWidget(parent), m_services(services), m_optimizing(optimizing), m_saving(saving),
+      m_row(new QBoxLayout(QBoxLayout::LeftToRight)), m_list(new QTreeWidget(this)),
+      m_log(new QCheckBox(tr("Logarithmic"), this)), m_readOut(new QLabel(this)), m_start(new QToolButton(this)),
+      m_export(new QToolButton(this)) {
     const char* const names[] = {"objectivePlot", "vwsPlot", "opacityPlot"};
     const QString tips[] = {
         tr("F: the root mean square distance of the features' VWS from their targets, after each move;\n"
@@ -216,20 +210,20 @@ ConvergencePanel::ConvergencePanel(Services& services, QWidget* parent)
         }
         if (before.series != after.series || !before.session.runs.isSame(after.session.runs)) follow();
     });
-    connect(&services.optimizing(), &OptimizeController::moved, this, [this] { drawPlots(); });
-    connect(&services.optimizing(), &OptimizeController::runningChanged, this, &ConvergencePanel::follow);
+    connect(&optimizing, &OptimizeController::moved, this, [this] { drawPlots(); });
+    connect(&optimizing, &OptimizeController::runningChanged, this, &ConvergencePanel::follow);
     follow();
 }
 
 const Run* ConvergencePanel::runNumbered(int number) const {
-    if (number == kUnderWay) return m_services.optimizing().underWay();
+    if (number == kUnderWay) return m_optimizing.underWay();
     for (const Run& run : *m_services.scene().session.runs)
         if (run.number == number && isCurve(run)) return &run;
     return nullptr;
 }
 
 const Run* ConvergencePanel::shownRun() const {
-    if (const Run* run = m_services.optimizing().underWay()) return isCurve(*run) ? run : nullptr;
+    if (const Run* run = m_optimizing.underWay()) return isCurve(*run) ? run : nullptr;
     if (const Run* run = runNumbered(m_shown)) return run;
     const std::vector<Run>& runs = *m_services.scene().session.runs;
     const auto latest = std::find_if(runs.rbegin(), runs.rend(), isCurve);
@@ -240,7 +234,7 @@ std::vector<const Run*> ConvergencePanel::comparedRuns() const {
     std::vector<const Run*> runs;
     for (const int number : m_compared)
         if (const Run* run = number == kUnderWay ? nullptr : runNumbered(number)) runs.push_back(run);
-    const Run* const now = m_services.optimizing().underWay();
+    const Run* const now = m_optimizing.underWay();
     if (now != nullptr && isCurve(*now)) runs.push_back(now);
     if (runs.empty())
         if (const Run* run = shownRun()) runs.push_back(run);
@@ -413,7 +407,7 @@ void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
             ->setEnabled(!m_services.isReadOnly());
         menu.addAction(tr("Save report…"), this,
                        [this, number = run->number] {
-                           if (const Run* r = runNumbered(number)) m_services.saving().chooseReport(*r);
+                           if (const Run* r = runNumbered(number)) m_saving.chooseReport(*r);
                        })
             ->setEnabled(run->hasStart() && !m_services.isReadOnly());
         menu.addSeparator();

@@ -19,6 +19,8 @@ class QTreeWidgetItem;
 namespace pellucid::gui {
 
 class PlotView;
+class OptimizeController;
+class SaveController;
 class Services;
 
 /// Three plots and a list. The first has F of all runs that are checked in the list; the others VWS and opacities of
@@ -27,7 +29,7 @@ class Services;
 class ConvergencePanel : public QWidget {
     Q_OBJECT
 public:
-    ConvergencePanel(Services& services, QWidget* parent);
+    ConvergencePanel(Services& services, OptimizeController& optimizing, SaveController& saving, QWidget* parent);
 
     /// Writes what is shown, by the suffix: .csv (the runs' curves), .png or .svg (the plots). Errors are shown.
     void exportTo(const QString& path);
@@ -56,6 +58,8 @@ private:
     void clear();
 
     Services& m_services;
+    OptimizeController& m_optimizing;
+    SaveController& m_saving;
     std::array<PlotView*, 3> m_plots{};
     QBoxLayout* m_row;
     QTreeWidget* m_list;

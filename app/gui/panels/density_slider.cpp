@@ -11,7 +11,6 @@
 #include <QSlider>
 #include <QToolButton>
 
-#include "controllers/optimize_controller.h"
 #include "optimize/answer/visibility_words.h"
 #include "services/services.h"
 #include "store/edits.h"
@@ -86,8 +85,8 @@ DensitySlider::DensitySlider(Services& services, QWidget* parent)
     connect(&m_job, &JobBase::busyChanged, this, [this] { rest(); });
     connect(&m_job, &JobBase::failed, this,
             [this](const Error& error) { m_services.showError(tr("The curve of equal shares"), error); });
-    connect(&services.optimizing(), &OptimizeController::runningChanged, this, [this] {
-        if (m_services.optimizing().isRunning()) {
+    connect(&services, &Services::readOnlyChanged, this, [this] {
+        if (m_services.isReadOnly()) {
             m_later.stop();
             m_job.cancel();
         } else {
@@ -121,9 +120,7 @@ std::optional<double> DensitySlider::placeOf(const Request& now) const {
 
 void DensitySlider::compute() {
     m_later.stop();
-    if (m_job.isRunning() || !m_services.store().hasVolume() || m_services.scene().tf.features.empty() ||
-        m_services.optimizing().isRunning())
-        return;
+    if (m_job.isRunning() || !m_services.isEditable() || m_services.scene().tf.features.empty()) return;
     const Request now = present();
     if (placeOf(now)) return;
     m_curve.reset();

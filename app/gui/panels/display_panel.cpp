@@ -16,8 +16,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "controllers/open_controller.h"
-#include "services/panel.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
@@ -53,10 +53,11 @@ QPixmap swatchOf(const Rgb& color) {
 
 } // namespace
 
-DisplayPanel::DisplayPanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_mode(new QComboBox(this)), m_background(new QToolButton(this)),
-      m_gradient(new QCheckBox(tr("to the top"), this)), m_top(new QToolButton(this)), m_feature(new QComboBox(this)),
-      m_finest(new QComboBox(this)), m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
+DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget* parent)
+    : QWidget(parent), m_services(services), m_opening(opening), m_mode(new QComboBox(this)),
+      m_background(new QToolButton(this)), m_gradient(new QCheckBox(tr("to the top"), this)),
+      m_top(new QToolButton(this)), m_feature(new QComboBox(this)), m_finest(new QComboBox(this)),
+      m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
       m_wholeRange(new QPushButton(tr("&All values"), this)), m_component(new QSpinBox(this)),
       m_note(new QLabel(this)) {
     setObjectName("displayPanel");
@@ -150,18 +151,18 @@ DisplayPanel::DisplayPanel(Services& services, QWidget* parent)
     connect(m_lo, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_hi, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_wholeRange, &QPushButton::clicked, this, [this] {
-        m_services.opening().editData(tr("All values"), [](Session& session) {
+        m_opening.editData(tr("All values"), [](Session& session) {
             session.variables.edit([](std::vector<Variable>& all) { all.front().window.reset(); });
         });
     });
     connect(m_component, &QSpinBox::valueChanged, this, [this](int component) {
         if (m_showing) return;
-        m_services.opening().editData(tr("Component"), [component](Session& session) {
+        m_opening.editData(tr("Component"), [component](Session& session) {
             session.variables.edit([&](std::vector<Variable>& all) { all.front().source.component = component; });
         });
     });
-    connect(&m_services.opening(), &OpenController::busyChanged, this, [this] {
-        if (!m_services.opening().isBusy()) follow(); // also where it failed; till then it shows what was asked for
+    connect(&m_opening, &OpenController::busyChanged, this, [this] {
+        if (!m_opening.isBusy()) follow(); // also where it failed; till then it shows what was asked for
     });
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         const Session &old = before.session, &now = after.session;
@@ -193,14 +194,14 @@ void DisplayPanel::editWindow() {
     if (m_showing) return;
     const ValueRange window{m_lo->value(), m_hi->value()};
     if (!(window.lo < window.hi)) return follow(); // nothing lies between them
-    m_services.opening().editData(tr("Values"), [window](Session& session) {
+    m_opening.editData(tr("Values"), [window](Session& session) {
         session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
     });
 }
 
 void DisplayPanel::follow() {
     const Scene& scene = m_services.scene();
-    const bool ready = m_services.store().hasVolume() && !m_services.isReadOnly();
+    const bool ready = m_services.isEditable();
     setEnabled(ready);
     if (!m_services.store().hasVolume()) return;
     m_showing = true;
@@ -253,7 +254,9 @@ PanelInfo displayPanel() {
             .keys = QKeySequence("Ctrl+D"),
             .tip =
                 QObject::tr("Mode, background, one feature alone, how finely it is drawn, range of values, component"),
-            .make = [](Services& services, QWidget* parent) { return new DisplayPanel(services, parent); }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                return new DisplayPanel(services, controllers.opening, parent);
+            }};
 }
 
 } // namespace pellucid::gui

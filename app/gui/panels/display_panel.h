@@ -13,12 +13,13 @@ class QToolButton;
 
 namespace pellucid::gui {
 
+class OpenController;
 class Services;
 
 class DisplayPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit DisplayPanel(Services& services, QWidget* parent = nullptr);
+    DisplayPanel(Services& services, OpenController& opening, QWidget* parent = nullptr);
 
 private:
     void follow();
@@ -26,6 +27,7 @@ private:
     void editWindow();
 
     Services& m_services;
+    OpenController& m_opening;
     QComboBox* m_mode;
     QToolButton* m_background;
     QCheckBox* m_gradient;

@@ -5,7 +5,6 @@
 
 #include <QColorDialog>
 #include <QComboBox>
-#include <QDockWidget>
 #include <QGridLayout>
 #include <QHeaderView>
 #include <QItemSelectionModel>
@@ -23,12 +22,10 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "controllers/feature_actions.h"
-#include "controllers/optimize_controller.h"
-#include "controllers/target_actions.h"
+#include "controllers/controllers.h"
 #include "panels/channels_box.h"
 #include "panels/density_slider.h"
-#include "services/panel.h"
+#include "panels/panel.h"
 #include "services/services.h"
 #include "widgets/lock_mark.h"
 #include "widgets/opacity_editor.h"
@@ -153,11 +150,12 @@ QPushButton* button(const QString& text, const char* name, const QString& tip, Q
 
 } // namespace
 
-FeaturesPanel::FeaturesPanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_model(new FeaturesModel(services.store(), services.results(), this)),
-      m_table(new QTableView(this)), m_bars(new TargetBars(services.store(), services.results())),
-      m_density(new DensitySlider(services, this)), m_add(new QToolButton(this)), m_colors(new QToolButton(this)),
-      m_targets(new QToolButton(this)), m_method(new QComboBox(this)),
+FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent)
+    : QWidget(parent), m_services(services), m_controllers(controllers),
+      m_model(new FeaturesModel(services.store(), services.results(), this)), m_table(new QTableView(this)),
+      m_bars(new TargetBars(services.store(), services.results())), m_density(new DensitySlider(services, this)),
+      m_add(new QToolButton(this)), m_colors(new QToolButton(this)), m_targets(new QToolButton(this)),
+      m_method(new QComboBox(this)),
       m_refine(button(tr("&Refine"), "refineButton",
                       tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this)),
       m_optimize(button(tr("&Optimize"), "optimizeButton",
@@ -200,7 +198,7 @@ FeaturesPanel::FeaturesPanel(Services& services, QWidget* parent)
         select(m_table->rowAt(at.y()));
         QMenu menu(this);
         menu.setObjectName("featureContextMenu");
-        fillFeatureMenu(menu, m_services);
+        m_controllers.features.fillMenu(menu);
         menu.exec(m_table->viewport()->mapToGlobal(at));
     });
     connect(m_table->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this](const QModelIndex& now) {
@@ -236,7 +234,7 @@ FeaturesPanel::FeaturesPanel(Services& services, QWidget* parent)
     for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     m_message->setObjectName("panelMessage");
     m_message->setWordWrap(true);
-    connect(m_message, &QLabel::linkActivated, this, [this] { m_services.optimizing().takeExact(); });
+    connect(m_message, &QLabel::linkActivated, this, [this] { m_controllers.optimizing.takeExact(); });
     makeFaint(*m_message);
 
     auto* choices = new QGridLayout;
@@ -251,12 +249,7 @@ FeaturesPanel::FeaturesPanel(Services& services, QWidget* parent)
     settings->setObjectName("settingsButton");
     settings->setText(tr("Settings…"));
     settings->setToolTip(tr("Steps, tolerance and limit of optimizations; how saliency is measured"));
-    connect(settings, &QToolButton::clicked, this, [this] {
-        auto* dock = m_services.window()->findChild<QDockWidget*>("settingsDock");
-        if (dock == nullptr) return;
-        dock->show();
-        dock->raise();
-    });
+    connect(settings, &QToolButton::clicked, this, [this] { m_services.panels().show("settings"); });
     choices->addWidget(settings, 0, 2);
     choices->setColumnStretch(1, 1);
     auto* buttons = new QGridLayout;
@@ -287,14 +280,11 @@ FeaturesPanel::FeaturesPanel(Services& services, QWidget* parent)
     column->addLayout(choices);
     column->addLayout(buttons);
 
-    const auto triggers = [this](QPushButton* b, const char* action) {
-        connect(b, &QPushButton::clicked, this, [this, action] { m_services.actions().find(action)->trigger(); });
-    };
-    triggers(m_refine, "refineAction");
-    triggers(m_optimize, "optimizeAction");
-    triggers(m_undo, "undoAction");
-    triggers(m_redo, "redoAction");
-    OptimizeController& optimizing = m_services.optimizing();
+    OptimizeController& optimizing = controllers.optimizing;
+    connect(m_refine, &QPushButton::clicked, controllers.refining.actions().refine, &QAction::trigger);
+    connect(m_optimize, &QPushButton::clicked, &optimizing, &OptimizeController::start);
+    connect(m_undo, &QPushButton::clicked, &services, &Services::undo);
+    connect(m_redo, &QPushButton::clicked, &services, &Services::redo);
     connect(m_cancel, &QPushButton::clicked, &optimizing, &OptimizeController::cancel);
     connect(m_method, &QComboBox::activated, this, &FeaturesPanel::editOptions);
     connect(&optimizing, &OptimizeController::runningChanged, this, &FeaturesPanel::followRun);
@@ -320,17 +310,16 @@ QWidget* FeaturesPanel::makeShapeRow() {
     m_add->setPopupMode(QToolButton::InstantPopup);
     auto* shapes = new QMenu(m_add);
     shapes->setToolTipsVisible(true);
-    fillShapeMenu(*shapes, m_services);
+    shapes->addActions(m_controllers.features.shapes());
     m_add->setMenu(shapes);
     row->addWidget(m_add);
-    for (const auto& [id, text] :
-         {std::pair{"featureSplit", tr("Split")}, std::pair{"featureMerge", tr("Merge")},
-          std::pair{"featureDuplicate", tr("Duplicate")}, std::pair{"featureRemove", tr("Remove")}}) {
-        QAction* const action = m_services.actions().find(id);
-        action->setIconText(text); // what buttons say
+    const QString texts[] = {tr("Split"), tr("Merge"), tr("Duplicate"), tr("Remove")}; // what buttons say
+    const QList<QAction*>& actions = m_controllers.features.shaping();
+    for (qsizetype i = 0; i < actions.size(); ++i) {
+        actions[i]->setIconText(texts[i]);
         auto* b = new QToolButton(widget);
-        b->setDefaultAction(action);
-        b->setObjectName(QString::fromLatin1(id) + "Button");
+        b->setDefaultAction(actions[i]);
+        b->setObjectName(actions[i]->objectName() + "Button");
         row->addWidget(b);
     }
     row->addStretch(1);
@@ -348,10 +337,11 @@ QWidget* FeaturesPanel::makeTargetRow() {
     m_targets->setToolTip(tr("All targets at once: equal, by value, as now, for one feature, turned round; and locks"));
     m_targets->setPopupMode(QToolButton::InstantPopup);
     auto* menu = new QMenu(m_targets);
-    fillTargetMenu(*menu, m_services);
+    menu->setToolTipsVisible(true);
+    menu->addActions(m_controllers.targets.entries());
     m_targets->setMenu(menu);
     row->addWidget(m_targets);
-    QAction* const live = m_services.actions().find("liveTargetsAction");
+    QAction* const live = m_controllers.live.action();
     live->setIconText(tr("Live")); // what buttons say
     auto* b = new QToolButton(widget);
     b->setDefaultAction(live);
@@ -372,7 +362,7 @@ QWidget* FeaturesPanel::makeColorRow() {
     m_colors->setToolTip(tr("Colours by value from a map; opacities stay"));
     m_colors->setPopupMode(QToolButton::InstantPopup);
     auto* maps = new QMenu(m_colors);
-    fillColorMenu(*maps, m_services);
+    m_controllers.features.fillColorMenu(*maps);
     m_colors->setMenu(maps);
     row->addWidget(m_density, 1);
     row->addWidget(m_colors);
@@ -394,7 +384,7 @@ bool FeaturesPanel::pressTable(const QMouseEvent& mouse) {
     if (!index.isValid() || mouse.button() != Qt::LeftButton || m_services.isReadOnly()) return false;
     if (index.column() == FeaturesModel::Eye) {
         if (mouse.modifiers() & (Qt::AltModifier | Qt::ControlModifier))
-            toggleOnlyFeature(m_services, index.row());
+            m_controllers.features.toggleOnly(index.row());
         else
             m_model->setData(index, !index.data(Qt::EditRole).toBool());
         return true;
@@ -421,7 +411,7 @@ void FeaturesPanel::select(int row) {
 }
 
 void FeaturesPanel::followSelection() {
-    const int row = selectedFeature(m_services);
+    const int row = m_services.selectedFeature();
     m_showingSelection = true;
     if (row >= 0 && row < m_model->rowCount()) {
         if (m_table->currentIndex().row() != row) m_table->setCurrentIndex(m_model->index(row, FeaturesModel::Name));
@@ -450,7 +440,7 @@ void FeaturesPanel::adjustTable() {
 }
 
 void FeaturesPanel::followRun() {
-    const OptimizeController& run = m_services.optimizing();
+    const OptimizeController& run = m_controllers.optimizing;
     const bool on = run.isRunning();
     if (on && !m_cancel->isVisible()) m_cancel->setFocus();
     if (m_cancel->isHidden() == on) {
@@ -484,7 +474,7 @@ void FeaturesPanel::followRun() {
 }
 
 void FeaturesPanel::showMessage() {
-    const OptimizeController& optimizing = m_services.optimizing();
+    const OptimizeController& optimizing = m_controllers.optimizing;
     const QString& text = optimizing.message();
     const QString link = QStringLiteral(" <a href=\"exact\">%1</a>").arg(tr("Use the exact shares"));
     m_message->setTextFormat(optimizing.hasExact() ? Qt::RichText : Qt::PlainText);
@@ -498,7 +488,7 @@ void FeaturesPanel::follow() {
     const QSignalBlocker blockMethod(m_method);
     m_method->setCurrentIndex(m_method->findData(static_cast<int>(options.method)));
 
-    const bool ready = store.hasVolume() && !m_services.isReadOnly();
+    const bool ready = m_services.isEditable();
     const bool features = !store.scene().tf.features.empty();
     m_refine->setEnabled(ready);
     m_optimize->setEnabled(ready && features);
@@ -527,7 +517,7 @@ PanelInfo featuresPanel() {
             .size = 380,
             .keys = QKeySequence("Ctrl+2"),
             .tip = QObject::tr("What each feature shows and what it should show"),
-            .make = [](Services& services, QWidget* parent) {
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
                 followTitle(services, parent, featuresTitle);
                 const QString place = QObject::tr("Features");
                 services.actions().addGestures(
@@ -538,7 +528,7 @@ PanelInfo featuresPanel() {
                      {place, QObject::tr("Double-click on a target, Enter, a digit"), QObject::tr("type the target")},
                      {place, QObject::tr("Click on a target's padlock, L"),
                       QObject::tr("hold the target where others are set")}});
-                auto* panel = new FeaturesPanel(services, parent);
+                auto* panel = new FeaturesPanel(services, controllers, parent);
                 panel->setMinimumWidth(340);
                 return panel;
             }};

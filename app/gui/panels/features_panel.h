@@ -18,11 +18,12 @@ namespace pellucid::gui {
 
 class DensitySlider;
 class Services;
+struct Controllers;
 
 class FeaturesPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit FeaturesPanel(Services& services, QWidget* parent = nullptr);
+    FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent = nullptr);
 
 protected:
     bool eventFilter(QObject* watched, QEvent* event) override; ///< the mouse on eyes and colours
@@ -41,6 +42,7 @@ private:
     void adjustTable();
 
     Services& m_services;
+    Controllers& m_controllers;
     FeaturesModel* m_model;
     QTableView* m_table;
     TargetBars* m_bars;

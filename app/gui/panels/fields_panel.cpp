@@ -16,8 +16,8 @@
 #include <QPushButton>
 #include <QSlider>
 
-#include "controllers/field_controller.h"
-#include "services/panel.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "services/services.h"
 #include "tf/color_maps.h"
 #include "widgets/number_box.h"
@@ -56,11 +56,11 @@ double strengthAt(int position) { return std::pow(kLeastStrength, 1 - static_cas
 
 } // namespace
 
-FieldsPanel::FieldsPanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_kind(new QComboBox(this)), m_feature(new QComboBox(this)),
-      m_colorMap(new QComboBox(this)), m_strengthSlider(new QSlider(Qt::Horizontal, this)),
-      m_thresholdSlider(new QSlider(Qt::Horizontal, this)), m_strength(new QDoubleSpinBox(this)),
-      m_threshold(new QDoubleSpinBox(this)), m_top(new QLineEdit(this)),
+FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* parent)
+    : QWidget(parent), m_services(services), m_fields(fields), m_kind(new QComboBox(this)),
+      m_feature(new QComboBox(this)), m_colorMap(new QComboBox(this)),
+      m_strengthSlider(new QSlider(Qt::Horizontal, this)), m_thresholdSlider(new QSlider(Qt::Horizontal, this)),
+      m_strength(new QDoubleSpinBox(this)), m_threshold(new QDoubleSpinBox(this)), m_top(new QLineEdit(this)),
       m_usualTop(new QPushButton(tr("&Usual"), this)), m_stop(new QPushButton(this)),
       m_save(new QPushButton(tr("Sa&ve…"), this)), m_state(new QLabel(this)), m_progress(new QProgressBar(this)) {
     setObjectName("fieldsPanel");
@@ -151,7 +151,7 @@ FieldsPanel::FieldsPanel(Services& services, QWidget* parent)
 
     connect(m_kind, &QComboBox::activated, this, [this](int index) {
         const int kind = m_kind->itemData(index).toInt();
-        m_services.fields().show(kind < 0 ? std::nullopt : std::optional(static_cast<FieldKind>(kind)));
+        m_fields.show(kind < 0 ? std::nullopt : std::optional(static_cast<FieldKind>(kind)));
     });
     connect(m_feature, &QComboBox::activated, this, [this] {
         const auto id = static_cast<FeatureId>(m_feature->currentData().toULongLong());
@@ -179,16 +179,16 @@ FieldsPanel::FieldsPanel(Services& services, QWidget* parent)
     connect(m_usualTop, &QPushButton::clicked, this,
             [this] { edit(tr("Usual top of the field"), {}, [](FieldView& f) { f.top.reset(); }); });
     connect(m_stop, &QPushButton::clicked, this, [this] {
-        FieldController& fields = m_services.fields();
+        FieldController& fields = m_fields;
         fields.state() == FieldController::State::Computing ? fields.cancel() : fields.compute();
     });
-    connect(m_save, &QPushButton::clicked, this, [this] { m_services.fields().chooseFile(); });
+    connect(m_save, &QPushButton::clicked, this, [this] { m_fields.chooseFile(); });
     connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features != after.tf.features ||
             !before.session.field.isSame(after.session.field))
             follow();
     });
-    connect(&m_services.fields(), &FieldController::changed, this, &FieldsPanel::followField);
+    connect(&m_fields, &FieldController::changed, this, &FieldsPanel::followField);
     connect(&m_services, &Services::readOnlyChanged, this, &FieldsPanel::follow);
     follow();
 }
@@ -218,7 +218,7 @@ void FieldsPanel::editTop() {
 
 void FieldsPanel::follow() {
     const Scene& scene = m_services.scene();
-    setEnabled(m_services.store().hasVolume() && !m_services.isReadOnly());
+    setEnabled(m_services.isEditable());
     m_showing = true;
     const FieldView& view = *scene.session.field;
     const bool on = view.kind.has_value();
@@ -247,7 +247,7 @@ void FieldsPanel::follow() {
 
 void FieldsPanel::followField() {
     using State = FieldController::State;
-    const FieldController& fields = m_services.fields();
+    const FieldController& fields = m_fields;
     const State state = fields.state();
     const Field* const field = fields.field();
     m_stop->setText(state == State::Computing ? tr("&Stop") : tr("&Compute"));
@@ -288,7 +288,9 @@ PanelInfo fieldsPanel() {
             .tabOf = "display",
             .keys = QKeySequence("Shift+V"),
             .tip = QObject::tr("Visibility, saliency and VWS of each voxel in the place of the data"),
-            .make = [](Services& services, QWidget* parent) { return new FieldsPanel(services, parent); }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                return new FieldsPanel(services, controllers.fields, parent);
+            }};
 }
 
 } // namespace pellucid::gui

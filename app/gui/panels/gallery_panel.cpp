@@ -12,7 +12,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "services/panel.h"
+#include "panels/panel.h"
 #include "services/services.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
@@ -54,18 +54,15 @@ QString fileNameOf(const QString& title) {
 } // namespace
 
 PanelInfo galleryPanel() {
-    return {.id = "gallery",
-            .title = QObject::tr("Presets"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = true,
-            .tabOf = "features",
-            .keys = QKeySequence("Ctrl+9"),
-            .tip = QObject::tr("Transfer functions as small pictures of this volume"),
-            .make = [](Services& services, QWidget* parent) { return new GalleryPanel(services, parent); },
-            .shown =
-                [](Services& services, bool visible) {
-                    if (auto* panel = services.window()->findChild<GalleryPanel*>()) panel->setShown(visible);
-                }};
+    return {
+        .id = "gallery",
+        .title = QObject::tr("Presets"),
+        .area = Qt::RightDockWidgetArea,
+        .visible = true,
+        .tabOf = "features",
+        .keys = QKeySequence("Ctrl+9"),
+        .tip = QObject::tr("Transfer functions as small pictures of this volume"),
+        .make = [](Services& services, Controllers&, QWidget* parent) { return new GalleryPanel(services, parent); }};
 }
 
 GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
@@ -137,6 +134,9 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
     connect(m_keep, &QToolButton::clicked, this, &GalleryPanel::keep);
     connect(m_remove, &QToolButton::clicked, this, &GalleryPanel::remove);
     connect(&services.store(), &SessionStore::changed, this, &GalleryPanel::follow);
+    connect(&services.panels(), &Panels::visibilityChanged, this, [this](const QString& id, bool visible) {
+        if (id == "gallery") setShown(visible);
+    });
     connect(&services, &Services::readOnlyChanged, this, [this] { m_list->setEnabled(!m_services.isReadOnly()); });
     fill();
 }
@@ -233,7 +233,7 @@ void GalleryPanel::showPicture(int number, int row, const QImage& image) {
 
 void GalleryPanel::apply(int row) {
     SessionStore& store = m_services.store();
-    if (row < 0 || row >= static_cast<int>(m_entries.size()) || !store.hasVolume() || m_services.isReadOnly()) return;
+    if (row < 0 || row >= static_cast<int>(m_entries.size()) || !m_services.isEditable()) return;
     store.commit();
     const Entry& entry = m_entries[static_cast<std::size_t>(row)];
     const auto what = static_cast<Take>(m_take->currentIndex());

@@ -29,11 +29,12 @@ constexpr int kReliefSteps = 100;
 
 } // namespace
 
-GroundBox::GroundBox(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_file(new QLabel(this)), m_choose(new QToolButton(this)),
-      m_remove(new QPushButton(tr("Remove"), this)), m_shown(new QCheckBox(tr("&Ground"), this)),
-      m_colorMap(new QComboBox(this)), m_scale(new QDoubleSpinBox(this)), m_relief(new QDoubleSpinBox(this)),
-      m_usualScale(new QToolButton(this)), m_reliefSlider(new QSlider(Qt::Horizontal, this)) {
+GroundBox::GroundBox(Services& services, OpenController& opening, QWidget* parent)
+    : QWidget(parent), m_services(services), m_opening(opening), m_file(new QLabel(this)),
+      m_choose(new QToolButton(this)), m_remove(new QPushButton(tr("Remove"), this)),
+      m_shown(new QCheckBox(tr("&Ground"), this)), m_colorMap(new QComboBox(this)), m_scale(new QDoubleSpinBox(this)),
+      m_relief(new QDoubleSpinBox(this)), m_usualScale(new QToolButton(this)),
+      m_reliefSlider(new QSlider(Qt::Horizontal, this)) {
     setObjectName("groundBox");
     m_shown->setObjectName("groundShown");
     m_shown->setToolTip(tr("A height field under the volume; figures do not depend on it"));
@@ -107,7 +108,7 @@ GroundBox::GroundBox(Services& services, QWidget* parent)
     form->addRow(tr("Relief"), relief);
 
     connect(m_shown, &QCheckBox::clicked, this, [this](bool shown) {
-        m_services.opening().editInJob(shown ? tr("Show ground") : tr("Hide ground"), [shown](Session& session) {
+        m_opening.editInJob(shown ? tr("Show ground") : tr("Hide ground"), [shown](Session& session) {
             session.ground.edit([shown](GroundView& g) { g.shown = shown; });
         });
         m_shown->setChecked(m_services.store().session().ground->shown); // until it has been done
@@ -119,7 +120,7 @@ GroundBox::GroundBox(Services& services, QWidget* parent)
              [name = m_colorMap->currentData().toString().toStdString()](GroundView& g) { g.colorMap = name; });
     });
     const auto setScale = [this](const std::optional<double>& value) {
-        m_services.opening().editInJob(tr("Scale of the ground"), [value](Session& session) {
+        m_opening.editInJob(tr("Scale of the ground"), [value](Session& session) {
             session.ground.edit([&](GroundView& g) { g.scale = value; });
         });
     };
@@ -151,11 +152,11 @@ GroundBox::GroundBox(Services& services, QWidget* parent)
 }
 
 void GroundBox::chooseFile() {
-    if (const auto source = m_services.opening().askSource(tr("Heights of the ground"))) lay(*source);
+    if (const auto source = m_opening.askSource(tr("Heights of the ground"))) lay(*source);
 }
 
 void GroundBox::lay(const VolumeSource& source) {
-    m_services.opening().editInJob(tr("Ground %1").arg(titleOf(source)), [source](Session& session) {
+    m_opening.editInJob(tr("Ground %1").arg(titleOf(source)), [source](Session& session) {
         session.ground.edit([&](GroundView& g) {
             g.path = source.path;
             g.raw = source.raw;
@@ -172,7 +173,7 @@ void GroundBox::edit(const QString& text, const QString& mergeKey, const Change&
 }
 
 void GroundBox::follow() {
-    setEnabled(m_services.store().hasVolume() && !m_services.isReadOnly());
+    setEnabled(m_services.isEditable());
     const Scene& scene = m_services.scene();
     const GroundView& view = *scene.session.ground;
     const bool any = !view.path.empty();

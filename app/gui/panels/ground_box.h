@@ -15,12 +15,13 @@ class QToolButton;
 
 namespace pellucid::gui {
 
+class OpenController;
 class Services;
 
 class GroundBox : public QWidget {
     Q_OBJECT
 public:
-    explicit GroundBox(Services& services, QWidget* parent = nullptr);
+    GroundBox(Services& services, OpenController& opening, QWidget* parent = nullptr);
 
 private:
     using Change = std::function<void(GroundView&)>;
@@ -30,6 +31,7 @@ private:
     void edit(const QString& text, const QString& mergeKey, const Change& change);
 
     Services& m_services;
+    OpenController& m_opening;
     QLabel* m_file;
     QToolButton* m_choose;
     QPushButton* m_remove;

@@ -14,7 +14,7 @@
 #include <QTimer>
 #include <QVBoxLayout>
 
-#include "services/panel.h"
+#include "panels/panel.h"
 #include "services/services.h"
 #include "widgets/theme.h"
 
@@ -38,20 +38,22 @@ QColor blend(const QColor& from, const QColor& to, double share) {
 } // namespace
 
 PanelInfo influencePanel() {
-    return {
-        .id = "influence",
-        .title = QObject::tr("Influence"),
-        .area = Qt::RightDockWidgetArea,
-        .visible = false, // costs a sweep more
-        .size = 0,
-        .keys = QKeySequence("Ctrl+I"),
-        .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
-        .make =
-            [](Services& services, QWidget* parent) {
+    return {.id = "influence",
+            .title = QObject::tr("Influence"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = false, // costs a sweep more
+            .size = 0,
+            .keys = QKeySequence("Ctrl+I"),
+            .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
+            .make = [](Services& services, Controllers&, QWidget* parent) {
                 services.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
-                return new InfluencePanel(services.store(), services.results(), parent);
-            },
-        .shown = [](Services& services, bool visible) { services.results().setInfluenceWanted(visible); }};
+                Results& results = services.results();
+                QObject::connect(&services.panels(), &Panels::visibilityChanged, &results,
+                                 [&results](const QString& id, bool visible) {
+                                     if (id == "influence") results.setInfluenceWanted(visible);
+                                 });
+                return new InfluencePanel(services.store(), results, parent);
+            }};
 }
 
 InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)

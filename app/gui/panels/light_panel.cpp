@@ -15,8 +15,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "panels/panel.h"
 #include "render/light_presets.h"
-#include "services/panel.h"
 #include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/scrolled.h"
@@ -27,7 +27,7 @@ namespace {
 constexpr int kSliderSteps = 200;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-bool isReady(Services& services) { return services.store().hasVolume() && !services.isReadOnly(); }
+bool isReady(Services& services) { return services.isEditable(); }
 
 } // namespace
 
@@ -41,7 +41,7 @@ double LightPanel::Row::numberAt(int position) const {
     return logarithmic ? std::round(lo * std::pow(hi / lo, part)) : lo + part * (hi - lo);
 }
 
-LightPanel::LightPanel(Services& services, QWidget* parent)
+LightPanel::LightPanel(Services& services, QAction& light, QWidget* parent)
     : QWidget(parent), m_services(services), m_on(new QCheckBox(tr("&Light"), this)), m_preset(new QComboBox(this)),
       m_right(new QDoubleSpinBox(this)), m_up(new QDoubleSpinBox(this)),
       m_fromEye(new QPushButton(tr("From the &eye"), this)) {
@@ -101,7 +101,7 @@ LightPanel::LightPanel(Services& services, QWidget* parent)
     fillScrolled(this, content);
 
     SessionStore& store = m_services.store();
-    connect(m_on, &QCheckBox::clicked, this, [this] { m_services.actions().find("shadingAction")->trigger(); });
+    connect(m_on, &QCheckBox::clicked, &light, &QAction::trigger);
     connect(m_preset, &QComboBox::activated, this, [this](int index) {
         const LightPreset& preset = lightPresets()[static_cast<std::size_t>(index)];
         m_services.store().edit(tr("Light: %1").arg(QString::fromLatin1(preset.name)), {}, [&](Session& session) {
@@ -206,29 +206,29 @@ PanelInfo lightPanel() {
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+L"),
             .tip = QObject::tr("Light and its presets, silhouettes, occlusion, depth cue"),
-            .make = [](Services& services, QWidget* parent) {
+            .make = [](Services& services, Controllers&, QWidget* parent) {
                 SessionStore& store = services.store();
-                services.actions().add({.id = "shadingAction",
-                                        .menu = QObject::tr("&View"),
-                                        .text = QObject::tr("&Light"),
-                                        .keys = {QKeySequence("L")},
-                                        .tip = QObject::tr("Light by the gradient of the values, or plain colours"),
-                                        .trigger =
-                                            [&store] {
-                                                store.edit(QObject::tr("Light"), {}, [](Session& session) {
-                                                    session.display.edit(
-                                                        [](DisplaySettings& d) { d.light.on = !d.light.on; });
-                                                });
-                                            },
-                                        .enabled = [&services] { return isReady(services); },
-                                        .checked = [&store] { return store.session().display->light.on; },
-                                        .separatorBefore = true});
+                QAction* const light = services.actions().add(
+                    {.id = "shadingAction",
+                     .menu = QObject::tr("&View"),
+                     .text = QObject::tr("&Light"),
+                     .keys = {QKeySequence("L")},
+                     .tip = QObject::tr("Light by the gradient of the values, or plain colours"),
+                     .trigger =
+                         [&store] {
+                             store.edit(QObject::tr("Light"), {}, [](Session& session) {
+                                 session.display.edit([](DisplaySettings& d) { d.light.on = !d.light.on; });
+                             });
+                         },
+                     .enabled = [&services] { return isReady(services); },
+                     .checked = [&store] { return store.session().display->light.on; },
+                     .separatorBefore = true});
                 QObject::connect(&store, &SessionStore::changed, &services.actions(),
                                  [&services](const Scene& before, const Scene& after) {
                                      if (before.session.display->light.on != after.session.display->light.on)
                                          services.actions().refresh();
                                  });
-                return new LightPanel(services, parent);
+                return new LightPanel(services, *light, parent);
             }};
 }
 

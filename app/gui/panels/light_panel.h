@@ -7,6 +7,7 @@
 
 #include "render/render_settings.h"
 
+class QAction;
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
@@ -21,7 +22,8 @@ class Services;
 class LightPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit LightPanel(Services& services, QWidget* parent = nullptr);
+    /// `light` puts it on and off.
+    LightPanel(Services& services, QAction& light, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
 

@@ -236,11 +236,9 @@ bool ProbePanel::eventFilter(QObject* watched, QEvent* event) {
     return QFrame::eventFilter(watched, event);
 }
 
-void addProbe(Services& services, VolumeView& view) {
-    auto* probe = new ProbeController(services);
-    probe->addActions();
-    view.overlay().add(std::make_unique<ProbeLayer>(*probe));
-    new ProbePanel(services, *probe, view);
+void addProbe(Services& services, ProbeController& probe, VolumeView& view) {
+    view.overlay().add(std::make_unique<ProbeLayer>(probe));
+    new ProbePanel(services, probe, view);
 }
 
 } // namespace pellucid::gui

@@ -47,7 +47,7 @@ private:
     bool m_held = false;
 };
 
-/// The probe with its panel, the mark over the picture, and the actions.
-void addProbe(Services& services, VolumeView& view);
+/// The panel, and the mark over the picture.
+void addProbe(Services& services, ProbeController& probe, VolumeView& view);
 
 } // namespace pellucid::gui

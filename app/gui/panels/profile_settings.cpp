@@ -88,7 +88,7 @@ void ProfileSettings::follow() {
     m_profile->setCurrentIndex(m_profile->findData(static_cast<int>(settings.profile)));
     m_along->setCurrentIndex(m_along->findData(static_cast<int>(settings.along)));
     m_along->setVisible(published);
-    setEnabled(m_services.store().hasVolume() && !m_services.isReadOnly());
+    setEnabled(m_services.isEditable());
     const bool elsewhere =
         published && scene.volume && !looksAlong(scene.camera, scene.volume->geometry(), settings.along);
     m_remark->setText(tr("Figures are of the %1 of the grid, not of this view.").arg(m_along->currentText()));

@@ -68,7 +68,7 @@ private:
 class RefinePanel : public QWidget {
     Q_OBJECT
 public:
-    explicit RefinePanel(Services& services, QWidget* parent = nullptr);
+    RefinePanel(Services& services, RefineController& refining, QWidget* parent = nullptr);
 
 protected:
     void showEvent(QShowEvent* event) override;
@@ -88,6 +88,7 @@ private:
     void compare();
 
     Services& m_services;
+    RefineController& m_refining;
     QPushButton *m_refine, *m_pair;
     QCheckBox *m_live, *m_auto, *m_ghost;
     QLabel* m_priority;

@@ -9,8 +9,8 @@
 #include <QPushButton>
 #include <QSpinBox>
 
+#include "panels/panel.h"
 #include "panels/profile_settings.h"
-#include "services/panel.h"
 #include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/scrolled.h"
@@ -46,15 +46,16 @@ QDoubleSpinBox* numberBox(const char* id, const Range& range, const QString& tip
 } // namespace
 
 PanelInfo settingsPanel() {
-    return {.id = "settings",
-            .title = QObject::tr("Settings"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = true,
-            .tabOf = "features",
-            .size = 0,
-            .keys = QKeySequence("Ctrl+8"),
-            .tip = QObject::tr("How visibility and saliency are measured, and how optimizations search"),
-            .make = [](Services& services, QWidget* parent) { return new SettingsPanel(services, parent); }};
+    return {
+        .id = "settings",
+        .title = QObject::tr("Settings"),
+        .area = Qt::RightDockWidgetArea,
+        .visible = true,
+        .tabOf = "features",
+        .size = 0,
+        .keys = QKeySequence("Ctrl+8"),
+        .tip = QObject::tr("How visibility and saliency are measured, and how optimizations search"),
+        .make = [](Services& services, Controllers&, QWidget* parent) { return new SettingsPanel(services, parent); }};
 }
 
 SettingsPanel::SettingsPanel(Services& services, QWidget* parent) : QWidget(parent), m_services(services) {
@@ -269,7 +270,7 @@ void SettingsPanel::chooseBackground() {
 
 void SettingsPanel::follow() {
     m_showing = true;
-    const bool ready = m_services.store().hasVolume() && !m_services.isReadOnly();
+    const bool ready = m_services.isEditable();
     for (QWidget* widget : findChildren<QWidget*>()) {
         const bool isControl = qobject_cast<QComboBox*>(widget) || qobject_cast<QAbstractSpinBox*>(widget) ||
                                qobject_cast<QAbstractButton*>(widget);

@@ -19,8 +19,8 @@
 
 #include "base/atomic_file.h"
 #include "image_io/image_file.h"
+#include "panels/panel.h"
 #include "panels/space_canvas.h"
-#include "services/panel.h"
 #include "services/services.h"
 #include "session/coarser_input.h"
 #include "store/edits.h"
@@ -53,7 +53,7 @@ PanelInfo spacePanel() {
             .size = 0,
             .keys = QKeySequence("Ctrl+Shift+P"),
             .tip = QObject::tr("VWS and the distance from the targets over the opacities of two or three features"),
-            .make = [](Services& services, QWidget* parent) {
+            .make = [](Services& services, Controllers&, QWidget* parent) {
                 services.actions().addGestures(
                     {{QObject::tr("Parameter space"), QObject::tr("drag, wheel"), QObject::tr("turn, zoom")},
                      {QObject::tr("Parameter space"), QObject::tr("click"),

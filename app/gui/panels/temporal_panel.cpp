@@ -14,10 +14,9 @@
 #include <QToolButton>
 
 #include "base/atomic_file.h"
-#include "controllers/adapt_controller.h"
-#include "controllers/player_controller.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "report/svg_plot.h"
-#include "services/panel.h"
 #include "services/services.h"
 #include "session/scene_data.h"
 #include "tf/tf_range.h"
@@ -46,11 +45,13 @@ PanelInfo temporalPanel() {
             .keys = QKeySequence("Ctrl+4"),
             .tip = QObject::tr("VWS, visibility, distance and flicker of all frames, with and without transfer "
                                "functions that follow them"),
-            .make = [](Services& services, QWidget* parent) { return new TemporalPanel(services, parent); }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                return new TemporalPanel(services, controllers.player, controllers.adapting, parent);
+            }};
 }
 
-TemporalPanel::TemporalPanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_shown(new QComboBox(this)),
+TemporalPanel::TemporalPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent)
+    : QWidget(parent), m_services(services), m_player(player), m_adapting(adapting), m_shown(new QComboBox(this)),
       m_overGaps(new QCheckBox(tr("Flicker over gaps"), this)), m_words(new QLabel(this)), m_readOut(new QLabel(this)),
       m_measure(new QToolButton(this)), m_export(new QToolButton(this)), m_progress(new QProgressBar(this)),
       m_job(
@@ -146,7 +147,7 @@ TemporalPanel::TemporalPanel(Services& services, QWidget* parent)
     grid->addLayout(row, 1, 0, 1, 4);
 
     connect(&services.store(), &SessionStore::changed, this, &TemporalPanel::follow);
-    connect(&services.player().adapting(), &AdaptController::changed, this, &TemporalPanel::next);
+    connect(&adapting, &AdaptController::changed, this, &TemporalPanel::next);
     connect(&services, &Services::readOnlyChanged, this, [this] {
         if (m_services.isReadOnly()) m_job.cancel();
         next();
@@ -210,7 +211,7 @@ int TemporalPanel::knownCount() const {
 
 TemporalCurves TemporalPanel::curves() const {
     TemporalCurves curves;
-    if (!m_services.player().hasSeries()) return curves;
+    if (!m_player.hasSeries()) return curves;
     const Scene& scene = m_services.scene();
     for (const Feature& f : scene.tf.features) {
         curves.features.push_back(f.name);
@@ -229,7 +230,7 @@ TemporalCurves TemporalPanel::curves() const {
 }
 
 void TemporalPanel::measure() {
-    if (!m_services.player().hasSeries()) return;
+    if (!m_player.hasSeries()) return;
     m_asked = true;
     next();
     refresh();
@@ -242,18 +243,17 @@ void TemporalPanel::cancel() {
 }
 
 void TemporalPanel::next() {
-    if (!m_asked || m_job.isRunning() || !m_services.player().hasSeries() || m_services.isReadOnly()) return;
-    PlayerController& player = m_services.player();
+    if (!m_asked || m_job.isRunning() || !m_player.hasSeries() || m_services.isReadOnly()) return;
     bool waits = false;
-    for (int f = 0; f < player.frameCount(); ++f) {
+    for (int f = 0; f < m_player.frameCount(); ++f) {
         if (isKnown(f)) continue;
         // Its transfer function is on its way.
-        if (player.adapting().isBusy() && player.adapting().isStale(f)) {
+        if (m_adapting.isBusy() && m_adapting.isStale(f)) {
             waits = true;
             continue;
         }
         if (Task task = taskOf(f); task.known.tf && task.known.fixedTf) {
-            m_job.start(std::move(task), player.label(f));
+            m_job.start(std::move(task), m_player.label(f));
             return;
         }
     }
@@ -300,8 +300,8 @@ std::vector<Plot> TemporalPanel::plots() const {
 }
 
 void TemporalPanel::refresh() {
-    const bool series = m_services.player().hasSeries();
-    const int count = m_services.player().frameCount(), known = series ? knownCount() : 0;
+    const bool series = m_player.hasSeries();
+    const int count = m_player.frameCount(), known = series ? knownCount() : 0;
     m_measure->setEnabled(series && (m_asked || known < count));
     m_measure->setText(m_asked ? tr("Stop") : tr("Measure all frames"));
     m_measure->setToolTip(m_asked ? tr("What is known so far stays")
@@ -343,7 +343,7 @@ void TemporalPanel::refresh() {
 }
 
 void TemporalPanel::chooseFile() {
-    if (!m_services.player().hasSeries() || knownCount() == 0) return;
+    if (!m_player.hasSeries() || knownCount() == 0) return;
     const QString folder = QSettings().value("curvesFolder", QDir::homePath()).toString();
     QString path = QFileDialog::getSaveFileName(
         m_services.window(), tr("Export the curves over time"), QDir(folder).filePath("curves_over_time.csv"),

@@ -19,6 +19,8 @@ class QToolButton;
 
 namespace pellucid::gui {
 
+class AdaptController;
+class PlayerController;
 class PlotView;
 class Services;
 
@@ -27,7 +29,7 @@ class Services;
 class TemporalPanel : public QWidget {
     Q_OBJECT
 public:
-    TemporalPanel(Services& services, QWidget* parent);
+    TemporalPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent);
     ~TemporalPanel() override;
 
     void measure(); ///< all frames that are not known as they are now
@@ -75,6 +77,8 @@ private:
     void chooseFile();
 
     Services& m_services;
+    PlayerController& m_player;
+    AdaptController& m_adapting;
     std::array<PlotView*, 4> m_plots{};
     QComboBox* m_shown;
     QCheckBox* m_overGaps;

@@ -13,11 +13,11 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
-#include "controllers/open_controller.h"
+#include "controllers/controllers.h"
 #include "dialogs/series_files.h"
 #include "panels/channels_box.h"
 #include "panels/ground_box.h"
-#include "services/panel.h"
+#include "panels/panel.h"
 #include "services/services.h"
 #include "session/scene_data.h"
 #include "volume/file_contents.h"
@@ -112,9 +112,9 @@ QString driverText(const Session& session, const std::string& name) {
     return textOf(name);
 }
 
-VariablesPanel::VariablesPanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_list(new QTreeWidget(this)), m_add(new QToolButton(this)),
-      m_addMenu(new QMenu(m_add)), m_remove(new QPushButton(tr("&Remove"), this)),
+VariablesPanel::VariablesPanel(Services& services, OpenController& opening, QWidget* parent)
+    : QWidget(parent), m_services(services), m_opening(opening), m_list(new QTreeWidget(this)),
+      m_add(new QToolButton(this)), m_addMenu(new QMenu(m_add)), m_remove(new QPushButton(tr("&Remove"), this)),
       m_wholeRange(new QPushButton(tr("All values"), this)), m_lo(new QLineEdit(this)), m_hi(new QLineEdit(this)),
       m_notice(new QLabel(this)), m_looking(lookAt, [this](const Scene&, std::map<std::string, VariableInfo>& infos) {
           m_infos = std::move(infos);
@@ -126,11 +126,11 @@ VariablesPanel::VariablesPanel(Services& services, QWidget* parent)
     column->setContentsMargins(10, 8, 10, 8);
     column->setSpacing(8);
     column->addWidget(makeList());
-    column->addWidget(new ChannelsBox(services, content));
+    column->addWidget(m_channels = new ChannelsBox(services, opening, content));
     auto* line = new QFrame(content);
     line->setFrameShape(QFrame::HLine);
     column->addWidget(line);
-    column->addWidget(new GroundBox(services, content));
+    column->addWidget(new GroundBox(services, opening, content));
     column->addStretch(1);
     fillScrolled(this, content);
 
@@ -200,13 +200,12 @@ QWidget* VariablesPanel::makeList() {
         if (!m_showing && at == kName) rename(item);
     });
     connect(m_wholeRange, &QPushButton::clicked, this, [this] {
-        m_services.opening().editInJob(tr("All values of %1").arg(textOf(selected())),
-                                       [name = selected()](Session& session) {
-                                           session.variables.edit([&](std::vector<Variable>& all) {
-                                               for (Variable& v : all)
-                                                   if (v.name == name) v.window.reset();
-                                           });
-                                       });
+        m_opening.editInJob(tr("All values of %1").arg(textOf(selected())), [name = selected()](Session& session) {
+            session.variables.edit([&](std::vector<Variable>& all) {
+                for (Variable& v : all)
+                    if (v.name == name) v.window.reset();
+            });
+        });
     });
     return box;
 }
@@ -225,7 +224,7 @@ void VariablesPanel::lookAtVariables() {
 }
 
 void VariablesPanel::follow() {
-    setEnabled(m_services.store().hasVolume() && !m_services.isReadOnly());
+    setEnabled(m_services.isEditable());
     const Session& session = m_services.store().session();
     const std::string chosen = selected();
     m_showing = true;
@@ -322,14 +321,14 @@ void VariablesPanel::rename(QTreeWidgetItem* item) {
             Qt::QueuedConnection);
         return;
     }
-    m_services.opening().editInJob(tr("Rename %1").arg(textOf(from)), [from, to](Session& session) {
+    m_opening.editInJob(tr("Rename %1").arg(textOf(from)), [from, to](Session& session) {
         if (session.variableNamed(from) != nullptr && session.variableNamed(to) == nullptr)
             renameVariable(session, from, to);
     });
 }
 
 void VariablesPanel::remove() {
-    m_services.opening().editInJob(tr("Remove %1").arg(textOf(selected())), [name = selected()](Session& session) {
+    m_opening.editInJob(tr("Remove %1").arg(textOf(selected())), [name = selected()](Session& session) {
         if (session.variableNamed(name) != nullptr && session.variables->size() > 1 && madeOf(session, name).empty())
             removeVariable(session, name);
     });
@@ -347,7 +346,7 @@ void VariablesPanel::editRange() {
     m_lo->setModified(false);
     m_hi->setModified(false);
     if (!isLo || !isHi || !(range.lo < range.hi) || !std::isfinite(range.hi - range.lo)) return showRange();
-    m_services.opening().editInJob(tr("Range of %1").arg(textOf(selected())), [name = selected(), range](Session& s) {
+    m_opening.editInJob(tr("Range of %1").arg(textOf(selected())), [name = selected(), range](Session& s) {
         s.variables.edit([&](std::vector<Variable>& all) {
             for (Variable& v : all)
                 if (v.name == name) v.window = range;
@@ -367,10 +366,10 @@ void VariablesPanel::fillAddMenu() {
         return made;
     };
     connect(action(*m_addMenu, tr("&Files…"), "addFiles"), &QAction::triggered, this, [this] {
-        if (const auto source = m_services.opening().askSource(tr("Add a variable"))) addFrom(*source);
+        if (const auto source = m_opening.askSource(tr("Add a variable"))) addFrom(*source);
     });
     connect(action(*m_addMenu, tr("&Series…"), "addSeries"), &QAction::triggered, this, [this] {
-        if (const auto source = m_services.opening().askSeries()) addFrom(*source);
+        if (const auto source = m_opening.askSeries()) addFrom(*source);
     });
     QMenu* samplesMenu = m_addMenu->addMenu(tr("Sa&mple"));
     for (const SampleInfo& sample : samples()) {
@@ -425,7 +424,7 @@ void VariablesPanel::addFrom(const VolumeSource& source) {
 }
 
 void VariablesPanel::add(const Variable& variable, const QString& text) {
-    m_services.opening().editInJob(text, [variable](Session& session) { addVariable(session, variable); });
+    m_opening.editInJob(text, [variable](Session& session) { addVariable(session, variable); });
 }
 
 PanelInfo variablesPanel() {
@@ -436,10 +435,10 @@ PanelInfo variablesPanel() {
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+Shift+V"),
             .tip = QObject::tr("Several variables, what each drives, and the ground"),
-            .make = [](Services& services, QWidget* parent) {
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
                 const QString menu = QObject::tr("&View");
                 SessionStore& store = services.store();
-                auto* panel = new VariablesPanel(services, parent);
+                auto* panel = new VariablesPanel(services, controllers.opening, parent);
                 services.actions().add(
                     {.id = "hsbAction",
                      .menu = menu,
@@ -447,8 +446,8 @@ PanelInfo variablesPanel() {
                      .keys = {QKeySequence("Shift+S")},
                      .tip = QObject::tr("Saturation, brightness and hue from variables, or colours of "
                                         "the transfer function"),
-                     .trigger = [panel] { panel->findChild<ChannelsBox*>()->toggle(); },
-                     .enabled = [&services] { return services.store().hasVolume() && !services.isReadOnly(); },
+                     .trigger = [panel] { panel->channels().toggle(); },
+                     .enabled = [&services] { return services.isEditable(); },
                      .checked = [&store] { return store.session().hsb->on; },
                      .separatorBefore = true});
                 services.actions().add(
@@ -457,9 +456,9 @@ PanelInfo variablesPanel() {
                      .text = QObject::tr("S&wap opacity and brightness"),
                      .tip = QObject::tr("The variable of brightness drives opacity, and the other way round"),
                      .trigger =
-                         [&services] {
-                             services.opening().editInJob(QObject::tr("Swap variables"),
-                                                          [](Session& s) { swapOpacityAndBrightness(s); });
+                         [&opening = controllers.opening] {
+                             opening.editInJob(QObject::tr("Swap variables"),
+                                               [](Session& s) { swapOpacityAndBrightness(s); });
                          },
                      .enabled =
                          [&services] {

@@ -20,6 +20,8 @@ class QTreeWidgetItem;
 
 namespace pellucid::gui {
 
+class ChannelsBox;
+class OpenController;
 class Services;
 
 /// What is known of a variable once its present frame has been read.
@@ -41,10 +43,11 @@ QString driverText(const Session& session, const std::string& name);
 class VariablesPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit VariablesPanel(Services& services, QWidget* parent = nullptr);
+    VariablesPanel(Services& services, OpenController& opening, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
     std::string selected() const;    ///< name of the variable in the list; empty: none
+    ChannelsBox& channels() { return *m_channels; }
 
 private:
     QWidget* makeList();
@@ -59,7 +62,9 @@ private:
     void editRange();
 
     Services& m_services;
+    OpenController& m_opening;
     QTreeWidget* m_list;
+    ChannelsBox* m_channels;
     QToolButton* m_add;
     QMenu* m_addMenu;
     QPushButton *m_remove, *m_wholeRange;

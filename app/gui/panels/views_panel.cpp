@@ -10,13 +10,11 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
-#include "controllers/optimize_controller.h"
-#include "controllers/view_search_controller.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "render/view_direction.h"
-#include "services/panel.h"
 #include "services/services.h"
 #include "view/view_globe.h"
-#include "view/volume_view.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -48,24 +46,19 @@ PanelInfo viewsPanel() {
             .size = 240,
             .keys = QKeySequence("Ctrl+B"),
             .tip = QObject::tr("How good each view is, as a sphere beside the picture"),
-            .make =
-                [](Services& services, QWidget* parent) {
-                    const QString sphere = QObject::tr("Sphere of views");
-                    services.actions().addGestures({{sphere, QObject::tr("Hover"), QObject::tr("look from there")},
-                                                    {sphere, QObject::tr("Click"), QObject::tr("go there")},
-                                                    {sphere, QObject::tr("Left drag"), QObject::tr("rotate")}});
-                    return new ViewsPanel(services, parent);
-                },
-            .shown =
-                [](Services& services, bool visible) {
-                    if (auto* panel = services.window()->findChild<ViewsPanel*>()) panel->search().setWanted(visible);
-                }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                const QString sphere = QObject::tr("Sphere of views");
+                services.actions().addGestures({{sphere, QObject::tr("Hover"), QObject::tr("look from there")},
+                                                {sphere, QObject::tr("Click"), QObject::tr("go there")},
+                                                {sphere, QObject::tr("Left drag"), QObject::tr("rotate")}});
+                return new ViewsPanel(services, controllers.views, parent);
+            }};
 }
 
-ViewsPanel::ViewsPanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_search(new ViewSearchController(services, this)),
-      m_figure(new QComboBox(this)), m_globe(new ViewGlobe(this)), m_words(new QLabel(this)),
-      m_progress(new QProgressBar(this)), m_look(new QPushButton(this)), m_go(new QPushButton(tr("Go there"), this)),
+ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget* parent)
+    : QWidget(parent), m_services(services), m_search(search), m_figure(new QComboBox(this)),
+      m_globe(new ViewGlobe(this)), m_words(new QLabel(this)), m_progress(new QProgressBar(this)),
+      m_look(new QPushButton(this)), m_go(new QPushButton(tr("Go there"), this)),
       m_optimize(new QPushButton(tr("Optimize view and opacities"), this)) {
     setObjectName("viewsPanel");
     m_figure->setObjectName("viewsFigure");
@@ -98,10 +91,10 @@ ViewsPanel::ViewsPanel(Services& services, QWidget* parent)
     column->addLayout(buttons);
     column->addWidget(m_optimize);
 
-    ViewSearchController& search = *m_search;
     search.addActions();
-    if (auto* view = services.window()->findChild<VolumeView*>())
-        connect(&search, &ViewSearchController::glimpsed, view, &VolumeView::lookFrom);
+    connect(&services.panels(), &Panels::visibilityChanged, &search, [&search](const QString& id, bool visible) {
+        if (id == "views") search.setWanted(visible);
+    });
     connect(m_figure, &QComboBox::activated, this,
             [this, &search](int row) { search.setFeature(m_figure->itemData(row).value<FeatureId>()); });
     connect(m_look, &QPushButton::clicked, this, [&search] { search.isRunning() ? search.cancel() : search.start(); });
@@ -124,14 +117,14 @@ ViewsPanel::ViewsPanel(Services& services, QWidget* parent)
                         m_gesture);
     });
     m_globe->setWords([this](const Vec3& toward) {
-        const ViewSearchController& views = *m_search;
+        const ViewSearchController& views = m_search;
         if (views.map().isEmpty()) return anglesText(toward);
         const QString figure = figureText(views.map().metric, views.map().interpolated(toward), true);
         return tr("From %1: %2").arg(anglesText(toward), figure) +
                (views.isCurrent() ? QString() : tr("\nof an older state"));
     });
     connect(&search, &ViewSearchController::changed, this, &ViewsPanel::refresh);
-    connect(&services.optimizing(), &OptimizeController::runningChanged, this, &ViewsPanel::refresh);
+    connect(&services, &Services::readOnlyChanged, this, &ViewsPanel::refresh);
     connect(&services.results(), &Results::changed, this, &ViewsPanel::refresh);
     connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (!std::equal(before.tf.features.begin(), before.tf.features.end(), after.tf.features.begin(),
@@ -153,7 +146,7 @@ void ViewsPanel::fillFigures() {
 }
 
 QString ViewsPanel::words() const {
-    const ViewSearchController& search = *m_search;
+    const ViewSearchController& search = m_search;
     const SessionStore& store = m_services.store();
     if (!store.hasVolume()) return {};
     if (store.session().measure->profile == Profile::Published)
@@ -184,7 +177,7 @@ std::optional<double> ViewsPanel::measuredHere(const ViewMetric& metric) const {
 }
 
 void ViewsPanel::refresh() {
-    const ViewSearchController& search = *m_search;
+    const ViewSearchController& search = m_search;
     const SessionStore& store = m_services.store();
     const bool ready = store.hasVolume() && !store.scene().tf.features.empty() && !m_services.isReadOnly() &&
                        store.session().measure->profile != Profile::Published;

@@ -22,9 +22,7 @@ class Services;
 class ViewsPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit ViewsPanel(Services& services, QWidget* parent = nullptr);
-
-    ViewSearchController& search() { return *m_search; }
+    ViewsPanel(Services& services, ViewSearchController& search, QWidget* parent = nullptr);
 
 private:
     void fillFigures();
@@ -33,7 +31,7 @@ private:
     std::optional<double> measuredHere(const ViewMetric& metric) const; ///< empty: not of the present state
 
     Services& m_services;
-    ViewSearchController* m_search; ///< a child
+    ViewSearchController& m_search;
     QComboBox* m_figure;
     ViewGlobe* m_globe;
     QLabel* m_words;

@@ -1,37 +1,25 @@
 // What every part of a window may use: the state, what was computed of it, and what can be done.
 #pragma once
 
-#include <QObject>
-
 #include "jobs/lane.h"
 #include "services/actions.h"
 #include "services/notices.h"
+#include "services/panels.h"
 #include "services/results.h"
 #include "services/selection.h"
 #include "session/workspace.h"
 #include "store/session_store.h"
 
-class QWidget;
-
 namespace pellucid::gui {
 
-class FieldController;
-class LiveController;
-class OpenController;
-class OptimizeController;
-class PlayerController;
-class RecoveryController;
-class RefineController;
-class SaveController;
-class StartController;
-
-/// The services of one window. Panels and controllers get it, and know nothing of each other.
+/// Panels and controllers get it; it knows none of them.
 class Services : public QObject {
     Q_OBJECT
     // The order is that of making; what uses something comes after it, and goes before it.
     SessionStore m_store;
     Notices m_notices;
     Actions m_actions;
+    Panels m_panels;
     Workspace m_workspace; // used on m_compute alone
     Lane m_compute;
     Results m_results;
@@ -40,7 +28,6 @@ class Services : public QObject {
 public:
     /// `window` is the parent of dialogs.
     explicit Services(QWidget* window);
-    ~Services() override;
 
     QWidget* window() const { return m_window; }
     SessionStore& store() { return m_store; }
@@ -49,26 +36,25 @@ public:
     Selection& selection() { return m_selection; }
     Notices& notices() { return m_notices; }
     Actions& actions() { return m_actions; }
+    Panels& panels() { return m_panels; }
     Workspace& workspace() { return m_workspace; }
     Lane& compute() { return m_compute; }
-    OpenController& opening() { return *m_opening; }
-    SaveController& saving() { return *m_saving; }
-    OptimizeController& optimizing() { return *m_optimizing; }
-    StartController& start() { return *m_start; }
-    RecoveryController& recovery() { return *m_recovery; }
-    RefineController& refining() { return *m_refining; }
-    FieldController& fields() { return *m_fields; } ///< what is drawn in the place of the data
-    LiveController& live() { return *m_live; }
-    PlayerController& player() { return *m_player; } ///< frames of a series
+    /// Index of the selected feature in the scene's transfer function; −1: none.
+    int selectedFeature() const;
 
     /// Nothing may be edited: an optimization shows its moves.
-    bool isReadOnly() const;
+    bool isReadOnly() const { return m_isHeld && m_isHeld(); }
+    bool isEditable() const { return m_store.hasVolume() && !isReadOnly(); }
     /// The figures are of the present state, and nothing is under way.
     bool isIdle() const;
+    /// For those who work: whether they do. Who changes what these say emits readOnlyChanged, idleChanged.
+    void setReadOnlyWhile(std::function<bool()> isHeld) { m_isHeld = std::move(isHeld); }
+    void addWork(std::function<bool()> isBusy) { m_work.push_back(std::move(isBusy)); }
 
     void showError(const QString& title, const Error& error);
-    /// A step of the history; where it fails the state stays, and `failure` is told.
-    void goBack(const std::function<void()>& step, const QString& failure);
+    /// A step of the history; where it fails the state stays, and people are told.
+    void undo();
+    void redo();
 
 Q_SIGNALS:
     void readOnlyChanged();
@@ -77,18 +63,9 @@ Q_SIGNALS:
     void message(const QString& text);
 
 private:
-    void addEditActions();
-
     QWidget* m_window;
-    std::unique_ptr<OptimizeController> m_optimizing;
-    std::unique_ptr<RefineController> m_refining;
-    std::unique_ptr<FieldController> m_fields;
-    std::unique_ptr<LiveController> m_live;
-    std::unique_ptr<SaveController> m_saving;
-    std::unique_ptr<OpenController> m_opening;
-    std::unique_ptr<StartController> m_start;
-    std::unique_ptr<RecoveryController> m_recovery;
-    std::unique_ptr<PlayerController> m_player;
+    std::function<bool()> m_isHeld;
+    std::vector<std::function<bool()>> m_work;
 };
 
 } // namespace pellucid::gui

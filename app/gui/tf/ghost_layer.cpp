@@ -4,7 +4,6 @@
 #include <QPainterPath>
 
 #include "controllers/refine_controller.h"
-#include "services/services.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -12,11 +11,11 @@ namespace {
 
 class GhostLayer : public CanvasLayer {
 public:
-    explicit GhostLayer(Services& services) : m_services(services) {}
+    explicit GhostLayer(RefineController& refining) : m_refining(refining) {}
 
     void paint(QPainter& painter, const CanvasGeometry& where) override {
-        const Refinement* refinement = m_services.refining().latest();
-        if (refinement == nullptr || !m_services.refining().isGhostShown()) return;
+        const Refinement* refinement = m_refining.latest();
+        if (refinement == nullptr || !m_refining.isGhostShown()) return;
         painter.save();
         painter.setClipRect(where.plot().adjusted(-1, -1, 1, 1));
         painter.setBrush(Qt::NoBrush);
@@ -28,15 +27,15 @@ public:
     }
 
 private:
-    Services& m_services;
+    RefineController& m_refining;
 };
 
 } // namespace
 
-void addGhostLayer(Services& services, TfCanvas& canvas) {
-    canvas.addLayer(std::make_unique<GhostLayer>(services));
-    QObject::connect(&services.refining(), &RefineController::refined, &canvas, qOverload<>(&QWidget::update));
-    QObject::connect(&services.refining(), &RefineController::ghostChanged, &canvas, qOverload<>(&QWidget::update));
+void addGhostLayer(RefineController& refining, TfCanvas& canvas) {
+    canvas.addLayer(std::make_unique<GhostLayer>(refining));
+    QObject::connect(&refining, &RefineController::refined, &canvas, qOverload<>(&QWidget::update));
+    QObject::connect(&refining, &RefineController::ghostChanged, &canvas, qOverload<>(&QWidget::update));
 }
 
 } // namespace pellucid::gui

@@ -22,8 +22,8 @@ constexpr double kHead = 6;              // half the width of the marker's head
 
 } // namespace
 
-PaletteBar::PaletteBar(Services& services, TfCanvas& canvas, QWidget* parent)
-    : QWidget(parent), m_services(services), m_canvas(canvas) {
+PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas& canvas, QWidget* parent)
+    : QWidget(parent), m_services(services), m_refining(refining), m_canvas(canvas) {
     setObjectName("paletteBar");
     setAccessibleName(tr("Palette"));
     setMouseTracking(true);
@@ -42,7 +42,7 @@ PaletteBar::PaletteBar(Services& services, TfCanvas& canvas, QWidget* parent)
                                     {place, tr("Delete, Esc, right click"), tr("prioritize nothing")}});
 }
 
-bool PaletteBar::isReady() const { return m_services.store().hasVolume() && !m_services.isReadOnly(); }
+bool PaletteBar::isReady() const { return m_services.isEditable(); }
 
 QRectF PaletteBar::strip() const {
     const QRectF plot = m_canvas.plot(); // of a canvas that begins where this does
@@ -113,7 +113,7 @@ void PaletteBar::mousePressEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton || !isReady()) return event->ignore();
     if (m_dragging) return;
     m_dragging = true;
-    m_services.refining().dragPriority(intensityAt(event->position()));
+    m_refining.dragPriority(intensityAt(event->position()));
 }
 
 void PaletteBar::mouseMoveEvent(QMouseEvent* event) {
@@ -122,14 +122,14 @@ void PaletteBar::mouseMoveEvent(QMouseEvent* event) {
     m_services.selection().setHoveredIntensity(m_hovered);
     // A change that this drag did not make (undo, say) has ended it.
     if (m_dragging && !m_services.store().isPreviewing()) m_dragging = false;
-    if (m_dragging) m_services.refining().dragPriority(*m_hovered);
+    if (m_dragging) m_refining.dragPriority(*m_hovered);
     update();
 }
 
 void PaletteBar::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton || !m_dragging) return;
     m_dragging = false;
-    m_services.refining().endDrag();
+    m_refining.endDrag();
 }
 
 void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
@@ -138,9 +138,9 @@ void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
         event->reason() == QContextMenuEvent::Keyboard ? marked().value_or(0.5) : intensityAt(QPointF(event->pos()));
     QMenu menu(this);
     menu.setObjectName("paletteMenu");
-    menu.addAction(tr("Refine for %1").arg(valueText(x)), this, [this, x] { m_services.refining().prioritize(x); });
-    QAction* nothing = menu.addAction(tr("Prioritize nothing"), &m_services.refining(),
-                                      qOverload<>(&RefineController::prioritizeNothing));
+    menu.addAction(tr("Refine for %1").arg(valueText(x)), this, [this, x] { m_refining.prioritize(x); });
+    QAction* nothing =
+        menu.addAction(tr("Prioritize nothing"), &m_refining, qOverload<>(&RefineController::prioritizeNothing));
     nothing->setEnabled(marked().has_value());
     menu.exec(event->globalPos());
 }
@@ -148,13 +148,11 @@ void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
 void PaletteBar::keyPressEvent(QKeyEvent* event) {
     if (event->key() == Qt::Key_Escape && m_dragging) {
         m_dragging = false;
-        return m_services.refining().cancelDrag();
+        return m_refining.cancelDrag();
     }
     if (!isReady() || m_dragging) return QWidget::keyPressEvent(event);
     const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 1.0 / 1024 : 1.0 / 128;
-    const auto go = [&](double x) {
-        m_services.refining().prioritize(std::clamp(x, 0.0, 1.0), QStringLiteral("palette-keys"));
-    };
+    const auto go = [&](double x) { m_refining.prioritize(std::clamp(x, 0.0, 1.0), QStringLiteral("palette-keys")); };
     const IntensityAxis& axis = m_canvas.axis();
     const double middle = (axis.lo() + axis.hi()) / 2;
     switch (event->key()) {
@@ -169,7 +167,7 @@ void PaletteBar::keyPressEvent(QKeyEvent* event) {
     case Qt::Key_Delete:
     case Qt::Key_Backspace:
     case Qt::Key_Escape:
-        if (marked()) m_services.refining().prioritizeNothing();
+        if (marked()) m_refining.prioritizeNothing();
         return;
     default:
         QWidget::keyPressEvent(event);

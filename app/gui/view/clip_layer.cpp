@@ -256,27 +256,10 @@ void ClipLayer::cancel() {
     m_overlay.update();
 }
 
-void addClipHandles(Services& services, ViewOverlay& overlay) {
+void addClipHandles(Services& services, QAction& shown, ViewOverlay& overlay) {
     auto owned = std::make_unique<ClipLayer>(services, overlay);
-    ClipLayer* layer = owned.get();
+    QObject::connect(&shown, &QAction::toggled, &overlay, [layer = owned.get()](bool on) { layer->setShown(on); });
     overlay.add(std::move(owned));
-    // The state outlives the layer, as the action does.
-    const auto shown = std::make_shared<bool>(false);
-    services.actions().add({.id = "clipHandlesAction",
-                            .menu = QObject::tr("&View"),
-                            .text = QObject::tr("Clip &handles"),
-                            .keys = {QKeySequence("C")},
-                            .tip = QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with "
-                                               "Shift the opposite face goes along; Esc gives up"),
-                            .trigger =
-                                [layer, shown] {
-                                    *shown = !*shown;
-                                    layer->setShown(*shown);
-                                },
-                            .enabled = [&services] { return services.store().hasVolume(); },
-                            .checked = [shown] { return *shown; },
-                            .separatorBefore = true,
-                            .inToolBar = true});
 }
 
 } // namespace pellucid::gui

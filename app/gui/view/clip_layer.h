@@ -4,6 +4,8 @@
 #include "render/clip_handles.h"
 #include "view/view_overlay.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
 class Services;
@@ -51,7 +53,7 @@ private:
     Clipping m_start; ///< when the handle was taken
 };
 
-/// The layer over the view, and the action "Show clip handles".
-void addClipHandles(Services& services, ViewOverlay& overlay);
+/// The layer over the view, while the action is checked.
+void addClipHandles(Services& services, QAction& shown, ViewOverlay& overlay);
 
 } // namespace pellucid::gui

@@ -14,8 +14,9 @@ constexpr int kRest = 150; // milliseconds without a change before both are draw
 
 } // namespace
 
-PicturePair::PicturePair(Services& services, QWidget* parent)
-    : QDialog(parent), m_services(services), m_words(new QLabel(this)), m_renderer(std::make_shared<KeptRenderer>()),
+PicturePair::PicturePair(Services& services, RefineController& refining, QWidget* parent)
+    : QDialog(parent), m_services(services), m_refining(refining), m_words(new QLabel(this)),
+      m_renderer(std::make_shared<KeptRenderer>()),
       m_job(
           [renderer = m_renderer](const Inputs& inputs, const JobControl& job) {
               Pictures pictures;
@@ -65,7 +66,7 @@ PicturePair::PicturePair(Services& services, QWidget* parent)
         if (before.volume != after.volume) m_renderer->release();
         again();
     });
-    connect(&services.refining(), &RefineController::refined, this, again);
+    connect(&refining, &RefineController::refined, this, again);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_words->setText(tr("The pictures could not be drawn: %1").arg(QString::fromUtf8(error.what())));
     });
@@ -75,7 +76,7 @@ PicturePair::PicturePair(Services& services, QWidget* parent)
 PicturePair::~PicturePair() = default;
 
 void PicturePair::start() {
-    const Refinement* refinement = m_services.refining().latest();
+    const Refinement* refinement = m_refining.latest();
     if (refinement == nullptr) { // of a volume that has gone
         close();
         return;
@@ -107,14 +108,6 @@ void PicturePair::showPictures() {
 void PicturePair::resizeEvent(QResizeEvent* event) {
     QDialog::resizeEvent(event);
     m_wait.start();
-}
-
-void showPicturePair(Services& services) {
-    auto* pair = services.window()->findChild<PicturePair*>("picturePair");
-    if (pair == nullptr) pair = new PicturePair(services, services.window());
-    pair->show();
-    pair->raise();
-    pair->activateWindow();
 }
 
 } // namespace pellucid::gui

@@ -16,6 +16,7 @@ class QLabel;
 
 namespace pellucid::gui {
 
+class RefineController;
 class Services;
 
 /// Both are drawn by the CPU off this thread, from the present camera and in the present light, and follow camera,
@@ -23,7 +24,7 @@ class Services;
 class PicturePair : public QDialog {
     Q_OBJECT
 public:
-    explicit PicturePair(Services& services, QWidget* parent);
+    PicturePair(Services& services, RefineController& refining, QWidget* parent);
     ~PicturePair() override;
 
     bool isComplete() const { return !m_wait.isActive() && !m_job.isRunning() && !m_pictures[0].isNull(); }
@@ -39,6 +40,7 @@ private:
     void showPictures();
 
     Services& m_services;
+    RefineController& m_refining;
     std::array<QLabel*, 2> m_labels, m_captions;
     QLabel* m_words;
     Pictures m_pictures;
@@ -46,8 +48,5 @@ private:
     std::shared_ptr<KeptRenderer> m_renderer;
     Job<Inputs, Pictures> m_job; // last: it ends before the rest goes
 };
-
-/// Shows the one of the window, which is made where there is none yet.
-void showPicturePair(Services& services);
 
 } // namespace pellucid::gui

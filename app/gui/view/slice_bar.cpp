@@ -8,8 +8,8 @@
 #include <QSlider>
 #include <QToolButton>
 
-#include "controllers/slice_actions.h"
 #include "services/services.h"
+#include "store/view_edits.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 

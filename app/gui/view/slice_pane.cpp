@@ -14,8 +14,8 @@
 
 #include <glm/common.hpp>
 
-#include "controllers/slice_actions.h"
 #include "services/services.h"
+#include "store/view_edits.h"
 #include "tf/shown_tf.h"
 #include "volume/orientation.h"
 #include "widgets/image_convert.h"
