@@ -13,18 +13,6 @@ using Mode = AdaptSettings::Mode;
 
 constexpr int kRest = 60; // milliseconds without a change before what is missing is looked for
 
-/// Whether what is made for frames may come out another way.
-bool mayDiffer(const Session& a, const Session& b) {
-    return !a.variables.isSame(b.variables) || !a.adapt.isSame(b.adapt) || !a.targetKeys.isSame(b.targetKeys) ||
-           !a.goals.isSame(b.goals) || !a.refine.isSame(b.refine) || !a.optimize.isSame(b.optimize) ||
-           !a.measure.isSame(b.measure) || !a.clipping.isSame(b.clipping) || !a.hsb.isSame(b.hsb) ||
-           a.camera != b.camera || a.frame != b.frame;
-}
-
-void editTrack(Session& session, const std::function<void(TfTrack&)>& change) {
-    session.variables.edit([&](std::vector<Variable>& all) { change(all.front().track); });
-}
-
 } // namespace
 
 AdaptController::AdaptController(Services& services, PlayerController& player)
@@ -164,13 +152,7 @@ bool AdaptController::hasTargetKey() const {
 
 void AdaptController::setTfKey() {
     if (hasTfKey()) return;
-    m_services.store().edit(tr("Set key"), {}, [](Session& session) {
-        const TransferFunction tf = *session.tf();
-        editTrack(session, [&](TfTrack& track) {
-            track.keys[session.frame] = Part<TransferFunction>(tf);
-            track.adapted.erase(session.frame);
-        });
-    });
+    m_services.store().edit(tr("Set key"), {}, [](Session& session) { pellucid::setTfKey(session); });
 }
 
 void AdaptController::removeTfKey() {
@@ -179,17 +161,11 @@ void AdaptController::removeTfKey() {
         Q_EMIT m_services.message(tr("The only key stays: it is the transfer function of all frames."));
         return;
     }
-    m_services.store().edit(tr("Remove key"), {}, [](Session& session) {
-        editTrack(session, [&](TfTrack& track) { track.keys.erase(session.frame); });
-    });
+    m_services.store().edit(tr("Remove key"), {}, [](Session& session) { pellucid::removeTfKey(session); });
 }
 
 void AdaptController::setTargetKey() {
-    m_services.store().edit(tr("Set target key"), {}, [](Session& session) {
-        std::map<FeatureId, double> targets;
-        for (const auto& [id, goal] : *session.goals) targets[id] = goal.target;
-        session.targetKeys.edit([&](TargetKeys& keys) { keys[session.frame] = std::move(targets); });
-    });
+    m_services.store().edit(tr("Set target key"), {}, [](Session& session) { pellucid::setTargetKey(session); });
 }
 
 void AdaptController::removeTargetKey() {
@@ -199,26 +175,14 @@ void AdaptController::removeTargetKey() {
 }
 
 void AdaptController::fromHereOn() {
-    m_services.store().edit(tr("From this frame on"), {}, [](Session& session) {
-        const TransferFunction tf = *session.tf();
-        editTrack(session, [&](TfTrack& track) {
-            track.keys.erase(track.keys.upper_bound(session.frame), track.keys.end());
-            track.adapted.erase(track.adapted.lower_bound(session.frame), track.adapted.end());
-            track.keys[session.frame] = Part<TransferFunction>(tf);
-        });
-    });
+    m_services.store().edit(tr("From this frame on"), {}, [](Session& session) { beginTracksHere(session); });
 }
 
 void AdaptController::goToKey(int direction) {
     if (!m_player.hasSeries()) return;
     const Session& session = m_services.store().session();
-    std::set<int> frames;
-    for (const auto& [frame, tf] : session.variable().track.keys) frames.insert(frame);
-    for (const auto& [frame, targets] : *session.targetKeys) frames.insert(frame);
-    const int now = m_player.awaited().value_or(session.frame);
-    const auto after = frames.upper_bound(now), here = frames.lower_bound(now);
-    if (direction > 0 && after != frames.end()) return m_player.goTo(*after);
-    if (direction < 0 && here != frames.begin()) return m_player.goTo(*std::prev(here));
+    if (const auto key = keyBeside(session, m_player.awaited().value_or(session.frame), direction))
+        return m_player.goTo(*key);
     Q_EMIT m_services.message(direction > 0 ? tr("There is no key after this frame.")
                                             : tr("There is no key before this frame."));
 }
@@ -264,7 +228,7 @@ void AdaptController::follow(const Scene& before, const Scene& after) {
             m_firstStale = -1;
             Q_EMIT changed();
         }
-    } else if (other || mayDiffer(before.session, after.session)) {
+    } else if (other || adaptsOtherwise(before.session, after.session)) {
         // What is under way may be stale: its fingerprint tells. Smoothing takes too long to wait for that.
         if (m_smoothing > 0 && before.session.frame == after.session.frame) m_job.cancel();
         m_timer.start();

@@ -59,16 +59,7 @@ FieldController::FieldController(Services& services)
 FieldController::~FieldController() = default;
 
 FieldController::Request FieldController::requestOf(const Scene& scene) {
-    const FieldKind kind = *scene.session.field->kind;
-    Request request{measureInput(scene), kind, scene.fieldFeature()};
-    MeasureInput& input = request.input;
-    if (kind != FieldKind::Vws && kind != FieldKind::Saliency) input.settings.vws = {};
-    if (kind == FieldKind::Visibility) input.settings.saliency = {};
-    if (!dependsOnView(kind)) {
-        input.view = {};
-        for (ControlPoint& point : input.tf.points) point.opacity = 0;
-    }
-    return request;
+    return {fieldInput(scene), *scene.session.field->kind, scene.fieldFeature()};
 }
 
 void FieldController::setState(State state) {

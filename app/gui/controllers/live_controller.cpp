@@ -15,11 +15,6 @@ namespace {
 constexpr int kRest = 150;             // milliseconds without a change before the last moves are made
 constexpr double kLeastOpacity = 1e-5; // what is scaled to 0 has lost its shape
 
-bool sameFeatures(const TransferFunction& a, const TransferFunction& b) {
-    return std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(),
-                      [](const Feature& f, const Feature& g) { return f.id == g.id; });
-}
-
 } // namespace
 
 LiveController::LiveController(Services& services, OptimizeController& optimizing)
@@ -94,20 +89,12 @@ LiveController::Task LiveController::present() const {
     return task;
 }
 
-// The opacity that was set stays, unless all were: then somebody wants another density, and the shares come back.
+// The opacity that was set stays.
 void LiveController::pinWhatWasSet(const Scene& before, const Scene& after) {
     if (before.volume != after.volume || !sameFeatures(before.tf, after.tf)) return m_pinned.clear();
     const Scene& from = m_services.store().isPreviewing() ? m_services.store().committed() : before;
     if (!sameFeatures(from.tf, after.tf) || from.tf == after.tf) return m_pinned.clear();
-    const std::vector<double> was = featureOpacities(from.tf), is = featureOpacities(after.tf);
-    std::set<FeatureId> set;
-    for (std::size_t i = 0; i < is.size(); ++i) {
-        const FeatureId id = after.tf.features[i].id;
-        const auto wanted = m_wanted.find(id);
-        if (was[i] != is[i] && (wanted == m_wanted.end() || std::abs(wanted->second - is[i]) > 1e-9)) set.insert(id);
-    }
-    if (set.size() == is.size()) set.clear();
-    m_pinned = std::move(set);
+    m_pinned = setByHand(from.tf, after.tf, m_wanted);
 }
 
 void LiveController::follow(const Scene& before, const Scene& after) {

@@ -9,6 +9,7 @@
 #include "optimize/coverage.h"
 #include "optimize/refine/drawn_colors.h"
 #include "optimize/refine/refine_features.h"
+#include "optimize/refine/refine_live.h"
 #include "optimize/refine/refine_words.h"
 #include "optimize/refine/region_colors.h"
 #include "services/services.h"
@@ -18,7 +19,6 @@ namespace {
 
 constexpr std::size_t kMostKept = 64;    // refinements that undo and redo find again
 constexpr std::size_t kMostRegions = 16; // whose colours are kept
-constexpr double kMostGivenWay = 4;      // factor between an opacity and what one live edit makes of it
 constexpr int kLookSize = 320;           // pixels along the longer side of the picture that a region is taken from
 
 Run runOf(const Refinement& refinement) {
@@ -30,69 +30,6 @@ Run runOf(const Refinement& refinement) {
     run.after = refinement.result.energyMovableAfter;
     run.iterations = refinement.result.iterations;
     return run;
-}
-
-/// The points whose opacity an edit has set, but for an edit that has set all of them: who holds a point keeps it.
-std::vector<std::size_t> heldPoints(const TransferFunction& before, const TransferFunction& after) {
-    const bool sameCount = before.points.size() == after.points.size();
-    std::vector<std::size_t> held;
-    std::size_t movable = 0;
-    for (std::size_t i = 0; i < after.points.size(); ++i) {
-        const ControlPoint& point = after.points[i];
-        if (point.fixed) continue;
-        ++movable;
-        const auto isSame = [&](const ControlPoint& p) { return p.x == point.x && p.opacity == point.opacity; };
-        const bool same = sameCount ? before.points[i].opacity == point.opacity
-                                    : std::any_of(before.points.begin(), before.points.end(), isSame);
-        if (!same) held.push_back(i);
-    }
-    return held.size() == movable ? std::vector<std::size_t>() : held;
-}
-
-/// liveStart() where features move as wholes: the others keep the mean opacity of all voxels.
-TransferFunction liveStartOfFeatures(const Histogram& histogram, const TransferFunction& before,
-                                     TransferFunction start) {
-    if (before.features.size() != start.features.size()) return start;
-    const std::vector<double> was = opacityParts(histogram, before), is = opacityParts(histogram, start);
-    double given = 0, others = 0;
-    for (std::size_t f = 0; f < is.size(); ++f) (isHeld(start, start.features[f]) ? given : others) += is[f];
-    for (std::size_t f = 0; f < is.size(); ++f)
-        if (isHeld(start, start.features[f])) given -= was[f];
-    if (!(others > 0)) return start;
-    const double factor = std::clamp((others - given) / others, 1 / kMostGivenWay, kMostGivenWay);
-    std::vector<double> peaks = featureOpacities(start);
-    for (std::size_t f = 0; f < peaks.size(); ++f)
-        if (!isHeld(start, start.features[f])) peaks[f] = std::min(1.0, factor * peaks[f]);
-    return withFeatureOpacities(start, peaks);
-}
-
-/// What live refinement of an edit starts from: held points are fixed, and the others have given way, or filled up, so
-/// that the total opacity is as it was; equal steps up and down keep it.
-TransferFunction liveStart(const Histogram& histogram, const TransferFunction& before, const TransferFunction& after,
-                           const std::vector<std::size_t>& held) {
-    TransferFunction start = after;
-    for (const std::size_t i : held) start.points[i].fixed = true;
-    if (held.empty()) return start;
-    if (movesFeatures(after)) return liveStartOfFeatures(histogram, before, std::move(start));
-    if (before.points.size() != after.points.size()) return start;
-    double given = 0, others = 0;
-    for (const std::size_t i : held) given += after.points[i].opacity - before.points[i].opacity;
-    for (const ControlPoint& point : start.points)
-        if (!point.fixed) others += point.opacity;
-    if (!(others > 0)) return start;
-    const double factor = std::clamp((others - given) / others, 1 / kMostGivenWay, kMostGivenWay);
-    for (ControlPoint& point : start.points)
-        if (!point.fixed) point.opacity = std::min(1.0, factor * point.opacity);
-    return start;
-}
-
-/// Whether refinement may come out another way.
-bool hasMoved(const TransferFunction& before, const TransferFunction& after, bool colorsCount) {
-    return !std::equal(before.points.begin(), before.points.end(), after.points.begin(), after.points.end(),
-                       [&](const ControlPoint& a, const ControlPoint& b) {
-                           return a.x == b.x && a.opacity == b.opacity && a.fixed == b.fixed &&
-                                  (!colorsCount || a.color == b.color);
-                       });
 }
 
 } // namespace
@@ -271,7 +208,7 @@ RefineOptions RefineController::options() const {
 const Refinement* RefineController::current() const {
     const Scene& scene = m_services.scene();
     for (auto r = m_kept.rbegin(); r != m_kept.rend(); ++r)
-        if (r->volume == scene.volume && !hasMoved(r->after, scene.tf, true)) return &*r;
+        if (r->volume == scene.volume && !refinesOtherwise(r->after, scene.tf, true)) return &*r;
     return nullptr;
 }
 
@@ -519,7 +456,7 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
     if (m_optimizing.isAnswering() || before.session.frame != after.session.frame) return {};
     const auto was = before.session.tf(), is = after.session.tf();
     if (was == nullptr || is == nullptr) return {};
-    const bool edited = hasMoved(*was, *is, settings.region.has_value());
+    const bool edited = refinesOtherwise(*was, *is, settings.region.has_value());
     if (!edited && before.session.refine == after.session.refine) return {};
     const auto priority = priorityOf(settings);
     if (!priority) {

@@ -15,7 +15,7 @@
 #include <QToolButton>
 
 #include "controllers/open_controller.h"
-#include "panels/variables_panel.h"
+#include "panels/variable_words.h"
 #include "services/services.h"
 #include "widgets/number_box.h"
 
@@ -331,36 +331,6 @@ void ChannelsBox::follow() {
                         : QString());
     m_note->setVisible(!m_note->text().isEmpty());
     m_showing = false;
-}
-
-QString curveTitle(const Session& session) {
-    const QString title = QObject::tr("Transfer function");
-    const HsbMapping& hsb = *session.hsb;
-    if (session.isEmpty() || (!hsb.on && session.variables->size() < 2)) return title;
-    const QString of = QObject::tr("%1 of %2").arg(title, QString::fromStdString(session.variable().name));
-    if (!hsb.on) return of;
-    QStringList channels;
-    const std::pair<QString, const std::string&> driven[] = {{QObject::tr("saturation"), hsb.saturation},
-                                                             {QObject::tr("brightness"), hsb.brightness},
-                                                             {QObject::tr("hue"), hsb.hue}};
-    for (const auto& [channel, name] : driven)
-        if (!name.empty()) channels << QStringLiteral("%1 ← %2").arg(channel, driverText(session, name));
-    return QObject::tr("%1: opacity alone, colours come from variables (%2)")
-        .arg(of, channels.isEmpty() ? QObject::tr("one hue") : channels.join(", "));
-}
-
-QString featuresTitle(const Session& session) {
-    if (session.isEmpty() || (!session.hsb->on && session.variables->size() < 2)) return QObject::tr("Features");
-    return QObject::tr("Features of %1").arg(QString::fromStdString(session.variable().name));
-}
-
-void followTitle(Services& services, QWidget* dock, QString (*title)(const Session&)) {
-    QObject::connect(&services.store(), &SessionStore::changed, dock,
-                     [dock, title](const Scene& before, const Scene& after) {
-                         if (!before.session.variables.isSame(after.session.variables) ||
-                             !before.session.hsb.isSame(after.session.hsb))
-                             dock->setWindowTitle(title(after.session));
-                     });
 }
 
 } // namespace pellucid::gui

@@ -66,11 +66,4 @@ private:
     bool m_showing = false; ///< the controls show, they do not edit
 };
 
-/// In words, whose opacity the curve says and where colours come from: title of the editor of transfer functions.
-QString curveTitle(const Session& session);
-/// In words, whose features those of the list are.
-QString featuresTitle(const Session& session);
-/// Keeps the title of a dock so; a title takes no room from the picture, whatever it says.
-void followTitle(Services& services, QWidget* dock, QString (*title)(const Session&));
-
 } // namespace pellucid::gui

@@ -23,9 +23,9 @@
 #include <QVBoxLayout>
 
 #include "controllers/controllers.h"
-#include "panels/channels_box.h"
 #include "panels/density_slider.h"
 #include "panels/panel.h"
+#include "panels/variable_words.h"
 #include "services/services.h"
 #include "widgets/lock_mark.h"
 #include "widgets/opacity_editor.h"

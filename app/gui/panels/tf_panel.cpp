@@ -1,8 +1,8 @@
 #include <QMenu>
 
 #include "controllers/controllers.h"
-#include "panels/channels_box.h"
 #include "panels/panel.h"
+#include "panels/variable_words.h"
 #include "services/services.h"
 #include "tf/ghost_layer.h"
 #include "tf/palette_bar.h"

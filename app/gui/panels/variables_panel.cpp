@@ -18,6 +18,7 @@
 #include "panels/channels_box.h"
 #include "panels/ground_box.h"
 #include "panels/panel.h"
+#include "panels/variable_words.h"
 #include "services/services.h"
 #include "session/scene_data.h"
 #include "volume/file_contents.h"
@@ -32,18 +33,6 @@ namespace {
 enum Column { kName, kDrives, kOrigin, kGrid, kRange, kColumns };
 
 QString textOf(const std::string& text) { return QString::fromStdString(text); }
-
-QString derivationText(const Derivation& d, const QString& of) {
-    switch (d.kind) {
-    case Derivation::Kind::Gradient:
-        return QObject::tr("gradient of %1").arg(of);
-    case Derivation::Kind::Volatility:
-        return QObject::tr("volatility of %1, %L2 frames").arg(of).arg(d.frames);
-    case Derivation::Kind::Difference:
-        return QObject::tr("%1 less its frame %L2").arg(of).arg(d.reference);
-    }
-    return of;
-}
 
 QString formulaOf(const Derivation& d) {
     switch (d.kind) {
@@ -98,19 +87,6 @@ bool sameVariables(const Session& a, const Session& b) {
 }
 
 } // namespace
-
-QString originText(const Variable& variable) {
-    if (variable.derivation) return derivationText(*variable.derivation, textOf(variable.derivation->of));
-    const QString array = textOf(variable.source.array);
-    return array.isEmpty() ? titleOf(variable.source) : QStringLiteral("%1 ▸ %2").arg(titleOf(variable.source), array);
-}
-
-QString driverText(const Session& session, const std::string& name) {
-    if (session.variableNamed(name) == nullptr)
-        if (const auto derivation = parseDerivation(name))
-            return derivationText(*derivation, driverText(session, derivation->of));
-    return textOf(name);
-}
 
 VariablesPanel::VariablesPanel(Services& services, OpenController& opening, QWidget* parent)
     : QWidget(parent), m_services(services), m_opening(opening), m_list(new QTreeWidget(this)),

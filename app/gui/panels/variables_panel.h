@@ -35,11 +35,6 @@ struct VariableInfo {
     std::string problem;             ///< why it cannot be read; empty: it can
 };
 
-/// A variable of the session in words: "volatility of x, 10 frames", "p*.mhd".
-QString originText(const Variable& variable);
-/// What a channel may name, in words: "x", "gradient of x".
-QString driverText(const Session& session, const std::string& name);
-
 class VariablesPanel : public QWidget {
     Q_OBJECT
 public:
