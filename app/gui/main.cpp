@@ -10,9 +10,8 @@
 #include <QFileInfo>
 #include <QIcon>
 
-#include "controllers/open_controller.h"
-#include "controllers/recovery_controller.h"
-#include "controllers/theme_actions.h"
+#include "controllers/controllers.h"
+#include "controllers/menu_actions.h"
 #include "frame/main_window.h"
 #include "tf/formats/tf_file.h"
 #include "version.h"
@@ -177,11 +176,11 @@ int main(int argc, char** argv) {
             if (screenshot.isEmpty()) window.restoreLayout();
             if (!size.isEmpty()) window.resize(size);
             window.show();
-            OpenController& opening = window.workbench().opening();
+            OpenController& opening = window.controllers().opening;
             if (screenshot.isEmpty()) {
-                window.workbench().recovery().start();
+                window.controllers().recovery.start();
                 if (onSample) window.welcome();
-                if (windows.size() == 1) window.workbench().recovery().offerWhenOpen();
+                if (windows.size() == 1) window.controllers().recovery.offerWhenOpen();
             } else {
                 QObject::connect(
                     &window, &MainWindow::settledChanged, &window,

@@ -1,5 +1,8 @@
 #include "session/live_targets.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace pellucid {
 
 namespace {
@@ -28,6 +31,24 @@ LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const Jo
 
 LiveUpdate settleTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job) {
     return update(workspace, held, kMovesAtRest, false, job);
+}
+
+bool sameFeatures(const TransferFunction& a, const TransferFunction& b) {
+    return std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(),
+                      [](const Feature& f, const Feature& g) { return f.id == g.id; });
+}
+
+std::set<FeatureId> setByHand(const TransferFunction& before, const TransferFunction& after,
+                              const std::map<FeatureId, double>& wanted) {
+    const std::vector<double> was = featureOpacities(before), is = featureOpacities(after);
+    std::set<FeatureId> set;
+    for (std::size_t i = 0; i < is.size(); ++i) {
+        const FeatureId id = after.features[i].id;
+        const auto update = wanted.find(id);
+        if (was[i] != is[i] && (update == wanted.end() || std::abs(update->second - is[i]) > 1e-9)) set.insert(id);
+    }
+    if (set.size() == is.size()) set.clear();
+    return set;
 }
 
 } // namespace pellucid

@@ -1,6 +1,8 @@
 // Targets that are held while something else changes: the view, a colour, how figures are computed.
 #pragma once
 
+#include <map>
+#include <set>
 #include <vector>
 
 #include "session/workspace.h"
@@ -29,5 +31,12 @@ struct LiveUpdate {
 LiveUpdate followTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});
 /// The same on the volume itself until the targets are met or nothing helps: what is done when all rests.
 LiveUpdate settleTargets(Workspace& workspace, const HeldTargets& held, const JobControl& job = {});
+
+/// Whether both have features of the same identities, in the same order.
+bool sameFeatures(const TransferFunction& a, const TransferFunction& b);
+/// Of two with the sameFeatures(): those whose opacity has changed, to another one than an update `wanted`. None where
+/// all have: then somebody wants another density, and the shares come back.
+std::set<FeatureId> setByHand(const TransferFunction& before, const TransferFunction& after,
+                              const std::map<FeatureId, double>& wanted);
 
 } // namespace pellucid

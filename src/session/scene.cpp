@@ -411,6 +411,18 @@ TransferFunction fieldSliceTf(TransferFunction tf) {
     return tf;
 }
 
+MeasureInput fieldInput(const Scene& scene) {
+    const FieldKind kind = *scene.session.field->kind;
+    MeasureInput input = measureInput(scene);
+    if (kind != FieldKind::Vws && kind != FieldKind::Saliency) input.settings.vws = {};
+    if (kind == FieldKind::Visibility) input.settings.saliency = {};
+    if (!dependsOnView(kind)) {
+        input.view = {};
+        for (ControlPoint& point : input.tf.points) point.opacity = 0;
+    }
+    return input;
+}
+
 PictureInput fieldPictureInput(const Scene& scene, const Field& field, int width, int height, bool transparent) {
     PictureInput input = plainPictureInput(scene, width, height);
     input.settings.colors.reset();

@@ -134,6 +134,9 @@ MeasureInput measureInput(const Scene& scene);
 /// What an optimization of the scene under `options` begins with.
 RunStart runStartOf(const Scene& scene, const OptimizeOptions& options);
 
+/// What the field that the session shows depends on; what it does not, is the same in all.
+MeasureInput fieldInput(const Scene& scene);
+
 /// Everything that a picture depends on.
 struct PictureInput {
     std::shared_ptr<const Volume> volume; ///< null: nothing but the background

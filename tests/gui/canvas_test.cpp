@@ -28,12 +28,12 @@ using namespace pellucid::gui;
 namespace {
 
 QPointF at(OpenWindow& w, int index) {
-    const ControlPoint& p = w.bench().scene().tf.points[static_cast<std::size_t>(index)];
+    const ControlPoint& p = w.services().scene().tf.points[static_cast<std::size_t>(index)];
     return w.canvas().positionOf(p.x, p.opacity);
 }
 
 const ControlPoint& point(OpenWindow& w, int index) {
-    return w.bench().scene().tf.points[static_cast<std::size_t>(index)];
+    return w.services().scene().tf.points[static_cast<std::size_t>(index)];
 }
 
 QImage image(OpenWindow& w) { return w.canvas().grab().toImage().convertToFormat(QImage::Format_RGB32); }
@@ -268,7 +268,7 @@ TEST_CASE("the joint histogram appears behind the curve, with its axis of gradie
     const QImage after = image(w);
     // The picture has changed where gradients are, not where none are. Only the upper half: below, the histogram is an
     // outline now. The uppermost quarter has the words "counting gradients…" in the first image.
-    const JointHistogram joint = makeJointHistogram(*w.bench().scene().volume, 64, 16);
+    const JointHistogram joint = makeJointHistogram(*w.services().scene().volume, 64, 16);
     const QRectF plot = w.canvas().plot();
     double changedFull = 0, changedEmpty = 0;
     int full = 0, empty = 0;
@@ -306,10 +306,10 @@ TEST_CASE("the readout tells value, opacity, voxels and feature of what the mous
     const QImage before = image(w);
     const QPointF over(w.canvas().positionOf(0.5, 0).x(), w.canvas().plot().center().y());
     moveTo(w.canvas(), over);
-    REQUIRE(w.bench().selection().hoveredIntensity().has_value());
-    const double x = *w.bench().selection().hoveredIntensity();
+    REQUIRE(w.services().selection().hoveredIntensity().has_value());
+    const double x = *w.services().selection().hoveredIntensity();
     CHECK(x == Approx(0.5).margin(1e-9));
-    const Scene& scene = w.bench().scene();
+    const Scene& scene = w.services().scene();
     const auto bin = static_cast<std::size_t>(histogramBin(x, 256));
     const QString text = w.canvas().readout();
     INFO(text.toStdString());
@@ -321,7 +321,7 @@ TEST_CASE("the readout tells value, opacity, voxels and feature of what the mous
     CHECK(hovered != before);
 
     // From another view: a hair line where that points, and the same words.
-    w.bench().selection().setHoveredIntensity(0.9);
+    w.services().selection().setHoveredIntensity(0.9);
     const double hair = w.canvas().positionOf(0.9, 0).x();
     const QImage other = image(w);
     const auto differs = [&](double column) {
@@ -331,7 +331,7 @@ TEST_CASE("the readout tells value, opacity, voxels and feature of what the mous
     CHECK(differs(hair));
     CHECK_FALSE(differs(hair - 12));
     CHECK(w.canvas().readout() != text);
-    w.bench().selection().setHoveredIntensity({});
+    w.services().selection().setHoveredIntensity({});
     CHECK(w.canvas().readout().isEmpty());
     CHECK(w.document().stepCount() == 0);
 }
@@ -345,8 +345,8 @@ TEST_CASE("a feature's bar selects it, moves it and widens it", "[canvas]") {
     CHECK(bar.left() == Approx(w.canvas().positionOf(start.features[1].a, 0).x()));
 
     QTest::mouseClick(&w.canvas(), Qt::LeftButton, {}, bar.center().toPoint());
-    CHECK(w.bench().selection().feature() == w.document().tf().features[1].id);
-    CHECK(w.bench().selection().feature() != 0);
+    CHECK(w.services().selection().feature() == w.document().tf().features[1].id);
+    CHECK(w.services().selection().feature() != 0);
     CHECK(w.document().tf() == start);
     CHECK(image(w) != canvas);
 
@@ -444,7 +444,7 @@ TEST_CASE("the menu of a feature's bar splits the feature where the mouse is", "
         if (f.a == start.features[1].a) lower = &f;
     REQUIRE(lower != nullptr);
     CHECK(lower->b == Approx(x).margin(1.5 * perPixel(w)));
-    CHECK(w.bench().selection().feature() == lower->id);
+    CHECK(w.services().selection().feature() == lower->id);
     CHECK(image(w) != canvas);
     w.document().undo();
     CHECK(w.document().tf() == start);

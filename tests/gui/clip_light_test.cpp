@@ -22,8 +22,8 @@ using namespace pellucid::gui;
 
 namespace {
 
-const Clipping& clippingOf(OpenWindow& w) { return *w.bench().store().session().clipping; }
-const Light& lightOf(OpenWindow& w) { return w.bench().store().session().display->light; }
+const Clipping& clippingOf(OpenWindow& w) { return *w.services().store().session().clipping; }
+const Light& lightOf(OpenWindow& w) { return w.services().store().session().display->light; }
 
 PictureView pictureOf(OpenWindow& w) {
     return {w.document().camera(), w.view().overlay().width(), w.view().overlay().height()};
@@ -44,7 +44,7 @@ void send(QWidget& widget, QEvent::Type type, const QPointF& at, Qt::MouseButton
 
 TEST_CASE("a face of the box is dragged, and figures follow", "[clip]") {
     OpenWindow w;
-    w.bench().store().edit("Engine", {}, [](Session& session) {
+    w.services().store().edit("Engine", {}, [](Session& session) {
         session.measure.edit([](MeasureSettings& m) { m.engine = EngineChoice::Reference; });
     });
     const int steps = w.document().stepCount();
@@ -235,7 +235,7 @@ TEST_CASE("at rest the picture becomes the one that is saved", "[display]") {
     const QImage refined = w.picture();
     finest.setCurrentIndex(0);
     Q_EMIT finest.activated(0);
-    CHECK(w.bench().store().session().display->finestStep == 0.5);
+    CHECK(w.services().store().session().display->finestStep == 0.5);
     const QImage plain = w.picture();
     CHECK(w.view().frame().stepInD0 == 0.5);
     CHECK(plain != refined);
@@ -245,7 +245,7 @@ TEST_CASE("at rest the picture becomes the one that is saved", "[display]") {
 
     // As it would be saved: the same pixels, rounded to 8 bits in the same way.
     auto& surface = w.child<QWidget>("cpuSurface");
-    PictureInput input = pictureInput(w.bench().scene(), surface.width(), surface.height());
+    PictureInput input = pictureInput(w.services().scene(), surface.width(), surface.height());
     const Image saved = makeCpuRenderer(input.volume)->render(input.camera, input.tf, input.settings);
     const QImage shown = surface.grab().toImage();
     int off = 0;
@@ -268,7 +268,7 @@ TEST_CASE("a change interrupts refining, and nothing is drawn afterwards", "[dis
     REQUIRE(waitFor([&] { return w.view().frame().resolutionScale == 1 && !w.view().isComplete(); }));
     w.document().setCamera(home);
     w.settle();
-    PictureInput input = pictureInput(w.bench().scene(), 1, 1);
+    PictureInput input = pictureInput(w.services().scene(), 1, 1);
     CHECK(input.camera == home);
     CHECK(w.view().frame().stepInD0 == 1.0 / 16);
     QSignalSpy shown(&w.view(), &VolumeView::frameShown);
@@ -281,19 +281,19 @@ TEST_CASE("mode and background are edits of the display", "[display]") {
     auto& mode = w.child<QComboBox>("modeCombo");
     REQUIRE(mode.count() == 5);
     Q_EMIT mode.activated(static_cast<int>(RenderMode::Average));
-    CHECK(w.bench().store().session().display->mode == RenderMode::Average);
+    CHECK(w.services().store().session().display->mode == RenderMode::Average);
     CHECK(mode.currentIndex() == static_cast<int>(RenderMode::Average));
     auto& gradient = w.child<QCheckBox>("gradientCheck");
     gradient.click();
-    CHECK(w.bench().store().session().display->backgroundTop);
+    CHECK(w.services().store().session().display->backgroundTop);
     w.settle();
     CHECK(w.document().measuresAreCurrent());
     gradient.click();
-    CHECK_FALSE(w.bench().store().session().display->backgroundTop);
+    CHECK_FALSE(w.services().store().session().display->backgroundTop);
     for (int i = 0; i < 3; ++i) w.document().undo();
     DisplaySettings opened;
     opened.light.on = true;
-    CHECK(*w.bench().store().session().display == opened);
+    CHECK(*w.services().store().session().display == opened);
 }
 
 TEST_CASE("the faster renderer draws, and the status line says why", "[window]") {

@@ -26,10 +26,10 @@ using namespace pellucid::gui;
 
 namespace {
 
-const std::vector<Run>& runsOf(OpenWindow& w) { return *w.bench().scene().session.runs; }
+const std::vector<Run>& runsOf(OpenWindow& w) { return *w.services().scene().session.runs; }
 
 void optimize(OpenWindow& w, SearchMethod method, int mostMoves) {
-    w.bench().store().edit("Method", {}, [&](Session& session) {
+    w.services().store().edit("Method", {}, [&](Session& session) {
         session.optimize.edit([&](OptimizeOptions& o) {
             o.method = method;
             o.maxIterations = mostMoves;
@@ -118,7 +118,7 @@ TEST_CASE("curves follow an optimization, and a dot shows its move", "[convergen
     const int steps = w.document().stepCount();
     QTest::mouseClick(&plot, Qt::LeftButton, {}, dotOf(plot, 0, 1).toPoint());
     CHECK(w.document().stepCount() == steps + 1);
-    CHECK(w.bench().store().undoText() == "Show move 1");
+    CHECK(w.services().store().undoText() == "Show move 1");
     const std::vector<double> shown = featureOpacities(w.document().tf());
     for (std::size_t f = 0; f < shown.size(); ++f) CHECK(shown[f] == Approx(run.history[1].opacity[f]).margin(1e-12));
     w.document().undo();
@@ -193,7 +193,7 @@ TEST_CASE("runs are compared, renamed and deleted", "[convergence]") {
     QTest::keyClick(&list, Qt::Key_Delete);
     REQUIRE(runsOf(w).size() == 1);
     CHECK(list.topLevelItemCount() == 1);
-    CHECK(w.bench().store().undoText() == "Delete run");
+    CHECK(w.services().store().undoText() == "Delete run");
     w.document().undo();
     CHECK(runsOf(w).size() == 2);
     CHECK(list.topLevelItem(1)->text(0) == "eight at once");
@@ -217,7 +217,7 @@ TEST_CASE("a run has one count of moves, and says what else there was", "[conver
     result.history = {state(0, 0.3), state(2, 0.3), state(2, 0.2), state(1, 0.1), state(0, 0.05), state(0, 0.05)};
     result.best = 5;
     result.searched = 5;
-    w.bench().store().edit("Run", {}, [&](Session& session) { session.addRun(runOf(result, {})); });
+    w.services().store().edit("Run", {}, [&](Session& session) { session.addRun(runOf(result, {})); });
     auto& list = w.child<QTreeWidget>("runList");
     REQUIRE(list.topLevelItemCount() == 1);
     CHECK(list.topLevelItem(0)->text(1) == "1");
@@ -282,7 +282,7 @@ TEST_CASE("a report of the last run is saved from the window", "[convergence]") 
     const QImage before = w.picture();
     // What has changed since is no part of it.
     w.document().setTargets({0.6, 0.3, 0.1});
-    const Session now = w.bench().store().session();
+    const Session now = w.services().store().session();
 
     const QTemporaryDir folder;
     w.saving().saveReport(run, folder.filePath("report"));
@@ -298,7 +298,7 @@ TEST_CASE("a report of the last run is saved from the window", "[convergence]") 
     const SessionFile start = readSession(folder.filePath("report/start.pellucid.json").toStdString());
     CHECK(targetsOf(*start.session.tf(), *start.session.goals) == std::vector<double>{0.1, 0.3, 0.6});
     // The window has not changed by it.
-    CHECK(w.bench().store().session() == now);
+    CHECK(w.services().store().session() == now);
     CHECK(w.picture() == before);
 
     // Cancelled, there is nothing.

@@ -19,8 +19,8 @@ namespace {
 
 using State = FieldController::State;
 
-FieldController& fieldsOf(OpenWindow& w) { return w.bench().fields(); }
-const FieldView& viewOf(OpenWindow& w) { return *w.bench().store().session().field; }
+FieldController& fieldsOf(OpenWindow& w) { return w.controllers().fields; }
+const FieldView& viewOf(OpenWindow& w) { return *w.services().store().session().field; }
 
 /// With the panel of fields in front, so that the view has its size for good.
 void openPanel(OpenWindow& w) {
@@ -38,7 +38,7 @@ void choose(OpenWindow& w, const char* combo, int index) {
 /// What stands around the picture now.
 AnnotationInput around(OpenWindow& w) {
     const FieldController& fields = fieldsOf(w);
-    return fields.annotation(fields.picture(400, 300), *w.bench().store().session().reference);
+    return fields.annotation(fields.picture(400, 300), *w.services().store().session().reference);
 }
 
 int differing(const QImage& a, const QImage& b, const QRect& where) {
@@ -51,7 +51,7 @@ int differing(const QImage& a, const QImage& b, const QRect& where) {
 /// Computed anew, of the present state.
 Field expected(OpenWindow& w, FieldKind kind, int feature = -1) {
     Workspace workspace;
-    return workspace.field(measureInput(w.bench().scene()), kind, feature);
+    return workspace.field(measureInput(w.services().scene()), kind, feature);
 }
 
 } // namespace
@@ -185,10 +185,10 @@ TEST_CASE("computing a field is stopped, and begun again", "[fields]") {
     openPanel(w);
     const QImage data = w.picture();
     // Far longer than anyone waits.
-    w.bench().store().edit("Engine", {}, [](Session& session) {
+    w.services().store().edit("Engine", {}, [](Session& session) {
         session.measure.edit([](MeasureSettings& m) { m.engine = EngineChoice::Reference; });
     });
-    w.bench().results().setPaused(true);
+    w.services().results().setPaused(true);
     choose(w, "fieldKindCombo", 1);
     CHECK(fieldsOf(w).state() == State::Computing);
     REQUIRE(waitFor([&] { return fieldsOf(w).progress() > 0; }));
@@ -198,10 +198,10 @@ TEST_CASE("computing a field is stopped, and begun again", "[fields]") {
     CHECK_FALSE(fieldsOf(w).isBusy());
     CHECK(around(w).title == "Visibility: stopped");
     CHECK(fieldsOf(w).field() == nullptr);
-    w.bench().store().edit("Engine", {}, [](Session& session) {
+    w.services().store().edit("Engine", {}, [](Session& session) {
         session.measure.edit([](MeasureSettings& m) { m.engine = EngineChoice::Cpu; });
     });
-    w.bench().results().setPaused(false);
+    w.services().results().setPaused(false);
     w.settle();
     CHECK(fieldsOf(w).state() == State::Current);
     CHECK(w.picture() != data);
@@ -237,7 +237,7 @@ TEST_CASE("a field is saved, with the session and in a picture", "[fields]") {
 
     // The session shows the field again.
     QSignalSpy opened(&w.opening(), &OpenController::opened);
-    w.bench().store().setClean();
+    w.services().store().setClean();
     w.opening().openPath(session);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     w.settle();

@@ -44,7 +44,7 @@ TEST_CASE("a volume opens under its proposal, and its opacities come as a step",
     CHECK(w.document().tf() == tuned.tf);             // as the command line has it
     CHECK(w.document().targets() == tuned.targets()); // what the start aims at
     CHECK(w.document().targets()[0] != Approx(w.document().targets()[1]).margin(0.05));
-    CHECK(w.bench().store().undoText() == "Automatic opacities");
+    CHECK(w.services().store().undoText() == "Automatic opacities");
     CHECK(w.document().isClean()); // the user has done nothing
     const QImage after = w.picture();
     CHECK(litShare(after) > 0.2);
@@ -73,7 +73,7 @@ TEST_CASE("values far off are said to lie beyond, and a click brings the full ra
 
     QTest::mouseClick(&w.child<QPushButton>("noticeChoice0"), Qt::LeftButton);
     REQUIRE(waitFor([&] { return w.document().volume()->range() == ValueRange{0, 1e6}; }));
-    CHECK(w.bench().store().undoText() == "Full range");
+    CHECK(w.services().store().undoText() == "Full range");
     CHECK_FALSE(noticeText(w).contains("1e+06"));
     // Values keep what they had; those beyond have that of the end.
     const auto opacityOf = [&](double value) {
@@ -94,13 +94,13 @@ TEST_CASE("who edits at once keeps what he has done", "[first sight]") {
     OpenWindow w;
     TransferFunction mine = tents(2, 0.3);
     QObject::connect(&w.opening(), &OpenController::opened, &w.window,
-                     [&] { editTf(w.bench().store(), mine, "Mine"); });
+                     [&] { editTf(w.services().store(), mine, "Mine"); });
     w.opening().openVolume(boxesWithOutlier(folder));
     REQUIRE(waitFor([&] { return w.document().volume()->title == "boxes.raw"; }));
     w.settle();
     CHECK(w.document().tf().points == mine.points);
     CHECK(w.document().stepCount() == 1);
-    CHECK(w.bench().store().undoText() == "Mine");
+    CHECK(w.services().store().undoText() == "Mine");
     const QImage picture = w.picture();
     w.child<QAction>("undoAction").trigger();
     CHECK(w.document().tf().points != mine.points);
@@ -113,9 +113,9 @@ TEST_CASE("the automatic start again is for the present view, and one step", "[f
     const QImage picture = w.picture();
     w.document().setCamera(cameraFromView(w.document().volume()->geometry(), 100, -50, 1, Projection::Perspective));
     const QImage turned = w.picture();
-    const AutomaticStart expected = automaticStart(w.bench().scene(), View(w.document().camera()));
+    const AutomaticStart expected = automaticStart(w.services().scene(), View(w.document().camera()));
     w.child<QAction>("automaticStartAction").trigger();
-    REQUIRE(waitFor([&] { return w.bench().store().undoText() == "Automatic start"; }));
+    REQUIRE(waitFor([&] { return w.services().store().undoText() == "Automatic start"; }));
     w.settle();
     CHECK(w.document().stepCount() == 1);
     CHECK(w.document().tf().points == expected.sight.tf.points);
@@ -179,7 +179,7 @@ TEST_CASE("a skull is seen, lit, through the skin as soon as the file is open", 
     REQUIRE(waitFor([&] { return w.document().volume()->title == "cranium_ct.nrrd"; }));
     w.settle();
     CHECK(noticeText(w).contains("Hounsfield"));
-    CHECK(w.bench().store().session().display->light.on);
+    CHECK(w.services().store().session().display->light.on);
     double bone = 0, skin = 0;
     REQUIRE(w.document().measures() != nullptr);
     const auto& features = w.document().tf().features;

@@ -42,7 +42,7 @@ QString writePatient(const QTemporaryDir& folder) {
 
 TEST_CASE("the parts of the frame of reference can be switched, and undone", "[frame]") {
     OpenWindow w(24, ViewRenderer::Cpu);
-    SessionStore& store = w.bench().store();
+    SessionStore& store = w.services().store();
     CHECK(*store.session().reference == FrameOfReference{}); // cube, letters, scale
     const QImage shown = w.picture();
     w.child<QAction>("frameAction").trigger();
@@ -105,8 +105,8 @@ TEST_CASE("a saved picture has the marks where it is asked for them", "[frame]")
     CHECK(plain.rgba != marked.rgba);
     // The same marks over the plain picture; one of 255 steps, since that has been rounded already.
     Image expected = plain;
-    drawMarks(expected, annotationMarks(annotationInput(pictureInput(w.bench().scene(), 320, 240),
-                                                        *w.bench().store().session().reference)));
+    drawMarks(expected, annotationMarks(annotationInput(pictureInput(w.services().scene(), 320, 240),
+                                                        *w.services().store().session().reference)));
     double most = 0;
     for (std::size_t i = 0; i < expected.rgba.size(); ++i)
         most = std::max(most, std::abs(static_cast<double>(expected.rgba[i]) - marked.rgba[i]));
@@ -140,7 +140,7 @@ TEST_CASE("views speak anatomy where the file does", "[frame]") {
     CHECK(w.child<QAction>("view2").text() == "Posterior");
     CHECK(w.child<QAction>("view6").text() == "Inferior");
     CHECK(w.child<QAction>("view6").toolTip().contains("radiologists"));
-    CHECK(w.bench().actions().keyTable().contains("Anterior"));
+    CHECK(w.services().actions().keyTable().contains("Anterior"));
     CHECK(w.child<QLabel>("volumeLabel").toolTip().contains("L→R, P→A, I→S"));
     // World is LPS: left is +x. From the left the eye is there; from the feet the front, -y, is up.
     w.child<QAction>("view3").trigger();

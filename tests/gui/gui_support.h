@@ -7,11 +7,7 @@
 #include <QSignalSpy>
 #include <QTest>
 
-#include "controllers/open_controller.h"
-#include "controllers/optimize_controller.h"
-#include "controllers/recovery_controller.h"
-#include "controllers/refine_controller.h"
-#include "controllers/save_controller.h"
+#include "controllers/controllers.h"
 #include "frame/main_window.h"
 #include "panels/features_panel.h"
 #include "panels/target_bars.h"
@@ -122,12 +118,13 @@ struct OpenWindow {
     void settle() {
         REQUIRE(waitFor([this] { return window.isSettled(); }));
     }
-    Workbench& bench() { return window.workbench(); }
-    OpenController& opening() { return bench().opening(); }
-    SaveController& saving() { return bench().saving(); }
-    OptimizeController& optimizing() { return bench().optimizing(); }
-    RefineController& refining() { return bench().refining(); }
-    Document document() { return {bench().store(), bench().results()}; }
+    Services& services() { return window.services(); }
+    Controllers& controllers() { return window.controllers(); }
+    OpenController& opening() { return controllers().opening; }
+    SaveController& saving() { return controllers().saving; }
+    OptimizeController& optimizing() { return controllers().optimizing; }
+    RefineController& refining() { return controllers().refining; }
+    Document document() { return {services().store(), services().results()}; }
     VolumeView& view() { return window.view(); }
     TfCanvas& canvas() { return child<TfCanvas>("tfCanvas"); }
     QImage picture() {

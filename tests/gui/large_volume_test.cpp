@@ -26,7 +26,7 @@ TEST_CASE("what the clip box leaves opens at full resolution, and the whole volu
     CHECK_FALSE(region.isEnabled()); // nothing is cut away
     CHECK_FALSE(whole.isEnabled());
 
-    w.bench().store().edit("Clip", {}, [](Session& session) {
+    w.services().store().edit("Clip", {}, [](Session& session) {
         session.clipping.edit([](Clipping& c) { c.lo = {0.5, 0, 0}; });
     });
     REQUIRE(region.isEnabled());
@@ -35,7 +35,7 @@ TEST_CASE("what the clip box leaves opens at full resolution, and the whole volu
     w.settle();
     CHECK(w.document().volume()->value(0) == 8); // voxel (8, 0, 0) of the file
     CHECK(w.document().volume()->geometry().origin == Vec3(8, 0, 0));
-    CHECK(w.bench().store().session().clipping->isNone());
+    CHECK(w.services().store().session().clipping->isNone());
 
     REQUIRE(whole.isEnabled());
     whole.trigger();

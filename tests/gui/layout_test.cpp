@@ -21,7 +21,7 @@
 
 #include "frame/dock_space.h"
 #include "panels/density_slider.h"
-#include "services/panel.h"
+#include "panels/panel.h"
 #include "session/session_json.h"
 #include "tf/edit.h"
 #include "widgets/theme.h"
@@ -134,8 +134,8 @@ TEST_CASE("the density slider's place is part of the session", "[layout][density
     dragDensity(w, -slider.width() / 4.0);
     const int left = slider.value();
     CHECK(left < start - 100);
-    REQUIRE(w.bench().store().session().density);
-    CHECK(*w.bench().store().session().density == Approx(left / 1000.0).margin(0.001));
+    REQUIRE(w.services().store().session().density);
+    CHECK(*w.services().store().session().density == Approx(left / 1000.0).margin(0.001));
 
     // Another step keeps it, though nobody knows the curve from there.
     w.document().setTf(withFeatureOpacities(tents(3), {0.6, 0.05, 0.3}), "others");
@@ -155,10 +155,10 @@ TEST_CASE("the density slider's place is part of the session", "[layout][density
     w.settle();
     const QTemporaryDir folder;
     const std::string file = folder.filePath("s.pellucid.json").toStdString();
-    writeSession(w.bench().store().session(), file);
+    writeSession(w.services().store().session(), file);
     OpenWindow again;
     again.opening().openPath(QString::fromStdString(file));
-    REQUIRE(waitFor([&] { return again.bench().store().session().density.has_value(); }));
+    REQUIRE(waitFor([&] { return again.services().store().session().density.has_value(); }));
     again.settle();
     CHECK(again.child<QSlider>("densitySlider").value() == Approx(right).margin(1));
 }

@@ -159,7 +159,7 @@ TEST_CASE("undoing a preset brings the targets back", "[mend]") {
 
 TEST_CASE("the table of keys says what the keys do", "[mend]") {
     OpenWindow w;
-    const QString table = w.bench().actions().keyTable();
+    const QString table = w.services().actions().keyTable();
     const auto says = [&](const QString& keys, const QString& what) {
         return table.contains(QStringLiteral("<td>%1&nbsp;&nbsp;</td><td>%2</td>").arg(keys, what));
     };
@@ -210,12 +210,12 @@ TEST_CASE("a new volume is never seen under the old transfer function", "[mend]"
     w.child<QAction>("tents:8").trigger();
     w.settle();
     int heard = 0;
-    QObject::connect(&w.bench().store(), &SessionStore::changed, &w.window,
+    QObject::connect(&w.services().store(), &SessionStore::changed, &w.window,
                      [&](const Scene& before, const Scene& after) {
                          if (before.volume == after.volume) return;
                          ++heard;
                          CHECK(after.tf.features.size() == 3); // its own, from the first moment on
-                         CHECK(w.bench().scene().volume == after.volume);
+                         CHECK(w.services().scene().volume == after.volume);
                      });
     QSignalSpy opened(&w.opening(), &OpenController::opened);
     // Of the old volume nothing is left as soon as the new one is there.
@@ -266,9 +266,9 @@ TEST_CASE("turning the view during an optimization shows the figures of before a
     QObject::connect(&w.optimizing(), &OptimizeController::moved, &w.window, [&] {
         if (w.optimizing().move() < 0 || turned) return;
         turned = true;
-        CHECK(w.bench().results().vwsIsCurrent()); // of this very move
+        CHECK(w.services().results().vwsIsCurrent()); // of this very move
         w.document().setCamera(cameraFromView(w.document().volume()->geometry(), -70, 30, 1, Projection::Perspective));
-        shownAsOld = !w.bench().results().vwsIsCurrent();
+        shownAsOld = !w.services().results().vwsIsCurrent();
     });
     w.optimizing().start();
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
@@ -278,7 +278,7 @@ TEST_CASE("turning the view during an optimization shows the figures of before a
     w.settle();
     CHECK(w.document().measuresAreCurrent());
     if (w.optimizing().message().startsWith("On target")) // of this view
-        CHECK(*w.bench().results().objective() < w.bench().store().session().optimize->tolerance);
+        CHECK(*w.services().results().objective() < w.services().store().session().optimize->tolerance);
 }
 
 TEST_CASE("raw files are among the recent ones, with their layout", "[mend]") {
@@ -293,7 +293,7 @@ TEST_CASE("raw files are among the recent ones, with their layout", "[mend]") {
     QSignalSpy opened(&w.opening(), &OpenController::opened);
     w.opening().openVolume(source);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
-    QMenu* menu = w.bench().actions().menu("&File/Open &recent");
+    QMenu* menu = w.services().actions().menu("&File/Open &recent");
     REQUIRE(menu != nullptr);
     REQUIRE(menu->actions().first()->text() == "block.raw");
     w.opening().openVolume(sampleSource("disks", 16));

@@ -104,7 +104,7 @@ void answer(const char* name, const std::function<void(QDialog&)>& with) {
     timer->start();
 }
 
-const TimeSeries& seriesOf(OpenWindow& w) { return *w.bench().scene().series; }
+const TimeSeries& seriesOf(OpenWindow& w) { return *w.services().scene().series; }
 
 void waitForSeries(OpenWindow& w, int frames) {
     REQUIRE(waitFor([&] { return seriesOf(w).size() == frames; }));
@@ -129,12 +129,12 @@ TEST_CASE("files that are dropped together are the frames of a series", "[series
     std::reverse(paths.begin(), paths.end());
     drop(w.window, paths);
     waitForSeries(w, 3);
-    CHECK(w.bench().store().session().variable().source.path == folder.filePath("f1.nrrd").toStdString());
-    CHECK(w.bench().store().session().variable().source.more.back() == folder.filePath("f10.nrrd").toStdString());
+    CHECK(w.services().store().session().variable().source.path == folder.filePath("f1.nrrd").toStdString());
+    CHECK(w.services().store().session().variable().source.more.back() == folder.filePath("f10.nrrd").toStdString());
     const QImage first = w.picture();
     CHECK(first != before);
     // Its last frame is that of the last file: the ball has moved by 4 voxels, to x = 7.
-    const auto last = w.bench().scene().series->load(2);
+    const auto last = w.services().scene().series->load(2);
     const auto valueAt = [&](std::size_t x) { return last->value(x + kSide * (5 + kSide * 5)); };
     CHECK(valueAt(7) > valueAt(3));
 
@@ -159,14 +159,14 @@ TEST_CASE("files are chosen together in the dialog", "[series]") {
     OpenWindow w;
     w.opening().openPaths({paths[2], paths[0], paths[1]}); // as the dialog hands them over
     waitForSeries(w, 3);
-    const auto first = w.bench().scene().data;
+    const auto first = w.services().scene().data;
     const QImage series = w.picture();
     w.opening().openPaths({paths[2]});
     waitForSeries(w, 1);
-    CHECK_FALSE(w.bench().scene().data->samples() == first->samples()); // the last frame alone
+    CHECK_FALSE(w.services().scene().data->samples() == first->samples()); // the last frame alone
     CHECK(w.picture() != series);
     w.opening().openPaths({paths[0]});
-    REQUIRE(waitFor([&] { return w.bench().scene().data->samples() == first->samples(); }));
+    REQUIRE(waitFor([&] { return w.services().scene().data->samples() == first->samples(); }));
 }
 
 TEST_CASE("headerless files get one layout: byte order and missing value too", "[series]") {
@@ -187,7 +187,7 @@ TEST_CASE("headerless files get one layout: byte order and missing value too", "
     drop(w.window, paths);
     waitForSeries(w, 3);
     CHECK(what.contains("3 files"));
-    const Volume& data = *w.bench().scene().data;
+    const Volume& data = *w.services().scene().data;
     CHECK(data.invalidCount() == 1);
     CHECK_FALSE(data.isValid(0));
     // The largest value is that of the voxel nearest to the middle of the ball, (3, 5.5, 5.5): 4 − √½.
@@ -217,7 +217,7 @@ TEST_CASE("a series by a pattern, some of its frames", "[series]") {
     });
     w.child<QAction>("openSeriesAction").trigger();
     waitForSeries(w, 2);
-    const auto& frames = w.bench().store().session().variable().source.frames;
+    const auto& frames = w.services().store().session().variable().source.frames;
     REQUIRE(frames);
     CHECK(*frames == FrameRange{1, 2, 1});
     CHECK(w.picture() != before);
@@ -228,7 +228,7 @@ TEST_CASE("what cannot be opened together is told", "[series]") {
     const QStringList paths = writeFrames(folder);
     OpenWindow w;
     const QImage before = w.picture();
-    const Session session = w.bench().store().session();
+    const Session session = w.services().store().session();
     QString said;
     answer("errorDialog", [&](QDialog& dialog) {
         for (const QLabel* label : dialog.findChildren<QLabel*>()) said += label->text();
@@ -239,6 +239,6 @@ TEST_CASE("what cannot be opened together is told", "[series]") {
     CHECK(waitFor([&] { return failed.count() == 1; }));
     CHECK(waitFor([&] { return !said.isEmpty(); }));
     CHECK(said.contains("session is opened alone"));
-    CHECK(w.bench().store().session() == session);
+    CHECK(w.services().store().session() == session);
     CHECK(w.picture() == before);
 }

@@ -40,8 +40,8 @@ TEST_CASE("a picture of the transfer-function editor", "[.pictures]") {
     w.child<QCheckBox>("jointHistogram").click();
     const Feature feature = w.document().tf().features.at(1);
     w.canvas().axis().setVisible(0, 0.8);
-    w.bench().selection().setFeature(feature.id);
-    w.bench().selection().setHoveredIntensity(feature.a + 0.3 * (feature.b - feature.a));
+    w.services().selection().setFeature(feature.id);
+    w.services().selection().setHoveredIntensity(feature.a + 0.3 * (feature.b - feature.a));
     std::vector<int> points;
     for (std::size_t i = 0; i < w.document().tf().points.size(); ++i)
         if (feature.contains(w.document().tf().points[i].x)) points.push_back(static_cast<int>(i));
@@ -130,7 +130,7 @@ TEST_CASE("curves for the guide", "[.pictures][.convergencepicture]") {
     w.settle();
     w.document().setTargets({0.1, 0.3, 0.6});
     const auto run = [&](SearchMethod method) {
-        w.bench().store().edit("Method", {}, [&](Session& session) {
+        w.services().store().edit("Method", {}, [&](Session& session) {
             session.optimize.edit([&](OptimizeOptions& options) {
                 options.method = method;
                 options.maxIterations = 20;
@@ -153,7 +153,7 @@ TEST_CASE("the refiner for the guide", "[.pictures]") {
     VolumeSource source;
     source.path = "sample:knee";
     w.open(source);
-    w.bench().store().edit("Clip", {}, [](Session& session) {
+    w.services().store().edit("Clip", {}, [](Session& session) {
         session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
         session.refine.edit([](RefineSettings& refine) { refine.method = RefineMethod::Exact; });
     });
@@ -180,7 +180,7 @@ TEST_CASE("a field for the guide", "[.pictures][.fieldpicture]") {
     source.path = "sample:shells";
     w.open(source);
     w.child<QAction>("fieldsAction").trigger();
-    w.bench().store().edit("Field", {}, [](Session& session) {
+    w.services().store().edit("Field", {}, [](Session& session) {
         session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; });
         session.field.edit([](FieldView& f) { f.kind = FieldKind::Vws; });
     });
@@ -198,7 +198,7 @@ TEST_CASE("the parameter space for the guide", "[.pictures][.spacepicture]") {
     w.child<QAction>("spaceAction").trigger();
     w.document().setTargets({0.1, 0.3, 0.6});
     for (const SearchMethod method : {SearchMethod::Parallel, SearchMethod::Fixed}) {
-        w.bench().store().edit("Method", {}, [method](Session& session) {
+        w.services().store().edit("Method", {}, [method](Session& session) {
             session.optimize.edit([method](OptimizeOptions& options) { options.method = method; });
         });
         w.document().setTf(tents(3), "Start");
@@ -252,7 +252,7 @@ TEST_CASE("several variables for the guide", "[.pictures][.variablespicture]") {
         w.document().setCamera(cameraFromView(w.document().volume()->geometry(), show.azimuth, show.elevation,
                                               show.zoom, Projection::Perspective));
         w.settle();
-        const PictureInput picture = pictureInput(w.bench().scene(), 640, 480);
+        const PictureInput picture = pictureInput(w.services().scene(), 640, 480);
         const auto renderer = makeRenderer(EngineChoice::Cpu, picture.volume);
         const std::string folder = qEnvironmentVariable("PELLUCID_PICTURES").toStdString() + "/variables_";
         writeImage(renderer->render(picture.camera, picture.tf, picture.settings, {}), folder + show.sample + ".png");

@@ -93,15 +93,15 @@ struct SeriesWindow : OpenWindow {
 
     explicit SeriesWindow(const BallOptions& options = {}) : series(balls(options)) {
         window.resize(1280, 900);
-        bench().store().open(sceneOf(series));
+        services().store().open(sceneOf(series));
         window.activateWindow(); // keys go to the active window alone
         REQUIRE(waitFor([&] { return window.isActiveWindow(); }));
         settle();
     }
-    PlayerController& player() { return bench().player(); }
-    AdaptController& adapting() { return bench().player().adapting(); }
+    PlayerController& player() { return controllers().player; }
+    AdaptController& adapting() { return controllers().adapting; }
     TimeStrip& strip() { return child<TimeStrip>("timeStrip"); }
-    const Session& session() { return bench().store().session(); }
+    const Session& session() { return services().store().session(); }
     int frame() { return session().frame; }
     void goTo(int frame) {
         player().goTo(frame);
@@ -124,7 +124,7 @@ struct SeriesWindow : OpenWindow {
         return most;
     }
     bool hasNotice(const QString& part) {
-        for (const Notice& notice : bench().notices().all())
+        for (const Notice& notice : services().notices().all())
             if (notice.text.contains(part)) return true;
         return false;
     }
@@ -162,7 +162,7 @@ TEST_CASE("frames are stepped, scrubbed and played without a step of the history
 
     // Play goes round and round; Space pauses.
     std::set<int> seen;
-    const auto watch = QObject::connect(&w.bench().store(), &SessionStore::changed,
+    const auto watch = QObject::connect(&w.services().store(), &SessionStore::changed,
                                         [&](const Scene&, const Scene& after) { seen.insert(after.session.frame); });
     w.player().setSpeed(30);
     QTest::keyClick(&w.view(), Qt::Key_Space);
@@ -261,7 +261,7 @@ TEST_CASE("undo leaves the frame where it is, and edits hold no frames", "[playe
     CHECK(w.document().histogram().total > 0);
     CHECK(w.picture() != narrow);
     // Another frame alone is nothing to be saved.
-    w.bench().store().setClean();
+    w.services().store().setClean();
     w.goTo(2);
     CHECK(w.document().isClean());
 }
@@ -276,7 +276,7 @@ TEST_CASE("a broken frame is told of once and left out", "[player]") {
     w.settle();
     CHECK(w.hasNotice("ball_2.raw"));
     CHECK(w.hasNotice("it ends early"));
-    const auto notices = w.bench().notices().all().size();
+    const auto notices = w.services().notices().all().size();
     QTest::keyClick(&w.view(), Qt::Key_Comma);
     REQUIRE(waitFor([&] { return w.frame() == 1; }));
     const QImage strip = w.strip().grab().toImage();
@@ -296,7 +296,7 @@ TEST_CASE("a broken frame is told of once and left out", "[player]") {
     CHECK_FALSE(colors(column(3)).contains(QColor(theme::kFalls).rgb()));
     // The player goes on behind it.
     std::set<int> seen;
-    QObject::connect(&w.bench().store(), &SessionStore::changed, &w.window,
+    QObject::connect(&w.services().store(), &SessionStore::changed, &w.window,
                      [&](const Scene&, const Scene& after) { seen.insert(after.session.frame); });
     w.player().setSpeed(30);
     w.player().play();
@@ -304,7 +304,7 @@ TEST_CASE("a broken frame is told of once and left out", "[player]") {
     w.player().pause();
     w.settle();
     CHECK_FALSE(seen.contains(2));
-    CHECK(w.bench().notices().all().size() == notices);
+    CHECK(w.services().notices().all().size() == notices);
     // Nobody gets there by hand.
     w.goTo(3);
     w.player().goTo(2);
@@ -471,7 +471,7 @@ TEST_CASE("with coherence frames are smoothed together, and undo knows nothing o
 
 TEST_CASE("every frame is optimized to the targets, and the curves show it", "[player]") {
     SeriesWindow w;
-    w.bench().store().edit("Exact shares", {}, [](Session& session) { // else what can hardly be seen gets more
+    w.services().store().edit("Exact shares", {}, [](Session& session) { // else what can hardly be seen gets more
         session.optimize.edit([](OptimizeOptions& options) { options.exactShares = true; });
     });
     w.document().setTargets({0.2, 0.3, 0.5});
@@ -507,8 +507,8 @@ TEST_CASE("every frame is optimized to the targets, and the curves show it", "[p
     CHECK(w.child<QLabel>("temporalWords").text().contains(QStringLiteral("%1 not below 0.03").arg(still.above)));
     // The figures of the frame that is shown are those of the curve.
     w.goTo(4);
-    REQUIRE(waitFor([&] { return w.bench().results().measuresAreCurrent(); }));
-    CHECK(*w.bench().results().objective() == Approx(curves.runs[0].frames[4].objective).margin(1e-9));
+    REQUIRE(waitFor([&] { return w.services().results().measuresAreCurrent(); }));
+    CHECK(*w.services().results().objective() == Approx(curves.runs[0].frames[4].objective).margin(1e-9));
     QTemporaryDir folder;
     for (const char* name : {"curves.csv", "curves.png", "curves.svg"}) {
         panel.exportTo(folder.filePath(name));
@@ -561,19 +561,19 @@ TEST_CASE("a session with a series comes back at its frame", "[player]") {
     source.frames = FrameRange{0, 9, 3}; // 0, 3, 6, 9
     w.open(source);
     w.settle();
-    PlayerController& player = w.bench().player();
+    PlayerController& player = w.controllers().player;
     REQUIRE(player.frameCount() == 4);
     player.goTo(2);
-    REQUIRE(waitFor([&] { return w.bench().scene().session.frame == 2; }));
+    REQUIRE(waitFor([&] { return w.services().scene().session.frame == 2; }));
     w.settle();
     CHECK(w.child<QLabel>("volumeLabel").text().contains("(3 of 4)"));
-    player.adapting().setTfKey();
+    w.controllers().adapting.setTfKey();
     w.document().setTarget(0, 0.5);
-    player.adapting().setTargetKey();
-    player.adapting().setMode(AdaptSettings::Mode::Refine);
+    w.controllers().adapting.setTargetKey();
+    w.controllers().adapting.setMode(AdaptSettings::Mode::Refine);
     w.settle();
     const QImage before = w.picture();
-    const Session saved = w.bench().store().session();
+    const Session saved = w.services().store().session();
     QTemporaryDir folder;
     const QString path = folder.filePath("vortex.pellucid.json");
     REQUIRE(w.saving().saveSession(path));
@@ -584,9 +584,9 @@ TEST_CASE("a session with a series comes back at its frame", "[player]") {
 
     OpenWindow other;
     other.opening().openSession(path);
-    REQUIRE(waitFor([&] { return other.bench().scene().series->size() == 4; }));
+    REQUIRE(waitFor([&] { return other.services().scene().series->size() == 4; }));
     other.settle();
-    const Session& opened = other.bench().store().session();
+    const Session& opened = other.services().store().session();
     CHECK(opened.frame == 2);
     CHECK(opened.variable().track.keys == saved.variable().track.keys);
     CHECK(opened.targetKeys == saved.targetKeys);
@@ -616,12 +616,12 @@ TEST_CASE("pictures of a series for the guide", "[.pictures]") {
         w.settle();
         REQUIRE(w.window.grab().save(qEnvironmentVariable("PELLUCID_PICTURES") + '/' + name));
     };
-    PlayerController& player = w.bench().player();
+    PlayerController& player = w.controllers().player;
     REQUIRE(waitFor([&] { return player.knownCount() == player.frameCount(); }));
     w.optimizing().start();
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
-    player.adapting().setMode(AdaptSettings::Mode::Optimize);
-    player.adapting().setCoherence(0.3);
+    w.controllers().adapting.setMode(AdaptSettings::Mode::Optimize);
+    w.controllers().adapting.setCoherence(0.3);
     w.settle();
     player.goTo(20);
     w.settle();

@@ -17,11 +17,7 @@ using namespace pellucid::gui;
 
 namespace {
 
-ProbeController& probeOf(OpenWindow& w) {
-    auto* probe = w.bench().findChild<ProbeController*>();
-    REQUIRE(probe != nullptr);
-    return *probe;
-}
+ProbeController& probeOf(OpenWindow& w) { return w.controllers().probe; }
 
 /// Press and release without a motion.
 void click(QWidget& widget, const QPointF& at) {
@@ -36,7 +32,7 @@ QPointF middle(OpenWindow& w) { return {w.view().width() / 2 + 0.0, w.view().hei
 
 /// Alpha of the picture as the cpu draws it where the view has been clicked on.
 double alphaOfPicture(OpenWindow& w, const QPointF& at) {
-    PictureInput picture = pictureInput(w.bench().scene(), w.view().width(), w.view().height(), true);
+    PictureInput picture = pictureInput(w.services().scene(), w.view().width(), w.view().height(), true);
     picture.settings.stepInD0 = 1.0 / 16;
     const Image image =
         makeRenderer(EngineChoice::Cpu, picture.volume)->render(picture.camera, picture.tf, picture.settings);
@@ -56,7 +52,7 @@ double sumOfRows(OpenWindow& w) {
 /// Pixels that differ by more than the mark and the panel cover: those of the picture itself.
 QImage pictureAlone(OpenWindow& w) {
     w.settle();
-    const PictureInput picture = pictureInput(w.bench().scene(), 64, 48);
+    const PictureInput picture = pictureInput(w.services().scene(), 64, 48);
     const Image image =
         makeRenderer(EngineChoice::Cpu, picture.volume)->render(picture.camera, picture.tf, picture.settings);
     QImage copy(64, 48, QImage::Format_RGB32);
@@ -84,7 +80,7 @@ TEST_CASE("a click tells what the ray meets, and its shares are the pixel's alph
         // Each row is rounded to a tenth.
         CHECK(std::abs(sumOfRows(w) / 100 - ray.alpha) < 0.0005 * static_cast<double>(ray.shares.size() + 1));
         const Feature& main = w.document().tf().features[static_cast<std::size_t>(ray.feature)];
-        CHECK(w.bench().selection().feature() == main.id);
+        CHECK(w.services().selection().feature() == main.id);
         CHECK(w.child<QLabel>("probeTitle").text().startsWith(QString::fromStdString(main.name)));
         CHECK(w.child<QLabel>("probeText").text().contains(QString::number(100 * ray.alpha, 'f', 1)));
         CHECK(w.picture() != before); // the ring, and the panel
@@ -132,13 +128,13 @@ TEST_CASE("more of this and less of this change the transfer function and the pi
     REQUIRE(core >= 0);
     click(w.child<ProbeShares>("probeShares"), shares.rowRect(core).center());
     REQUIRE(probe.feature() == 2);
-    CHECK(w.bench().selection().feature() == w.document().tf().features[2].id);
+    CHECK(w.services().selection().feature() == w.document().tf().features[2].id);
 
     const TransferFunction start = w.document().tf();
     const QImage picture = pictureAlone(w);
     const double share = probe.ray().shares[2], visible = w.document().measures()->features[2].visibility;
     QString said;
-    QObject::connect(&w.bench(), &Workbench::message, &w.window, [&said](const QString& text) { said = text; });
+    QObject::connect(&w.services(), &Services::message, &w.window, [&said](const QString& text) { said = text; });
     QTest::mouseClick(&w.child<QPushButton>("moreOfThisButton"), Qt::LeftButton);
     CHECK(w.document().stepCount() == 1);
     const std::vector<double> before = featureOpacities(start), after = featureOpacities(w.document().tf());
@@ -158,7 +154,7 @@ TEST_CASE("more of this and less of this change the transfer function and the pi
     CHECK(pictureAlone(w) == picture);
 
     // Less of the outer shell, which nothing hides.
-    w.bench().selection().setFeature(start.features[0].id);
+    w.services().selection().setFeature(start.features[0].id);
     const double outer = probe.ray().shares[0];
     QTest::mouseClick(&w.child<QPushButton>("lessOfThisButton"), Qt::LeftButton);
     CHECK(probe.ray().shares[0] < outer - 0.02);
@@ -167,10 +163,10 @@ TEST_CASE("more of this and less of this change the transfer function and the pi
     w.document().undo();
 
     // What is locked stays; the others give way.
-    w.bench().store().edit("Lock", {}, [&](Session& session) {
+    w.services().store().edit("Lock", {}, [&](Session& session) {
         session.goals.edit([&](FeatureGoals& goals) { goals[start.features[2].id].locked = true; });
     });
-    w.bench().selection().setFeature(start.features[2].id);
+    w.services().selection().setFeature(start.features[2].id);
     w.child<QAction>("moreOfThisAction").trigger();
     CHECK(featureOpacities(w.document().tf())[2] == before[2]);
     CHECK(featureOpacities(w.document().tf())[0] < before[0]);
@@ -200,18 +196,18 @@ TEST_CASE("the probe follows edits, clips and the camera", "[probe]") {
     CHECK(glm::length(off) < 1e-6);
 
     const double left = probe.ray().alpha;
-    w.bench().store().edit("Clip", {},
-                           [](Session& session) { session.clipping.edit([](Clipping& c) { c.hi.z = 0.6; }); });
+    w.services().store().edit("Clip", {},
+                              [](Session& session) { session.clipping.edit([](Clipping& c) { c.hi.z = 0.6; }); });
     CHECK(probe.ray().alpha != left);
     // Nothing of the volume is left where it was.
-    w.bench().store().edit("Clip", {},
-                           [](Session& session) { session.clipping.edit([](Clipping& c) { c.hi = Vec3(0.02); }); });
+    w.services().store().edit("Clip", {},
+                              [](Session& session) { session.clipping.edit([](Clipping& c) { c.hi = Vec3(0.02); }); });
     CHECK_FALSE(probe.isActive());
 }
 
 TEST_CASE("slices beside the picture meet where it was probed", "[probe]") {
     OpenWindow w(32);
-    w.bench().store().edit("Layout", {}, [](Session& session) {
+    w.services().store().edit("Layout", {}, [](Session& session) {
         session.slices.edit([](SliceViews& s) { s.layout = SliceViews::Layout::Four; });
     });
     w.settle();
@@ -219,7 +215,7 @@ TEST_CASE("slices beside the picture meet where it was probed", "[probe]") {
     click(w.view(), middle(w));
     REQUIRE(probeOf(w).isActive());
     const Vec3 voxel = w.document().volume()->geometry().voxelFromWorld(probeOf(w).place());
-    const auto crosshair = w.bench().store().session().slices->crosshair;
+    const auto crosshair = w.services().store().session().slices->crosshair;
     REQUIRE(crosshair);
     for (int a = 0; a < 3; ++a) CHECK(std::abs((*crosshair)[a] - voxel[a]) <= 0.5 + 1e-9);
     CHECK(w.document().stepCount() == steps);
@@ -238,13 +234,13 @@ TEST_CASE("the plot is read under the mouse", "[probe]") {
     const QImage before = plot.grab().toImage();
     move({plot.xOf(ray.t), plot.plot().center().y()});
     // The sample nearest to where the main feature adds most: half of d0 apart, at most.
-    REQUIRE(w.bench().selection().hoveredIntensity());
-    CHECK(*w.bench().selection().hoveredIntensity() == Approx(ray.intensity).margin(0.1));
+    REQUIRE(w.services().selection().hoveredIntensity());
+    CHECK(*w.services().selection().hoveredIntensity() == Approx(ray.intensity).margin(0.1));
     CHECK(w.child<QLabel>("probeReadout").text().contains("depth"));
     CHECK(plot.grab().toImage() != before);
     QEvent leave(QEvent::Leave);
     QCoreApplication::sendEvent(&plot, &leave);
-    CHECK_FALSE(w.bench().selection().hoveredIntensity());
+    CHECK_FALSE(w.services().selection().hoveredIntensity());
     // The area has the colours of the transfer function: the main feature's hue is in it.
     const QColor wanted = QColor::fromRgbF(static_cast<float>(ray.color.r), static_cast<float>(ray.color.g),
                                            static_cast<float>(ray.color.b));

@@ -54,17 +54,17 @@ TEST_CASE("the window measures by the published definitions", "[window][publishe
 
     pick(profile, "Published");
     w.settle();
-    CHECK(w.bench().scene().session.measure->profile == Profile::Published);
+    CHECK(w.services().scene().session.measure->profile == Profile::Published);
     CHECK(along.isVisible());
     CHECK(w.child<QLabel>("profileRemark").text().contains("front"));
     CHECK(w.picture() == before); // the picture is none of its business
     const Measures published = *document.measures();
-    CHECK(published.features[0].vws == Approx(Workspace().measure(measureInput(w.bench().scene())).features[0].vws));
+    CHECK(published.features[0].vws == Approx(Workspace().measure(measureInput(w.services().scene())).features[0].vws));
     CHECK_FALSE(published.features[0].vws == own.features[0].vws);
 
     pick(along, "top");
     w.settle();
-    CHECK(w.bench().scene().session.measure->along == Along::Top);
+    CHECK(w.services().scene().session.measure->along == Along::Top);
     // A turned picture has the same figures.
     document.setCamera(cameraFromView(document.volume()->geometry(), 70, 20, 1, Projection::Perspective));
     CHECK(document.measuresAreCurrent());
@@ -78,7 +78,7 @@ TEST_CASE("the window measures by the published definitions", "[window][publishe
 
     document.undo(); // the choices in a row are one step
     w.settle();
-    CHECK(w.bench().scene().session.measure->profile == Profile::Default);
+    CHECK(w.services().scene().session.measure->profile == Profile::Default);
     CHECK(profile.currentText() == "Pellucid's");
 }
 
@@ -94,5 +94,5 @@ TEST_CASE("a transfer function of Voreen opens in the window", "[window][publish
     CHECK(document.tf().features[0].a == 0.2);
     CHECK(document.tf().opacity(0.4) == Approx(0.4)); // 102/255
     CHECK_FALSE(w.picture() == before);
-    CHECK(w.opening().tfPath().isEmpty()); // saving asks for a name of its own
+    CHECK(w.saving().tfPath().isEmpty()); // saving asks for a name of its own
 }

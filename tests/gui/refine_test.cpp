@@ -19,7 +19,7 @@ using namespace pellucid::gui;
 
 namespace {
 
-const RefineSettings& settingsOf(OpenWindow& w) { return *w.bench().store().session().refine; }
+const RefineSettings& settingsOf(OpenWindow& w) { return *w.services().store().session().refine; }
 
 void send(QWidget& widget, QEvent::Type type, const QPointF& at, Qt::MouseButton button, Qt::MouseButtons held) {
     QMouseEvent event(type, at, widget.mapToGlobal(at), button, held, {});
@@ -117,7 +117,7 @@ TEST_CASE("a drag along the palette is followed, and is one step", "[refine]") {
     CHECK_FALSE(w.document().isPreviewing());
     CHECK(w.document().tf() == followed);
     CHECK(w.document().stepCount() == 1);
-    CHECK(w.bench().store().session().runs->size() == 1);
+    CHECK(w.services().store().session().runs->size() == 1);
     const QImage refined = w.picture();
     CHECK(shareOfHue(refined, kHues[2]) > shareOfHue(picture, kHues[2]));
 
@@ -182,7 +182,7 @@ TEST_CASE("what is selected under a clip plane comes out of what lies over it", 
     const double visible = w.document().measures()->features[1].visibility;
 
     // The front half away: the femur's lateral condyle, about (20, 6, 17) mm of the middle, is cut open at y = 0.
-    w.bench().store().edit(
+    w.services().store().edit(
         "Clip", {}, [](Session& session) { session.clipping.edit([](Clipping& clipping) { clipping.lo.y = 0.5; }); });
     w.settle();
     const Vec3 bone = w.document().volume()->geometry().boxCenter() + Vec3(20, 0, 17);
@@ -200,7 +200,7 @@ TEST_CASE("what is selected under a clip plane comes out of what lies over it", 
     const TransferFunction refined = w.document().tf();
     CHECK(shareOfPeaks(refined, 1) > shareOfPeaks(before, 1));
     CHECK(shareOfPeaks(refined, 1) > shareOfPeaks(refine(w.document().histogram(), before).tf, 1));
-    CHECK(w.bench().store().undoText() == "Refine for a region");
+    CHECK(w.services().store().undoText() == "Refine for a region");
     // The rectangle is 16 pixels of the view wide.
     const ImageRegion region = *settingsOf(w).region;
     CHECK((region.outline[2].x - region.outline[0].x) * w.view().width() == Approx(16).margin(0.01));
@@ -316,7 +316,7 @@ TEST_CASE("live refinement follows an edit, spares what the hand holds, and goes
     CHECK(edited.points[7].opacity < tf.points[7].opacity);
     CHECK_FALSE(edited.points[4].fixed);
     CHECK(w.document().stepCount() == steps + 1);
-    CHECK(w.bench().store().undoText() == "Move point, refined live");
+    CHECK(w.services().store().undoText() == "Move point, refined live");
     CHECK(w.picture() != picture);
     w.document().undo();
     CHECK(w.document().tf() == tf);
@@ -343,7 +343,7 @@ TEST_CASE("an optimization is not refined, however live refinement is", "[refine
     QTest::mouseClick(&w.child<QPushButton>("optimizeButton"), Qt::LeftButton);
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     CHECK(w.document().stepCount() == steps + 2);
-    const Run& run = w.bench().store().session().runs->back();
+    const Run& run = w.services().store().session().runs->back();
     CHECK(run.kind == "optimize");
     CHECK(featureOpacities(w.document().tf()) == run.history[run.best].opacity);
     CHECK(w.picture() != picture);

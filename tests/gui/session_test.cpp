@@ -210,13 +210,13 @@ TEST_CASE("a session is saved and opened in the window as it was", "[session]") 
     REQUIRE(w.saving().saveSession(path));
     CHECK_FALSE(w.window.isWindowModified());
     CHECK(w.window.windowTitle().contains("mine.pellucid.json"));
-    const Session saved = w.bench().store().session();
+    const Session saved = w.services().store().session();
 
     OpenWindow other(16);
     QSignalSpy opened(&other.opening(), &OpenController::opened);
     other.opening().openPath(path);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
-    CHECK(identical(other.bench().store().session(), saved));
+    CHECK(identical(other.services().store().session(), saved));
     CHECK(other.picture() == picture);
     REQUIRE(other.document().measuresAreCurrent());
     CHECK(other.document().measures()->visibilityHistogram == measures.visibilityHistogram);
@@ -230,16 +230,16 @@ TEST_CASE("light and one feature alone change the picture and no figure", "[disp
     w.child<QAction>("lightAction").trigger();
     const QImage lit = w.picture();
     const Measures measures = *w.document().measures();
-    REQUIRE(w.bench().store().session().display->light.on); // as volumes open
+    REQUIRE(w.services().store().session().display->light.on); // as volumes open
     QTest::mouseClick(&w.child<QCheckBox>("shadingCheck"), Qt::LeftButton, {}, {6, 8});
-    CHECK_FALSE(w.bench().store().session().display->light.on);
+    CHECK_FALSE(w.services().store().session().display->light.on);
     const QImage plain = w.picture();
     CHECK(lit != plain);
     auto& only = w.child<QComboBox>("onlyFeatureCombo");
     REQUIRE(only.count() == 4);
     only.setCurrentIndex(3);
     Q_EMIT only.activated(3);
-    CHECK(w.bench().scene().onlyFeature() == 2);
+    CHECK(w.services().scene().onlyFeature() == 2);
     CHECK(w.picture() != plain);
     CHECK(w.document().measuresAreCurrent());
     CHECK(w.document().measures()->visibilityHistogram == measures.visibilityHistogram);
@@ -251,22 +251,22 @@ TEST_CASE("light and one feature alone change the picture and no figure", "[disp
 TEST_CASE("the values of the display panel are a window: points stay at their values, and undo brings all back",
           "[display]") {
     OpenWindow w;
-    const Scene before = w.bench().scene();
+    const Scene before = w.services().scene();
     const ValueRange whole = before.volume->range();
     auto& hi = w.child<QDoubleSpinBox>("windowHi");
     const double half = 0.5 * (whole.lo + whole.hi);
     hi.setValue(half);
     CHECK(hi.value() == Approx(half).margin(0.01)); // it shows what was asked for, also before it is there
-    REQUIRE(waitFor([&] { return w.bench().scene().volume->range().hi == hi.value(); }));
+    REQUIRE(waitFor([&] { return w.services().scene().volume->range().hi == hi.value(); }));
     CHECK(w.document().stepCount() == 1);
-    CHECK(w.bench().scene().data == before.data); // nothing was read again
+    CHECK(w.services().scene().data == before.data); // nothing was read again
     const auto& points = w.document().tf().points;
     CHECK(w.document().volume()->valueOfIntensity(points[1].x) ==
           Approx(before.volume->valueOfIntensity(before.tf.points[1].x)));
     w.settle();
     CHECK(w.document().measuresAreCurrent());
     w.document().undo();
-    CHECK(w.bench().scene().volume == before.volume);
+    CHECK(w.services().scene().volume == before.volume);
     CHECK(w.document().tf() == before.tf);
     w.settle();
 }
@@ -322,7 +322,7 @@ TEST_CASE("bars and picture follow the hand while it moves", "[follow]") {
     w.settle();
     int figures = 0, pictures = 0;
     std::optional<std::vector<double>> last;
-    QObject::connect(&w.bench().results(), &Results::changed, &w.window, [&] {
+    QObject::connect(&w.services().results(), &Results::changed, &w.window, [&] {
         const Measures* m = w.document().measures();
         if (m == nullptr) return;
         if (last != m->visibilityHistogram) ++figures;
@@ -373,15 +373,16 @@ TEST_CASE("edits without end", "[.crash-child]") {
     const QByteArray log = qgetenv(kChild);
     if (log.isEmpty()) return;
     QWidget window;
-    Workbench bench(&window);
-    bench.recovery().start();
-    bench.results().setPaused(true);
-    bench.store().open(sampleScene("shells", 10, tents(3)));
+    Services services(&window);
+    Controllers controllers(services);
+    controllers.recovery.start();
+    services.results().setPaused(true);
+    services.store().open(sampleScene("shells", 10, tents(3)));
     std::ofstream out(log.toStdString());
     Hand hand(static_cast<std::uint32_t>(QCoreApplication::applicationPid()));
     while (true) {
-        hand.act(bench.store());
-        const Session& session = bench.store().committed().session;
+        hand.act(services.store());
+        const Session& session = services.store().committed().session;
         out << std::fixed << now() << ' ' << jsonFromSession(session, "", DataPaths::Absolute).dump() << std::endl;
         const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(15);
         while (std::chrono::steady_clock::now() < end) QCoreApplication::processEvents(QEventLoop::AllEvents, 3);
@@ -452,13 +453,13 @@ TEST_CASE("work that a crash left behind is offered, restored and kept", "[sessi
         if (path.ends_with(".copy")) std::filesystem::rename(path, path.substr(0, path.size() - 5));
     }
     OpenWindow w;
-    w.bench().recovery().start();
-    w.bench().recovery().offer();
+    w.controllers().recovery.start();
+    w.controllers().recovery.offer();
     auto& restore = w.child<QPushButton>("noticeChoice0");
     QSignalSpy opened(&w.opening(), &OpenController::opened);
     QTest::mouseClick(&restore, Qt::LeftButton);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
-    CHECK(identical(w.bench().store().session(), lost));
+    CHECK(identical(w.services().store().session(), lost));
     CHECK(w.window.isWindowModified()); // it has no file of its own yet
     // From now on this window keeps it, and the file that was left is gone.
     REQUIRE(waitFor([&] { return recoverableSessions(folder.toStdString()).empty(); }));

@@ -79,7 +79,7 @@ TEST_CASE("a trapezoid is added between the features, drawn, measured and undone
     const QImage with = w.picture();
     const TransferFunction& tf = w.document().tf();
     REQUIRE(tf.features.size() == 4);
-    const int index = featureWithId(tf, w.bench().selection().feature()); // it is selected
+    const int index = featureWithId(tf, w.services().selection().feature()); // it is selected
     REQUIRE(index >= 0);
     const Feature& added = tf.features[static_cast<std::size_t>(index)];
     CHECK(added.name == "trapezoid");
@@ -99,7 +99,7 @@ TEST_CASE("a feature is split where its histogram says, merged again and removed
     const QImage picture = w.picture();
     CHECK_FALSE(w.child<QToolButton>("featureSplitButton").isEnabled()); // nothing is selected
     clickCell(w, 1, FeaturesModel::Name);
-    CHECK(w.bench().selection().feature() == before.features[1].id);
+    CHECK(w.services().selection().feature() == before.features[1].id);
     CHECK(w.child<TargetBars>("targetBars").currentFeature() == 1);
     QTest::mouseClick(&w.child<QToolButton>("featureSplitButton"), Qt::LeftButton);
     const QImage split = w.picture();
@@ -175,11 +175,11 @@ TEST_CASE("Alt and a click on an eye draws only that feature, figures stay", "[s
     clickCell(w, 2, FeaturesModel::Eye, Qt::AltModifier);
     const QImage alone = w.picture();
     CHECK(alone != picture);
-    CHECK(w.bench().scene().onlyFeature() == 2);
+    CHECK(w.services().scene().onlyFeature() == 2);
     CHECK_FALSE(w.document().tf().features[0].hidden);
     CHECK(w.document().measures()->features[0].visibility == visible);
     clickCell(w, 2, FeaturesModel::Eye, Qt::ControlModifier);
-    CHECK(w.bench().scene().onlyFeature() == -1);
+    CHECK(w.services().scene().onlyFeature() == -1);
     CHECK(w.picture() == picture);
     // Hiding the others gives the same picture by another way.
     clickCell(w, 2, FeaturesModel::Name);
@@ -217,11 +217,11 @@ TEST_CASE("what is selected in one place is selected in all", "[shapes]") {
     auto& table = w.child<QTableView>("featuresTable");
     auto& bars = w.child<TargetBars>("targetBars");
     const auto idOf = [&](std::size_t f) { return w.document().tf().features[f].id; };
-    w.bench().selection().setFeature(idOf(2));
+    w.services().selection().setFeature(idOf(2));
     CHECK(table.selectionModel()->isRowSelected(2));
     CHECK(bars.currentFeature() == 2);
     QTest::mouseClick(&bars, Qt::LeftButton, {}, QPoint(40, static_cast<int>(bars.handlePosition(0).y())));
-    CHECK(w.bench().selection().feature() == idOf(0));
+    CHECK(w.services().selection().feature() == idOf(0));
     CHECK(table.selectionModel()->isRowSelected(0));
     CHECK_FALSE(table.selectionModel()->isRowSelected(2));
     // The selection follows the feature, not the row.

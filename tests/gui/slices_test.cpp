@@ -10,7 +10,7 @@
 #include <QToolButton>
 
 #include "controllers/probe_controller.h"
-#include "controllers/slice_actions.h"
+#include "store/view_edits.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
@@ -27,12 +27,12 @@ struct SliceWindow : OpenWindow {
         settle();
         return pane(worldAxis).grab().toImage().convertToFormat(QImage::Format_RGB32);
     }
-    SessionStore& store() { return bench().store(); }
-    Vec3 crosshair() { return crosshairOf(bench().scene()); }
+    SessionStore& store() { return services().store(); }
+    Vec3 crosshair() { return crosshairOf(services().scene()); }
     const SliceViews& slices() { return *store().session().slices; }
     /// Where the middle of a voxel is seen.
     QPointF pixelOf(int worldAxis, const Vec3& voxel) {
-        const Vec2 p = pixelOfVoxel(bench().scene().volume->geometry(), pane(worldAxis).plane(), voxel);
+        const Vec2 p = pixelOfVoxel(services().scene().volume->geometry(), pane(worldAxis).plane(), voxel);
         return {p.x, p.y};
     }
 };
@@ -120,7 +120,7 @@ TEST_CASE("a layout shows the volume with three slices, and undo hides them", "[
     w.settle();
     CHECK(shown() == 3);
     for (int a = 0; a < 3; ++a) CHECK(views.pane(a).width() < 0.5 * w.view().width());
-    SessionStore& store = w.bench().store();
+    SessionStore& store = w.services().store();
     store.undo();
     CHECK(store.session().slices->layout == SliceViews::Layout::Four);
     store.undo();
@@ -166,7 +166,7 @@ TEST_CASE("left drag moves the crosshair, and the other slices follow", "[slices
     // One looks elsewhere; nothing was edited.
     CHECK(w.document().stepCount() == steps);
     // Points of the three slices that show the crosshair are one point of the world.
-    const Geometry& g = w.bench().scene().volume->geometry();
+    const Geometry& g = w.services().scene().volume->geometry();
     for (int a = 0; a < 3; ++a) {
         const QPointF p = w.pixelOf(a, w.crosshair());
         const Vec3 world = worldAtPixel(g, w.pane(a).plane(), {p.x(), p.y()});
@@ -191,10 +191,9 @@ TEST_CASE("a click in the volume moves the crosshair to what is seen there", "[s
     const QImage before = w.slice(2);
     const QPoint point(w.view().width() / 2 - 30, w.view().height() / 2 - 20);
     QTest::mouseClick(&w.view(), Qt::LeftButton, {}, point);
-    const auto* probe = w.bench().findChild<ProbeController*>();
-    REQUIRE(probe != nullptr);
-    REQUIRE(probe->isActive());
-    const Vec3 place = w.bench().scene().volume->geometry().voxelFromWorld(probe->place());
+    const ProbeController& probe = w.controllers().probe;
+    REQUIRE(probe.isActive());
+    const Vec3 place = w.services().scene().volume->geometry().voxelFromWorld(probe.place());
     // Slices go through middles of voxels: the nearest one.
     for (int a = 0; a < 3; ++a) CHECK(std::abs(w.crosshair()[a] - std::clamp(place[a], 0.0, 23.0)) <= 0.5 + 1e-9);
     CHECK(w.crosshair() != Vec3(12));
@@ -231,7 +230,7 @@ TEST_CASE("a slice is zoomed about the mouse, moved, and fitted again", "[slices
     SlicePane& z = w.pane(2);
     const SlicePlane fitted = z.plane();
     const QImage before = w.slice(2);
-    const Geometry& g = w.bench().scene().volume->geometry();
+    const Geometry& g = w.services().scene().volume->geometry();
     const QPointF at = w.pixelOf(2, {5, 9, 12});
     wheel(z, at, 4, Qt::ControlModifier);
     // 1.15⁴ of the zoom, with the voxel under the mouse where it was.
@@ -259,7 +258,7 @@ TEST_CASE("right drag sets the window of grey, a right double-click resets it", 
     w.child<QSlider>("sliceStrength").setValue(0); // grey alone
     CHECK(w.slices().tfStrength == 0);
     SlicePane& z = w.pane(2);
-    const ValueRange all = w.bench().scene().volume->range();
+    const ValueRange all = w.services().scene().volume->range();
     const QImage before = w.slice(2);
     const TransferFunction tf = w.document().tf();
     // 100 pixels to the right double the width, 100 upward raise the level by half a width: the start's.
@@ -337,7 +336,7 @@ TEST_CASE("what is clipped away is dimmed", "[slices]") {
 
 TEST_CASE("the value under the mouse is the voxel's", "[slices]") {
     SliceWindow w;
-    const Volume& volume = *w.bench().scene().volume;
+    const Volume& volume = *w.services().scene().volume;
     SlicePane& y = w.pane(1);
     for (const Vec3 voxel : {Vec3(7, 12, 15), Vec3(16, 12, 4), Vec3(12, 12, 12)}) {
         moveTo(y, w.pixelOf(1, voxel));
@@ -350,8 +349,8 @@ TEST_CASE("the value under the mouse is the voxel's", "[slices]") {
             volume.samples());
         CHECK(*y.hovered()->value == value);
         CHECK(glm::length(y.hovered()->world - volume.geometry().worldFromVoxel(voxel)) < 1e-9);
-        REQUIRE(w.bench().selection().hoveredIntensity());
-        CHECK(*w.bench().selection().hoveredIntensity() == volume.intensityOfValue(value));
+        REQUIRE(w.services().selection().hoveredIntensity());
+        CHECK(*w.services().selection().hoveredIntensity() == volume.intensityOfValue(value));
         const int feature = featureAt(w.document().tf().features, volume.intensityOfValue(value));
         if (feature >= 0)
             CHECK(y.hoverText().toStdString().find(
@@ -360,11 +359,11 @@ TEST_CASE("the value under the mouse is the voxel's", "[slices]") {
     moveTo(y, {2, y.height() / 2.0}); // beside the box, which fills 94 %
     CHECK_FALSE(y.hovered());
     CHECK(y.hoverText().isEmpty());
-    CHECK_FALSE(w.bench().selection().hoveredIntensity());
+    CHECK_FALSE(w.services().selection().hoveredIntensity());
     moveTo(y, w.pixelOf(1, {7, 12, 15}));
     QEvent leave(QEvent::Leave);
     QCoreApplication::sendEvent(&y, &leave);
-    CHECK_FALSE(w.bench().selection().hoveredIntensity());
+    CHECK_FALSE(w.services().selection().hoveredIntensity());
 }
 
 TEST_CASE("slices of a patient lie as radiologists are used to", "[slices]") {
@@ -407,7 +406,7 @@ TEST_CASE("a session keeps layout, crosshair and window of the slices", "[slices
     {
         SliceWindow w("layoutVolumeLargeAction");
         drag(w.pane(2), w.pixelOf(2, {12, 12, 12}), w.pixelOf(2, {8, 15, 12}));
-        w.child<QDoubleSpinBox>("greyHi").setValue(0.7 * w.bench().scene().volume->range().hi);
+        w.child<QDoubleSpinBox>("greyHi").setValue(0.7 * w.services().scene().volume->range().hi);
         kept = w.slices();
         CHECK(kept.crosshair == Vec3(8, 15, 12));
         CHECK(kept.window);
@@ -421,7 +420,7 @@ TEST_CASE("a session keeps layout, crosshair and window of the slices", "[slices
     w.opening().openPath(path);
     REQUIRE(waitFor([&] { return opened.count() == 1; }));
     w.settle();
-    CHECK(*w.bench().store().session().slices == kept);
+    CHECK(*w.services().store().session().slices == kept);
     SlicePane& x = w.window.views().pane(0);
     REQUIRE(x.isVisible());
     x.clearFocus();

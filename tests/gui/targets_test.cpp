@@ -119,7 +119,7 @@ TEST_CASE("a target is dragged, typed and locked; each is one step", "[targets]"
     CHECK(w.document().stepCount() == steps + 5);
     for (int i = 0; i < 3; ++i) w.document().undo();
     CHECK(w.document().targets()[0] == Approx(first));
-    w.bench().selection().setFeature(w.document().tf().features[1].id); // as it was then
+    w.services().selection().setFeature(w.document().tf().features[1].id); // as it was then
     w.settle();
     CHECK(image(bars) == open);
 }
@@ -128,7 +128,7 @@ TEST_CASE("targets by keys: a digit opens the box, L locks and leaves the light 
     OpenWindow w;
     TargetBars& bars = barsOf(w);
     bars.setFocus();
-    const bool lit = w.bench().scene().session.display->light.on;
+    const bool lit = w.services().scene().session.display->light.on;
     QTest::keyClick(&bars, Qt::Key_Down); // the second
     QTest::keyClicks(&bars, "0");
     REQUIRE(boxOf(w).isVisible());
@@ -138,8 +138,8 @@ TEST_CASE("targets by keys: a digit opens the box, L locks and leaves the light 
     checkTargets(w, {0.3, 0.4, 0.3});
     const QImage before = image(bars);
     QTest::keyClick(&bars, Qt::Key_L);
-    CHECK(w.bench().store().session().goals->at(w.document().tf().features[1].id).targetLocked);
-    CHECK(w.bench().scene().session.display->light.on == lit);
+    CHECK(w.services().store().session().goals->at(w.document().tf().features[1].id).targetLocked);
+    CHECK(w.services().scene().session.display->light.on == lit);
     CHECK(image(bars) != before);
     QTest::keyClick(&bars, Qt::Key_Return);
     CHECK(boxOf(w).isVisible());
@@ -151,7 +151,7 @@ TEST_CASE("presets set all targets; locked ones stay", "[targets]") {
     OpenWindow w;
     TargetBars& bars = barsOf(w);
     const auto preset = [&](const char* action) { w.child<QAction>(action).trigger(); };
-    w.bench().selection().setFeature(w.document().tf().features[1].id);
+    w.services().selection().setFeature(w.document().tf().features[1].id);
     // Peaks at 1/6, 3/6, 5/6.
     preset("targetsDiagonal");
     checkTargets(w, {1 / 9.0, 3 / 9.0, 5 / 9.0});
@@ -180,7 +180,7 @@ TEST_CASE("the parts of VWS by brightness and saturation are seen in the bars", 
     OpenWindow w;
     w.settle();
     const QImage both = image(barsOf(w));
-    w.bench().store().edit("u", {}, [](Session& session) {
+    w.services().store().edit("u", {}, [](Session& session) {
         session.measure.edit([](MeasureSettings& m) { m.vws = {1, 0}; }); // brightness alone
     });
     w.settle();
@@ -210,7 +210,7 @@ TEST_CASE("thirty-two features have their bars and can be typed into", "[targets
     REQUIRE(w.document().targets().size() == 32);
     CHECK(bars.height() >= bars.rowRect(31).bottom()); // a row each, scrolled
     // Some of so many have no voxel here, and so no target.
-    const Scene& scene = w.bench().scene();
+    const Scene& scene = w.services().scene();
     std::vector<std::size_t> wanted;
     for (std::size_t i = 0; i < 32; ++i)
         if (!scene.isEmpty(i)) wanted.push_back(i);
@@ -243,7 +243,7 @@ TEST_CASE("a feature without a voxel is listed as empty, and cannot be aimed at"
                    {"above", b, 1, {0, 0, 1}, {}}};
     w.document().setTf(tf, "Features");
     w.settle();
-    const Scene& scene = w.bench().scene();
+    const Scene& scene = w.services().scene();
     REQUIRE(scene.isEmpty(1));
     REQUIRE_FALSE(scene.isEmpty(0));
     REQUIRE_FALSE(scene.isEmpty(2));
@@ -280,7 +280,7 @@ TEST_CASE("an opacity that is locked or limited is so in an optimization, and is
     OpenWindow w;
     auto& table = w.child<QTableView>("featuresTable");
     w.document().setTargets({0.2, 0.2, 0.6});
-    w.bench().selection().setFeature(w.document().tf().features[1].id);
+    w.services().selection().setFeature(w.document().tf().features[1].id);
     w.settle();
     const QImage plain = image(table);
     const std::vector<double> before = featureOpacities(w.document().tf());
@@ -293,7 +293,7 @@ TEST_CASE("an opacity that is locked or limited is so in an optimization, and is
         dialog->findChild<QDoubleSpinBox*>("highestOpacity")->setValue(0.35);
         dialog->accept();
     });
-    w.bench().selection().setFeature(w.document().tf().features[2].id);
+    w.services().selection().setFeature(w.document().tf().features[2].id);
     w.child<QAction>("opacityLimits").trigger();
     const QImage picture = w.picture();
     w.optimizing().start();
@@ -307,8 +307,8 @@ TEST_CASE("an opacity that is locked or limited is so in an optimization, and is
 
 TEST_CASE("settings of figures and searches are edits of the session", "[targets][settings]") {
     OpenWindow w;
-    const MeasureSettings measure = *w.bench().store().session().measure;
-    const OptimizeOptions optimize = *w.bench().store().session().optimize;
+    const MeasureSettings measure = *w.services().store().session().measure;
+    const OptimizeOptions optimize = *w.services().store().session().optimize;
     const auto set = [&](const char* id, double value) { w.child<QDoubleSpinBox>(id).setValue(value); };
     QTest::mouseClick(&w.child<QToolButton>("settingsButton"), Qt::LeftButton);
     CHECK(w.child<QDockWidget>("settingsDock").isVisible());
@@ -328,7 +328,7 @@ TEST_CASE("settings of figures and searches are edits of the session", "[targets
     choose(w.child<QComboBox>("directionCombo"), static_cast<int>(Direction::Second));
     w.child<QCheckBox>("normalizeCheck").click();
     w.child<QSpinBox>("mostMovesSpin").setValue(7);
-    const OptimizeOptions now = *w.bench().store().session().optimize;
+    const OptimizeOptions now = *w.services().store().session().optimize;
     CHECK(now.method == SearchMethod::Line);
     CHECK(now.direction == Direction::Second);
     CHECK(now.step == 0.2);
@@ -346,7 +346,7 @@ TEST_CASE("settings of figures and searches are edits of the session", "[targets
     choose(w.child<QComboBox>("kernelCombo"), static_cast<int>(SaliencyKernel::Narrow));
     set("w2Spin", 0.5);
     w.settle();
-    const MeasureSettings measured = *w.bench().store().session().measure;
+    const MeasureSettings measured = *w.services().store().session().measure;
     CHECK(measured.vws.u1 == 0.9);
     CHECK(measured.vws.u2 == Approx(0.1));
     CHECK(measured.saliency.sigma == 3);
@@ -356,9 +356,9 @@ TEST_CASE("settings of figures and searches are edits of the session", "[targets
     CHECK(image(barsOf(w)) != before);
     // Edits of one kind in a row are one step.
     w.document().undo();
-    CHECK(*w.bench().store().session().measure == measure);
+    CHECK(*w.services().store().session().measure == measure);
     w.document().undo();
-    CHECK(*w.bench().store().session().optimize == optimize);
+    CHECK(*w.services().store().session().optimize == optimize);
     CHECK(w.child<QDoubleSpinBox>("u1Spin").value() == Approx(measure.vws.u1));
     w.settle();
     CHECK(image(barsOf(w)) == before);
@@ -372,10 +372,10 @@ TEST_CASE("live targets are held while the view turns, and undo brings back what
     const std::vector<double> before = featureOpacities(w.document().tf());
     const QImage picture = w.picture();
     int updates = 0;
-    QObject::connect(&w.bench().live(), &LiveController::updated, &w.window, [&] { ++updates; });
+    QObject::connect(&w.controllers().live, &LiveController::updated, &w.window, [&] { ++updates; });
     const int steps = w.document().stepCount();
     QTest::mouseClick(&w.child<QToolButton>("liveTargetsButton"), Qt::LeftButton);
-    CHECK(w.bench().store().session().holdTargets);
+    CHECK(w.services().store().session().holdTargets);
     w.settle();
     CHECK(farthest(w) < 0.01);
     CHECK(w.picture() != picture);
@@ -395,7 +395,7 @@ TEST_CASE("live targets are held while the view turns, and undo brings back what
     // Nothing that the view does is a step, nor what follows of it.
     CHECK(w.document().stepCount() == steps + 1);
     w.document().undo();
-    CHECK_FALSE(w.bench().store().session().holdTargets);
+    CHECK_FALSE(w.services().store().session().holdTargets);
     CHECK(featureOpacities(w.document().tf()) == before);
     w.document().redo();
     w.settle();
@@ -432,9 +432,9 @@ TEST_CASE("live targets follow targets, colours and opacities that are set", "[t
     CHECK(farthest(w) < 0.01);
     // Live refinement and live targets exclude each other.
     w.child<QAction>("liveRefineAction").trigger();
-    CHECK_FALSE(w.bench().store().session().holdTargets);
+    CHECK_FALSE(w.services().store().session().holdTargets);
     w.child<QAction>("liveTargetsAction").trigger();
-    CHECK_FALSE(w.bench().store().session().refine->live);
+    CHECK_FALSE(w.services().store().session().refine->live);
     w.settle();
 }
 

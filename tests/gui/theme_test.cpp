@@ -9,7 +9,7 @@
 #include <QSettings>
 #include <QStatusBar>
 
-#include "controllers/theme_actions.h"
+#include "controllers/menu_actions.h"
 #include "widgets/theme.h"
 
 using namespace pellucid;
@@ -100,7 +100,7 @@ TEST_CASE("the View menu switches the theme at once, and back", "[theme]") {
     const DarkAgain dark;
     OpenWindow w(24, ViewRenderer::Cpu);
     w.child<QAction>("influenceAction").trigger();
-    w.bench().notices().add({"A notice to be read", {}});
+    w.services().notices().add({"A notice to be read", {}});
     w.settle();
     REQUIRE(waitFor([&] { return w.document().influenceIsCurrent(); }));
     QCoreApplication::processEvents();

@@ -77,14 +77,14 @@ void compareDoors(OpenWindow& w, const Inputs& inputs) {
     if (inputs.range)
         named << "--range"
               << QStringLiteral("%1,%2").arg(inputs.range->lo, 0, 'g', 17).arg(inputs.range->hi, 0, 'g', 17);
-    w.bench().store().edit("Refinement", {}, [](Session& s) {
+    w.services().store().edit("Refinement", {}, [](Session& s) {
         s.refine.edit([](RefineSettings& r) {
             r.method = RefineMethod::Exact;
             r.intensity = 0.4;
         });
     });
     const QString session = folder.filePath("s.pellucid.json");
-    const Session before = w.bench().store().session();
+    const Session before = w.services().store().session();
     REQUIRE(w.saving().saveSession(session));
 
     for (const QStringList& door : {named, QStringList{"--session", session}}) {
@@ -135,15 +135,15 @@ void compareDoors(OpenWindow& w, const Inputs& inputs) {
         w.optimizing().start();
         REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
         checkSameTf(w.document().tf(), optimized["tf"]);
-        const Run& run = w.bench().store().session().runs->back();
+        const Run& run = w.services().store().session().runs->back();
         REQUIRE(run.history.size() == optimized["objective"].size());
         for (std::size_t i = 0; i < run.history.size(); ++i) {
             CHECK(std::abs(run.history[i].objective - optimized["objective"][i].get<double>()) <= kSame);
             checkSame(run.history[i].vws, optimized["vws"][i].get<std::vector<double>>());
         }
         if (!(w.document().tf() == unrefined)) w.document().undo(); // a run that finds nothing to change is no step
-        if (!(w.bench().store().session().goals == before.goals)) w.document().undo();
-        CHECK(w.bench().store().session().goals == before.goals);
+        if (!(w.services().store().session().goals == before.goals)) w.document().undo();
+        CHECK(w.services().store().session().goals == before.goals);
         CHECK(w.document().tf() == unrefined);
         w.settle();
     }

@@ -80,7 +80,7 @@ struct Weather {
     }
 };
 
-const Session& sessionOfWindow(OpenWindow& w) { return w.bench().store().session(); }
+const Session& sessionOfWindow(OpenWindow& w) { return w.services().store().session(); }
 const HsbMapping& hsbOf(OpenWindow& w) { return *sessionOfWindow(w).hsb; }
 
 /// The cloud at its last frame, with the panel in front, so that the view has its size for good.
@@ -110,7 +110,7 @@ void turnOn(OpenWindow& w) {
     w.child<QCheckBox>("hsbCheck").click();
     w.settle();
     REQUIRE(hsbOf(w).on);
-    REQUIRE(w.bench().scene().colors);
+    REQUIRE(w.services().scene().colors);
 }
 
 void undo(OpenWindow& w) {
@@ -170,7 +170,7 @@ TEST_CASE("volatility colours what moves, and undo brings the colours of the cur
     const QImage mapped = w.picture();
     CHECK(mapped != before);
     // The resting ball is grey, the moving one has colour: voxels (5,5,10) and (14,14,10) of frame 3.
-    const VoxelColors& colors = *w.bench().scene().colors;
+    const VoxelColors& colors = *w.services().scene().colors;
     const auto colorAt = [&](int x, int y, int z) {
         const std::uint32_t c = colors.rgba[static_cast<std::size_t>(x + kSide * (y + kSide * z))];
         return QColor(static_cast<int>(c & 255), static_cast<int>(c >> 8 & 255), static_cast<int>(c >> 16 & 255));
@@ -200,7 +200,7 @@ TEST_CASE("frames of volatility, scales and hue change the picture", "[variables
     w.settle();
     CHECK(hsbOf(w).saturation == "volatility:cloud:1");
     const QImage one = w.picture(); // of one frame it is 0
-    for (const std::uint32_t c : w.bench().scene().colors->rgba) {
+    for (const std::uint32_t c : w.services().scene().colors->rgba) {
         const bool grey = (c & 255) == (c >> 8 & 255) && (c & 255) == (c >> 16 & 255);
         if (!grey) FAIL("a voxel has colour");
     }
@@ -211,7 +211,7 @@ TEST_CASE("frames of volatility, scales and hue change the picture", "[variables
 
     // The slider of a: the picture follows while it is held, and it is one step.
     auto& slider = w.child<QSlider>("hsbASlider");
-    const double automatic = w.bench().scene().hsbA;
+    const double automatic = w.services().scene().hsbA;
     CHECK_FALSE(hsbOf(w).a);
     CHECK(w.child<QToolButton>("hsbAAutomatic").isChecked());
     CHECK(w.child<QDoubleSpinBox>("hsbA").value() == Approx(automatic).margin(0.001));
@@ -234,7 +234,7 @@ TEST_CASE("frames of volatility, scales and hue change the picture", "[variables
     w.child<QToolButton>("hsbAAutomatic").click();
     w.settle();
     CHECK_FALSE(hsbOf(w).a);
-    CHECK(w.bench().scene().hsbA == automatic);
+    CHECK(w.services().scene().hsbA == automatic);
     CHECK(w.picture() == ten);
 
     // Another hue.
@@ -273,10 +273,10 @@ TEST_CASE("colours from any variable, at any frame, read each frame once and lea
     REQUIRE(sessionOfWindow(w).variables->size() == 4);
     for (int f = 2; f < kFrames; ++f) QFile::remove(weather.folder.filePath(QStringLiteral("rain%1.nrrd").arg(f)));
     w.window.resize(700, 500); // little to draw
-    PlayerController& player = w.bench().player();
+    PlayerController& player = w.controllers().player;
     QSignalSpy read(&player, &PlayerController::heldChanged);
     const auto rest = [&] { // until no frame comes any more: each is read a few times at most, not for ever
-        REQUIRE(waitFor([&] { return w.bench().isIdle(); }));
+        REQUIRE(waitFor([&] { return w.services().isIdle(); }));
         read.clear();
         for (int before = -1; before != read.count();) {
             before = read.count();
@@ -300,14 +300,14 @@ TEST_CASE("colours from any variable, at any frame, read each frame once and lea
                 REQUIRE(hsbOf(w).on);
                 REQUIRE(sessionOfWindow(w).frame == frame);
                 // Another frame is shown, and the way back leads to the same colours.
-                const std::shared_ptr<const VoxelColors> colors = w.bench().scene().colors;
+                const std::shared_ptr<const VoxelColors> colors = w.services().scene().colors;
                 player.goTo(frame == 0 ? 1 : 0);
                 rest();
                 CHECK(sessionOfWindow(w).frame == (frame == 0 ? 1 : 0));
                 player.goTo(frame);
                 rest();
                 CHECK(sessionOfWindow(w).frame == frame);
-                CHECK(w.bench().scene().colors->rgba == colors->rgba);
+                CHECK(w.services().scene().colors->rgba == colors->rgba);
             }
 }
 
@@ -316,7 +316,7 @@ TEST_CASE("with volatility from the first frame on its scale is found where ther
     OpenWindow w;
     w.open(weather.series("cloud"));
     w.settle();
-    const int steps = w.bench().store().stepCount();
+    const int steps = w.services().store().stepCount();
     w.window.activateWindow();
     REQUIRE(waitFor([&] { return w.window.isActiveWindow(); }));
     QTest::keyClick(&w.window, Qt::Key_S, Qt::ShiftModifier);
@@ -324,17 +324,17 @@ TEST_CASE("with volatility from the first frame on its scale is found where ther
     REQUIRE(hsbOf(w).on);
     CHECK(hsbOf(w).saturation == "volatility:cloud:10");
     CHECK_FALSE(hsbOf(w).found.a); // nothing has changed yet
-    w.bench().player().goTo(1);
+    w.controllers().player.goTo(1);
     w.settle();
     REQUIRE(sessionOfWindow(w).frame == 1);
     REQUIRE(hsbOf(w).found.a);
     const double a = *hsbOf(w).found.a;
-    CHECK(w.bench().scene().hsbA == a);
-    w.bench().player().goTo(kFrames - 1);
+    CHECK(w.services().scene().hsbA == a);
+    w.controllers().player.goTo(kFrames - 1);
     w.settle();
     REQUIRE(sessionOfWindow(w).frame == kFrames - 1);
-    CHECK(w.bench().scene().hsbA == a); // frames are compared
-    CHECK(w.bench().store().stepCount() == steps + 1);
+    CHECK(w.services().scene().hsbA == a); // frames are compared
+    CHECK(w.services().store().stepCount() == steps + 1);
 }
 
 TEST_CASE("a second variable darkens; swapping it and back gives the same picture", "[variables]") {
@@ -528,7 +528,7 @@ TEST_CASE("a session with several variables and a ground is saved and opened", "
         session = sessionOfWindow(w);
         w.saving().saveSession(path);
         w.settle();
-        CHECK(w.bench().store().isClean());
+        CHECK(w.services().store().isClean());
     }
     OpenWindow w;
     w.child<QAction>("variablesAction").trigger();

@@ -38,7 +38,7 @@ TEST_CASE("a target that a locked feature keeps out of reach is explained", "[ve
     w.child<QAction>("optimizeAction").trigger();
     w.settle();
     CHECK(message.text().startsWith("On target"));
-    CHECK(*w.bench().results().objective() < 0.03);
+    CHECK(*w.services().results().objective() < 0.03);
     CHECK(w.picture() != before);
     w.document().setTarget(0, 0.5);
     w.settle();

@@ -27,7 +27,7 @@ struct OpenGlobe : OpenWindow {
         REQUIRE_FALSE(child<QDockWidget>("viewsDock").isHidden());
         found();
     }
-    ViewSearchController& search() { return child<ViewsPanel>("viewsPanel").search(); }
+    ViewSearchController& search() { return controllers().views; }
     ViewGlobe& globe() { return child<ViewGlobe>("viewGlobe"); }
     QString words() { return child<QLabel>("viewsWords").text(); }
     QPushButton& button(const char* name) { return child<QPushButton>(name); }
@@ -111,7 +111,7 @@ TEST_CASE("pointing at the globe looks from there and changes nothing", "[gui][v
     const QImage glimpse = w.picture();
     CHECK(differentPixels(before, glimpse) > 200);
     CHECK(w.document().camera() == camera);
-    CHECK_FALSE(w.bench().store().canUndoCamera());
+    CHECK_FALSE(w.services().store().canUndoCamera());
     CHECK(w.document().stepCount() == 0);
     w.leave();
     CHECK(differentPixels(before, w.picture()) == 0);
@@ -120,13 +120,13 @@ TEST_CASE("pointing at the globe looks from there and changes nothing", "[gui][v
     QTest::mouseClick(&w.globe(), Qt::LeftButton, {}, w.globe().pointOf(direction)->toPoint());
     CHECK(glm::length(-w.document().camera().forward() - direction) < 0.05);
     CHECK(w.document().camera().projection == camera.projection);
-    CHECK(w.bench().store().canUndoCamera());
+    CHECK(w.services().store().canUndoCamera());
     CHECK(w.document().stepCount() == 0);
     w.point({-50, -50}); // beside the sphere: it is the camera that stays
     const QImage after = w.picture();
     CHECK(differentPixels(before, after) > 200);
     CHECK(differentPixels(glimpse, after) < differentPixels(glimpse, before));
-    w.bench().store().undoCamera();
+    w.services().store().undoCamera();
     CHECK(w.document().camera() == camera);
     CHECK(differentPixels(before, w.picture()) == 0);
 }
@@ -141,7 +141,7 @@ TEST_CASE("a drag on the globe turns the view in one step", "[gui][views]") {
     // To the right: the volume follows the hand, so that the eye goes to the left.
     CHECK(glm::dot(w.document().camera().forward(), camera.right()) > 0.2);
     CHECK(differentPixels(before, w.picture()) > 200);
-    w.bench().store().undoCamera();
+    w.services().store().undoCamera();
     CHECK(w.document().camera() == camera);
 }
 
@@ -154,11 +154,11 @@ TEST_CASE("the best view is gone to, and is the best", "[gui][views]") {
     CHECK(best.present.camera == camera);
     w.settle();
     // The figure is the one that the bars have.
-    CHECK(best.present.value == Approx(*w.bench().results().objective()).margin(1e-6));
+    CHECK(best.present.value == Approx(*w.services().results().objective()).margin(1e-6));
     w.button("viewsGo").click();
     CHECK(w.document().camera() == best.best.camera);
     w.settle();
-    CHECK(*w.bench().results().objective() == Approx(best.best.value).margin(1e-6));
+    CHECK(*w.services().results().objective() == Approx(best.best.value).margin(1e-6));
     if (!(best.best.camera == camera)) CHECK(differentPixels(before, w.picture()) > 100);
     CHECK(w.search().isCurrent());
 
@@ -181,7 +181,7 @@ TEST_CASE("globe and panel have the same figure of this view, and say what is of
     w.document().setCamera(rotated(w.document().camera(), w.document().volume()->geometry(), 25, 10));
     w.settle();
     REQUIRE_FALSE(w.document().camera() == w.search().best()->best.camera);
-    const QString figure = QString::number(*w.bench().results().objective(), 'f', 4);
+    const QString figure = QString::number(*w.services().results().objective(), 'f', 4);
     INFO(w.words().toStdString());
     CHECK(w.child<QLabel>("distanceLabel").text().endsWith("F = " + figure));
     CHECK(w.words().endsWith("From here: F = " + figure + "."));
@@ -256,21 +256,21 @@ TEST_CASE("view and opacities are optimized together, one step of each history",
     OpenGlobe w;
     const Camera camera = w.document().camera();
     const TransferFunction tf = w.document().tf();
-    const double before = *w.bench().results().objective();
+    const double before = *w.services().results().objective();
     const int steps = w.document().stepCount();
     const QImage picture = w.picture();
     w.child<QAction>("optimizeViewAction").trigger();
     REQUIRE(w.search().isOptimizing());
     REQUIRE(waitFor([&] { return !w.search().isOptimizing(); }));
     w.settle();
-    CHECK(*w.bench().results().objective() < before);
+    CHECK(*w.services().results().objective() < before);
     CHECK(w.document().stepCount() == steps + 1);
-    CHECK(w.bench().store().session().runs->size() == 1);
+    CHECK(w.services().store().session().runs->size() == 1);
     CHECK(w.optimizing().message().contains("azimuth"));
     CHECK(differentPixels(picture, w.picture()) > 100);
     w.document().undo();
     CHECK(w.document().tf() == tf);
-    if (w.bench().store().canUndoCamera()) w.bench().store().undoCamera();
+    if (w.services().store().canUndoCamera()) w.services().store().undoCamera();
     CHECK(w.document().camera() == camera);
 
     // Cancelled it leaves no trace.

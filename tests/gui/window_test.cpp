@@ -156,12 +156,12 @@ TEST_CASE("a cancelled optimization changes nothing", "[window]") {
     OpenWindow w(40);
     const TransferFunction tf = w.document().tf();
     startEndlessOptimization(w);
-    const Session session = w.bench().store().committed().session;
+    const Session session = w.services().store().committed().session;
     const int steps = w.document().stepCount(); // targets and settings are steps
     QTest::mouseClick(&w.child<QPushButton>("cancelButton"), Qt::LeftButton);
     REQUIRE(waitFor([&] { return !w.optimizing().isRunning(); }));
     CHECK(w.document().tf() == tf);
-    CHECK(w.bench().store().session() == session);
+    CHECK(w.services().store().session() == session);
     CHECK(w.document().stepCount() == steps);
     CHECK(w.child<QPushButton>("optimizeButton").isVisible());
     w.settle();
@@ -175,7 +175,7 @@ TEST_CASE("bars and picture follow each move of an optimization", "[window]") {
     // Stopped from inside the first change, so that it cannot have come to its end before.
     int changes = 0;
     const auto watch =
-        QObject::connect(&w.bench().store(), &SessionStore::changed, [&](const Scene& before, const Scene& after) {
+        QObject::connect(&w.services().store(), &SessionStore::changed, [&](const Scene& before, const Scene& after) {
             if (before.tf == after.tf || changes++ > 0) return;
             CHECK(w.document().isPreviewing());
             CHECK(w.document().committedTf() == tf);
@@ -492,7 +492,7 @@ TEST_CASE("a window may be closed and go while its jobs run", "[window]") {
         auto w = std::make_unique<OpenWindow>(48);
         if (optimizing) {
             startEndlessOptimization(*w);
-            w->bench().store().setClean(); // else it asks
+            w->services().store().setClean(); // else it asks
         } else {
             w->refining().refine(); // a measurement follows; the picture is being drawn
             w->document().undo();

@@ -541,3 +541,35 @@ TEST_CASE("adapted transfer functions have the same bits on one thread and on tw
         CHECK(shown[0][f].vws == shown[1][f].vws);
     }
 }
+
+TEST_CASE("keys of both kinds are set, found and removed", "[session]") {
+    Session session = sceneOf(Mode::Refine, 1).session;
+    setTfKey(session);
+    session.frame = 3;
+    setTfKey(session);
+    session = withAdapted(std::move(session), 4, {});
+    session.frame = 5;
+    setTargetKey(session);
+    const auto& track = [&]() -> const TfTrack& { return session.variable().track; };
+    CHECK(track().keys.size() == 2);
+    CHECK(session.targetKeys->size() == 1);
+    CHECK(keyBeside(session, 1, 1) == 3);
+    CHECK(keyBeside(session, 3, 1) == 5);
+    CHECK(keyBeside(session, 3, -1) == 0);
+    CHECK_FALSE(keyBeside(session, 5, 1).has_value());
+    CHECK_FALSE(keyBeside(session, 0, -1).has_value());
+
+    Session other = session;
+    other.frame = 3;
+    removeTfKey(other);
+    CHECK(other.variable().track.keys.size() == 1);
+    CHECK(adaptsOtherwise(session, other));
+    CHECK_FALSE(adaptsOtherwise(session, session));
+
+    session.frame = 2;
+    beginTracksHere(session); // what is later goes
+    CHECK(track().keys.contains(0));
+    CHECK(track().keys.contains(2));
+    CHECK_FALSE(track().keys.contains(3));
+    CHECK(track().adapted.empty());
+}

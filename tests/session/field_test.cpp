@@ -132,3 +132,22 @@ TEST_CASE("the picture of a field is of the same view, other than that of the da
     CHECK(a.pixel(0, 0)[0] == 0);
     CHECK(a.pixel(24, 24)[0] > 0.02f);
 }
+
+TEST_CASE("fields that depend on no view are asked for without one", "[session]") {
+    Scene scene;
+    scene.tf = tents(2, 0.3);
+    scene.session.setTf(scene.tf);
+    const auto inputOf = [&](FieldKind kind) {
+        scene.session.field.edit([&](FieldView& f) { f.kind = kind; });
+        return fieldInput(scene);
+    };
+    const MeasureInput seen = inputOf(FieldKind::Visibility), vws = inputOf(FieldKind::Vws);
+    CHECK(seen.tf.points == scene.tf.points);
+    CHECK(vws.settings == measureInput(scene).settings);
+    for (const FieldKindInfo& info : kFieldKinds)
+        if (!dependsOnView(info.kind)) {
+            const MeasureInput input = inputOf(info.kind);
+            CHECK(input.view == View{});
+            for (const ControlPoint& point : input.tf.points) CHECK(point.opacity == 0);
+        }
+}

@@ -103,3 +103,16 @@ TEST_CASE("holding targets stops where it is asked to", "[session][live]") {
     stop.request_stop();
     CHECK_THROWS_AS(followTargets(workspace, held, {stop.get_token(), {}}), Cancelled);
 }
+
+TEST_CASE("an opacity that somebody sets is told from those that an update wants", "[session]") {
+    TransferFunction before = tents(3, 0.2);
+    for (std::size_t i = 0; i < 3; ++i) before.features[i].id = static_cast<FeatureId>(i + 1);
+    const TransferFunction after = withFeatureOpacities(before, {0.2, 0.5, 0.4});
+    CHECK(sameFeatures(before, after));
+    CHECK(setByHand(before, after, {}) == std::set<FeatureId>{2, 3});
+    CHECK(setByHand(before, after, {{3, 0.4}}) == std::set<FeatureId>{2});               // the update came between
+    CHECK(setByHand(before, withFeatureOpacities(before, {0.1, 0.1, 0.1}), {}).empty()); // another density
+    TransferFunction fewer = before;
+    fewer.features.pop_back();
+    CHECK_FALSE(sameFeatures(before, fewer));
+}

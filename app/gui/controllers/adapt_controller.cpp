@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controllers/open_controller.h"
 #include "controllers/player_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 
 namespace pellucid::gui {
 namespace {
@@ -14,22 +13,10 @@ using Mode = AdaptSettings::Mode;
 
 constexpr int kRest = 60; // milliseconds without a change before what is missing is looked for
 
-/// Whether what is made for frames may come out another way.
-bool mayDiffer(const Session& a, const Session& b) {
-    return !a.variables.isSame(b.variables) || !a.adapt.isSame(b.adapt) || !a.targetKeys.isSame(b.targetKeys) ||
-           !a.goals.isSame(b.goals) || !a.refine.isSame(b.refine) || !a.optimize.isSame(b.optimize) ||
-           !a.measure.isSame(b.measure) || !a.clipping.isSame(b.clipping) || !a.hsb.isSame(b.hsb) ||
-           a.camera != b.camera || a.frame != b.frame;
-}
-
-void editTrack(Session& session, const std::function<void(TfTrack&)>& change) {
-    session.variables.edit([&](std::vector<Variable>& all) { change(all.front().track); });
-}
-
 } // namespace
 
-AdaptController::AdaptController(Workbench& bench)
-    : m_bench(bench),
+AdaptController::AdaptController(Services& services, PlayerController& player)
+    : m_services(services), m_player(player),
       m_job(
           [this](const Scene& basis, const JobControl& job) {
               Answer answer;
@@ -54,9 +41,9 @@ AdaptController::AdaptController(Workbench& bench)
     m_timer.setSingleShot(true);
     m_timer.setInterval(kRest);
     connect(&m_timer, &QTimer::timeout, this, &AdaptController::look);
-    connect(&bench.store(), &SessionStore::changed, this, &AdaptController::follow);
-    connect(&bench, &Workbench::readOnlyChanged, this, [this] {
-        if (m_bench.isReadOnly()) m_job.cancel();
+    connect(&services.store(), &SessionStore::changed, this, &AdaptController::follow);
+    connect(&services, &Services::readOnlyChanged, this, [this] {
+        if (m_services.isReadOnly()) m_job.cancel();
         if (isWanted()) m_timer.start();
     });
     connect(&m_job, &JobBase::busyChanged, this, &AdaptController::changed);
@@ -66,7 +53,7 @@ AdaptController::AdaptController(Workbench& bench)
     });
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_stopped = true;
-        m_bench.notices().add(
+        m_services.notices().add(
             {tr("Transfer functions of other frames are not made: %1").arg(QString::fromUtf8(error.what())), {}});
         Q_EMIT changed();
     });
@@ -76,8 +63,8 @@ AdaptController::~AdaptController() = default;
 
 void AdaptController::addActions() {
     const QString menu = tr("T&ime");
-    Actions& actions = m_bench.actions();
-    const auto open = [this] { return m_bench.player().hasSeries() && !m_bench.isReadOnly(); };
+    Actions& actions = m_services.actions();
+    const auto open = [this] { return m_player.hasSeries() && !m_services.isReadOnly(); };
     const auto mode = [&](const char* id, const QString& text, const QString& tip, Mode which, bool separator) {
         actions.add({.id = id,
                      .menu = menu,
@@ -85,7 +72,7 @@ void AdaptController::addActions() {
                      .tip = tip,
                      .trigger = [this, which] { setMode(which); },
                      .enabled = open,
-                     .checked = [this, which] { return m_bench.store().session().adapt->mode == which; },
+                     .checked = [this, which] { return m_services.store().session().adapt->mode == which; },
                      .separatorBefore = separator});
     };
     mode("adaptStaticAction", tr("&Static transfer function"), tr("The keys alone, and what lies between them"),
@@ -95,142 +82,121 @@ void AdaptController::addActions() {
          Mode::Refine, false);
     mode("adaptOptimizeAction", tr("&Optimize every frame"),
          tr("Each frame's opacities bring VWS to the targets, from those of the frame before"), Mode::Optimize, false);
-    actions.add({.id = "tfKeyAction",
-                 .menu = menu,
-                 .text = tr("Transfer function &key here"),
-                 .keys = {QKeySequence("K")},
-                 .tip = tr("This frame's transfer function is made by hand; what is made for frames begins at keys"),
-                 .trigger = [this] { hasTfKey() ? removeTfKey() : setTfKey(); },
-                 .enabled = open,
-                 .checked = [this] { return hasTfKey(); },
-                 .separatorBefore = true});
-    actions.add({.id = "targetKeyAction",
-                 .menu = menu,
-                 .text = tr("&Target key here"),
-                 .keys = {QKeySequence("Shift+K")},
-                 .tip = tr("The targets are those of this frame; between keys they go from the one to the other"),
-                 .trigger = [this] { hasTargetKey() ? removeTargetKey() : setTargetKey(); },
-                 .enabled = open,
-                 .checked = [this] { return hasTargetKey(); }});
+    m_keyActions << actions.add(
+        {.id = "tfKeyAction",
+         .menu = menu,
+         .text = tr("Transfer function &key here"),
+         .keys = {QKeySequence("K")},
+         .tip = tr("This frame's transfer function is made by hand; what is made for frames begins at keys"),
+         .trigger = [this] { hasTfKey() ? removeTfKey() : setTfKey(); },
+         .enabled = open,
+         .checked = [this] { return hasTfKey(); },
+         .separatorBefore = true});
+    m_keyActions << actions.add(
+        {.id = "targetKeyAction",
+         .menu = menu,
+         .text = tr("&Target key here"),
+         .keys = {QKeySequence("Shift+K")},
+         .tip = tr("The targets are those of this frame; between keys they go from the one to the other"),
+         .trigger = [this] { hasTargetKey() ? removeTargetKey() : setTargetKey(); },
+         .enabled = open,
+         .checked = [this] { return hasTargetKey(); }});
     const auto go = [&](const char* id, const QString& text, const char* keys, int direction) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .keys = {QKeySequence(keys)},
-                     .trigger = [this, direction] { goToKey(direction); },
-                     .enabled = [this] { return m_bench.player().hasSeries(); }});
+        m_keyActions << actions.add({.id = id,
+                                     .menu = menu,
+                                     .text = text,
+                                     .keys = {QKeySequence(keys)},
+                                     .trigger = [this, direction] { goToKey(direction); },
+                                     .enabled = [this] { return m_player.hasSeries(); }});
     };
     go("previousKeyAction", tr("Pre&vious key"), "Ctrl+,", -1);
     go("nextKeyAction", tr("Ne&xt key"), "Ctrl+.", 1);
-    actions.add({.id = "fromHereAction",
-                 .menu = menu,
-                 .text = tr("From this frame o&n"),
-                 .tip = tr("This frame's transfer function is where those of all frames after it begin: later keys go"),
-                 .trigger = [this] { fromHereOn(); },
-                 .enabled = open});
+    m_keyActions << actions.add(
+        {.id = "fromHereAction",
+         .menu = menu,
+         .text = tr("From this frame o&n"),
+         .tip = tr("This frame's transfer function is where those of all frames after it begin: later keys go"),
+         .trigger = [this] { fromHereOn(); },
+         .enabled = open});
 }
 
 // ---- edits
 
 void AdaptController::setMode(Mode mode) {
     m_stopped = false;
-    m_bench.store().edit(mode == Mode::Static   ? tr("Static transfer function")
-                         : mode == Mode::Refine ? tr("Refine from frame to frame")
-                                                : tr("Optimize every frame"),
-                         {}, [mode](Session& session) {
-                             session.adapt.edit([mode](AdaptSettings& a) { a.mode = mode; });
-                             if (mode != Mode::Static) session.holdTargets = false; // both set opacities
-                         });
+    m_services.store().edit(mode == Mode::Static   ? tr("Static transfer function")
+                            : mode == Mode::Refine ? tr("Refine from frame to frame")
+                                                   : tr("Optimize every frame"),
+                            {}, [mode](Session& session) {
+                                session.adapt.edit([mode](AdaptSettings& a) { a.mode = mode; });
+                                if (mode != Mode::Static) session.holdTargets = false; // both set opacities
+                            });
 }
 
 void AdaptController::setCoherence(double coherence) {
     m_stopped = false;
-    m_bench.store().edit(tr("Coherence"), "coherence", [coherence](Session& session) {
+    m_services.store().edit(tr("Coherence"), "coherence", [coherence](Session& session) {
         session.adapt.edit([coherence](AdaptSettings& a) { a.coherence = coherence; });
     });
 }
 
 bool AdaptController::hasTfKey() const {
-    const Session& session = m_bench.store().session();
-    return m_bench.player().hasSeries() && session.variable().track.keys.contains(session.frame);
+    const Session& session = m_services.store().session();
+    return m_player.hasSeries() && session.variable().track.keys.contains(session.frame);
 }
 
 bool AdaptController::hasTargetKey() const {
-    const Session& session = m_bench.store().session();
+    const Session& session = m_services.store().session();
     return session.targetKeys->contains(session.frame);
 }
 
 void AdaptController::setTfKey() {
     if (hasTfKey()) return;
-    m_bench.store().edit(tr("Set key"), {}, [](Session& session) {
-        const TransferFunction tf = *session.tf();
-        editTrack(session, [&](TfTrack& track) {
-            track.keys[session.frame] = Part<TransferFunction>(tf);
-            track.adapted.erase(session.frame);
-        });
-    });
+    m_services.store().edit(tr("Set key"), {}, [](Session& session) { pellucid::setTfKey(session); });
 }
 
 void AdaptController::removeTfKey() {
     if (!hasTfKey()) return;
-    if (m_bench.store().session().variable().track.keys.size() == 1) {
-        Q_EMIT m_bench.message(tr("The only key stays: it is the transfer function of all frames."));
+    if (m_services.store().session().variable().track.keys.size() == 1) {
+        Q_EMIT m_services.message(tr("The only key stays: it is the transfer function of all frames."));
         return;
     }
-    m_bench.store().edit(tr("Remove key"), {}, [](Session& session) {
-        editTrack(session, [&](TfTrack& track) { track.keys.erase(session.frame); });
-    });
+    m_services.store().edit(tr("Remove key"), {}, [](Session& session) { pellucid::removeTfKey(session); });
 }
 
 void AdaptController::setTargetKey() {
-    m_bench.store().edit(tr("Set target key"), {}, [](Session& session) {
-        std::map<FeatureId, double> targets;
-        for (const auto& [id, goal] : *session.goals) targets[id] = goal.target;
-        session.targetKeys.edit([&](TargetKeys& keys) { keys[session.frame] = std::move(targets); });
-    });
+    m_services.store().edit(tr("Set target key"), {}, [](Session& session) { pellucid::setTargetKey(session); });
 }
 
 void AdaptController::removeTargetKey() {
-    m_bench.store().edit(tr("Remove target key"), {}, [](Session& session) {
+    m_services.store().edit(tr("Remove target key"), {}, [](Session& session) {
         session.targetKeys.edit([&](TargetKeys& keys) { keys.erase(session.frame); });
     });
 }
 
 void AdaptController::fromHereOn() {
-    m_bench.store().edit(tr("From this frame on"), {}, [](Session& session) {
-        const TransferFunction tf = *session.tf();
-        editTrack(session, [&](TfTrack& track) {
-            track.keys.erase(track.keys.upper_bound(session.frame), track.keys.end());
-            track.adapted.erase(track.adapted.lower_bound(session.frame), track.adapted.end());
-            track.keys[session.frame] = Part<TransferFunction>(tf);
-        });
-    });
+    m_services.store().edit(tr("From this frame on"), {}, [](Session& session) { beginTracksHere(session); });
 }
 
 void AdaptController::goToKey(int direction) {
-    if (!m_bench.player().hasSeries()) return;
-    const Session& session = m_bench.store().session();
-    std::set<int> frames;
-    for (const auto& [frame, tf] : session.variable().track.keys) frames.insert(frame);
-    for (const auto& [frame, targets] : *session.targetKeys) frames.insert(frame);
-    const int now = m_bench.player().awaited().value_or(session.frame);
-    const auto after = frames.upper_bound(now), here = frames.lower_bound(now);
-    if (direction > 0 && after != frames.end()) return m_bench.player().goTo(*after);
-    if (direction < 0 && here != frames.begin()) return m_bench.player().goTo(*std::prev(here));
-    Q_EMIT m_bench.message(direction > 0 ? tr("There is no key after this frame.")
-                                         : tr("There is no key before this frame."));
+    if (!m_player.hasSeries()) return;
+    const Session& session = m_services.store().session();
+    if (const auto key = keyBeside(session, m_player.awaited().value_or(session.frame), direction))
+        return m_player.goTo(*key);
+    Q_EMIT m_services.message(direction > 0 ? tr("There is no key after this frame.")
+                                            : tr("There is no key before this frame."));
 }
 
 // ---- what is made by itself
 
 bool AdaptController::isStale(int frame) const {
     return m_firstStale >= 0 && frame >= m_firstStale &&
-           m_bench.store().session().variable().track.keyBefore(frame) == m_staleKey;
+           m_services.store().session().variable().track.keyBefore(frame) == m_staleKey;
 }
 
 bool AdaptController::isWanted() const {
-    return !m_stopped && m_bench.player().hasSeries() && !m_bench.isReadOnly() &&
-           m_bench.store().session().adapt->mode != Mode::Static;
+    return !m_stopped && m_player.hasSeries() && !m_services.isReadOnly() &&
+           m_services.store().session().adapt->mode != Mode::Static;
 }
 
 void AdaptController::stop() {
@@ -262,7 +228,7 @@ void AdaptController::follow(const Scene& before, const Scene& after) {
             m_firstStale = -1;
             Q_EMIT changed();
         }
-    } else if (other || mayDiffer(before.session, after.session)) {
+    } else if (other || adaptsOtherwise(before.session, after.session)) {
         // What is under way may be stale: its fingerprint tells. Smoothing takes too long to wait for that.
         if (m_smoothing > 0 && before.session.frame == after.session.frame) m_job.cancel();
         m_timer.start();
@@ -270,20 +236,20 @@ void AdaptController::follow(const Scene& before, const Scene& after) {
     if (before.session.frame != after.session.frame || other || !before.session.adapt.isSame(after.session.adapt) ||
         !before.session.targetKeys.isSame(after.session.targetKeys) ||
         !before.session.variables.isSame(after.session.variables))
-        m_bench.actions().refresh();
+        m_services.actions().refresh();
 }
 
 void AdaptController::look() {
     if (!isWanted()) return;
     if (m_job.isRunning()) return; // its end looks again
     // What the hand holds is not committed: no frame needs it yet.
-    if (m_bench.opening().isBusy() || m_bench.store().isPreviewing()) return m_timer.start();
+    if (m_player.isHeldUp() || m_services.store().isPreviewing()) return m_timer.start();
     m_smoothing = 0;
-    m_job.start(m_bench.store().committed(), tr("the frames"));
+    m_job.start(m_services.store().committed(), tr("the frames"));
 }
 
 void AdaptController::finish(const Scene& basis, Answer& answer) {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     if (!isWanted() || store.scene().series != basis.series) return;
     m_progress = answer.progress;
     m_firstStale = answer.firstStale;

@@ -9,9 +9,12 @@
 #include "jobs/job.h"
 #include "session/adapt.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
-class Workbench;
+class PlayerController;
+class Services;
 
 /// While the session's transfer functions adapt, those that are missing or of other inputs than the present ones are
 /// made one after the other on a thread of its own, beside what one looks at. Each is put in as it comes and is no step
@@ -20,10 +23,12 @@ class Workbench;
 class AdaptController : public QObject {
     Q_OBJECT
 public:
-    explicit AdaptController(Workbench& bench);
+    AdaptController(Services& services, PlayerController& player);
     ~AdaptController() override;
 
     void addActions();
+    /// Key of the transfer function, of targets, previous key, next key, from here on.
+    const QList<QAction*>& keyActions() const { return m_keyActions; }
 
     /// All of these are undo steps.
     void setMode(AdaptSettings::Mode mode);
@@ -71,7 +76,9 @@ private:
     void finish(const Scene& basis, Answer& answer);
     bool isWanted() const;
 
-    Workbench& m_bench;
+    Services& m_services;
+    PlayerController& m_player;
+    QList<QAction*> m_keyActions;
     AdaptProgress m_progress;
     int m_firstStale = -1, m_staleKey = -1;
     double m_smoothing = 0;

@@ -1,6 +1,6 @@
-#include "controllers/annotation_actions.h"
+#include "controllers/menu_actions.h"
 
-#include "services/workbench.h"
+#include "services/services.h"
 
 namespace pellucid::gui {
 namespace {
@@ -36,41 +36,41 @@ Texts textsOf(FramePart part) {
 
 } // namespace
 
-void addAnnotationActions(Workbench& bench) {
-    SessionStore& store = bench.store();
+void addAnnotationActions(Services& services) {
+    SessionStore& store = services.store();
     const QString menu = QObject::tr("&View") + "/" + QObject::tr("Frame of re&ference");
-    const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
-    bench.actions().add({.id = "frameAction",
-                         .menu = menu,
-                         .text = QObject::tr("S&how frame of reference"),
-                         .keys = {QKeySequence("A")},
-                         .tip = QObject::tr("All that stands around the picture, on and off"),
-                         .trigger =
-                             [&store] {
-                                 store.edit(QObject::tr("Frame of reference"), {}, [](Session& session) {
-                                     session.reference.edit([](FrameOfReference& r) { r.on = !r.on; });
-                                 });
-                             },
-                         .enabled = editable,
-                         .checked = [&store] { return store.session().reference->on; }});
+    const auto editable = [&services] { return services.isEditable(); };
+    services.actions().add({.id = "frameAction",
+                            .menu = menu,
+                            .text = QObject::tr("S&how frame of reference"),
+                            .keys = {QKeySequence("A")},
+                            .tip = QObject::tr("All that stands around the picture, on and off"),
+                            .trigger =
+                                [&store] {
+                                    store.edit(QObject::tr("Frame of reference"), {}, [](Session& session) {
+                                        session.reference.edit([](FrameOfReference& r) { r.on = !r.on; });
+                                    });
+                                },
+                            .enabled = editable,
+                            .checked = [&store] { return store.session().reference->on; }});
     for (const FramePartInfo& info : kFrameParts) {
         const auto [id, text, tip] = textsOf(info.part);
-        bench.actions().add({.id = id,
-                             .menu = menu,
-                             .text = text,
-                             .tip = tip,
-                             .trigger =
-                                 [&store, name = QString(text).remove('&'), shown = info.shown] {
-                                     store.edit(name, {}, [&](Session& session) {
-                                         session.reference.edit([&](FrameOfReference& r) {
-                                             r.*shown = !(r.on && r.*shown);
-                                             r.on = true;
-                                         });
-                                     });
-                                 },
-                             .enabled = editable,
-                             .checked = [&store, shown = info.shown] { return (*store.session().reference).*shown; },
-                             .separatorBefore = info.part == FramePart::Cube});
+        services.actions().add({.id = id,
+                                .menu = menu,
+                                .text = text,
+                                .tip = tip,
+                                .trigger =
+                                    [&store, name = QString(text).remove('&'), shown = info.shown] {
+                                        store.edit(name, {}, [&](Session& session) {
+                                            session.reference.edit([&](FrameOfReference& r) {
+                                                r.*shown = !(r.on && r.*shown);
+                                                r.on = true;
+                                            });
+                                        });
+                                    },
+                                .enabled = editable,
+                                .checked = [&store, shown = info.shown] { return (*store.session().reference).*shown; },
+                                .separatorBefore = info.part == FramePart::Cube});
     }
 }
 

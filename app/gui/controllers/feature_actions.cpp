@@ -8,8 +8,9 @@
 #include <QWidgetAction>
 
 #include "controllers/target_actions.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "store/edits.h"
+#include "tf/color_maps.h"
 #include "tf/shapes.h"
 #include "widgets/theme.h"
 
@@ -34,37 +35,38 @@ constexpr ShapeText kShapes[] = {
 
 /// One step; what cannot be done is said in the status line.
 template <class Change>
-void tryEdit(Workbench& bench, const QString& text, const Change& change) {
+void tryEdit(Services& services, const QString& text, const Change& change) {
     try {
-        bench.store().commit();
-        editTf(bench.store(), change(bench.scene().tf), text);
+        services.store().commit();
+        editTf(services.store(), change(services.scene().tf), text);
     } catch (const Error& e) {
-        Q_EMIT bench.message(QStringLiteral("%1: %2; %3")
-                                 .arg(text, QString::fromStdString(e.problem()), QString::fromStdString(e.whatToDo())));
+        Q_EMIT services.message(
+            QStringLiteral("%1: %2; %3")
+                .arg(text, QString::fromStdString(e.problem()), QString::fromStdString(e.whatToDo())));
     }
 }
 
-void select(Workbench& bench, int feature) {
-    const auto& features = bench.scene().tf.features;
+void select(Services& services, int feature) {
+    const auto& features = services.scene().tf.features;
     const auto f = static_cast<std::size_t>(feature);
-    bench.selection().setFeature(feature >= 0 && f < features.size() ? features[f].id : 0);
+    services.selection().setFeature(feature >= 0 && f < features.size() ? features[f].id : 0);
 }
 
 /// An edit that makes a feature, which is selected then.
 template <class Change>
-void tryAdd(Workbench& bench, const QString& text, const Change& change) {
+void tryAdd(Services& services, const QString& text, const Change& change) {
     int index = -1;
-    tryEdit(bench, text, [&](const TransferFunction& tf) {
+    tryEdit(services, text, [&](const TransferFunction& tf) {
         AddedFeature added = change(tf);
         index = added.index;
         return added.tf;
     });
-    if (index >= 0) select(bench, index);
+    if (index >= 0) select(services, index);
 }
 
-void addShape(Workbench& bench, ShapeKind kind) {
-    tryAdd(bench, QObject::tr("Add %1").arg(QString::fromStdString(name(kind))), [&](const TransferFunction& tf) {
-        const int selected = selectedFeature(bench);
+void addShape(Services& services, ShapeKind kind) {
+    tryAdd(services, QObject::tr("Add %1").arg(QString::fromStdString(name(kind))), [&](const TransferFunction& tf) {
+        const int selected = services.selectedFeature();
         const double near = selected < 0 ? 0.5
                                          : (tf.features[static_cast<std::size_t>(selected)].a +
                                             tf.features[static_cast<std::size_t>(selected)].b) /
@@ -88,11 +90,11 @@ void addShape(Workbench& bench, ShapeKind kind) {
     });
 }
 
-void split(Workbench& bench, int feature) {
-    tryEdit(bench, QObject::tr("Split feature"), [&](const TransferFunction& tf) {
+void split(Services& services, int feature) {
+    tryEdit(services, QObject::tr("Split feature"), [&](const TransferFunction& tf) {
         const Feature& f = tf.features[static_cast<std::size_t>(feature)];
-        const std::optional<double> pointed = bench.selection().hoveredIntensity();
-        const auto& histogram = bench.scene().histogram;
+        const std::optional<double> pointed = services.selection().hoveredIntensity();
+        const auto& histogram = services.scene().histogram;
         const std::span<const std::uint64_t> counts =
             histogram ? std::span<const std::uint64_t>(histogram->counts) : std::span<const std::uint64_t>();
         const bool points = pointed && *pointed > f.a && *pointed < f.b;
@@ -100,45 +102,61 @@ void split(Workbench& bench, int feature) {
     });
 }
 
-void merge(Workbench& bench, int feature) {
-    const TransferFunction& tf = bench.scene().tf;
+void merge(Services& services, int feature) {
+    const TransferFunction& tf = services.scene().tf;
     const int lower = nextFeature(tf, feature) >= 0 ? feature : previousFeature(tf, feature);
     if (lower < 0) return;
-    tryAdd(bench, QObject::tr("Merge features"),
+    tryAdd(services, QObject::tr("Merge features"),
            [&](const TransferFunction& now) { return withFeaturesMerged(now, lower); });
 }
 
-void remove(Workbench& bench, int feature) {
-    tryEdit(bench, QObject::tr("Remove feature"),
+void remove(Services& services, int feature) {
+    tryEdit(services, QObject::tr("Remove feature"),
             [&](const TransferFunction& tf) { return withFeatureRemoved(tf, feature); });
-    select(bench, std::min(feature, static_cast<int>(bench.scene().tf.features.size()) - 1));
+    select(services, std::min(feature, static_cast<int>(services.scene().tf.features.size()) - 1));
 }
 
 QString featureMenu() { return QObject::tr("&Transfer function") + "/" + QObject::tr("Feat&ure"); }
 QString colorMenu() { return QObject::tr("&Transfer function") + "/" + QObject::tr("&Colours"); }
 
-constexpr const char* kFeatureEntries[] = {"featureShow",  "featureOnly",  "featureHideOthers", "featureShowAll", "",
-                                           "featureSplit", "featureMerge", "featureDuplicate",  "featureRemove"};
+/// The colours of a map from left to right.
+QPixmap colorStrip(const ColorMap& map, const QSize& size) {
+    QPixmap strip(size);
+    QPainter painter(&strip);
+    for (int x = 0; x < size.width(); ++x)
+        painter.fillRect(x, 0, 1, size.height(), colorFromRgb(colorOf(map, (x + 0.5) / size.width())));
+    return strip;
+}
 
-QString kindId(ShapeKind kind) { return QStringLiteral("featureAs-") + QString::fromStdString(name(kind)); }
-QString mapId(const ColorMap& map) { return QStringLiteral("colorMap-") + QString::fromStdString(map.name); }
+} // namespace
 
-void addColorActions(Workbench& bench) {
-    Actions& actions = bench.actions();
-    const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
+void FeatureActions::toggleOnly(int feature) {
+    SessionStore& store = m_services.store();
+    const auto& features = store.scene().tf.features;
+    if (feature < 0 || static_cast<std::size_t>(feature) >= features.size()) return;
+    const FeatureId id = store.scene().onlyFeature() == feature ? 0 : features[static_cast<std::size_t>(feature)].id;
+    store.commit();
+    store.edit(id == 0 ? QObject::tr("Draw all features") : QObject::tr("Draw only this feature"), {},
+               [&](Session& session) { session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; }); });
+}
+
+void FeatureActions::addColorActions() {
+    Services& services = m_services;
+    Actions& actions = services.actions();
+    const auto editable = [&services] { return services.isEditable(); };
     const auto overFeatures = std::make_shared<bool>(false); // how the next map is applied; no part of any state
     for (const ColorMap& map : colorMaps()) {
         const ColorMap* const which = &map;
         QAction* const action = actions.add(
-            {.id = mapId(map),
+            {.id = QStringLiteral("colorMap-") + QString::fromStdString(map.name),
              .menu = colorMenu(),
              .text = QString::fromStdString(map.title),
              .tip = map.visionSafe
                         ? QObject::tr("Colours by value; told apart by colour-blind eyes too. Opacities stay")
                         : QObject::tr("Colours by value; opacities stay"),
              .trigger =
-                 [&bench, which, overFeatures] {
-                     tryEdit(bench, QObject::tr("Colours: %1").arg(QString::fromStdString(which->name)),
+                 [&services, which, overFeatures] {
+                     tryEdit(services, QObject::tr("Colours: %1").arg(QString::fromStdString(which->name)),
                              [&](const TransferFunction& tf) {
                                  ColorMapOptions options;
                                  options.overFeatures = *overFeatures;
@@ -148,161 +166,150 @@ void addColorActions(Workbench& bench) {
              .enabled = editable});
         action->setIcon(colorStrip(map, kSwatch));
         action->setIconVisibleInMenu(true);
+        m_maps << action;
     }
-    actions.add({.id = "colorsOverFeatures",
-                 .menu = colorMenu(),
-                 .text = QObject::tr("&One colour per feature"),
-                 .tip = QObject::tr("The next map gives each feature one colour, in the order of their values,\n"
-                                    "instead of a colour to every value"),
-                 .trigger = [overFeatures] { *overFeatures = !*overFeatures; },
-                 .enabled = editable,
-                 .checked = [overFeatures] { return *overFeatures; },
-                 .separatorBefore = true});
-    actions.add({.id = "colorsReverse",
-                 .menu = colorMenu(),
-                 .text = QObject::tr("&Reverse"),
-                 .tip = QObject::tr("The colours end to end: those of high values to low ones. Opacities stay"),
-                 .trigger = [&bench] { tryEdit(bench, QObject::tr("Reverse colours"), withColorsReversed); },
-                 .enabled = editable,
-                 .separatorBefore = true});
-    actions.add({.id = "colorsInvert",
-                 .menu = colorMenu(),
-                 .text = QObject::tr("&Invert"),
-                 .tip = QObject::tr("Light colours become dark and dark ones light, of the same hue. Opacities stay"),
-                 .trigger = [&bench] { tryEdit(bench, QObject::tr("Invert colours"), withColorsInverted); },
-                 .enabled = editable});
+    m_colors << actions.add(
+        {.id = "colorsOverFeatures",
+         .menu = colorMenu(),
+         .text = QObject::tr("&One colour per feature"),
+         .tip = QObject::tr("The next map gives each feature one colour, in the order of their values,\n"
+                            "instead of a colour to every value"),
+         .trigger = [overFeatures] { *overFeatures = !*overFeatures; },
+         .enabled = editable,
+         .checked = [overFeatures] { return *overFeatures; },
+         .separatorBefore = true});
+    m_colors << actions.add(
+        {.id = "colorsReverse",
+         .menu = colorMenu(),
+         .text = QObject::tr("&Reverse"),
+         .tip = QObject::tr("The colours end to end: those of high values to low ones. Opacities stay"),
+         .trigger = [&services] { tryEdit(services, QObject::tr("Reverse colours"), withColorsReversed); },
+         .enabled = editable,
+         .separatorBefore = true});
+    m_colors << actions.add(
+        {.id = "colorsInvert",
+         .menu = colorMenu(),
+         .text = QObject::tr("&Invert"),
+         .tip = QObject::tr("Light colours become dark and dark ones light, of the same hue. Opacities stay"),
+         .trigger = [&services] { tryEdit(services, QObject::tr("Invert colours"), withColorsInverted); },
+         .enabled = editable});
 }
 
-} // namespace
-
-int selectedFeature(Workbench& bench) { return featureWithId(bench.scene().tf, bench.selection().feature()); }
-
-void toggleOnlyFeature(Workbench& bench, int feature) {
-    const auto& features = bench.scene().tf.features;
-    if (feature < 0 || static_cast<std::size_t>(feature) >= features.size()) return;
-    const FeatureId id = bench.scene().onlyFeature() == feature ? 0 : features[static_cast<std::size_t>(feature)].id;
-    bench.store().commit();
-    bench.store().edit(
-        id == 0 ? QObject::tr("Draw all features") : QObject::tr("Draw only this feature"), {},
-        [&](Session& session) { session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; }); });
-}
-
-QPixmap colorStrip(const ColorMap& map, const QSize& size) {
-    QPixmap strip(size);
-    QPainter painter(&strip);
-    for (int x = 0; x < size.width(); ++x)
-        painter.fillRect(x, 0, 1, size.height(), colorFromRgb(colorOf(map, (x + 0.5) / size.width())));
-    return strip;
-}
-
-void addFeatureActions(Workbench& bench) {
-    Actions& actions = bench.actions();
-    const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
-    const auto selected = [&bench, editable] { return editable() && selectedFeature(bench) >= 0; };
+void FeatureActions::addActions() {
+    Services& services = m_services;
+    Actions& actions = services.actions();
+    const auto editable = [&services] { return services.isEditable(); };
+    const auto selected = [&services, editable] { return editable() && services.selectedFeature() >= 0; };
     const auto keys = [](const char* text) { return QList<QKeySequence>{QKeySequence(text)}; };
 
     for (const ShapeText& shape : kShapes)
-        actions.add({.id = shape.id,
-                     .menu = featureMenu() + "/" + QObject::tr("&Add"),
-                     .text = QObject::tr(shape.text),
-                     .tip = QObject::tr(shape.tip),
-                     .trigger = [&bench, kind = shape.kind] { addShape(bench, kind); },
-                     .enabled = editable});
+        m_shapes << actions.add({.id = shape.id,
+                                 .menu = featureMenu() + "/" + QObject::tr("&Add"),
+                                 .text = QObject::tr(shape.text),
+                                 .tip = QObject::tr(shape.tip),
+                                 .trigger = [&services, kind = shape.kind] { addShape(services, kind); },
+                                 .enabled = editable});
     const auto add = [&](const QString& id, const QString& text, const QList<QKeySequence>& key, const QString& tip,
                          bool separator, std::function<void(int)> trigger) {
-        actions.add({.id = id,
-                     .menu = featureMenu(),
-                     .text = text,
-                     .keys = key,
-                     .tip = tip,
-                     .trigger =
-                         [&bench, trigger = std::move(trigger)] {
-                             if (const int f = selectedFeature(bench); f >= 0) trigger(f);
-                         },
-                     .enabled = selected,
-                     .separatorBefore = separator});
+        return actions.add({.id = id,
+                            .menu = featureMenu(),
+                            .text = text,
+                            .keys = key,
+                            .tip = tip,
+                            .trigger =
+                                [&services, trigger = std::move(trigger)] {
+                                    if (const int f = services.selectedFeature(); f >= 0) trigger(f);
+                                },
+                            .enabled = selected,
+                            .separatorBefore = separator});
     };
-    add("featureSplit", QObject::tr("&Split"), keys("Ctrl+Shift+X"),
+    m_shaping << add(
+        "featureSplit", QObject::tr("&Split"), keys("Ctrl+Shift+X"),
         QObject::tr("Two features of the selected one: in the deepest valley of the histogram within it, else in its\n"
                     "middle; with the mouse over the curve, there. The picture stays but for the new one's colour"),
-        true, [&bench](int f) { split(bench, f); });
-    add("featureMerge", QObject::tr("&Merge with the next"), keys("Ctrl+Shift+M"),
+        true, [&services](int f) { split(services, f); });
+    m_shaping << add(
+        "featureMerge", QObject::tr("&Merge with the next"), keys("Ctrl+Shift+M"),
         QObject::tr("One feature of the selected one and the next by value (of the last one: the one before)"), false,
-        [&bench](int f) { merge(bench, f); });
-    add("featureDuplicate", QObject::tr("&Duplicate"), keys("Ctrl+Shift+D"),
-        QObject::tr("A copy in the nearest gap between features"), false, [&bench](int f) {
-            tryAdd(bench, QObject::tr("Duplicate feature"),
-                   [&](const TransferFunction& tf) { return withFeatureDuplicated(tf, f); });
-        });
-    add("featureRemove", QObject::tr("R&emove"), keys("Ctrl+Delete"),
-        QObject::tr("Remove the selected feature, and what it makes opaque"), false,
-        [&bench](int f) { remove(bench, f); });
+        [&services](int f) { merge(services, f); });
+    m_shaping << add("featureDuplicate", QObject::tr("&Duplicate"), keys("Ctrl+Shift+D"),
+                     QObject::tr("A copy in the nearest gap between features"), false, [&services](int f) {
+                         tryAdd(services, QObject::tr("Duplicate feature"),
+                                [&](const TransferFunction& tf) { return withFeatureDuplicated(tf, f); });
+                     });
+    m_shaping << add("featureRemove", QObject::tr("R&emove"), keys("Ctrl+Delete"),
+                     QObject::tr("Remove the selected feature, and what it makes opaque"), false,
+                     [&services](int f) { remove(services, f); });
     for (const ShapeText& shape : kShapes)
-        actions.add({.id = kindId(shape.kind),
-                     .menu = featureMenu() + "/" + QObject::tr("&Change to"),
-                     .text = QObject::tr(shape.text),
-                     .tip = QObject::tr("The same values, peak and colour in another shape"),
-                     .trigger =
-                         [&bench, kind = shape.kind] {
-                             const int f = selectedFeature(bench);
-                             if (f >= 0)
-                                 tryEdit(bench, QObject::tr("Change shape"),
-                                         [&](const TransferFunction& tf) { return withFeatureKind(tf, f, kind); });
-                         },
-                     .enabled = selected});
-    actions.add({.id = "featureShow",
-                 .menu = featureMenu(),
-                 .text = QObject::tr("S&hown"),
-                 .keys = keys("H"),
-                 .tip = QObject::tr("The eye of the selected feature: hidden, it is neither drawn nor measured"),
-                 .trigger =
-                     [&bench] {
-                         const int f = selectedFeature(bench);
-                         if (f < 0) return;
-                         const bool hidden = bench.scene().tf.features[static_cast<std::size_t>(f)].hidden;
-                         tryEdit(bench, hidden ? QObject::tr("Show feature") : QObject::tr("Hide feature"),
-                                 [&](const TransferFunction& tf) { return withFeatureHidden(tf, f, !hidden); });
-                     },
-                 .enabled = selected,
-                 .checked =
-                     [&bench] {
-                         const int f = selectedFeature(bench);
-                         return f < 0 || !bench.scene().tf.features[static_cast<std::size_t>(f)].hidden;
-                     },
-                 .separatorBefore = true});
-    actions.add({.id = "featureOnly",
-                 .menu = featureMenu(),
-                 .text = QObject::tr("&Draw only this"),
-                 .keys = keys("Shift+H"),
-                 .tip = QObject::tr("The picture shows the selected feature alone; figures stay those of all"),
-                 .trigger = [&bench] { toggleOnlyFeature(bench, selectedFeature(bench)); },
-                 .enabled = selected,
-                 .checked =
-                     [&bench] {
-                         const int f = selectedFeature(bench);
-                         return f >= 0 && bench.scene().onlyFeature() == f;
-                     }});
-    add("featureHideOthers", QObject::tr("Hide &others"), {},
-        QObject::tr("Close the eyes of all other features: picture and figures are of this one"), false,
-        [&bench](int f) {
-            tryEdit(bench, QObject::tr("Hide other features"),
-                    [&](const TransferFunction& tf) { return withOthersHidden(tf, f); });
-        });
-    actions.add({.id = "featureShowAll",
-                 .menu = featureMenu(),
-                 .text = QObject::tr("Show &all"),
-                 .tip = QObject::tr("Open the eyes of all features"),
-                 .trigger = [&bench] { tryEdit(bench, QObject::tr("Show all features"), withAllShown); },
-                 .enabled =
-                     [&bench, editable] {
-                         const auto& features = bench.scene().tf.features;
-                         return editable() && std::any_of(features.begin(), features.end(),
-                                                          [](const Feature& f) { return f.hidden; });
-                     }});
-    addColorActions(bench);
+        m_kinds << actions.add(
+            {.id = QStringLiteral("featureAs-") + QString::fromStdString(name(shape.kind)),
+             .menu = featureMenu() + "/" + QObject::tr("&Change to"),
+             .text = QObject::tr(shape.text),
+             .tip = QObject::tr("The same values, peak and colour in another shape"),
+             .trigger =
+                 [&services, kind = shape.kind] {
+                     const int f = services.selectedFeature();
+                     if (f >= 0)
+                         tryEdit(services, QObject::tr("Change shape"),
+                                 [&](const TransferFunction& tf) { return withFeatureKind(tf, f, kind); });
+                 },
+             .enabled = selected});
+    m_showing << actions.add(
+        {.id = "featureShow",
+         .menu = featureMenu(),
+         .text = QObject::tr("S&hown"),
+         .keys = keys("H"),
+         .tip = QObject::tr("The eye of the selected feature: hidden, it is neither drawn nor measured"),
+         .trigger =
+             [&services] {
+                 const int f = services.selectedFeature();
+                 if (f < 0) return;
+                 const bool hidden = services.scene().tf.features[static_cast<std::size_t>(f)].hidden;
+                 tryEdit(services, hidden ? QObject::tr("Show feature") : QObject::tr("Hide feature"),
+                         [&](const TransferFunction& tf) { return withFeatureHidden(tf, f, !hidden); });
+             },
+         .enabled = selected,
+         .checked =
+             [&services] {
+                 const int f = services.selectedFeature();
+                 return f < 0 || !services.scene().tf.features[static_cast<std::size_t>(f)].hidden;
+             },
+         .separatorBefore = true});
+    m_showing << actions.add(
+        {.id = "featureOnly",
+         .menu = featureMenu(),
+         .text = QObject::tr("&Draw only this"),
+         .keys = keys("Shift+H"),
+         .tip = QObject::tr("The picture shows the selected feature alone; figures stay those of all"),
+         .trigger = [this] { toggleOnly(m_services.selectedFeature()); },
+         .enabled = selected,
+         .checked =
+             [&services] {
+                 const int f = services.selectedFeature();
+                 return f >= 0 && services.scene().onlyFeature() == f;
+             }});
+    m_showing << add("featureHideOthers", QObject::tr("Hide &others"), {},
+                     QObject::tr("Close the eyes of all other features: picture and figures are of this one"), false,
+                     [&services](int f) {
+                         tryEdit(services, QObject::tr("Hide other features"),
+                                 [&](const TransferFunction& tf) { return withOthersHidden(tf, f); });
+                     });
+    m_showing << actions.add(
+        {.id = "featureShowAll",
+         .menu = featureMenu(),
+         .text = QObject::tr("Show &all"),
+         .tip = QObject::tr("Open the eyes of all features"),
+         .trigger = [&services] { tryEdit(services, QObject::tr("Show all features"), withAllShown); },
+         .enabled =
+             [&services, editable] {
+                 const auto& features = services.scene().tf.features;
+                 return editable() &&
+                        std::any_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; });
+             }});
+    addColorActions();
 
-    QObject::connect(&bench.selection(), &Selection::featureChanged, &actions, &Actions::refresh);
-    QObject::connect(&bench.store(), &SessionStore::changed, &actions,
+    QObject::connect(&services.selection(), &Selection::featureChanged, &actions, &Actions::refresh);
+    QObject::connect(&services.store(), &SessionStore::changed, &actions,
                      [&actions](const Scene& before, const Scene& after) {
                          const auto eyesAndIds = [](const TransferFunction& p, const TransferFunction& q) {
                              return std::equal(p.features.begin(), p.features.end(), q.features.begin(),
@@ -315,33 +322,26 @@ void addFeatureActions(Workbench& bench) {
                      });
 }
 
-void fillShapeMenu(QMenu& menu, Workbench& bench) {
-    for (const ShapeText& shape : kShapes) menu.addAction(bench.actions().find(shape.id));
-}
-
-void fillFeatureMenu(QMenu& menu, Workbench& bench) {
+void FeatureActions::fillMenu(QMenu& menu) const {
     menu.setToolTipsVisible(true);
-    for (const char* id : kFeatureEntries) {
-        if (*id == 0)
-            menu.addSeparator();
-        else
-            menu.addAction(bench.actions().find(id));
-    }
-    QMenu* const change = menu.addMenu(QObject::tr("&Change to"));
-    for (const ShapeText& shape : kShapes) change->addAction(bench.actions().find(kindId(shape.kind)));
-    fillLimitsMenu(menu, bench);
+    menu.addActions(m_showing);
     menu.addSeparator();
-    fillShapeMenu(*menu.addMenu(QObject::tr("&Add")), bench);
+    menu.addActions(m_shaping);
+    menu.addMenu(QObject::tr("&Change to"))->addActions(m_kinds);
+    menu.addSeparator();
+    menu.addActions(m_targets.limits());
+    menu.addSeparator();
+    menu.addMenu(QObject::tr("&Add"))->addActions(m_shapes);
 }
 
-void fillColorMenu(QMenu& menu, Workbench& bench) {
+void FeatureActions::fillColorMenu(QMenu& menu) const {
     menu.setToolTipsVisible(true);
-    for (const ColorMap& map : colorMaps()) { // menus draw icons as small squares; these are strips
-        QAction* const action = bench.actions().find(mapId(map));
+    for (qsizetype i = 0; i < m_maps.size(); ++i) { // menus draw icons as small squares; these are strips
+        QAction* const action = m_maps[i];
         auto* entry = new QWidgetAction(&menu);
         entry->setObjectName(action->objectName());
         auto* strip = new QToolButton(&menu);
-        strip->setIcon(colorStrip(map, kStrip));
+        strip->setIcon(colorStrip(colorMaps()[static_cast<std::size_t>(i)], kStrip));
         strip->setIconSize(kStrip);
         strip->setText(QStringLiteral("  ") + action->text());
         strip->setToolTip(action->toolTip());
@@ -357,8 +357,7 @@ void fillColorMenu(QMenu& menu, Workbench& bench) {
         menu.addAction(entry);
     }
     menu.addSeparator();
-    for (const char* id : {"colorsOverFeatures", "colorsReverse", "colorsInvert"})
-        menu.addAction(bench.actions().find(id));
+    menu.addActions(m_colors);
 }
 
 } // namespace pellucid::gui

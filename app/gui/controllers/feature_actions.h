@@ -1,30 +1,38 @@
 // What is done to features as objects: the menu Transfer function → Feature, and that of the colours.
 #pragma once
 
-#include <QIcon>
+#include <QList>
 
-#include "tf/color_maps.h"
-
+class QAction;
 class QMenu;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
+class TargetActions;
 
 /// Add a shape, and duplicate, split, merge, remove, hide what is selected; colour maps. Each is an undo step.
-void addFeatureActions(Workbench& bench);
+class FeatureActions {
+public:
+    FeatureActions(Services& services, TargetActions& targets) : m_services(services), m_targets(targets) {}
+    void addActions();
 
-/// The entries that concern one feature, as its context menu has them.
-void fillFeatureMenu(QMenu& menu, Workbench& bench);
-void fillShapeMenu(QMenu& menu, Workbench& bench); ///< "Add …"
-void fillColorMenu(QMenu& menu, Workbench& bench);
+    /// The entries that concern one feature, as its context menu has them.
+    void fillMenu(QMenu& menu) const;
+    void fillColorMenu(QMenu& menu) const;
+    const QList<QAction*>& shapes() const { return m_shapes; } ///< "Add …"
+    /// Split, merge, duplicate, remove.
+    const QList<QAction*>& shaping() const { return m_shaping; }
 
-/// Index of the selected feature in the scene's transfer function; −1: none.
-int selectedFeature(Workbench& bench);
-/// Draws this feature alone, or all again where it is already; one undo step.
-void toggleOnlyFeature(Workbench& bench, int feature);
+    /// Draws this feature alone, or all again where it is already; one undo step.
+    void toggleOnly(int feature);
 
-/// The colours of a map from left to right.
-QPixmap colorStrip(const ColorMap& map, const QSize& size);
+private:
+    void addColorActions();
+
+    Services& m_services;
+    TargetActions& m_targets;
+    QList<QAction*> m_shapes, m_shaping, m_kinds, m_showing, m_maps, m_colors;
+};
 
 } // namespace pellucid::gui

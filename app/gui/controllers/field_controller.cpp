@@ -4,7 +4,7 @@
 #include <QFileInfo>
 #include <QSettings>
 
-#include "services/workbench.h"
+#include "services/services.h"
 #include "volume/loader.h"
 
 namespace pellucid::gui {
@@ -14,35 +14,35 @@ constexpr int kRest = 150; ///< milliseconds without a change before a field is 
 
 } // namespace
 
-FieldController::FieldController(Workbench& bench)
-    : m_bench(bench), m_computing(
-                          [&workspace = bench.workspace()](const Request& request, const JobControl& job) {
-                              Made made{workspace.field(request.input, request.kind, request.feature, job), {}};
-                              job.throwIfStopped();
-                              made.codes = sharedIntensityGrid(*made.field.volume);
-                              return made;
-                          },
-                          [this](const Request& request, Made& made) {
-                              m_field = std::move(made.field);
-                              m_codes = std::move(made.codes);
-                              m_shown = request;
-                              setState(State::Current);
-                          },
-                          WhenBusy::StopOld, &bench.compute()),
+FieldController::FieldController(Services& services)
+    : m_services(services), m_computing(
+                                [&workspace = services.workspace()](const Request& request, const JobControl& job) {
+                                    Made made{workspace.field(request.input, request.kind, request.feature, job), {}};
+                                    job.throwIfStopped();
+                                    made.codes = sharedIntensityGrid(*made.field.volume);
+                                    return made;
+                                },
+                                [this](const Request& request, Made& made) {
+                                    m_field = std::move(made.field);
+                                    m_codes = std::move(made.codes);
+                                    m_shown = request;
+                                    setState(State::Current);
+                                },
+                                WhenBusy::StopOld, &services.compute()),
       m_saving(
           [](const File& file, const JobControl&) {
               writeNrrd(*file.volume, file.path.toStdString());
               return file.path;
           },
           [this](const File&, const QString& path) {
-              Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+              Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
               Q_EMIT saved(path);
           },
           WhenBusy::Queue) {
     m_rest.setSingleShot(true);
     m_rest.setInterval(kRest);
     connect(&m_rest, &QTimer::timeout, this, &FieldController::begin);
-    connect(&bench.store(), &SessionStore::changed, this, &FieldController::follow);
+    connect(&services.store(), &SessionStore::changed, this, &FieldController::follow);
     connect(&m_computing, &JobBase::progress, this, [this](double fraction) {
         m_progress = fraction;
         Q_EMIT changed();
@@ -53,29 +53,20 @@ FieldController::FieldController(Workbench& bench)
     });
     connect(&m_saving, &JobBase::busyChanged, this, &FieldController::busyChanged);
     connect(&m_saving, &JobBase::failed, this,
-            [this](const Error& error) { m_bench.showError(tr("Cannot save the field"), error); });
+            [this](const Error& error) { m_services.showError(tr("Cannot save the field"), error); });
 }
 
 FieldController::~FieldController() = default;
 
 FieldController::Request FieldController::requestOf(const Scene& scene) {
-    const FieldKind kind = *scene.session.field->kind;
-    Request request{measureInput(scene), kind, scene.fieldFeature()};
-    MeasureInput& input = request.input;
-    if (kind != FieldKind::Vws && kind != FieldKind::Saliency) input.settings.vws = {};
-    if (kind == FieldKind::Visibility) input.settings.saliency = {};
-    if (!dependsOnView(kind)) {
-        input.view = {};
-        for (ControlPoint& point : input.tf.points) point.opacity = 0;
-    }
-    return request;
+    return {fieldInput(scene), *scene.session.field->kind, scene.fieldFeature()};
 }
 
 void FieldController::setState(State state) {
     m_state = state;
     Q_EMIT changed();
     Q_EMIT busyChanged();
-    m_bench.actions().refresh();
+    m_services.actions().refresh();
 }
 
 void FieldController::follow(const Scene& before, const Scene& after) {
@@ -126,14 +117,14 @@ void FieldController::cancel() {
 }
 
 PictureInput FieldController::picture(int width, int height, bool transparent) const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     return field() ? fieldPictureInput(scene, *m_field, width, height, transparent)
                    : pictureInput(scene, width, height, transparent);
 }
 
 AnnotationInput FieldController::annotation(const PictureInput& picture, const FrameOfReference& show,
                                             double density) const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     if (m_state == State::Off) return annotationInput(picture, show, density);
     AnnotationInput input = field() ? fieldAnnotationInput(picture, scene, *m_field, show, density)
                                     : annotationInput(picture, show, density);
@@ -158,8 +149,8 @@ AnnotationInput FieldController::annotation(const PictureInput& picture, const F
 }
 
 void FieldController::show(std::optional<FieldKind> kind) {
-    m_bench.store().edit(kind ? tr("Field: %1").arg(QString::fromLatin1(title(*kind))) : tr("No field"), {},
-                         [&](Session& session) { session.field.edit([&](FieldView& f) { f.kind = kind; }); });
+    m_services.store().edit(kind ? tr("Field: %1").arg(QString::fromLatin1(title(*kind))) : tr("No field"), {},
+                            [&](Session& session) { session.field.edit([&](FieldView& f) { f.kind = kind; }); });
 }
 
 void FieldController::save(const QString& path) {
@@ -172,7 +163,7 @@ void FieldController::chooseFile() {
     if (m_state != State::Current) return;
     const QString folder = QSettings().value("fieldFolder").toString();
     const QString offered = QString::fromStdString(fileStem(m_shown.kind)) + ".nrrd";
-    QString path = QFileDialog::getSaveFileName(m_bench.window(), tr("Save field"), QDir(folder).filePath(offered),
+    QString path = QFileDialog::getSaveFileName(m_services.window(), tr("Save field"), QDir(folder).filePath(offered),
                                                 tr("NRRD volumes (*.nrrd)"));
     if (path.isEmpty()) return;
     if (!path.endsWith(".nrrd", Qt::CaseInsensitive)) path += ".nrrd";
@@ -181,9 +172,9 @@ void FieldController::chooseFile() {
 }
 
 void FieldController::addActions() {
-    Actions& actions = m_bench.actions();
-    SessionStore& store = m_bench.store();
-    const auto open = [this, &store] { return store.hasVolume() && !m_bench.isReadOnly(); };
+    Actions& actions = m_services.actions();
+    SessionStore& store = m_services.store();
+    const auto open = [this, &store] { return m_services.isEditable(); };
     const QString menu = tr("&View") + "/" + tr("F&ield");
     actions.add(
         {.id = "fieldAction",
@@ -195,13 +186,13 @@ void FieldController::addActions() {
          .enabled = open,
          .checked = [&store] { return store.session().field->kind.has_value(); }});
     bool first = true;
-    for (const FieldKindInfo& info : kFieldKinds)
-        actions.add({.id = QStringLiteral("field_%1").arg(QString::fromLatin1(info.fileStem)),
+    for (const FieldKind kind : allOf<FieldKind>())
+        actions.add({.id = QStringLiteral("field_%1").arg(QString::fromStdString(fileStem(kind))),
                      .menu = menu,
-                     .text = QString::fromLatin1(info.title),
-                     .trigger = [this, kind = info.kind] { show(kind); },
+                     .text = QString::fromLatin1(title(kind)),
+                     .trigger = [this, kind] { show(kind); },
                      .enabled = open,
-                     .checked = [&store, kind = info.kind] { return store.session().field->kind == kind; },
+                     .checked = [&store, kind] { return store.session().field->kind == kind; },
                      .separatorBefore = std::exchange(first, false)});
     actions.add({.id = "saveFieldAction",
                  .menu = menu,

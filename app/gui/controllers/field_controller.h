@@ -11,7 +11,7 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Computes the field that the session wants to see as soon as the scene rests, and tells everybody what is to be
 /// drawn: the one place where data and field change places. A field belongs to the state that it was computed of. While
@@ -27,7 +27,7 @@ public:
         Failed   ///< failure() tells why
     };
 
-    explicit FieldController(Workbench& bench);
+    explicit FieldController(Services& services);
     ~FieldController() override;
 
     void addActions();
@@ -75,7 +75,7 @@ private:
     void begin();
     void setState(State state);
 
-    Workbench& m_bench;
+    Services& m_services;
     State m_state = State::Off;
     std::optional<Field> m_field;
     std::shared_ptr<const IntensityGrid> m_codes;

@@ -6,7 +6,7 @@
 #include <QScopedValueRollback>
 
 #include "controllers/optimize_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "tf/shown_tf.h"
 
 namespace pellucid::gui {
@@ -15,22 +15,18 @@ namespace {
 constexpr int kRest = 150;             // milliseconds without a change before the last moves are made
 constexpr double kLeastOpacity = 1e-5; // what is scaled to 0 has lost its shape
 
-bool sameFeatures(const TransferFunction& a, const TransferFunction& b) {
-    return std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(),
-                      [](const Feature& f, const Feature& g) { return f.id == g.id; });
-}
-
 } // namespace
 
-LiveController::LiveController(Workbench& bench)
-    : m_bench(bench),
+LiveController::LiveController(Services& services, OptimizeController& optimizing)
+    : m_services(services), m_optimizing(optimizing),
       m_job(
-          [&workspace = bench.workspace()](const Task& task, const JobControl& job) {
+          [&workspace = services.workspace()](const Task& task, const JobControl& job) {
               const JobControl quiet{job.stop, {}};
               return task.settles ? settleTargets(workspace, task.held, quiet)
                                   : followTargets(workspace, task.held, quiet);
           },
-          [this](const Task& task, LiveUpdate& update) { finish(task, update); }, WhenBusy::StopOld, &bench.compute()) {
+          [this](const Task& task, LiveUpdate& update) { finish(task, update); }, WhenBusy::StopOld,
+          &services.compute()) {
     m_rest.setSingleShot(true);
     m_rest.setInterval(kRest);
     connect(&m_rest, &QTimer::timeout, this, [this] {
@@ -39,13 +35,12 @@ LiveController::LiveController(Workbench& bench)
         else
             begin(true);
     });
-    connect(&bench.store(), &SessionStore::changed, this, &LiveController::follow);
+    connect(&services.store(), &SessionStore::changed, this, &LiveController::follow);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_settled = present().held; // not again and again
         stop();
-        m_bench.optimizing().say(
-            tr("The targets are not held: %1 (%2).")
-                .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.whatToDo())));
+        m_optimizing.say(tr("The targets are not held: %1 (%2).")
+                             .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.whatToDo())));
     });
     connect(&m_job, &JobBase::busyChanged, this, &LiveController::busyChanged);
 }
@@ -53,7 +48,7 @@ LiveController::LiveController(Workbench& bench)
 LiveController::~LiveController() = default;
 
 void LiveController::addActions() {
-    m_bench.actions().add(
+    m_action = m_services.actions().add(
         {.id = "liveTargetsAction",
          .menu = tr("&Transfer function"),
          .text = tr("Hold targets &live"),
@@ -62,30 +57,30 @@ void LiveController::addActions() {
          .trigger =
              [this] {
                  const bool on = !isOn();
-                 m_bench.store().edit(on ? tr("Live targets") : tr("Live targets off"), {}, [on](Session& session) {
+                 m_services.store().edit(on ? tr("Live targets") : tr("Live targets off"), {}, [on](Session& session) {
                      session.holdTargets = on;
                      if (!on) return;
                      session.refine.edit([](RefineSettings& r) { r.live = false; }); // all of them set opacities
                      session.adapt.edit([](AdaptSettings& a) { a.mode = AdaptSettings::Mode::Static; });
                  });
              },
-         .enabled = [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); },
+         .enabled = [this] { return m_services.isEditable(); },
          .checked = [this] { return isOn(); }});
-    connect(&m_bench.optimizing(), &OptimizeController::runningChanged, this, [this] {
-        if (m_bench.optimizing().isRunning())
+    connect(&m_optimizing, &OptimizeController::runningChanged, this, [this] {
+        if (m_optimizing.isRunning())
             stop();
         else
-            follow(m_bench.scene(), m_bench.scene());
+            follow(m_services.scene(), m_services.scene());
     });
 }
 
 bool LiveController::isOn() const {
-    const Session& session = m_bench.store().session();
+    const Session& session = m_services.store().session();
     return session.holdTargets && session.adapt->mode == AdaptSettings::Mode::Static; // frames have theirs made
 }
 
 LiveController::Task LiveController::present() const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     Task task{{measureInput(scene), scene.targets(), limitsOf(scene.tf, *scene.session.goals), *scene.session.optimize},
               scene.tf,
               false};
@@ -94,25 +89,17 @@ LiveController::Task LiveController::present() const {
     return task;
 }
 
-// The opacity that was set stays, unless all were: then somebody wants another density, and the shares come back.
+// The opacity that was set stays.
 void LiveController::pinWhatWasSet(const Scene& before, const Scene& after) {
     if (before.volume != after.volume || !sameFeatures(before.tf, after.tf)) return m_pinned.clear();
-    const Scene& from = m_bench.store().isPreviewing() ? m_bench.store().committed() : before;
+    const Scene& from = m_services.store().isPreviewing() ? m_services.store().committed() : before;
     if (!sameFeatures(from.tf, after.tf) || from.tf == after.tf) return m_pinned.clear();
-    const std::vector<double> was = featureOpacities(from.tf), is = featureOpacities(after.tf);
-    std::set<FeatureId> set;
-    for (std::size_t i = 0; i < is.size(); ++i) {
-        const FeatureId id = after.tf.features[i].id;
-        const auto wanted = m_wanted.find(id);
-        if (was[i] != is[i] && (wanted == m_wanted.end() || std::abs(wanted->second - is[i]) > 1e-9)) set.insert(id);
-    }
-    if (set.size() == is.size()) set.clear();
-    m_pinned = std::move(set);
+    m_pinned = setByHand(from.tf, after.tf, m_wanted);
 }
 
 void LiveController::follow(const Scene& before, const Scene& after) {
     if (m_applying) return;
-    if (!isOn() || !m_bench.store().hasVolume() || after.tf.features.empty() || m_bench.optimizing().isRunning()) {
+    if (!isOn() || !m_services.store().hasVolume() || after.tf.features.empty() || m_optimizing.isRunning()) {
         m_settled.reset();
         m_pinned.clear();
         return stop();
@@ -120,7 +107,7 @@ void LiveController::follow(const Scene& before, const Scene& after) {
     if (before.data != after.data) stop();
     pinWhatWasSet(before, after);
     if (m_settled && present().held == *m_settled) return;
-    m_bench.results().setPaused(true); // updates tell VWS, and need the engine
+    m_services.results().setPaused(true); // updates tell VWS, and need the engine
     m_rest.start();
     if (m_job.isRunning() && !m_settling)
         m_dirty = true; // its answer is waited for: a hand that never rests would see none
@@ -144,13 +131,13 @@ void LiveController::stop() {
     m_rest.stop();
     m_job.cancel();
     if (!was) return;
-    m_bench.results().setPaused(m_bench.optimizing().isRunning());
+    m_services.results().setPaused(m_optimizing.isRunning());
     Q_EMIT busyChanged();
 }
 
 void LiveController::finish(const Task& task, const LiveUpdate& update) {
-    SessionStore& store = m_bench.store();
-    if (!isOn() || !sameFeatures(task.tf, m_bench.scene().tf) || task.held.input.volume != m_bench.scene().volume)
+    SessionStore& store = m_services.store();
+    if (!isOn() || !sameFeatures(task.tf, m_services.scene().tf) || task.held.input.volume != m_services.scene().volume)
         return stop();
     {
         const QScopedValueRollback applying(m_applying, true);
@@ -168,15 +155,14 @@ void LiveController::finish(const Task& task, const LiveUpdate& update) {
     }
     HeldTargets now = task.held;
     now.input.tf = shownTf(withShownOpacities(task.tf, update.opacity));
-    if (!update.approximate) m_bench.results().addVws(now.input, update.vws); // bars show figures of the volume
+    if (!update.approximate) m_services.results().addVws(now.input, update.vws); // bars show figures of the volume
     Q_EMIT updated(update.objective);
     if (m_dirty) return begin(false);
     if (!task.settles) return; // the rest does the last moves
     m_settled = present().held;
-    m_bench.results().setPaused(false);
+    m_services.results().setPaused(false);
     if (update.objective >= task.held.options.tolerance)
-        m_bench.optimizing().say(
-            tr("Live: the targets are not held from this view; F = %1.").arg(update.objective, 0, 'f', 4));
+        m_optimizing.say(tr("Live: the targets are not held from this view; F = %1.").arg(update.objective, 0, 'f', 4));
     Q_EMIT busyChanged();
 }
 

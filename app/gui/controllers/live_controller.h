@@ -11,9 +11,12 @@
 #include "jobs/job.h"
 #include "session/live_targets.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
-class Workbench;
+class OptimizeController;
+class Services;
 
 /// While Session::holdTargets is set and anything changes that VWS or targets depend on, updates follow it, the latest
 /// state first, each a move or two; when all rests, one goes as far as it gets. What they do to the opacities belongs
@@ -21,10 +24,11 @@ class Workbench;
 class LiveController : public QObject {
     Q_OBJECT
 public:
-    explicit LiveController(Workbench& bench);
+    LiveController(Services& services, OptimizeController& optimizing);
     ~LiveController() override;
 
     void addActions();
+    QAction* action() const { return m_action; } ///< on and off
 
     bool isOn() const;
     /// The targets are not held yet, or nobody knows.
@@ -48,7 +52,9 @@ private:
     void finish(const Task& task, const LiveUpdate& update);
     void pinWhatWasSet(const Scene& before, const Scene& after);
 
-    Workbench& m_bench;
+    Services& m_services;
+    OptimizeController& m_optimizing;
+    QAction* m_action = nullptr;
     std::set<FeatureId> m_pinned;         ///< whose opacity was set by hand in the latest change
     std::map<FeatureId, double> m_wanted; ///< opacities of the latest update
     bool m_applying = false;              ///< what happens to the scene is an update

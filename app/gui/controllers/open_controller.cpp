@@ -8,12 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "controllers/save_controller.h"
-#include "controllers/start_controller.h"
 #include "dialogs/raw_dialog.h"
 #include "dialogs/series_dialog.h"
 #include "dialogs/series_files.h"
 #include "render/memory_needs.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "session/scene_data.h"
 #include "session/variable_edits.h"
 #include "tf/formats/tf_file.h"
@@ -71,8 +70,9 @@ bool isTfFile(const QString& specOrPath) {
 
 } // namespace
 
-OpenController::OpenController(Workbench& bench)
-    : m_bench(bench), m_open(&OpenController::load, [this](const Request& r, Opened& o) { show(r, o); }),
+OpenController::OpenController(Services& services, SaveController& saving)
+    : m_services(services), m_saving(saving),
+      m_open(&OpenController::load, [this](const Request& r, Opened& o) { show(r, o); }),
       m_data(
           [](const DataChange& change, const JobControl& job) {
               Session session = change.basis.session;
@@ -95,11 +95,11 @@ OpenController::OpenController(Workbench& bench)
         connect(job, &JobBase::cancelled, this, &OpenController::cancelled);
     }
     connect(&m_open, &JobBase::failed, this, [this](const Error& error) {
-        m_bench.showError(tr("Cannot open the file"), error);
+        m_services.showError(tr("Cannot open the file"), error);
         Q_EMIT failed(error);
     });
     connect(&m_data, &JobBase::failed, this, [this](const Error& error) {
-        m_bench.showError(tr("Cannot change the data"), error);
+        m_services.showError(tr("Cannot change the data"), error);
         nextChange();
     });
 }
@@ -107,7 +107,7 @@ OpenController::OpenController(Workbench& bench)
 OpenController::~OpenController() = default;
 
 void OpenController::addActions() {
-    Actions& actions = m_bench.actions();
+    Actions& actions = m_services.actions();
     const QString menu = tr("&File");
     const auto add = [&](const QString& id, const QString& where, const QString& text, const QList<QKeySequence>& keys,
                          const QString& tip, std::function<void()> trigger, std::function<bool()> enabled = {}) {
@@ -131,7 +131,7 @@ void OpenController::addActions() {
         QSettings().remove(kRecentKey);
         updateRecentFiles();
     });
-    actions.add(clearRecent);
+    m_clearRecent = actions.add(clearRecent);
     for (const SampleInfo& sample : samples()) {
         const QString name = QString::fromStdString(sample.name);
         actions.add(add("sample_" + name, menu + "/" + tr("&Samples"),
@@ -140,12 +140,12 @@ void OpenController::addActions() {
                         {}, {}, [this, name] {
                             VolumeSource source;
                             source.path = "sample:" + name.toStdString();
-                            if (m_bench.saving().maybeSave()) openVolume(source);
+                            if (m_saving.maybeSave()) openVolume(source);
                         }));
     }
     ActionSpec openTf = add(
         "openTfAction", menu, tr("Open &transfer function…"), {QKeySequence("Ctrl+Shift+O")}, {},
-        [this] { chooseTf(); }, [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); });
+        [this] { chooseTf(); }, [this] { return m_services.isEditable(); });
     openTf.separatorBefore = true;
     actions.add(openTf);
     ActionSpec region = add(
@@ -153,8 +153,8 @@ void OpenController::addActions() {
         tr("What the clipping box leaves of a volume that was too large for memory, in all its voxels"),
         [this] { openRegion(); },
         [this] {
-            const SessionStore& store = m_bench.store();
-            if (!store.hasVolume() || m_bench.isReadOnly()) return false;
+            const SessionStore& store = m_services.store();
+            if (!m_services.isEditable()) return false;
             const Clipping& clipping = *store.session().clipping;
             const auto& excerpt = store.scene().volume->excerpt;
             return excerpt && excerpt->factor > 1 && (clipping.lo != Vec3(0) || clipping.hi != Vec3(1));
@@ -165,8 +165,8 @@ void OpenController::addActions() {
         "wholeVolumeAction", menu, tr("W&hole volume"), {}, tr("All of the data, as fine as memory allows"),
         [this] { openWhole(); },
         [this] {
-            const SessionStore& store = m_bench.store();
-            return store.hasVolume() && !m_bench.isReadOnly() && store.session().variable().source.region.has_value();
+            const SessionStore& store = m_services.store();
+            return m_services.isEditable() && store.session().variable().source.region.has_value();
         }));
 }
 
@@ -198,7 +198,7 @@ void OpenController::openSession(const QString& path) {
         m_busyText = tr("Opening %1…").arg(QFileInfo(path).fileName());
         m_open.start(std::move(request), path);
     } catch (const Error& error) {
-        m_bench.showError(tr("Cannot open the session"), error);
+        m_services.showError(tr("Cannot open the session"), error);
         Q_EMIT failed(error);
     }
 }
@@ -234,38 +234,36 @@ void OpenController::show(const Request& request, Opened& opened) {
     m_edits.clear(); // they were of what was open
     m_data.cancel();
     const bool tfFromFile = !opened.tfError && !request.tfPath.isEmpty() && isTfFile(request.tfPath);
-    m_tfPath = tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString();
+    m_saving.setTfPath(tfFromFile && !isForeignTf(request.tfPath.toStdString()) ? request.tfPath : QString());
     std::vector<std::string> notices = opened.scene.volume->notices;
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     showNotices(notices);
     const VolumeSource source = opened.scene.session.variable().source;
-    const Scene scene = opened.scene;
-    m_bench.store().open(std::move(opened.scene));
-    if (request.unsaved) m_bench.store().setUnsaved();
-    setSessionPath(request.sessionPath);
+    m_services.store().open(std::move(opened.scene));
+    if (request.unsaved) m_services.store().setUnsaved();
+    m_saving.setSessionPath(request.sessionPath);
     if (!request.sessionPath.isEmpty()) {
         addRecent(QFileInfo(request.sessionPath).absoluteFilePath());
     } else if (!source.isSample() && !request.unsaved) {
         addRecent(source);
     }
-    if (tfFromFile) noteWindow(*m_bench.store().session().tf());
-    m_bench.start().follow(scene);
+    if (tfFromFile) noteWindow(*m_services.store().session().tf());
     Q_EMIT this->opened();
     if (opened.tfError) {
-        m_bench.showError(tr("Cannot open the transfer function"), *opened.tfError);
+        m_services.showError(tr("Cannot open the transfer function"), *opened.tfError);
         Q_EMIT tfFailed(*opened.tfError);
     }
 }
 
 void OpenController::showNotices(const std::vector<std::string>& notices) {
-    m_bench.notices().clear();
-    for (const std::string& notice : notices) m_bench.notices().add({QString::fromStdString(notice), {}});
+    m_services.notices().clear();
+    for (const std::string& notice : notices) m_services.notices().add({QString::fromStdString(notice), {}});
 }
 
 // ---- parts of large volumes
 
 void OpenController::openRegion() {
-    const Scene& scene = m_bench.store().scene();
+    const Scene& scene = m_services.store().scene();
     const Clipping& clipping = *scene.session.clipping;
     const VoxelRegion region = regionBetween(*scene.volume, clipping.lo, clipping.hi);
     editData(tr("Region at full resolution"), [region, window = scene.volume->range()](Session& session) {
@@ -289,9 +287,9 @@ void OpenController::openWhole() {
 }
 
 void OpenController::openTf(const QString& specOrPath) {
-    SessionStore& store = m_bench.store();
-    if (m_bench.isReadOnly() || !store.hasVolume()) return;
-    if (specOrPath == kAutomaticTf) return m_bench.start().startAgain();
+    SessionStore& store = m_services.store();
+    if (!m_services.isEditable()) return;
+    if (specOrPath == kAutomaticTf) return automaticStartWanted();
     try {
         const TransferFunction tf = loadTf(specOrPath.toStdString());
         const bool isFile = isTfFile(specOrPath);
@@ -305,20 +303,20 @@ void OpenController::openTf(const QString& specOrPath) {
         };
         editData(tr("Open transfer function"), change, [this, tf, isFile, specOrPath] {
             if (isFile) {
-                m_tfPath = isForeignTf(specOrPath.toStdString()) ? QString() : specOrPath;
-                m_bench.store().setTfSaved();
+                m_saving.setTfPath(isForeignTf(specOrPath.toStdString()) ? QString() : specOrPath);
+                m_services.store().setTfSaved();
             }
             noteWindow(tf);
         });
     } catch (const Error& error) {
-        m_bench.showError(tr("Cannot open the transfer function"), error);
+        m_services.showError(tr("Cannot open the transfer function"), error);
     }
 }
 
 void OpenController::editData(const QString& text, const SessionStore::Change& change,
                               const std::function<void()>& then) {
-    SessionStore& store = m_bench.store();
-    if (!store.hasVolume() || m_bench.isReadOnly()) return;
+    SessionStore& store = m_services.store();
+    if (!m_services.isEditable()) return;
     Session next = store.session();
     change(next);
     if (!needsData(next, store.scene())) {
@@ -331,8 +329,8 @@ void OpenController::editData(const QString& text, const SessionStore::Change& c
 
 void OpenController::editInJob(const QString& text, const SessionStore::Change& change,
                                const std::function<void()>& then) {
-    SessionStore& store = m_bench.store();
-    if (!store.hasVolume() || m_bench.isReadOnly()) return;
+    SessionStore& store = m_services.store();
+    if (!m_services.isEditable()) return;
     store.commit();
     Session next = store.session();
     change(next);
@@ -345,14 +343,14 @@ void OpenController::editInJob(const QString& text, const SessionStore::Change& 
 }
 
 void OpenController::start(Edit edit) {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     m_edit = std::move(edit);
     m_busyText = m_edit.text + QChar(0x2026);
     m_data.start({m_edit.text, m_edit.change, scene}, QString::fromStdString(scene.volume->title));
 }
 
 void OpenController::nextChange() {
-    if (m_edits.empty() || !m_bench.store().hasVolume()) return;
+    if (m_edits.empty() || !m_services.store().hasVolume()) return;
     Edit edit = std::move(m_edits.front());
     m_edits.pop_front();
     start(std::move(edit));
@@ -360,7 +358,7 @@ void OpenController::nextChange() {
 
 // The picture has waited for the data, and shows everything at once.
 void OpenController::showChanged(const DataChange& change, Scene& scene) {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     const auto andStart = [&](Session& session) {
         change.change(session);
         const Variable& made = scene.session.variable();
@@ -386,12 +384,12 @@ void OpenController::showChanged(const DataChange& change, Scene& scene) {
 void OpenController::openPath(const QString& path) {
     if (isTf(path)) return openTf(path);
     if (isSession(path)) {
-        if (m_bench.saving().maybeSave()) openSession(path);
+        if (m_saving.maybeSave()) openSession(path);
         return;
     }
     VolumeSource source;
     source.path = path.toStdString();
-    if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source);
+    if (askRawLayout(source) && m_saving.maybeSave()) openVolume(source);
 }
 
 void OpenController::openPaths(QStringList paths) {
@@ -415,9 +413,9 @@ void OpenController::openPaths(QStringList paths) {
         }
         if (volumes.isEmpty()) throw UsageError("there are no volumes here", paths.front().toStdString(), "");
         VolumeSource source = sourceOf(volumes);
-        if (askRawLayout(source) && m_bench.saving().maybeSave()) openVolume(source, tf);
+        if (askRawLayout(source) && m_saving.maybeSave()) openVolume(source, tf);
     } catch (const Error& error) {
-        m_bench.showError(tr("Cannot open the files"), error);
+        m_services.showError(tr("Cannot open the files"), error);
         Q_EMIT failed(error);
     }
 }
@@ -437,7 +435,7 @@ bool OpenController::askRawLayout(VolumeSource& source) {
 }
 
 bool OpenController::askLayout(VolumeSource& source, const QStringList& files) {
-    RawDialog dialog(files, m_bench.window());
+    RawDialog dialog(files, m_services.window());
     if (dialog.exec() != QDialog::Accepted) return false;
     source.raw = dialog.layoutOfFile();
     source.missing = dialog.missing();
@@ -454,15 +452,15 @@ std::optional<VolumeSource> OpenController::askSource(const QString& title) {
 
 // A window other than that of the data is worth a word, and one click to the other.
 void OpenController::noteWindow(const TransferFunction& tf) {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     if (!tf.range || !scene.data || scene.volume->range() == scene.data->range()) return;
     const QString text =
         tr("This transfer function was made for values %1; the volume has %2. Its points stay at their "
            "values.")
             .arg(rangeText(scene.volume->range()), rangeText(scene.data->range()));
-    m_bench.notices().add(
+    m_services.notices().add(
         {text, {{tr("Stretch to this volume instead"), [this] {
-                     editData(tr("Stretch transfer function"), [data = m_bench.scene().data](Session& s) {
+                     editData(tr("Stretch transfer function"), [data = m_services.scene().data](Session& s) {
                          TransferFunction stretched = *s.tf();
                          stretched.range = data->range();
                          s.variables.edit([](std::vector<Variable>& all) { all.front().window.reset(); });
@@ -483,7 +481,7 @@ QStringList OpenController::askFiles(const QString& title, const QString& others
     const QString filter = others.isEmpty() ? tr("Volumes (%1)").arg(all)
                                             : tr("Volumes, sessions, transfer functions (%1 %2)").arg(all, others);
     const QStringList paths =
-        QFileDialog::getOpenFileNames(m_bench.window(), title, QSettings().value("volumeFolder").toString(),
+        QFileDialog::getOpenFileNames(m_services.window(), title, QSettings().value("volumeFolder").toString(),
                                       filter + QStringLiteral(";;") + tr("All files (*)"));
     if (!paths.isEmpty()) QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
     return paths;
@@ -495,7 +493,7 @@ void OpenController::chooseVolume() {
 }
 
 std::optional<VolumeSource> OpenController::askSeries() {
-    SeriesDialog dialog(QSettings().value("volumeFolder").toString(), m_bench.window());
+    SeriesDialog dialog(QSettings().value("volumeFolder").toString(), m_services.window());
     if (dialog.exec() != QDialog::Accepted) return {};
     VolumeSource source = dialog.source();
     QSettings().setValue("volumeFolder", QFileInfo(QString::fromStdString(source.path)).absolutePath());
@@ -504,21 +502,21 @@ std::optional<VolumeSource> OpenController::askSeries() {
 }
 
 void OpenController::chooseSeries() {
-    if (const auto source = askSeries(); source && m_bench.saving().maybeSave()) openVolume(*source);
+    if (const auto source = askSeries(); source && m_saving.maybeSave()) openVolume(*source);
 }
 
 void OpenController::chooseRaw() {
     const QStringList paths = QFileDialog::getOpenFileNames(
-        m_bench.window(), tr("Open raw data"), QSettings().value("volumeFolder").toString(), tr("All files (*)"));
+        m_services.window(), tr("Open raw data"), QSettings().value("volumeFolder").toString(), tr("All files (*)"));
     if (paths.isEmpty()) return;
     QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
     VolumeSource source = sourceOf(paths);
-    if (askLayout(source, filesOfFrames(source)) && m_bench.saving().maybeSave()) openVolume(source);
+    if (askLayout(source, filesOfFrames(source)) && m_saving.maybeSave()) openVolume(source);
 }
 
 void OpenController::chooseTf() {
     const QString path = QFileDialog::getOpenFileName(
-        m_bench.window(), tr("Open transfer function"), QSettings().value("tfFolder").toString(),
+        m_services.window(), tr("Open transfer function"), QSettings().value("tfFolder").toString(),
         tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
     QSettings().setValue("tfFolder", QFileInfo(path).absolutePath());
@@ -540,13 +538,12 @@ void OpenController::addRecent(const QString& entry) {
 }
 
 void OpenController::updateRecentFiles() {
-    QMenu* menu = m_bench.actions().menu(recentMenuName());
+    QMenu* menu = m_services.actions().menu(recentMenuName());
     if (menu == nullptr) return;
-    QAction* clear = m_bench.actions().find("clearRecentAction");
     for (QAction* action : menu->actions()) {
-        if (action != clear) delete action;
+        if (action != m_clearRecent) delete action;
     }
-    menu->removeAction(clear);
+    menu->removeAction(m_clearRecent);
     const QStringList files = QSettings().value(kRecentKey).toStringList();
     for (const QString& entry : files) {
         VolumeSource source;
@@ -561,7 +558,7 @@ void OpenController::updateRecentFiles() {
         action->setStatusTip(path);
     }
     if (!files.isEmpty()) menu->addSeparator();
-    menu->addAction(clear);
+    menu->addAction(m_clearRecent);
     menu->setEnabled(!files.isEmpty());
 }
 
@@ -569,25 +566,18 @@ void OpenController::openRecent(const QString& entry) {
     if (!entry.startsWith('{')) return openPath(entry);
     try {
         const VolumeSource source = recentSource(entry);
-        if (m_bench.saving().maybeSave()) openVolume(source);
+        if (m_saving.maybeSave()) openVolume(source);
     } catch (const Error& error) {
-        m_bench.showError(tr("Cannot open the file"), error);
+        m_services.showError(tr("Cannot open the file"), error);
     }
 }
 
 // ---- state
 
-QString OpenController::busyText() const { return m_busyText; }
-
 void OpenController::cancel() {
     m_open.cancel();
     m_edits.clear();
     m_data.cancel();
-}
-
-void OpenController::setSessionPath(const QString& path) {
-    m_sessionPath = path;
-    Q_EMIT busyChanged(); // the title shows it
 }
 
 } // namespace pellucid::gui

@@ -10,14 +10,17 @@
 #include "session/session_json.h"
 #include "store/session_store.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
-class Workbench;
+class SaveController;
+class Services;
 
 class OpenController : public QObject {
     Q_OBJECT
 public:
-    explicit OpenController(Workbench& bench);
+    OpenController(Services& services, SaveController& saving);
     ~OpenController() override;
 
     void addActions();
@@ -55,13 +58,8 @@ public:
     void editInJob(const QString& text, const SessionStore::Change& change, const std::function<void()>& then = {});
 
     bool isBusy() const { return m_open.isRunning() || m_data.isRunning(); }
-    QString busyText() const; ///< "Opening scan.nrrd…"
+    const QString& busyText() const { return m_busyText; } ///< "Opening scan.nrrd…"
     void cancel();
-
-    const QString& tfPath() const { return m_tfPath; } ///< of the transfer function that is open; empty: of no file
-    void setTfPath(const QString& path) { m_tfPath = path; }
-    const QString& sessionPath() const { return m_sessionPath; }
-    void setSessionPath(const QString& path);
 
 Q_SIGNALS:
     void busyChanged();
@@ -70,6 +68,7 @@ Q_SIGNALS:
     void failed(const pellucid::Error& error);
     void tfFailed(const pellucid::Error& error); ///< the volume is open, its transfer function is the default
     void cancelled();
+    void automaticStartWanted(); ///< in the place of a transfer function
 
 private:
     struct Request {
@@ -116,8 +115,10 @@ private:
     void addRecent(const QString& entry);
     void openRecent(const QString& entry);
 
-    Workbench& m_bench;
-    QString m_tfPath, m_sessionPath, m_busyText;
+    Services& m_services;
+    SaveController& m_saving;
+    QAction* m_clearRecent = nullptr;
+    QString m_busyText;
     Edit m_edit;              ///< the one under way
     std::deque<Edit> m_edits; ///< those that wait for it
     Job<Request, Opened> m_open;

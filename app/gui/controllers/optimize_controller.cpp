@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "optimize/answer/visibility_words.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "tf/shown_tf.h"
 
 namespace pellucid::gui {
@@ -45,10 +45,10 @@ QString sayOf(const OptimizeResult& result, int restarts) {
     }
 }
 
-OptimizeController::OptimizeController(Workbench& bench)
-    : m_bench(bench),
+OptimizeController::OptimizeController(Services& services)
+    : m_services(services),
       m_job(
-          [this, &workspace = bench.workspace()](const Task& task, const JobControl& job) {
+          [this, &workspace = services.workspace()](const Task& task, const JobControl& job) {
               int move = 0;
               const auto watch = [&](const OptimizeState& state) {
                   if (job.stop.stop_requested()) return;
@@ -61,9 +61,9 @@ OptimizeController::OptimizeController(Workbench& bench)
               return result;
           },
           [this](const Task& task, OptimizeResult& result) { finish(task, result); }, WhenBusy::StopOld,
-          &bench.compute()),
+          &services.compute()),
       m_explaining(
-          [&workspace = bench.workspace()](const Question& q, const JobControl& job) {
+          [&workspace = services.workspace()](const Question& q, const JobControl& job) {
               return workspace.explain(q.task.input, q.task.targets, q.task.limits, q.task.options, q.found,
                                        {job.stop, {}}, q.task.known);
           },
@@ -73,20 +73,20 @@ OptimizeController::OptimizeController(Workbench& bench)
               for (const std::string& sentence : verdict.sentences) sentences << QString::fromStdString(sentence);
               say(sentences.join(' '), std::vector<double>(m_exact));
           },
-          WhenBusy::StopOld, &bench.compute()) {
+          WhenBusy::StopOld, &services.compute()) {
     connect(&m_job, &JobBase::busyChanged, this, [this] {
-        m_bench.results().setPaused(isRunning());
+        m_services.results().setPaused(isRunning());
         Q_EMIT runningChanged();
     });
     connect(&m_job, &JobBase::cancelled, this, [this] {
-        m_bench.store().cancel();
+        m_services.store().cancel();
         say(tr("Cancelled; nothing was changed."));
     });
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
-        m_bench.store().cancel();
-        m_bench.showError(tr("Optimization failed"), error);
+        m_services.store().cancel();
+        m_services.showError(tr("Optimization failed"), error);
     });
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.data != after.data) cancel();
         if (isRunning() && !(measureInput(after).view == m_task.input.view)) restart(measureInput(after).view);
         if (!m_message.isEmpty() && !isRunning() && !(present() == m_about)) {
@@ -95,7 +95,7 @@ OptimizeController::OptimizeController(Workbench& bench)
             say({});
         }
     });
-    connect(&bench.results(), &Results::changed, this, &OptimizeController::askWhy);
+    connect(&services.results(), &Results::changed, this, &OptimizeController::askWhy);
     connect(&m_explaining, &JobBase::busyChanged, this, &OptimizeController::messageChanged);
     connect(&m_explaining, &JobBase::failed, this,
             [this](const Error& error) { say(tr("Not on target; why is not known: %1.").arg(QString(error.what()))); });
@@ -104,7 +104,7 @@ OptimizeController::OptimizeController(Workbench& bench)
 OptimizeController::~OptimizeController() { ++m_number; }
 
 void OptimizeController::addActions() {
-    m_bench.actions().add(
+    m_services.actions().add(
         {.id = "optimizeAction",
          .menu = tr("&Transfer function"),
          .text = tr("&Optimize to the targets"),
@@ -112,11 +112,13 @@ void OptimizeController::addActions() {
          .tip = tr("Opacities until the features' saliency (VWS) meets the targets, from this camera"),
          .trigger = [this] { start(); },
          .enabled =
-             [this] { return m_bench.store().hasVolume() && !isRunning() && !m_bench.scene().tf.features.empty(); }});
+             [this] {
+                 return m_services.store().hasVolume() && !isRunning() && !m_services.scene().tf.features.empty();
+             }});
 }
 
 OptimizeController::About OptimizeController::present() const {
-    return {measureInput(m_bench.scene()), m_bench.scene().targets()};
+    return {measureInput(m_services.scene()), m_services.scene().targets()};
 }
 
 void OptimizeController::say(const QString& text) { say(text, {}); }
@@ -130,15 +132,15 @@ void OptimizeController::say(const QString& text, std::vector<double> exact) {
 }
 
 void OptimizeController::start() {
-    SessionStore& store = m_bench.store();
-    if (!store.hasVolume() || isRunning() || m_bench.scene().tf.features.empty()) return;
+    SessionStore& store = m_services.store();
+    if (!store.hasVolume() || isRunning() || m_services.scene().tf.features.empty()) return;
     store.commit();
     say({});
     m_restarts = 0;
     m_question.reset();
     m_explaining.cancel();
     const About about = present();
-    begin({about.input, m_bench.scene().tf, about.targets, limitsOf(m_bench.scene().tf, *store.session().goals),
+    begin({about.input, m_services.scene().tf, about.targets, limitsOf(m_services.scene().tf, *store.session().goals),
            *store.session().optimize,
            isAimed(about.targets)
                ? knownAnswers(*store.session().runs, normalizedTargets(about.targets, about.targets.size()))
@@ -147,8 +149,8 @@ void OptimizeController::start() {
 
 void OptimizeController::takeExact() {
     if (!hasExact() || isRunning()) return;
-    const TransferFunction tf = withShownOpacities(m_bench.scene().tf, m_exact);
-    m_bench.store().edit(tr("Exact shares"), {}, [&](Session& session) { session.setTf(tf); });
+    const TransferFunction tf = withShownOpacities(m_services.scene().tf, m_exact);
+    m_services.store().edit(tr("Exact shares"), {}, [&](Session& session) { session.setTf(tf); });
 }
 
 void OptimizeController::begin(Task task) {
@@ -192,16 +194,16 @@ void OptimizeController::showMove(const Task& task, int move, const OptimizeStat
     m_run.history.push_back(state);
     m_run.after = state.objective;
     const TransferFunction tf = withShownOpacities(task.tf, state.opacity);
-    m_bench.store().preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
+    m_services.store().preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     if (!isRunning()) return;        // whoever saw it has stopped it
     MeasureInput input = task.input; // of the camera that it began with, wherever the eye is now
     input.tf = shownTf(tf);
-    m_bench.results().addVws(input, state.vws);
+    m_services.results().addVws(input, state.vws);
     Q_EMIT moved();
 }
 
 void OptimizeController::finish(const Task& task, const OptimizeResult& result) {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     const OptimizeState& best = result.history[result.best];
     const TransferFunction tf = withShownOpacities(task.tf, best.opacity);
     Run run = runOf(result, task.start());
@@ -216,7 +218,7 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     m_answering = false;
     MeasureInput input = task.input;
     input.tf = shownTf(tf);
-    m_bench.results().addVws(input, best.vws);
+    m_services.results().addVws(input, best.vws);
     // It is true of what it was computed from.
     if (!(present() == About{input, task.targets}))
         return say(tr("Something has changed since it began; nothing is known of what is there now."));
@@ -230,7 +232,7 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
 
 // The figures of what is shown come first: both need the same engine.
 void OptimizeController::askWhy() {
-    if (!m_question || isRunning() || !m_bench.results().measuresAreCurrent()) return;
+    if (!m_question || isRunning() || !m_services.results().measuresAreCurrent()) return;
     Question question = std::move(*m_question);
     m_question.reset();
     if (!(present() == m_about)) return;

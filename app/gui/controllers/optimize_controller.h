@@ -9,7 +9,7 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// What came of an optimization, in a sentence or some: nothing but what is true of the view that it was made for.
 /// `restarts`: how often it has begun anew because the view had turned.
@@ -21,7 +21,7 @@ QString sayOf(const OptimizeResult& result, int restarts = 0);
 class OptimizeController : public QObject {
     Q_OBJECT
 public:
-    explicit OptimizeController(Workbench& bench);
+    explicit OptimizeController(Services& services);
     ~OptimizeController() override;
 
     void addActions();
@@ -42,6 +42,7 @@ public:
 
     /// Whether the reason is being looked for why the latest run is not on target.
     bool isExplaining() const { return m_question || m_explaining.isRunning(); }
+    bool isBusy() const { return isRunning() || isExplaining(); }
 
     /// What came of the latest run, or what somebody else has said; empty as soon as it is not true of the present
     /// state any more.
@@ -89,7 +90,7 @@ private:
     };
     void askWhy();
 
-    Workbench& m_bench;
+    Services& m_services;
     QString m_message;
     About m_about;
     Task m_task;                   ///< the latest

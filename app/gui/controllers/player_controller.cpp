@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controllers/adapt_controller.h"
 #include "controllers/open_controller.h"
 #include "render/memory_needs.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "session/scene_data.h"
 
 namespace pellucid::gui {
@@ -20,22 +19,21 @@ constexpr std::size_t kMostNotices = 3; // of frames that cannot be read, each w
 
 } // namespace
 
-PlayerController::PlayerController(Workbench& bench)
-    : m_bench(bench), m_adapting(std::make_unique<AdaptController>(bench)),
+PlayerController::PlayerController(Services& services, OpenController& opening)
+    : m_services(services), m_opening(opening),
       m_reading(&PlayerController::read, [this](const Ask& ask, Got& got) { deliver(ask, got); }) {
     m_timer.setTimerType(Qt::PreciseTimer);
     connect(&m_timer, &QTimer::timeout, this, &PlayerController::tick);
-    connect(&bench.store(), &SessionStore::changed, this, &PlayerController::follow);
-    connect(&bench.opening(), &OpenController::busyChanged, this, &PlayerController::next);
-    connect(&bench, &Workbench::readOnlyChanged, this, &PlayerController::next);
+    connect(&services.store(), &SessionStore::changed, this, &PlayerController::follow);
+    connect(&opening, &OpenController::busyChanged, this, &PlayerController::next);
+    connect(&services, &Services::readOnlyChanged, this, &PlayerController::next);
     connect(&m_reading, &JobBase::failed, this, [this](const Error& error) { // memory, for example
         pause();
         m_wanted.reset();
         m_surveyStopped = true;
-        m_bench.notices().add({tr("Frames cannot be read ahead: %1").arg(QString::fromUtf8(error.what())), {}});
+        m_services.notices().add({tr("Frames cannot be read ahead: %1").arg(QString::fromUtf8(error.what())), {}});
         Q_EMIT changed();
     });
-    connect(m_adapting.get(), &AdaptController::changed, this, &PlayerController::changed);
     m_sinceStart.start();
 }
 
@@ -43,60 +41,65 @@ PlayerController::~PlayerController() = default;
 
 void PlayerController::addActions() {
     const QString menu = tr("T&ime");
-    Actions& actions = m_bench.actions();
+    Actions& actions = m_services.actions();
     const auto series = [this] { return hasSeries(); };
     const auto add = [&](const char* id, const QString& text, const char* keys, const QString& tip,
                          std::function<void()> trigger) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .keys = {QKeySequence(keys)},
-                     .tip = tip,
-                     .trigger = std::move(trigger),
-                     .enabled = series});
+        return actions.add({.id = id,
+                            .menu = menu,
+                            .text = text,
+                            .keys = {QKeySequence(keys)},
+                            .tip = tip,
+                            .trigger = std::move(trigger),
+                            .enabled = series});
     };
-    actions.add({.id = "playAction",
-                 .menu = menu,
-                 .text = tr("&Play"),
-                 .keys = {QKeySequence("Space")},
-                 .tip = tr("Play the frames of the series, or pause"),
-                 .trigger = [this] { m_playing ? pause() : play(); },
-                 .enabled = series,
-                 .caption = [this] { return m_playing ? tr("&Pause") : tr("&Play"); }});
-    add("nextFrameAction", tr("&Next frame"), ".", tr("One frame forward"), [this] { step(1); });
-    add("previousFrameAction", tr("P&revious frame"), ",", tr("One frame back"), [this] { step(-1); });
-    add("firstFrameAction", tr("&First frame"), "Ctrl+Home", {}, [this] { goTo(goodFrame(0, 1)); });
-    add("lastFrameAction", tr("&Last frame"), "Ctrl+End", {}, [this] { goTo(goodFrame(frameCount() - 1, -1)); });
-    actions.add({.id = "loopAction",
-                 .menu = menu,
-                 .text = tr("L&oop"),
-                 .tip = tr("After the last frame the first one plays again"),
-                 .trigger = [this] { setLoops(!m_loops); },
-                 .enabled = series,
-                 .checked = [this] { return m_loops; },
-                 .separatorBefore = true});
-    actions.add({.id = "backwardAction",
-                 .menu = menu,
-                 .text = tr("Play &backward"),
-                 .trigger = [this] { setBackward(!m_backward); },
-                 .enabled = series,
-                 .checked = [this] { return m_backward; }});
-    m_adapting->addActions();
+    m_actions.play = actions.add({.id = "playAction",
+                                  .menu = menu,
+                                  .text = tr("&Play"),
+                                  .keys = {QKeySequence("Space")},
+                                  .tip = tr("Play the frames of the series, or pause"),
+                                  .trigger = [this] { m_playing ? pause() : play(); },
+                                  .enabled = series,
+                                  .caption = [this] { return m_playing ? tr("&Pause") : tr("&Play"); }});
+    m_actions.next = add("nextFrameAction", tr("&Next frame"), ".", tr("One frame forward"), [this] { step(1); });
+    m_actions.previous =
+        add("previousFrameAction", tr("P&revious frame"), ",", tr("One frame back"), [this] { step(-1); });
+    m_actions.first = add("firstFrameAction", tr("&First frame"), "Ctrl+Home", {}, [this] { goTo(goodFrame(0, 1)); });
+    m_actions.last =
+        add("lastFrameAction", tr("&Last frame"), "Ctrl+End", {}, [this] { goTo(goodFrame(frameCount() - 1, -1)); });
+    m_actions.loops = actions.add({.id = "loopAction",
+                                   .menu = menu,
+                                   .text = tr("L&oop"),
+                                   .tip = tr("After the last frame the first one plays again"),
+                                   .trigger = [this] { setLoops(!m_loops); },
+                                   .enabled = series,
+                                   .checked = [this] { return m_loops; },
+                                   .separatorBefore = true});
+    m_actions.backward = actions.add({.id = "backwardAction",
+                                      .menu = menu,
+                                      .text = tr("Play &backward"),
+                                      .trigger = [this] { setBackward(!m_backward); },
+                                      .enabled = series,
+                                      .checked = [this] { return m_backward; }});
     connect(this, &PlayerController::changed, &actions, [this, was = false]() mutable {
-        if (std::exchange(was, m_playing) != m_playing) m_bench.actions().refresh();
+        if (std::exchange(was, m_playing) != m_playing) m_services.actions().refresh();
     });
 }
 
 // ---- what there is
 
-bool PlayerController::hasSeries() const { return m_bench.store().hasVolume() && m_bench.scene().series->varies(); }
+bool PlayerController::hasSeries() const {
+    return m_services.store().hasVolume() && m_services.scene().series->varies();
+}
 
-int PlayerController::frameCount() const { return m_bench.store().hasVolume() ? m_bench.scene().series->size() : 0; }
+int PlayerController::frameCount() const {
+    return m_services.store().hasVolume() ? m_services.scene().series->size() : 0;
+}
 
-int PlayerController::frame() const { return m_bench.store().session().frame; }
+int PlayerController::frame() const { return m_services.store().session().frame; }
 
 QString PlayerController::label(int frame) const {
-    return QString::fromStdString(m_bench.scene().series->listing().label(frame));
+    return QString::fromStdString(m_services.scene().series->listing().label(frame));
 }
 
 QString PlayerController::problemOf(int frame) const {
@@ -105,7 +108,7 @@ QString PlayerController::problemOf(int frame) const {
 }
 
 bool PlayerController::isHeld(int frame) const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     return scene.series->isShown(frame, scene.session.variable().window);
 }
 
@@ -118,10 +121,7 @@ int PlayerController::goodFrame(int from, int direction) const {
     return from;
 }
 
-/// An optimization shows its moves, or other data is being fetched: the frame stays.
-bool PlayerController::isHeldUp() const { return m_bench.isReadOnly() || m_bench.opening().isBusy(); }
-
-bool PlayerController::isBusy() const { return m_playing || m_wanted.has_value() || m_adapting->isBusy(); }
+bool PlayerController::isHeldUp() const { return m_services.isReadOnly() || m_opening.isBusy(); }
 
 // ---- what is wanted
 
@@ -155,7 +155,7 @@ void PlayerController::goTo(int frame) {
     if (!hasSeries()) return;
     frame = std::clamp(frame, 0, frameCount() - 1);
     if (const auto broken = m_broken.find(frame); broken != m_broken.end()) {
-        Q_EMIT m_bench.message(tr("%1 cannot be shown: %2").arg(label(frame), broken->second.what));
+        Q_EMIT m_services.message(tr("%1 cannot be shown: %2").arg(label(frame), broken->second.what));
         return;
     }
     m_wanted.reset();
@@ -191,13 +191,13 @@ void PlayerController::setLoops(bool loops) {
     m_loops = loops;
     if (m_playing) restartClock();
     Q_EMIT changed();
-    m_bench.actions().refresh();
+    m_services.actions().refresh();
 }
 
 void PlayerController::setBackward(bool backward) {
     m_backward = backward;
     if (m_playing) restartClock();
-    m_bench.actions().refresh();
+    m_services.actions().refresh();
     next();
     Q_EMIT changed();
 }
@@ -266,7 +266,7 @@ void PlayerController::tick() {
 }
 
 void PlayerController::pictureShown(const Volume* volume) {
-    if (volume != m_bench.scene().volume.get()) return;
+    if (volume != m_services.scene().volume.get()) return;
     m_pictureSeen = true;
     if (m_playing) QMetaObject::invokeMethod(this, &PlayerController::tick, Qt::QueuedConnection);
 }
@@ -297,7 +297,7 @@ PlayerController::Got PlayerController::read(const Ask& ask, const JobControl& j
 
 /// Frames to be read before they are wanted, the next one first.
 std::vector<int> PlayerController::ahead() const {
-    const TimeSeries& series = *m_bench.scene().series;
+    const TimeSeries& series = *m_services.scene().series;
     const int count = series.size(), direction = m_backward ? -1 : 1;
     // The present one is held too, and there is room for one that is looked at in passing.
     const int most = std::min(m_playing ? count - 1 : kAheadAtRest, series.roomFor() - 2);
@@ -315,7 +315,7 @@ std::vector<int> PlayerController::ahead() const {
 
 void PlayerController::next() {
     if (!hasSeries() || m_reading.isRunning()) return;
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     TimeSeries& series = *scene.series;
     if (m_wanted) {
         if (isHeldUp()) return;
@@ -328,7 +328,7 @@ void PlayerController::next() {
     std::erase_if(m_ready, [&](const auto& entry) {
         return std::find(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(ready), entry.first) ==
                    frames.begin() + static_cast<std::ptrdiff_t>(ready) ||
-               !m_bench.store().isShownBy(entry.second);
+               !m_services.store().isShownBy(entry.second);
     });
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const int f = frames[i];
@@ -347,7 +347,7 @@ void PlayerController::next() {
 }
 
 void PlayerController::deliver(const Ask& ask, Got& got) {
-    const bool isPresent = hasSeries() && m_bench.scene().series == ask.basis.series;
+    const bool isPresent = hasSeries() && m_services.scene().series == ask.basis.series;
     if (!isPresent) return next();
     if (got.error) {
         m_broken[ask.frame] = {QString::fromStdString(got.error->problem()),
@@ -361,7 +361,7 @@ void PlayerController::deliver(const Ask& ask, Got& got) {
         }
         reportProblems();
     }
-    if (got.scene && m_bench.store().isShownBy(*got.scene)) m_ready[ask.frame] = std::move(*got.scene);
+    if (got.scene && m_services.store().isShownBy(*got.scene)) m_ready[ask.frame] = std::move(*got.scene);
     // While a hand scrubs faster than frames can be read, it sees those that came.
     if (m_wanted && *m_wanted != ask.frame && got.scene && !m_playing && !isHeldUp()) {
         const int goal = *m_wanted;
@@ -384,7 +384,7 @@ bool PlayerController::show(int frame) {
     const auto found = m_ready.find(frame);
     if (found == m_ready.end()) return false;
     const Scene scene = found->second;
-    if (!m_bench.store().isShownBy(scene)) {
+    if (!m_services.store().isShownBy(scene)) {
         m_ready.erase(found);
         return false;
     }
@@ -393,7 +393,7 @@ bool PlayerController::show(int frame) {
     m_sinceShown.start();
     m_shownAt.push_back(m_sinceStart.elapsed());
     while (m_shownAt.back() - m_shownAt.front() > kRateOver) m_shownAt.pop_front();
-    m_bench.store().setFrame(scene);
+    m_services.store().setFrame(scene);
     Q_EMIT changed();
     return true;
 }
@@ -418,11 +418,11 @@ void PlayerController::follow(const Scene& before, const Scene& after) {
         }
         if (hasSeries())
             for (const std::string& notice : after.series->listing().notices)
-                m_bench.notices().add({QString::fromStdString(notice), {}});
+                m_services.notices().add({QString::fromStdString(notice), {}});
         reportProblems();
         Q_EMIT changed();
         Q_EMIT surveyed();
-        m_bench.actions().refresh();
+        m_services.actions().refresh();
     }
     // Another mapping may do without the frame of another variable that could not be read.
     const bool others = !before.session.hsb->isKeptBy(*after.session.hsb) ||
@@ -437,7 +437,7 @@ void PlayerController::follow(const Scene& before, const Scene& after) {
 
 void PlayerController::reportProblems() {
     if (!hasSeries()) return;
-    const TimeSeries& series = *m_bench.scene().series;
+    const TimeSeries& series = *m_services.scene().series;
     for (int f = 0; f < series.size(); ++f) {
         const FrameSummary summary = series.summary(f);
         if (!summary.problem.empty())
@@ -448,18 +448,18 @@ void PlayerController::reportProblems() {
     for (const auto& [f, problem] : m_broken) {
         if (!m_reported.insert(f).second) continue;
         if (m_reported.size() <= kMostNotices) {
-            m_bench.notices().add({tr("%1 is left out: %2 (%3).").arg(label(f), problem.what, problem.where), {}});
+            m_services.notices().add({tr("%1 is left out: %2 (%3).").arg(label(f), problem.what, problem.where), {}});
             continue;
         }
-        if (!m_summary.isEmpty()) m_bench.notices().remove(m_summary);
+        if (!m_summary.isEmpty()) m_services.notices().remove(m_summary);
         m_summary = tr("%L1 frames in all are left out, for they cannot be read.").arg(m_reported.size());
-        m_bench.notices().add({m_summary, {}});
+        m_services.notices().add({m_summary, {}});
     }
 }
 
 int PlayerController::knownCount() const {
     if (!hasSeries()) return 0;
-    const TimeSeries& series = *m_bench.scene().series;
+    const TimeSeries& series = *m_services.scene().series;
     int known = 0;
     for (int f = 0; f < series.size(); ++f)
         if (series.summary(f).isKnown) ++known;
@@ -467,7 +467,7 @@ int PlayerController::knownCount() const {
 }
 
 bool PlayerController::isSurveying() const {
-    return hasSeries() && !m_surveyStopped && !m_bench.scene().series->isSurveyed();
+    return hasSeries() && !m_surveyStopped && !m_services.scene().series->isSurveyed();
 }
 
 void PlayerController::stopSurvey() {

@@ -3,7 +3,6 @@
 
 #include <deque>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,10 +14,16 @@
 #include "jobs/job.h"
 #include "session/scene.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
-class AdaptController;
-class Workbench;
+class OpenController;
+class Services;
+
+struct PlayerActions {
+    QAction *first, *previous, *play, *next, *last, *loops, *backward;
+};
 
 /// Plays, steps and scrubs. Frames are read on a thread of their own, ahead in the direction of play within the budget
 /// of the series; the window never waits for one. While it plays a clock says which frame is due: those that came too
@@ -28,12 +33,11 @@ class PlayerController : public QObject {
 public:
     static constexpr double kSlowest = 1, kFastest = 60; ///< frames a second
 
-    explicit PlayerController(Workbench& bench);
+    PlayerController(Services& services, OpenController& opening);
     ~PlayerController() override;
 
     void addActions();
-
-    AdaptController& adapting() { return *m_adapting; } ///< transfer functions over time
+    const PlayerActions& actions() const { return m_actions; }
 
     bool hasSeries() const;
     int frameCount() const; ///< 0 where nothing is open
@@ -71,8 +75,10 @@ public:
     void stopSurvey();
     void goOnSurveying();
 
-    /// A frame is being waited for, it plays, or transfer functions of frames are being made.
-    bool isBusy() const;
+    /// A frame is being waited for, or it plays.
+    bool isBusy() const { return m_playing || m_wanted.has_value(); }
+    /// An optimization shows its moves, or other data is being fetched: the frame stays.
+    bool isHeldUp() const;
     /// The picture of this volume is on the screen.
     void pictureShown(const Volume* volume);
 
@@ -103,9 +109,10 @@ private:
     int goodFrame(int from, int direction) const;
     std::vector<int> ahead() const;
     void reportProblems();
-    bool isHeldUp() const;
 
-    Workbench& m_bench;
+    Services& m_services;
+    OpenController& m_opening;
+    PlayerActions m_actions;
     QTimer m_timer;
     QElapsedTimer m_clock, m_sinceShown;
     int m_clockFrom = 0; ///< frame that was due when the clock began
@@ -123,8 +130,7 @@ private:
     };
     std::map<int, Problem> m_broken;
     std::set<int> m_reported;
-    QString m_summary; ///< the notice of broken frames beyond the first ones
-    std::unique_ptr<AdaptController> m_adapting;
+    QString m_summary;       ///< the notice of broken frames beyond the first ones
     Job<Ask, Got> m_reading; // last: it ends before the rest goes
 };
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controllers/slice_actions.h"
 #include "render/clip_handles.h"
 #include "render/slice.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "store/edits.h"
+#include "store/view_edits.h"
 #include "tf/emphasis.h"
 #include "tf/shown_tf.h"
 
@@ -21,35 +21,35 @@ constexpr int kMostSteps = 8;
 
 } // namespace
 
-ProbeController::ProbeController(Workbench& bench) : QObject(&bench), m_bench(bench) {
-    connect(&bench.store(), &SessionStore::changed, this, &ProbeController::follow);
-    connect(&bench.selection(), &Selection::featureChanged, this, [this] {
+ProbeController::ProbeController(Services& services) : m_services(services) {
+    connect(&services.store(), &SessionStore::changed, this, &ProbeController::follow);
+    connect(&services.selection(), &Selection::featureChanged, this, [this] {
         if (isActive()) Q_EMIT changed();
     });
-    connect(this, &ProbeController::changed, &bench.actions(), &Actions::refresh);
+    connect(this, &ProbeController::changed, &services.actions(), &Actions::refresh);
 }
 
 void ProbeController::addActions() {
     const auto add = [this](const char* id, const QString& text, const char* keys, const QString& tip, bool more) {
-        m_bench.actions().add({.id = id,
-                               .menu = tr("&Transfer function"),
-                               .text = text,
-                               .keys = {QKeySequence(keys)},
-                               .tip = tip,
-                               .trigger = [this, more] { emphasize(more); },
-                               .enabled = [this] { return canEmphasize(); },
-                               .separatorBefore = more});
+        m_services.actions().add({.id = id,
+                                  .menu = tr("&Transfer function"),
+                                  .text = text,
+                                  .keys = {QKeySequence(keys)},
+                                  .tip = tip,
+                                  .trigger = [this, more] { emphasize(more); },
+                                  .enabled = [this] { return canEmphasize(); },
+                                  .separatorBefore = more});
     };
     add("moreOfThisAction", tr("&More of this"), "Ctrl+]",
         tr("Raises the opacity of the feature under the probe and lowers that of what hides it there"), true);
     add("lessOfThisAction", tr("&Less of this"), "Ctrl+[",
         tr("Lowers the opacity of the feature under the probe and raises that of what hides it there"), false);
-    m_bench.actions().addGestures({{tr("Volume"), tr("Click"), tr("probe: what the ray meets there")},
-                                   {tr("Volume"), tr("Click beside the volume, Esc"), tr("end the probe")}});
+    m_services.actions().addGestures({{tr("Volume"), tr("Click"), tr("probe: what the ray meets there")},
+                                      {tr("Volume"), tr("Click beside the volume, Esc"), tr("end the probe")}});
 }
 
 void ProbeController::probeAt(const QPointF& point, const QSizeF& size, double pixelsPerPoint) {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     if (!scene.volume || size.isEmpty()) return;
     const TransferFunction shown = shownTf(scene.tf);
     // The middle of the pixel, so that the shares are those of the picture.
@@ -63,26 +63,26 @@ void ProbeController::probeAt(const QPointF& point, const QSizeF& size, double p
     m_tf = shown;
     const int main = ray.feature;
     m_ray = std::move(ray);
-    if (main >= 0) m_bench.selection().setFeature(scene.tf.features[static_cast<std::size_t>(main)].id);
-    if (scene.session.slices->layout != SliceViews::Layout::Volume) moveCrosshairToWorld(m_bench.store(), m_place);
+    if (main >= 0) m_services.selection().setFeature(scene.tf.features[static_cast<std::size_t>(main)].id);
+    if (scene.session.slices->layout != SliceViews::Layout::Volume) moveCrosshairToWorld(m_services.store(), m_place);
     Q_EMIT changed();
 }
 
 void ProbeController::clear() {
     if (!isActive()) return;
     m_ray.reset();
-    m_bench.selection().setHoveredIntensity({});
+    m_services.selection().setHoveredIntensity({});
     Q_EMIT changed();
 }
 
 std::optional<double> ProbeController::valueAtPlace() const {
-    const Volume& volume = *m_bench.scene().volume;
+    const Volume& volume = *m_services.scene().volume;
     return valueAt(volume, volume.geometry().voxelFromWorld(m_place));
 }
 
 int ProbeController::feature() const {
-    const FeatureId selected = m_bench.selection().feature();
-    const auto& features = m_bench.scene().tf.features;
+    const FeatureId selected = m_services.selection().feature();
+    const auto& features = m_services.scene().tf.features;
     const auto isMet = [&](int f) {
         return std::any_of(m_ray->runs.begin(), m_ray->runs.end(),
                            [f](const ProbeRun& run) { return run.feature == f; });
@@ -92,12 +92,12 @@ int ProbeController::feature() const {
     return m_ray->feature;
 }
 
-bool ProbeController::canEmphasize() const { return isActive() && !m_bench.isReadOnly() && feature() >= 0; }
+bool ProbeController::canEmphasize() const { return isActive() && !m_services.isReadOnly() && feature() >= 0; }
 
 void ProbeController::emphasize(bool more) {
     if (!canEmphasize()) return;
-    m_bench.store().commit();
-    const Scene& scene = m_bench.scene();
+    m_services.store().commit();
+    const Scene& scene = m_services.scene();
     const auto f = static_cast<std::size_t>(feature());
     const QString name = QString::fromStdString(scene.tf.features[f].name);
     std::vector<double> inFront = depthInFront(*m_ray, f);
@@ -119,20 +119,20 @@ void ProbeController::emphasize(bool more) {
         change = (more ? 1 : -1) * (ray->shares[f] - share);
     }
     if (emphasis.changes.empty()) {
-        Q_EMIT m_bench.message(tr("%1 stays: it is locked, or its points are fixed").arg(name));
+        Q_EMIT m_services.message(tr("%1 stays: it is locked, or its points are fixed").arg(name));
         return;
     }
     if (!(change > 0)) {
-        Q_EMIT m_bench.message(more ? tr("There is no more of %1 to show here").arg(name)
-                                    : tr("There is no less of %1 to show here").arg(name));
+        Q_EMIT m_services.message(more ? tr("There is no more of %1 to show here").arg(name)
+                                       : tr("There is no less of %1 to show here").arg(name));
         return;
     }
-    editTf(m_bench.store(), emphasis.tf, more ? tr("More of %1").arg(name) : tr("Less of %1").arg(name));
-    Q_EMIT m_bench.message(QString::fromStdString(emphasisText(emphasis)));
+    editTf(m_services.store(), emphasis.tf, more ? tr("More of %1").arg(name) : tr("Less of %1").arg(name));
+    Q_EMIT m_services.message(QString::fromStdString(emphasisText(emphasis)));
 }
 
 std::optional<RayProbe> ProbeController::rayOf(const TransferFunction& shown) const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     const auto pixel = pixelOf({scene.camera, m_width, m_height}, m_place);
     if (!pixel) return {};
     return probe(*scene.volume, shown, {scene.camera, *scene.session.clipping}, pixel->x, pixel->y, m_width, m_height,

@@ -12,14 +12,14 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Holds a place of the volume; the ray is that of the present camera through it, so that it is the picture's where the
 /// place appears, whatever is edited or turned. Gone with the data.
 class ProbeController : public QObject {
     Q_OBJECT
 public:
-    explicit ProbeController(Workbench& bench); ///< a child of it
+    explicit ProbeController(Services& services);
     void addActions();
 
     /// Probes the pixel under `point` of a view of `size`, both logical; clears where nothing is visible there. The
@@ -49,7 +49,7 @@ private:
     /// The ray of the scene's camera through the place; empty where it is not in front of the camera.
     std::optional<RayProbe> rayOf(const TransferFunction& shown) const;
 
-    Workbench& m_bench;
+    Services& m_services;
     Vec3 m_place{0};
     int m_width = 1, m_height = 1; ///< of the picture when it was clicked on, pixels
     TransferFunction m_tf;

@@ -5,7 +5,7 @@
 
 #include "controllers/open_controller.h"
 #include "controllers/save_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 
 namespace pellucid::gui {
 namespace {
@@ -14,25 +14,26 @@ constexpr int kDelay = 800; // milliseconds from the first change to the file: w
 
 }
 
-RecoveryController::RecoveryController(Workbench& bench)
-    : m_bench(bench), m_writing(
-                          [this](const Work& work, const JobControl&) {
-                              if (work.session) {
-                                  m_file->write(*work.session, work.title.toStdString());
-                              } else {
-                                  m_file->remove();
-                              }
-                              return true;
-                          },
-                          [this](const Work&, bool&) {
-                              for (const std::string& path : std::exchange(m_restored, {})) discardRecovered(path);
-                          },
-                          WhenBusy::FinishOld) {
+RecoveryController::RecoveryController(Services& services, OpenController& opening, SaveController& saving)
+    : m_services(services), m_opening(opening), m_saving(saving),
+      m_writing(
+          [this](const Work& work, const JobControl&) {
+              if (work.session) {
+                  m_file->write(*work.session, work.title.toStdString());
+              } else {
+                  m_file->remove();
+              }
+              return true;
+          },
+          [this](const Work&, bool&) {
+              for (const std::string& path : std::exchange(m_restored, {})) discardRecovered(path);
+          },
+          WhenBusy::FinishOld) {
     m_timer.setSingleShot(true);
     m_timer.setInterval(kDelay);
     connect(&m_timer, &QTimer::timeout, this, &RecoveryController::save);
     connect(&m_writing, &JobBase::failed, this, [this](const Error& error) {
-        m_bench.notices().add({tr("Unsaved work cannot be kept: %1").arg(QString::fromUtf8(error.what())), {}});
+        m_services.notices().add({tr("Unsaved work cannot be kept: %1").arg(QString::fromUtf8(error.what())), {}});
     });
 }
 
@@ -47,22 +48,22 @@ void RecoveryController::start() {
     try {
         m_file = std::make_shared<RecoveryFile>(folder().toStdString());
     } catch (const Error& error) {
-        m_bench.notices().add({tr("Unsaved work cannot be kept: %1").arg(QString::fromUtf8(error.what())), {}});
+        m_services.notices().add({tr("Unsaved work cannot be kept: %1").arg(QString::fromUtf8(error.what())), {}});
         return;
     }
     // Not begun anew by each change: the first one that is not written yet decides.
     const auto changed = [this] {
         if (!m_timer.isActive()) m_timer.start();
     };
-    connect(&m_bench.store(), &SessionStore::changed, this, changed);
-    connect(&m_bench.store(), &SessionStore::historyChanged, this, changed);
+    connect(&m_services.store(), &SessionStore::changed, this, changed);
+    connect(&m_services.store(), &SessionStore::historyChanged, this, changed);
 }
 
 void RecoveryController::save() {
-    if (!m_file || !m_bench.store().hasVolume()) return;
+    if (!m_file || !m_services.store().hasVolume()) return;
     Work work;
-    if (!m_bench.store().isClean()) work.session = m_bench.store().committed().session;
-    work.title = QString::fromStdString(m_bench.scene().volume->title);
+    if (!m_services.store().isClean()) work.session = m_services.store().committed().session;
+    work.title = QString::fromStdString(m_services.scene().volume->title);
     m_writing.start(std::move(work), tr("the recovery file"));
 }
 
@@ -72,30 +73,30 @@ void RecoveryController::discard() {
 }
 
 void RecoveryController::offerWhenOpen() {
-    connect(&m_bench.opening(), &OpenController::opened, this, &RecoveryController::offer, Qt::SingleShotConnection);
-    connect(&m_bench.opening(), &OpenController::failed, this, &RecoveryController::offer, Qt::SingleShotConnection);
+    connect(&m_opening, &OpenController::opened, this, &RecoveryController::offer, Qt::SingleShotConnection);
+    connect(&m_opening, &OpenController::failed, this, &RecoveryController::offer, Qt::SingleShotConnection);
 }
 
 void RecoveryController::offer() {
     for (const Recovered& left : recoverableSessions(folder().toStdString())) {
         const QString title = QString::fromStdString(left.title);
-        m_bench.notices().add({tr("Pellucid ended without saving your work on %1, as of %2.")
-                                   .arg(title, QString::fromStdString(left.when)),
-                               {{tr("Restore it"),
-                                 [this, path = left.path] {
-                                     try {
-                                         const SessionFile file = readSession(path);
-                                         if (!m_bench.saving().maybeSave()) return offer();
-                                         m_bench.opening().openRecovered(file);
-                                         // Once it is there again and written, this window keeps it.
-                                         connect(
-                                             &m_bench.opening(), &OpenController::opened, this,
-                                             [this, path] { m_restored.push_back(path); }, Qt::SingleShotConnection);
-                                     } catch (const Error& error) {
-                                         m_bench.showError(tr("Cannot restore the work"), error);
-                                     }
-                                 }},
-                                {tr("Discard it"), [path = left.path] { discardRecovered(path); }}}});
+        m_services.notices().add({tr("Pellucid ended without saving your work on %1, as of %2.")
+                                      .arg(title, QString::fromStdString(left.when)),
+                                  {{tr("Restore it"),
+                                    [this, path = left.path] {
+                                        try {
+                                            const SessionFile file = readSession(path);
+                                            if (!m_saving.maybeSave()) return offer();
+                                            m_opening.openRecovered(file);
+                                            // Once it is there again and written, this window keeps it.
+                                            connect(
+                                                &m_opening, &OpenController::opened, this,
+                                                [this, path] { m_restored.push_back(path); }, Qt::SingleShotConnection);
+                                        } catch (const Error& error) {
+                                            m_services.showError(tr("Cannot restore the work"), error);
+                                        }
+                                    }},
+                                   {tr("Discard it"), [path = left.path] { discardRecovered(path); }}}});
     }
 }
 

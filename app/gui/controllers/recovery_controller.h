@@ -11,14 +11,16 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class OpenController;
+class SaveController;
+class Services;
 
 /// Writes the session to a recovery file within two seconds of every change that is not saved, and offers at the next
 /// start what a crash left behind.
 class RecoveryController : public QObject {
     Q_OBJECT
 public:
-    explicit RecoveryController(Workbench& bench);
+    RecoveryController(Services& services, OpenController& opening, SaveController& saving);
     ~RecoveryController() override;
 
     /// Where recovery files lie for this user.
@@ -38,7 +40,9 @@ private:
     };
     void save();
 
-    Workbench& m_bench;
+    Services& m_services;
+    OpenController& m_opening;
+    SaveController& m_saving;
     std::shared_ptr<RecoveryFile> m_file; // shared with the thread that writes it
     QTimer m_timer;
     std::vector<std::string> m_restored; ///< files of others whose work is here now, until it is written

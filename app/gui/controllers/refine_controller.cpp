@@ -9,17 +9,16 @@
 #include "optimize/coverage.h"
 #include "optimize/refine/drawn_colors.h"
 #include "optimize/refine/refine_features.h"
+#include "optimize/refine/refine_live.h"
 #include "optimize/refine/refine_words.h"
 #include "optimize/refine/region_colors.h"
-#include "services/workbench.h"
-#include "view/picture_pair.h"
+#include "services/services.h"
 
 namespace pellucid::gui {
 namespace {
 
 constexpr std::size_t kMostKept = 64;    // refinements that undo and redo find again
 constexpr std::size_t kMostRegions = 16; // whose colours are kept
-constexpr double kMostGivenWay = 4;      // factor between an opacity and what one live edit makes of it
 constexpr int kLookSize = 320;           // pixels along the longer side of the picture that a region is taken from
 
 Run runOf(const Refinement& refinement) {
@@ -33,69 +32,6 @@ Run runOf(const Refinement& refinement) {
     return run;
 }
 
-/// The points whose opacity an edit has set, but for an edit that has set all of them: who holds a point keeps it.
-std::vector<std::size_t> heldPoints(const TransferFunction& before, const TransferFunction& after) {
-    const bool sameCount = before.points.size() == after.points.size();
-    std::vector<std::size_t> held;
-    std::size_t movable = 0;
-    for (std::size_t i = 0; i < after.points.size(); ++i) {
-        const ControlPoint& point = after.points[i];
-        if (point.fixed) continue;
-        ++movable;
-        const auto isSame = [&](const ControlPoint& p) { return p.x == point.x && p.opacity == point.opacity; };
-        const bool same = sameCount ? before.points[i].opacity == point.opacity
-                                    : std::any_of(before.points.begin(), before.points.end(), isSame);
-        if (!same) held.push_back(i);
-    }
-    return held.size() == movable ? std::vector<std::size_t>() : held;
-}
-
-/// liveStart() where features move as wholes: the others keep the mean opacity of all voxels.
-TransferFunction liveStartOfFeatures(const Histogram& histogram, const TransferFunction& before,
-                                     TransferFunction start) {
-    if (before.features.size() != start.features.size()) return start;
-    const std::vector<double> was = opacityParts(histogram, before), is = opacityParts(histogram, start);
-    double given = 0, others = 0;
-    for (std::size_t f = 0; f < is.size(); ++f) (isHeld(start, start.features[f]) ? given : others) += is[f];
-    for (std::size_t f = 0; f < is.size(); ++f)
-        if (isHeld(start, start.features[f])) given -= was[f];
-    if (!(others > 0)) return start;
-    const double factor = std::clamp((others - given) / others, 1 / kMostGivenWay, kMostGivenWay);
-    std::vector<double> peaks = featureOpacities(start);
-    for (std::size_t f = 0; f < peaks.size(); ++f)
-        if (!isHeld(start, start.features[f])) peaks[f] = std::min(1.0, factor * peaks[f]);
-    return withFeatureOpacities(start, peaks);
-}
-
-/// What live refinement of an edit starts from: held points are fixed, and the others have given way, or filled up, so
-/// that the total opacity is as it was; equal steps up and down keep it.
-TransferFunction liveStart(const Histogram& histogram, const TransferFunction& before, const TransferFunction& after,
-                           const std::vector<std::size_t>& held) {
-    TransferFunction start = after;
-    for (const std::size_t i : held) start.points[i].fixed = true;
-    if (held.empty()) return start;
-    if (movesFeatures(after)) return liveStartOfFeatures(histogram, before, std::move(start));
-    if (before.points.size() != after.points.size()) return start;
-    double given = 0, others = 0;
-    for (const std::size_t i : held) given += after.points[i].opacity - before.points[i].opacity;
-    for (const ControlPoint& point : start.points)
-        if (!point.fixed) others += point.opacity;
-    if (!(others > 0)) return start;
-    const double factor = std::clamp((others - given) / others, 1 / kMostGivenWay, kMostGivenWay);
-    for (ControlPoint& point : start.points)
-        if (!point.fixed) point.opacity = std::min(1.0, factor * point.opacity);
-    return start;
-}
-
-/// Whether refinement may come out another way.
-bool hasMoved(const TransferFunction& before, const TransferFunction& after, bool colorsCount) {
-    return !std::equal(before.points.begin(), before.points.end(), after.points.begin(), after.points.end(),
-                       [&](const ControlPoint& a, const ControlPoint& b) {
-                           return a.x == b.x && a.opacity == b.opacity && a.fixed == b.fixed &&
-                                  (!colorsCount || a.color == b.color);
-                       });
-}
-
 } // namespace
 
 QString evennessText(double energyBefore, double energyAfter) {
@@ -105,8 +41,8 @@ QString evennessText(double energyBefore, double energyAfter) {
         .arg(ratio < 100 ? QString::number(ratio, 'g', 3) : QStringLiteral("%L1").arg(std::lround(ratio)));
 }
 
-RefineController::RefineController(Workbench& bench)
-    : m_bench(bench), m_renderer(std::make_shared<KeptRenderer>()),
+RefineController::RefineController(Services& services, OptimizeController& optimizing)
+    : m_services(services), m_optimizing(optimizing), m_renderer(std::make_shared<KeptRenderer>()),
       m_look(
           [renderer = m_renderer](const Look& look, const JobControl& job) {
               return regionColors(renderer->render(look.picture, job), look.region);
@@ -138,7 +74,7 @@ RefineController::RefineController(Workbench& bench)
                   say(QString::fromStdString(darkeningText(*dark)));
               Q_EMIT refined();
           }) {
-    bench.store().setConsequence(
+    services.store().setConsequence(
         [this](const Scene& before, const Scene& after, Session& session) { return follow(before, after, session); });
     connect(&m_look, &JobBase::busyChanged, this, &RefineController::busyChanged);
     connect(&m_look, &JobBase::cancelled, this, [this] { m_pending.reset(); });
@@ -148,13 +84,13 @@ RefineController::RefineController(Workbench& bench)
                 .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.whatToDo())));
         Q_EMIT busyChanged();
     });
-    connect(&bench.store(), &SessionStore::historyChanged, this, [this] {
-        if (m_bench.store().isPreviewing()) return;
+    connect(&services.store(), &SessionStore::historyChanged, this, [this] {
+        if (m_services.store().isPreviewing()) return;
         m_latestIsPreview = false;
         m_dragStart.reset(); // whoever has ended the preview has ended the drag
         examine();
     });
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume) {
             m_look.cancel();
             m_examine.cancel();
@@ -167,78 +103,83 @@ RefineController::RefineController(Workbench& bench)
     });
 }
 
-RefineController::~RefineController() { m_bench.store().setConsequence({}); }
+RefineController::~RefineController() { m_services.store().setConsequence({}); }
 
 void RefineController::addActions() {
     const QString menu = tr("&Transfer function");
-    Actions& actions = m_bench.actions();
-    const auto ready = [this] { return isReady(); };
-    const auto settings = [this]() -> const RefineSettings& { return *m_bench.store().session().refine; };
-    actions.add({.id = "refineAction",
-                 .menu = menu,
-                 .text = tr("&Refine by entropy"),
-                 .keys = {QKeySequence("Ctrl+R")},
-                 .tip = tr("Opacities by entropy: values that are common get less, rare ones more; with a priority, "
-                           "what is like it gets more"),
-                 .trigger = [this] { refine(); },
-                 .enabled = ready,
-                 .separatorBefore = true});
-    actions.add({.id = "liveRefineAction",
-                 .menu = menu,
-                 .text = tr("Refine &live"),
-                 .tip = tr("Refine after every edit; what you move stays where you put it, the other points give way"),
-                 .trigger =
-                     [this] {
-                         m_bench.store().edit(tr("Live refinement"), {}, [](Session& session) {
-                             session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
-                             if (session.refine->live) session.holdTargets = false; // both set opacities
-                         });
-                     },
-                 .enabled = ready,
-                 .checked = [settings] { return settings().live; }});
+    Actions& actions = m_services.actions();
+    const auto ready = [this] { return m_services.isEditable(); };
+    const auto settings = [this]() -> const RefineSettings& { return *m_services.store().session().refine; };
+    m_actions.refine = actions.add(
+        {.id = "refineAction",
+         .menu = menu,
+         .text = tr("&Refine by entropy"),
+         .keys = {QKeySequence("Ctrl+R")},
+         .tip = tr("Opacities by entropy: values that are common get less, rare ones more; with a priority, "
+                   "what is like it gets more"),
+         .trigger = [this] { refine(); },
+         .enabled = ready,
+         .separatorBefore = true});
+    m_actions.live = actions.add(
+        {.id = "liveRefineAction",
+         .menu = menu,
+         .text = tr("Refine &live"),
+         .tip = tr("Refine after every edit; what you move stays where you put it, the other points give way"),
+         .trigger =
+             [this] {
+                 m_services.store().edit(tr("Live refinement"), {}, [](Session& session) {
+                     session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
+                     if (session.refine->live) session.holdTargets = false; // both set opacities
+                 });
+             },
+         .enabled = ready,
+         .checked = [settings] { return settings().live; }});
     const auto select = [&](const char* id, const QString& text, const char* keys, const QString& tip, Selecting what) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .keys = {QKeySequence(keys)},
-                     .tip = tip,
-                     .trigger = [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); },
-                     .enabled = ready,
-                     .checked = [this, what] { return m_selecting == what; },
-                     .inToolBar = true});
+        return actions.add({.id = id,
+                            .menu = menu,
+                            .text = text,
+                            .keys = {QKeySequence(keys)},
+                            .tip = tip,
+                            .trigger = [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); },
+                            .enabled = ready,
+                            .checked = [this, what] { return m_selecting == what; },
+                            .inToolBar = true});
     };
-    select("rectangleAction", tr("Select re&ctangle"), "Shift+R",
-           tr("Draw a rectangle in the picture: what has its colours becomes more opaque, everything else less"),
-           Selecting::Rectangle);
-    select("lassoAction", tr("Select with la&sso"), "Shift+L",
-           tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
-           Selecting::Lasso);
-    actions.add({.id = "prioritizeNothingAction",
-                 .menu = menu,
-                 .text = tr("Prioritize &nothing"),
-                 .tip = tr("Forget the intensity or region that refinement brings out; opacities stay"),
-                 .trigger = [this] { prioritizeNothing(); },
-                 .enabled = [this, settings] { return isReady() && (settings().intensity || settings().region); }});
-    actions.add({.id = "ghostAction",
-                 .menu = menu,
-                 .text = tr("&Ghost of the curve before"),
-                 .tip = tr("Behind the curve: what it was before the latest refinement"),
-                 .trigger = [this] { setGhostShown(!m_ghost); },
-                 .checked = [this] { return m_ghost; }});
-    actions.add({.id = "sideBySideAction",
-                 .menu = menu,
-                 .text = tr("Before and after, side by &side…"),
-                 .tip = tr("The picture before and after the latest refinement, from the present camera"),
-                 .trigger = [this] { showPicturePair(m_bench); },
-                 .enabled = [this] { return m_bench.store().hasVolume() && latest() != nullptr; }});
+    m_actions.rectangle =
+        select("rectangleAction", tr("Select re&ctangle"), "Shift+R",
+               tr("Draw a rectangle in the picture: what has its colours becomes more opaque, everything else less"),
+               Selecting::Rectangle);
+    m_actions.lasso =
+        select("lassoAction", tr("Select with la&sso"), "Shift+L",
+               tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
+               Selecting::Lasso);
+    m_actions.nothing = actions.add(
+        {.id = "prioritizeNothingAction",
+         .menu = menu,
+         .text = tr("Prioritize &nothing"),
+         .tip = tr("Forget the intensity or region that refinement brings out; opacities stay"),
+         .trigger = [this] { prioritizeNothing(); },
+         .enabled = [this,
+                     settings] { return m_services.isEditable() && (settings().intensity || settings().region); }});
+    m_actions.ghost = actions.add({.id = "ghostAction",
+                                   .menu = menu,
+                                   .text = tr("&Ghost of the curve before"),
+                                   .tip = tr("Behind the curve: what it was before the latest refinement"),
+                                   .trigger = [this] { setGhostShown(!m_ghost); },
+                                   .checked = [this] { return m_ghost; }});
+    m_actions.pair =
+        actions.add({.id = "sideBySideAction",
+                     .menu = menu,
+                     .text = tr("Before and after, side by &side…"),
+                     .tip = tr("The picture before and after the latest refinement, from the present camera"),
+                     .trigger = [this] { Q_EMIT pairWanted(); },
+                     .enabled = [this] { return m_services.store().hasVolume() && latest() != nullptr; }});
     connect(this, &RefineController::refined, &actions, &Actions::refresh);
     connect(this, &RefineController::selectingChanged, &actions, &Actions::refresh);
     const QString volume = tr("Volume");
     actions.addGestures({{volume, tr("Drag a corner, an edge or the inside of a selection"), tr("change it, move it")},
                          {volume, tr("Delete or Esc, with a selection"), tr("remove it")}});
 }
-
-bool RefineController::isReady() const { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); }
 
 const std::vector<RegionColor>* RefineController::colorsOf(const ImageRegion& region) const {
     for (const auto& [known, colors] : m_colors)
@@ -258,27 +199,27 @@ std::optional<RefinePriority> RefineController::priorityOf(const RefineSettings&
 }
 
 RefineOptions RefineController::options() const {
-    const RefineSettings& settings = *m_bench.store().session().refine;
+    const RefineSettings& settings = *m_services.store().session().refine;
     RefineOptions options = settings.options();
     options.priority = priorityOf(settings).value_or(RefinePriority());
     return options;
 }
 
 const Refinement* RefineController::current() const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     for (auto r = m_kept.rbegin(); r != m_kept.rend(); ++r)
-        if (r->volume == scene.volume && !hasMoved(r->after, scene.tf, true)) return &*r;
+        if (r->volume == scene.volume && !refinesOtherwise(r->after, scene.tf, true)) return &*r;
     return nullptr;
 }
 
 const Refinement* RefineController::latest() const {
     if (const Refinement* now = current()) return now;
-    return m_kept.empty() || m_kept.back().volume != m_bench.scene().volume ? nullptr : &m_kept.back();
+    return m_kept.empty() || m_kept.back().volume != m_services.scene().volume ? nullptr : &m_kept.back();
 }
 
 TransferFunction RefineController::startOfPriority() const {
     const Refinement* now = current();
-    return now != nullptr && now->options.priority.any() ? now->before : m_bench.scene().tf;
+    return now != nullptr && now->options.priority.any() ? now->before : m_services.scene().tf;
 }
 
 Refinement RefineController::refineFrom(const TransferFunction& before, const TransferFunction& start,
@@ -301,14 +242,14 @@ Refinement RefineController::refineFrom(const TransferFunction& before, const Tr
 
 void RefineController::keep(Refinement refinement) {
     if (m_latestIsPreview && !m_kept.empty()) m_kept.pop_back();
-    m_latestIsPreview = m_bench.store().isPreviewing();
+    m_latestIsPreview = m_services.store().isPreviewing();
     m_kept.push_back(std::move(refinement));
     if (m_kept.size() > kMostKept) m_kept.pop_front();
 }
 
 void RefineController::say(const QString& text) {
-    m_bench.optimizing().say(text);
-    Q_EMIT m_bench.message(text);
+    m_optimizing.say(text);
+    Q_EMIT m_services.message(text);
 }
 
 void RefineController::sayRefined(const Refinement& refinement) {
@@ -323,14 +264,14 @@ void RefineController::sayRefined(const Refinement& refinement) {
 
 void RefineController::examine() {
     const Refinement* now = current();
-    if (now == nullptr || !m_bench.scene().histogram || m_examined == now->after) return;
+    if (now == nullptr || !m_services.scene().histogram || m_examined == now->after) return;
     m_examined = now->after;
-    m_examine.start({m_bench.scene(), *now}, tr("the picture of the refinement"));
+    m_examine.start({m_services.scene(), *now}, tr("the picture of the refinement"));
 }
 
 void RefineController::takeHelp() {
     const Refinement* now = current();
-    if (!isReady() || now == nullptr || !now->dark || now->dark->help == Darkening::Help::None) return;
+    if (!m_services.isEditable() || now == nullptr || !now->dark || now->dark->help == Darkening::Help::None) return;
     const bool exact = now->dark->help == Darkening::Help::Exact;
     const int iterations = now->dark->iterations;
     RefineOptions by = now->options;
@@ -339,10 +280,10 @@ void RefineController::takeHelp() {
     else
         by.maxIterations = iterations;
     try {
-        Refinement r = refineFrom(now->before, now->start, m_bench.scene(), by);
+        Refinement r = refineFrom(now->before, now->start, m_services.scene(), by);
         const QScopedValueRollback quiet(m_quiet, true);
         keep(r);
-        m_bench.store().edit(tr("Refine, keeping the picture visible"), {}, [&](Session& session) {
+        m_services.store().edit(tr("Refine, keeping the picture visible"), {}, [&](Session& session) {
             session.refine.edit([&](RefineSettings& s) {
                 if (exact)
                     s.method = RefineMethod::Exact;
@@ -354,13 +295,13 @@ void RefineController::takeHelp() {
         });
         sayRefined(r);
     } catch (const Error& error) {
-        m_bench.showError(tr("Refinement failed"), error);
+        m_services.showError(tr("Refinement failed"), error);
     }
 }
 
 void RefineController::refine() {
-    SessionStore& store = m_bench.store();
-    if (!isReady() || !store.scene().histogram) return;
+    SessionStore& store = m_services.store();
+    if (!m_services.isEditable() || !store.scene().histogram) return;
     store.commit();
     const RefineSettings& settings = *store.session().refine;
     if (!priorityOf(settings)) return look(*settings.region, tr("Refine"));
@@ -375,21 +316,21 @@ void RefineController::refine() {
         });
         sayRefined(r);
     } catch (const Error& error) {
-        m_bench.showError(tr("Refinement failed"), error);
+        m_services.showError(tr("Refinement failed"), error);
     }
 }
 
 void RefineController::prioritize(double x, const QString& mergeKey) {
-    if (!isReady() || m_dragStart) return;
+    if (!m_services.isEditable() || m_dragStart) return;
     dragPriority(x);
     m_dragStart.reset();
-    m_bench.store().commit(mergeKey);
+    m_services.store().commit(mergeKey);
     if (const Refinement* now = current()) sayRefined(*now);
 }
 
 void RefineController::dragPriority(double x) {
-    SessionStore& store = m_bench.store();
-    if (!isReady() || !store.scene().histogram) return;
+    SessionStore& store = m_services.store();
+    if (!m_services.isEditable() || !store.scene().histogram) return;
     if (!m_dragStart) {
         store.commit();
         m_dragStart = startOfPriority();
@@ -412,14 +353,14 @@ void RefineController::dragPriority(double x) {
         Q_EMIT refined();
     } catch (const Error& error) {
         cancelDrag();
-        m_bench.showError(tr("Refinement failed"), error);
+        m_services.showError(tr("Refinement failed"), error);
     }
 }
 
 void RefineController::endDrag() {
     if (!m_dragStart) return;
     m_dragStart.reset();
-    m_bench.store().commit();
+    m_services.store().commit();
     if (const Refinement* now = current()) sayRefined(*now);
 }
 
@@ -428,16 +369,16 @@ void RefineController::cancelDrag() {
     m_dragStart.reset();
     if (m_latestIsPreview && !m_kept.empty()) m_kept.pop_back();
     m_latestIsPreview = false;
-    m_bench.store().cancel();
+    m_services.store().cancel();
 }
 
 std::optional<ImageRegion> RefineController::region() const {
-    return m_pending ? m_pending : m_bench.store().session().refine->region;
+    return m_pending ? m_pending : m_services.store().session().refine->region;
 }
 
 void RefineController::prioritize(const ImageRegion& region, const QString& text) {
-    if (!isReady()) return;
-    m_bench.store().commit();
+    if (!m_services.isEditable()) return;
+    m_services.store().commit();
     look(region, text);
 }
 
@@ -445,14 +386,15 @@ void RefineController::look(const ImageRegion& region, const QString& text) {
     m_pending = region;
     const double longer = std::max({m_viewSize.width(), m_viewSize.height(), 1});
     const auto pixels = [&](int side) { return std::max(1, static_cast<int>(side * kLookSize / longer + 0.5)); };
-    PictureInput picture = plainPictureInput(m_bench.scene(), pixels(m_viewSize.width()), pixels(m_viewSize.height()));
+    PictureInput picture =
+        plainPictureInput(m_services.scene(), pixels(m_viewSize.width()), pixels(m_viewSize.height()));
     m_look.start({std::move(picture), region, text}, tr("the region"));
     Q_EMIT busyChanged();
 }
 
 void RefineController::refineForRegion(const Look& look) {
-    SessionStore& store = m_bench.store();
-    if (!isReady() || !store.scene().histogram) return;
+    SessionStore& store = m_services.store();
+    if (!m_services.isEditable() || !store.scene().histogram) return;
     store.commit();
     try {
         RefineOptions by = options();
@@ -473,14 +415,14 @@ void RefineController::refineForRegion(const Look& look) {
         sayRefined(r);
         Q_EMIT refined();
     } catch (const Error& error) {
-        m_bench.showError(tr("Refinement failed"), error);
+        m_services.showError(tr("Refinement failed"), error);
     }
 }
 
 void RefineController::prioritizeNothing() {
-    if (!isReady()) return;
+    if (!m_services.isEditable()) return;
     m_look.cancel();
-    m_bench.store().edit(tr("Prioritize nothing"), {}, [](Session& session) {
+    m_services.store().edit(tr("Prioritize nothing"), {}, [](Session& session) {
         session.refine.edit([](RefineSettings& r) {
             r.intensity.reset();
             r.region.reset();
@@ -492,8 +434,9 @@ void RefineController::prioritizeNothing() {
 void RefineController::setSelecting(Selecting what) {
     if (what == m_selecting) return;
     m_selecting = what;
-    if (what == Selecting::Rectangle) Q_EMIT m_bench.message(tr("Drag a rectangle over what shall stand out; Esc: no"));
-    if (what == Selecting::Lasso) Q_EMIT m_bench.message(tr("Draw round what shall stand out; Esc: no"));
+    if (what == Selecting::Rectangle)
+        Q_EMIT m_services.message(tr("Drag a rectangle over what shall stand out; Esc: no"));
+    if (what == Selecting::Lasso) Q_EMIT m_services.message(tr("Draw round what shall stand out; Esc: no"));
     Q_EMIT selectingChanged();
 }
 
@@ -506,14 +449,14 @@ void RefineController::setGhostShown(bool shown) {
 // Live: after every edit that refinement may answer differently, as part of it.
 QString RefineController::follow(const Scene& before, const Scene& after, Session& session) {
     const RefineSettings& settings = *after.session.refine;
-    if (m_quiet || !settings.live || after.session.holdTargets || !isReady() || !after.histogram ||
+    if (m_quiet || !settings.live || after.session.holdTargets || !m_services.isEditable() || !after.histogram ||
         before.data != after.data)
         return {};
     // An optimization has found what it was asked for.
-    if (m_bench.optimizing().isAnswering() || before.session.frame != after.session.frame) return {};
+    if (m_optimizing.isAnswering() || before.session.frame != after.session.frame) return {};
     const auto was = before.session.tf(), is = after.session.tf();
     if (was == nullptr || is == nullptr) return {};
-    const bool edited = hasMoved(*was, *is, settings.region.has_value());
+    const bool edited = refinesOtherwise(*was, *is, settings.region.has_value());
     if (!edited && before.session.refine == after.session.refine) return {};
     const auto priority = priorityOf(settings);
     if (!priority) {

@@ -14,9 +14,12 @@
 #include "session/scene.h"
 #include "widgets/kept_renderer.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
-class Workbench;
+class OptimizeController;
+class Services;
 
 /// One refinement, with all that is told of it.
 struct Refinement {
@@ -30,6 +33,10 @@ struct Refinement {
     std::optional<Darkening> dark; ///< looked for after the edit is done
 };
 
+struct RefineActions {
+    QAction *refine, *live, *rectangle, *lasso, *nothing, *ghost, *pair;
+};
+
 /// Settings and priority are those of Session::refine. Every refinement is one undo step; a live one is part of the
 /// step that it follows.
 ///
@@ -38,10 +45,11 @@ struct Refinement {
 class RefineController : public QObject {
     Q_OBJECT
 public:
-    explicit RefineController(Workbench& bench);
+    RefineController(Services& services, OptimizeController& optimizing);
     ~RefineController() override;
 
     void addActions();
+    const RefineActions& actions() const { return m_actions; }
 
     void refine(); ///< with the present settings and priority
     /// In place of current(), whose picture is dark: what Darkening::help says, from the same start.
@@ -82,6 +90,7 @@ Q_SIGNALS:
     void busyChanged(); ///< isBusy() or region() may have changed
     void selectingChanged();
     void ghostChanged();
+    void pairWanted(); ///< both pictures, side by side
 
 private:
     struct Look {
@@ -96,7 +105,6 @@ private:
     };
 
     QString follow(const Scene& before, const Scene& after, Session& session);
-    bool isReady() const;
     TransferFunction startOfPriority() const;
     const std::vector<RegionColor>* colorsOf(const ImageRegion& region) const;
     /// Empty: the colours of the region are not known yet.
@@ -111,7 +119,9 @@ private:
     void say(const QString& text);
     void examine(); ///< whether the picture of current() is dark
 
-    Workbench& m_bench;
+    Services& m_services;
+    OptimizeController& m_optimizing;
+    RefineActions m_actions;
     std::deque<Refinement> m_kept;  ///< the latest last
     bool m_latestIsPreview = false; ///< the next one of the same preview takes its place
     bool m_quiet = false;           ///< what happens is refinement: nothing follows of it

@@ -9,12 +9,13 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class FieldController;
+class Services;
 
 class SaveController : public QObject {
     Q_OBJECT
 public:
-    explicit SaveController(Workbench& bench);
+    SaveController(Services& services, FieldController& fields);
     ~SaveController() override;
 
     void addActions();
@@ -32,6 +33,11 @@ public:
     /// Pixels of the view on the screen, which are offered first for pictures.
     void setSeenSize(const QSize& pixels) { m_seen = pixels; }
 
+    const QString& tfPath() const { return m_tfPath; } ///< of the transfer function that is open; empty: of no file
+    void setTfPath(const QString& path) { m_tfPath = path; }
+    const QString& sessionPath() const { return m_sessionPath; }
+    void setSessionPath(const QString& path);
+
     bool isBusy() const { return m_images.isRunning() || m_reports.isRunning(); }
     const QString& busyText() const { return m_busyText; }
     void cancel() {
@@ -46,6 +52,7 @@ Q_SIGNALS:
     void reportSaved(const QString& folder);
     void sessionSaved();
     void cancelled();
+    void sessionPathChanged();
 
 private:
     struct Picture {
@@ -63,8 +70,9 @@ private:
     bool chooseTf(bool askForName);
     void chooseImage();
 
-    Workbench& m_bench;
-    QString m_busyText;
+    Services& m_services;
+    FieldController& m_fields;
+    QString m_tfPath, m_sessionPath, m_busyText;
     QSize m_seen;
     Job<Picture, QString> m_images;
     Job<ReportTask, QString> m_reports;

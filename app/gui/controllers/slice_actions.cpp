@@ -1,12 +1,11 @@
-#include "controllers/slice_actions.h"
+#include "controllers/menu_actions.h"
 
 #include <QIcon>
 #include <QPainter>
 #include <QPixmap>
 
-#include <glm/common.hpp>
-
-#include "services/workbench.h"
+#include "services/services.h"
+#include "store/view_edits.h"
 
 namespace pellucid::gui {
 namespace {
@@ -53,37 +52,11 @@ QIcon iconOf(Layout layout) {
 
 } // namespace
 
-Vec3 crosshairOf(const Scene& scene) {
-    const Int3 dims = scene.volume->dims();
-    return glm::clamp(scene.session.slices->crosshair.value_or(Vec3(dims / 2)), Vec3(0), Vec3(dims) - 1.0);
-}
-
-ValueRange greyWindowOf(const Scene& scene) { return scene.session.slices->window.value_or(scene.volume->range()); }
-
-void moveCrosshair(SessionStore& store, const Vec3& voxel) {
-    if (!store.hasVolume()) return;
-    store.setCrosshair(glm::clamp(glm::floor(voxel + 0.5), Vec3(0), Vec3(store.scene().volume->dims()) - 1.0));
-}
-
-void moveCrosshairToWorld(SessionStore& store, const Vec3& world) {
-    if (store.hasVolume()) moveCrosshair(store, store.scene().volume->geometry().voxelFromWorld(world));
-}
-
-void setLayout(SessionStore& store, Layout layout) {
-    store.edit(QObject::tr("Layout"), {},
-               [layout](Session& session) { session.slices.edit([layout](SliceViews& s) { s.layout = layout; }); });
-}
-
-void resetGreyWindow(SessionStore& store) {
-    store.edit(QObject::tr("Reset the window of grey"), {},
-               [](Session& session) { session.slices.edit([](SliceViews& s) { s.window.reset(); }); });
-}
-
-void addSliceActions(Workbench& bench) {
-    SessionStore& store = bench.store();
-    Actions& actions = bench.actions();
+void addSliceActions(Services& services) {
+    SessionStore& store = services.store();
+    Actions& actions = services.actions();
     const QString menu = QObject::tr("&View") + "/" + QObject::tr("La&yout");
-    const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
+    const auto editable = [&services] { return services.isEditable(); };
     struct Texts {
         Layout layout;
         QString id, text, tip;

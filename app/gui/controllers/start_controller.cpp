@@ -1,7 +1,7 @@
 #include "controllers/start_controller.h"
 
 #include "controllers/open_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_text.h"
 
 namespace pellucid::gui {
@@ -52,38 +52,42 @@ QString beyondText(const Proposal& proposal, const ValueRange& data) {
         .arg(rangeText(window), percentText(proposal.outside), ends);
 }
 
-StartController::StartController(Workbench& bench)
-    : m_bench(bench), m_tuning([](const Scene& scene, const JobControl& job) { return tunedStart(scene, job); },
-                               [this](const Scene& scene, FirstSight& start) { showTuned(scene, start); }),
+StartController::StartController(Services& services, OpenController& opening)
+    : m_services(services), m_opening(opening),
+      m_tuning([](const Scene& scene, const JobControl& job) { return tunedStart(scene, job); },
+               [this](const Scene& scene, FirstSight& start) { showTuned(scene, start); }),
       m_again([](const Request& request,
                  const JobControl& job) { return automaticStart(request.scene, request.view, job); },
               [this](const Request& request, AutomaticStart& start) {
-                  if (request.scene.data != m_bench.scene().data || m_bench.isReadOnly()) return;
+                  if (request.scene.data != m_services.scene().data || m_services.isReadOnly()) return;
                   const auto change = [window = start.window, sight = start.sight](Session& session) {
                       session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
                       setStart(session, sight);
                   };
-                  m_bench.opening().editData(tr("Automatic start"), change,
-                                             [this, proposal = start.proposal] { say(proposal); });
+                  m_opening.editData(tr("Automatic start"), change,
+                                     [this, proposal = start.proposal] { say(proposal); });
               }) {
+    connect(&opening, &OpenController::opened, this, &StartController::follow);
+    connect(&opening, &OpenController::automaticStartWanted, this, &StartController::startAgain);
     connect(&m_tuning, &JobBase::busyChanged, this, &StartController::busyChanged);
     connect(&m_again, &JobBase::busyChanged, this, &StartController::busyChanged);
     connect(&m_again, &JobBase::failed, this,
-            [this](const Error& error) { m_bench.showError(tr("Automatic start failed"), error); });
+            [this](const Error& error) { m_services.showError(tr("Automatic start failed"), error); });
 }
 
 StartController::~StartController() = default;
 
 void StartController::addActions() {
-    m_bench.actions().add({.id = "automaticStartAction",
-                           .menu = tr("&Transfer function"),
-                           .text = tr("&Automatic start"),
-                           .tip = tr("Window and features from the data, opacities for this view"),
-                           .trigger = [this] { startAgain(); },
-                           .enabled = [this] { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); }});
+    m_services.actions().add({.id = "automaticStartAction",
+                              .menu = tr("&Transfer function"),
+                              .text = tr("&Automatic start"),
+                              .tip = tr("Window and features from the data, opacities for this view"),
+                              .trigger = [this] { startAgain(); },
+                              .enabled = [this] { return m_services.isEditable(); }});
 }
 
-void StartController::follow(const Scene& scene) {
+void StartController::follow() {
+    const Scene& scene = m_services.scene();
     m_tuning.cancel();
     m_again.cancel();
     if (!scene.proposal) return;
@@ -92,9 +96,9 @@ void StartController::follow(const Scene& scene) {
 }
 
 void StartController::startAgain() {
-    if (!m_bench.store().hasVolume() || m_bench.isReadOnly()) return;
-    m_bench.store().commit();
-    const Scene& scene = m_bench.scene();
+    if (!m_services.isEditable()) return;
+    m_services.store().commit();
+    const Scene& scene = m_services.scene();
     m_again.start({scene, {scene.camera, *scene.session.clipping}}, QString::fromStdString(scene.volume->title));
 }
 
@@ -104,21 +108,21 @@ void StartController::cancel() {
 }
 
 void StartController::say(const Proposal& proposal) {
-    if (const QString text = recognisedText(proposal); !text.isEmpty()) m_bench.notices().add({text, {}});
-    const QString beyond = beyondText(proposal, m_bench.scene().data->dataRange());
+    if (const QString text = recognisedText(proposal); !text.isEmpty()) m_services.notices().add({text, {}});
+    const QString beyond = beyondText(proposal, m_services.scene().data->dataRange());
     if (beyond.isEmpty()) return;
-    m_bench.notices().add({beyond, {{tr("Show full range"), [this] {
-                                         m_bench.opening().editData(tr("Full range"), [](Session& session) {
-                                             session.variables.edit(
-                                                 [](std::vector<Variable>& all) { all.front().window.reset(); });
-                                         });
-                                     }}}});
+    m_services.notices().add({beyond, {{tr("Show full range"), [this] {
+                                            m_opening.editData(tr("Full range"), [](Session& session) {
+                                                session.variables.edit(
+                                                    [](std::vector<Variable>& all) { all.front().window.reset(); });
+                                            });
+                                        }}}});
 }
 
 void StartController::showTuned(const Scene& scene, const FirstSight& start) {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     // Whoever has a hand in it keeps what he has.
-    if (store.scene().data != scene.data || store.isPreviewing() || m_bench.isReadOnly() ||
+    if (store.scene().data != scene.data || store.isPreviewing() || m_services.isReadOnly() ||
         store.session().tf() != scene.session.tf() || store.scene().volume != scene.volume)
         return;
     const bool clean = store.isClean();

@@ -8,19 +8,18 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class OpenController;
+class Services;
 
 /// After a volume has been opened under a proposed transfer function its opacities are tuned beside the first picture,
 /// and come as one step, "Automatic opacities", unless the transfer function has been edited meanwhile.
 class StartController : public QObject {
     Q_OBJECT
 public:
-    explicit StartController(Workbench& bench);
+    StartController(Services& services, OpenController& opening);
     ~StartController() override;
 
     void addActions();
-    /// `scene` has just been opened: says what was recognised where it has a proposal, and tunes its opacities.
-    void follow(const Scene& scene);
     /// Once more, from the present data and view: one step.
     void startAgain();
 
@@ -35,10 +34,13 @@ private:
         Scene scene;
         View view; ///< of startAgain()
     };
+    /// A scene has just been opened: says what was recognised where it has a proposal, and tunes its opacities.
+    void follow();
     void say(const Proposal& proposal);
     void showTuned(const Scene& scene, const FirstSight& start);
 
-    Workbench& m_bench;
+    Services& m_services;
+    OpenController& m_opening;
     Job<Scene, FirstSight> m_tuning;
     Job<Request, AutomaticStart> m_again;
 };

@@ -1,16 +1,27 @@
 // What the menu of targets does: presets of all targets, locks of one.
 #pragma once
 
-class QMenu;
+#include <QList>
+
+class QAction;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
-void addTargetActions(Workbench& bench);
-/// The entries of the menu of targets.
-void fillTargetMenu(QMenu& menu, Workbench& bench);
-/// Those of a feature's opacity in an optimization: lock and limits.
-void fillLimitsMenu(QMenu& menu, Workbench& bench);
+class TargetActions {
+public:
+    explicit TargetActions(Services& services) : m_services(services) {}
+    void addActions();
+
+    /// The entries of the menu of targets.
+    const QList<QAction*>& entries() const { return m_entries; }
+    /// Those of a feature's opacity in an optimization: lock and limits.
+    const QList<QAction*>& limits() const { return m_limits; }
+
+private:
+    Services& m_services;
+    QList<QAction*> m_entries, m_limits;
+};
 
 } // namespace pellucid::gui

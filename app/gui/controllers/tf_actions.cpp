@@ -1,6 +1,6 @@
-#include "controllers/tf_actions.h"
+#include "controllers/menu_actions.h"
 
-#include "services/workbench.h"
+#include "services/services.h"
 #include "store/edits.h"
 #include "tf/transfer_function.h"
 
@@ -11,9 +11,9 @@ QString menuName() { return QObject::tr("&Transfer function"); }
 
 } // namespace
 
-void addTfActions(Workbench& bench) {
-    Actions& actions = bench.actions();
-    const auto editable = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); };
+void addTfActions(Services& services) {
+    Actions& actions = services.actions();
+    const auto editable = [&services] { return services.isEditable(); };
     const auto add = [&](const QString& id, const QString& menu, const QString& text, const QString& tip,
                          bool separator, std::function<void()> trigger) {
         actions.add({.id = id,
@@ -33,13 +33,13 @@ void addTfActions(Workbench& bench) {
                                                   : QObject::tr("%1 tents, one feature each").arg(number))
                                  : QObject::tr("Ramp of %1 points, one feature").arg(number);
         add(name, presets, text, {}, false,
-            [&bench, name] { editTf(bench.store(), *tfFromSpec(name.toStdString()), name); });
+            [&services, name] { editTf(services.store(), *tfFromSpec(name.toStdString()), name); });
     }
     add("deriveFeaturesAction", menuName(), QObject::tr("&Features from the curve"),
-        QObject::tr("One feature for each interval of the curve between two points of opacity 0"), true, [&bench] {
-            TransferFunction tf = bench.scene().tf;
+        QObject::tr("One feature for each interval of the curve between two points of opacity 0"), true, [&services] {
+            TransferFunction tf = services.scene().tf;
             tf.features = deriveFeatures(tf);
-            editTf(bench.store(), tf, QObject::tr("Features from the curve"));
+            editTf(services.store(), tf, QObject::tr("Features from the curve"));
         });
 }
 

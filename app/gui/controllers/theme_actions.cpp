@@ -1,9 +1,9 @@
-#include "controllers/theme_actions.h"
+#include "controllers/menu_actions.h"
 
 #include <QApplication>
 #include <QSettings>
 
-#include "services/workbench.h"
+#include "services/services.h"
 
 namespace pellucid::gui {
 namespace {
@@ -14,7 +14,7 @@ const QString kSetting = QStringLiteral("theme");
 
 Theme keptTheme() { return findNamed<Theme>(QSettings().value(kSetting).toString().toStdString()).value_or(Theme::Dark); }
 
-void addThemeActions(Workbench& bench) {
+void addThemeActions(Services& services) {
     struct Texts {
         Theme theme;
         QString id, text, tip;
@@ -25,16 +25,16 @@ void addThemeActions(Workbench& bench) {
         {Theme::System, "themeSystemAction", QObject::tr("As the &system"),
          QObject::tr("Dark or light, as the desktop is")}};
     for (const Texts& t : all)
-        bench.actions().add({.id = t.id,
-                             .menu = QObject::tr("&View") + "/" + QObject::tr("&Theme"),
-                             .text = t.text,
-                             .tip = t.tip,
-                             .trigger =
-                                 [theme = t.theme] {
-                                     QSettings().setValue(kSetting, name(theme));
-                                     applyTheme(*qApp, theme);
-                                 },
-                             .checked = [theme = t.theme] { return appliedTheme() == theme; }});
+        services.actions().add({.id = t.id,
+                                .menu = QObject::tr("&View") + "/" + QObject::tr("&Theme"),
+                                .text = t.text,
+                                .tip = t.tip,
+                                .trigger =
+                                    [theme = t.theme] {
+                                        QSettings().setValue(kSetting, name(theme));
+                                        applyTheme(*qApp, theme);
+                                    },
+                                .checked = [theme = t.theme] { return appliedTheme() == theme; }});
 }
 
 } // namespace pellucid::gui

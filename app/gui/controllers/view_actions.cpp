@@ -1,7 +1,6 @@
-#include "controllers/view_actions.h"
-
-#include "render/camera_motion.h"
-#include "services/workbench.h"
+#include "controllers/menu_actions.h"
+#include "services/services.h"
+#include "store/view_edits.h"
 
 namespace pellucid::gui {
 namespace {
@@ -51,35 +50,9 @@ QString tipOf(StandardView view, Frame frame) {
 
 } // namespace
 
-void fitView(SessionStore& store) {
-    if (store.hasVolume()) store.setCamera(fitted(store.scene().camera, store.scene().volume->geometry()));
-}
-
-void resetView(SessionStore& store) {
-    if (store.hasVolume())
-        store.setCamera(homeCamera(store.scene().volume->geometry(), store.scene().camera.projection));
-}
-
-void setStandardView(SessionStore& store, StandardView view) {
-    if (!store.hasVolume()) return;
-    const Geometry& geometry = store.scene().volume->geometry();
-    const ViewAngles angles = anglesOf(view, geometry.frame);
-    store.setCamera(standardCamera(geometry, angles.azimuth, angles.elevation, store.scene().camera.projection));
-}
-
-void setProjection(SessionStore& store, Projection projection) {
-    if (!store.hasVolume()) return;
-    store.setCamera(withProjection(store.scene().camera, store.scene().volume->geometry(), projection));
-}
-
-void zoomView(SessionStore& store, double factor, int gesture) {
-    if (store.hasVolume())
-        store.setCamera(zoomed(store.scene().camera, store.scene().volume->geometry(), factor), gesture);
-}
-
-void addViewActions(Workbench& bench) {
-    SessionStore& store = bench.store();
-    Actions& actions = bench.actions();
+void addViewActions(Services& services) {
+    SessionStore& store = services.store();
+    Actions& actions = services.actions();
     const QString menu = QObject::tr("&View");
     const auto open = [&store] { return store.hasVolume(); };
     const auto add = [&](const QString& id, const QString& text, const QList<QKeySequence>& keys, const QString& tip,
@@ -142,6 +115,22 @@ void addViewActions(Workbench& bench) {
                  .keys = {QKeySequence("Alt+Right")},
                  .trigger = [&store] { store.redoCamera(); },
                  .enabled = [&store] { return store.canRedoCamera(); }});
+}
+
+QAction& addClipHandlesAction(Services& services) {
+    const auto shown = std::make_shared<bool>(false);
+    return *services.actions().add(
+        {.id = "clipHandlesAction",
+         .menu = QObject::tr("&View"),
+         .text = QObject::tr("Clip &handles"),
+         .keys = {QKeySequence("C")},
+         .tip = QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with "
+                            "Shift the opposite face goes along; Esc gives up"),
+         .trigger = [shown] { *shown = !*shown; },
+         .enabled = [&services] { return services.store().hasVolume(); },
+         .checked = [shown] { return *shown; },
+         .separatorBefore = true,
+         .inToolBar = true});
 }
 
 } // namespace pellucid::gui

@@ -8,7 +8,7 @@
 #include "optimize/answer/visibility_words.h"
 #include "optimize/objective.h"
 #include "render/view_direction.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "tf/shown_tf.h"
 
 namespace pellucid::gui {
@@ -29,25 +29,25 @@ bool ViewSearchController::Question::operator==(const Question& other) const {
            metric == other.metric;
 }
 
-ViewSearchController::ViewSearchController(Workbench& bench, QObject* parent)
-    : QObject(parent), m_bench(bench),
+ViewSearchController::ViewSearchController(Services& services, OptimizeController& optimizing)
+    : m_services(services), m_optimizing(optimizing),
       m_judging(
-          [this, &workspace = bench.workspace()](const Judgement& task, const JobControl& job) {
+          [this, &workspace = services.workspace()](const Judgement& task, const JobControl& job) {
               return m_views.best(workspace, task.input, task.search, {job.stop, {}});
           },
           [this](const Judgement&, BestView& best) {
               m_map = best.map;
               m_best = best;
           },
-          WhenBusy::StopOld, &bench.compute()),
+          WhenBusy::StopOld, &services.compute()),
       m_joint(
-          [&workspace = bench.workspace()](const JointTask& task, const JobControl& job) {
+          [&workspace = services.workspace()](const JointTask& task, const JobControl& job) {
               ViewWorkspace views;
               return optimizeViewAndOpacities(workspace, views, task.input, task.question.metric.targets, task.limits,
                                               task.options, job);
           },
           [this](const JointTask& task, ViewAndOpacities& found) { finish(task, found); }, WhenBusy::StopOld,
-          &bench.compute()),
+          &services.compute()),
       m_search(
           [this](const Task& task, const JobControl& job) {
               const auto watch = [&](const ViewMap& map) {
@@ -62,7 +62,7 @@ ViewSearchController::ViewSearchController(Workbench& bench, QObject* parent)
               m_whole = true;
               if (!isCurrent()) return;
               MeasureInput input = task.question.input;
-              input.view.camera = m_bench.scene().camera;
+              input.view.camera = m_services.scene().camera;
               m_judging.start({std::move(input), std::move(search)}, tr("the best view"));
           },
           WhenBusy::StopOld, &m_lane) {
@@ -70,14 +70,14 @@ ViewSearchController::ViewSearchController(Workbench& bench, QObject* parent)
     m_wait.setInterval(kWait);
     connect(&m_wait, &QTimer::timeout, this, [this] {
         // Not while a hand or an optimization is at it.
-        if (m_bench.store().isPreviewing() || m_bench.isReadOnly()) return m_wait.start();
+        if (m_services.store().isPreviewing() || m_services.isReadOnly()) return m_wait.start();
         start();
     });
     for (JobBase* job : std::initializer_list<JobBase*>{&m_search, &m_judging, &m_joint}) {
         connect(job, &JobBase::busyChanged, this, &ViewSearchController::changed);
         connect(job, &JobBase::failed, this, [this](const Error& error) {
             m_stopped = true;
-            m_bench.showError(tr("No best view was found"), error);
+            m_services.showError(tr("No best view was found"), error);
         });
     }
     for (JobBase* job : std::initializer_list<JobBase*>{&m_search, &m_joint})
@@ -85,14 +85,14 @@ ViewSearchController::ViewSearchController(Workbench& bench, QObject* parent)
             m_progress = fraction;
             Q_EMIT changed();
         });
-    connect(&bench.store(), &SessionStore::changed, this, &ViewSearchController::follow);
+    connect(&services.store(), &SessionStore::changed, this, &ViewSearchController::follow);
 }
 
 ViewSearchController::~ViewSearchController() { ++m_number; }
 
 void ViewSearchController::addActions() {
-    const auto ready = [this] { return m_bench.store().hasVolume() && !m_bench.scene().tf.features.empty(); };
-    m_bench.actions().add(
+    const auto ready = [this] { return m_services.store().hasVolume() && !m_services.scene().tf.features.empty(); };
+    m_services.actions().add(
         {.id = "goToBestViewAction",
          .menu = tr("&View"),
          .text = tr("Go to the &best view"),
@@ -100,20 +100,21 @@ void ViewSearchController::addActions() {
          .tip = tr("The view that the panel Best view has found; it looks for it where there is none"),
          .trigger = [this] { goToBest(); },
          .enabled = ready});
-    m_bench.actions().add({.id = "optimizeViewAction",
-                           .menu = tr("&Transfer function"),
-                           .text = tr("Optimize &view and opacities"),
-                           .keys = {QKeySequence("Ctrl+Shift+Return")},
-                           .tip = tr("The view and the opacities that together come nearest to the targets"),
-                           .trigger = [this] { optimize(); },
-                           .enabled = [this, ready] { return ready() && !m_bench.isReadOnly() && !isOptimizing(); }});
+    m_services.actions().add(
+        {.id = "optimizeViewAction",
+         .menu = tr("&Transfer function"),
+         .text = tr("Optimize &view and opacities"),
+         .keys = {QKeySequence("Ctrl+Shift+Return")},
+         .tip = tr("The view and the opacities that together come nearest to the targets"),
+         .trigger = [this] { optimize(); },
+         .enabled = [this, ready] { return ready() && !m_services.isReadOnly() && !isOptimizing(); }});
 }
 
 std::optional<ViewSearchController::Question> ViewSearchController::questionOf(FeatureId feature) const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     const auto& features = scene.tf.features;
     const bool allHidden = std::all_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; });
-    if (!m_bench.store().hasVolume() || allHidden || scene.session.measure->profile == Profile::Published) return {};
+    if (!m_services.store().hasVolume() || allHidden || scene.session.measure->profile == Profile::Published) return {};
     Question question{measureInput(scene), {}};
     Camera& camera = question.input.view.camera;
     camera = lookingFrom(camera, scene.volume->geometry(), {0, -1, 0});
@@ -207,17 +208,17 @@ void ViewSearchController::grow(int number, const ViewMap& map) {
 }
 
 Camera ViewSearchController::cameraFor(const Vec3& towardEye) const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     return lookingFrom(scene.camera, scene.volume->geometry(), towardEye);
 }
 
 void ViewSearchController::goTo(const Camera& camera) {
     setGlimpse({});
-    m_bench.store().setCamera(camera);
+    m_services.store().setCamera(camera);
 }
 
 void ViewSearchController::goToBest() {
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     if (isCurrent() && m_best) return goTo(m_best->best.camera);
     // It is looked for first, and gone to when it is known; whoever changes something meanwhile wants something else.
     start();
@@ -232,8 +233,8 @@ void ViewSearchController::goToBest() {
 }
 
 void ViewSearchController::optimize() {
-    SessionStore& store = m_bench.store();
-    if (isOptimizing() || m_bench.isReadOnly()) return;
+    SessionStore& store = m_services.store();
+    if (isOptimizing() || m_services.isReadOnly()) return;
     store.commit();
     m_jointQuestion = questionOf(0);
     if (!m_jointQuestion) return;
@@ -241,7 +242,7 @@ void ViewSearchController::optimize() {
     m_search.cancel(); // it would only take time from this
     m_judging.cancel();
     m_progress = 0;
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     m_joint.start({*m_jointQuestion, measureInput(scene), scene.tf, limitsOf(scene.tf, *scene.session.goals),
                    *scene.session.optimize, runStartOf(scene, *scene.session.optimize), QDateTime::currentDateTime()},
                   tr("the best view"));
@@ -249,7 +250,7 @@ void ViewSearchController::optimize() {
 }
 
 void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities& found) {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     const OptimizeState &start = found.result.history.front(), &best = found.result.history[found.result.best];
     const TransferFunction tf = withShownOpacities(task.tf, best.opacity);
     RunStart began = task.start;
@@ -266,17 +267,16 @@ void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities&
     store.setCamera(found.input.view.camera);
     MeasureInput input = found.input;
     input.tf = shownTf(tf);
-    m_bench.results().addVws(input, best.vws);
+    m_services.results().addVws(input, best.vws);
     const ViewAngles angles = viewAngles(found.input.view.camera, task.input.volume->geometry());
     const auto degrees = [](double value) { return QString::number(value, 'f', 0); };
     const std::string kept = keptText(found.result);
-    m_bench.optimizing().say(
-        (kept.empty() ? QString() : QString::fromStdString(kept) + ' ') +
-        (found.result.converged()
-             ? tr("On target from azimuth %1°, elevation %2°: F = %3, from %4.")
-             : tr("Not on target; the nearest view found is azimuth %1°, elevation %2°: F = %3, from %4."))
-            .arg(degrees(angles.azimuth), degrees(angles.elevation), QString::number(best.objective, 'f', 4),
-                 QString::number(start.objective, 'f', 4)));
+    m_optimizing.say((kept.empty() ? QString() : QString::fromStdString(kept) + ' ') +
+                     (found.result.converged()
+                          ? tr("On target from azimuth %1°, elevation %2°: F = %3, from %4.")
+                          : tr("Not on target; the nearest view found is azimuth %1°, elevation %2°: F = %3, from %4."))
+                         .arg(degrees(angles.azimuth), degrees(angles.elevation),
+                              QString::number(best.objective, 'f', 4), QString::number(start.objective, 'f', 4)));
 }
 
 void ViewSearchController::setGlimpse(const std::optional<Camera>& camera) { Q_EMIT glimpsed(camera); }

@@ -13,7 +13,8 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class OptimizeController;
+class Services;
 
 /// Looks from all over the sphere, off the window's thread, and keeps the map until what it depends on has changed:
 /// then it is of an older state, and while somebody wants it (the panel is open) it is made anew as soon as the hand
@@ -21,7 +22,7 @@ class Workbench;
 class ViewSearchController : public QObject {
     Q_OBJECT
 public:
-    ViewSearchController(Workbench& bench, QObject* parent);
+    ViewSearchController(Services& services, OptimizeController& optimizing);
     ~ViewSearchController() override;
 
     void addActions();
@@ -90,7 +91,8 @@ private:
     void finish(const JointTask& task, const ViewAndOpacities& found);
     void grow(int number, const ViewMap& map);
 
-    Workbench& m_bench;
+    Services& m_services;
+    OptimizeController& m_optimizing;
     FeatureId m_feature = 0;
     bool m_wanted = false;
     bool m_stopped = false;                     ///< by the user: it is not begun again before something changes

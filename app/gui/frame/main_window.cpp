@@ -9,26 +9,23 @@
 #include <QHBoxLayout>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPointer>
 #include <QScreen>
 #include <QSettings>
 #include <QStatusBar>
 #include <QVBoxLayout>
 
-#include "controllers/open_controller.h"
-#include "controllers/optimize_controller.h"
-#include "controllers/player_controller.h"
-#include "controllers/recovery_controller.h"
-#include "controllers/refine_controller.h"
-#include "controllers/save_controller.h"
+#include "controllers/controllers.h"
 #include "frame/dock_space.h"
 #include "frame/keys_dialog.h"
 #include "frame/notice_bar.h"
 #include "frame/status_line.h"
 #include "frame/welcome_card.h"
+#include "panels/panel.h"
 #include "panels/probe_panel.h"
-#include "services/panel.h"
 #include "view/clip_layer.h"
 #include "view/light_layer.h"
+#include "view/picture_pair.h"
 #include "view/region_layer.h"
 #include "view/slice_layer.h"
 #include "widgets/scrolled.h"
@@ -36,9 +33,10 @@
 namespace pellucid::gui {
 
 MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
-    : QMainWindow(parent), m_bench(std::make_unique<Workbench>(this)),
-      m_view(new VolumeView(m_bench->store(), renderer, this, &m_bench->fields())),
-      m_views(new ViewGrid(*m_bench, *m_view, this)), m_row(new QHBoxLayout) {
+    : QMainWindow(parent), m_services(std::make_unique<Services>(this)),
+      m_controllers(std::make_unique<Controllers>(*m_services)),
+      m_view(new VolumeView(m_services->store(), renderer, this, &m_controllers->fields)),
+      m_views(new ViewGrid(*m_services, *m_view, this)), m_row(new QHBoxLayout) {
     setObjectName("mainWindow");
     setAcceptDrops(true);
     setDockNestingEnabled(true);
@@ -46,42 +44,51 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     auto* column = new QVBoxLayout(middle);
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(0);
-    column->addWidget(new NoticeBar(m_bench->notices(), middle));
+    column->addWidget(new NoticeBar(m_services->notices(), middle));
     m_row->addWidget(m_views, 1);
     column->addLayout(m_row, 1);
     setCentralWidget(middle);
 
     m_view->overlay().add(std::make_unique<SliceLayer>());
-    addClipHandles(*m_bench, m_view->overlay());
-    m_view->overlay().add(std::make_unique<LightLayer>(*m_bench, m_view->overlay()));
-    addProbe(*m_bench, *m_view);
-    m_view->overlay().add(std::make_unique<RegionLayer>(*m_bench, m_view->overlay()));
+    addClipHandles(*m_services, *m_controllers->clipHandles, m_view->overlay());
+    m_view->overlay().add(std::make_unique<LightLayer>(*m_services, m_view->overlay()));
+    addProbe(*m_services, m_controllers->probe, *m_view);
+    m_view->overlay().add(std::make_unique<RegionLayer>(*m_services, m_controllers->refining, m_view->overlay()));
     addPanels();
     addHelpActions();
-    m_bench->actions().build(*this);
-    m_bench->opening().updateRecentFiles();
-    new StatusLine(*m_bench, *m_view, *statusBar());
+    m_services->actions().build(*this);
+    m_controllers->opening.updateRecentFiles();
+    new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, *m_view, *statusBar());
 
     connect(m_view, &VolumeView::frameShown, this, [this] {
-        m_bench->saving().setSeenSize({m_view->frame().width, m_view->frame().height});
-        m_bench->refining().setViewSize({m_view->frame().width, m_view->frame().height});
-        m_bench->player().pictureShown(m_view->frame().volume);
+        m_controllers->saving.setSeenSize({m_view->frame().width, m_view->frame().height});
+        m_controllers->refining.setViewSize({m_view->frame().width, m_view->frame().height});
+        m_controllers->player.pictureShown(m_view->frame().volume);
         Q_EMIT settledChanged();
     });
     connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
     connect(m_view, &VolumeView::rendererFailed, this, [this](const Error& error) {
-        m_bench->notices().add({QString::fromUtf8(error.what()), {}});
+        m_services->notices().add({QString::fromUtf8(error.what()), {}});
     });
-    connect(m_bench.get(), &Workbench::idleChanged, this, &MainWindow::settledChanged);
-    connect(&m_bench->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
-    connect(&m_bench->opening(), &OpenController::busyChanged, this, &MainWindow::updateTitle);
+    connect(m_services.get(), &Services::idleChanged, this, &MainWindow::settledChanged);
+    connect(&m_services->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
+    connect(&m_controllers->saving, &SaveController::sessionPathChanged, this, &MainWindow::updateTitle);
+    connect(&m_controllers->views, &ViewSearchController::glimpsed, m_view, &VolumeView::lookFrom);
+    connect(&m_controllers->refining, &RefineController::pairWanted, this,
+            [this, pair = QPointer<PicturePair>()]() mutable {
+                if (!pair) pair = new PicturePair(*m_services, m_controllers->refining, this);
+                pair->show();
+                pair->raise();
+                pair->activateWindow();
+            });
     updateTitle();
     resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
 }
 
 MainWindow::~MainWindow() {
-    // Widgets refer to the workbench, its jobs to nothing of theirs: so widgets go first.
-    m_bench->disconnect();
+    // Widgets refer to the services, its jobs to nothing of theirs: so widgets go first.
+    m_services->disconnect();
+    m_services->panels().disconnect();
     delete takeCentralWidget();
     for (QDialog* dialog : findChildren<QDialog*>(QString(), Qt::FindDirectChildrenOnly)) delete dialog;
     for (QDockWidget* dock : findChildren<QDockWidget*>()) delete dock;
@@ -90,29 +97,25 @@ MainWindow::~MainWindow() {
 
 void MainWindow::addPanels() {
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-    Actions& actions = m_bench->actions();
+    Actions& actions = m_services->actions();
     auto* const space = new DockSpace(*this);
     bool first = true;
     for (const PanelInfo& panel : panelRegistry()) {
         auto* dock = new QDockWidget(panel.title, this);
         dock->setObjectName(QString(panel.id) + "Dock");
-        auto* const content = new DockScroll(panel.make(*m_bench, dock), panel.area);
+        auto* const content = new DockScroll(panel.make(*m_services, *m_controllers, dock), panel.area);
         dock->setWidget(content);
         addDockWidget(panel.area, dock);
         dock->setVisible(panel.visible);
         space->watch(*dock);
         if (panel.tabOf != nullptr) {
-            auto* beside = findChild<QDockWidget*>(QString(panel.tabOf) + "Dock");
+            auto* beside = m_services->panels().dock(panel.tabOf);
             tabifyDockWidget(beside, dock);
             beside->raise();
         }
-        if (panel.below != nullptr)
-            splitDockWidget(findChild<QDockWidget*>(QString(panel.below) + "Dock"), dock, Qt::Vertical);
+        if (panel.below != nullptr) splitDockWidget(m_services->panels().dock(panel.below), dock, Qt::Vertical);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
-        if (panel.shown)
-            connect(dock, &QDockWidget::visibilityChanged, m_bench.get(),
-                    [this, shown = panel.shown](bool visible) { shown(*m_bench, visible); });
         actions.add({.id = QString(panel.id) + "Action",
                      .menu = tr("&View"),
                      .text = tr("%1 panel").arg(panel.title),
@@ -131,12 +134,13 @@ void MainWindow::addPanels() {
                          },
                      .checked = [dock] { return isInFront(*dock); },
                      .separatorBefore = std::exchange(first, false)});
-        connect(dock, &QDockWidget::visibilityChanged, &actions, &Actions::refresh);
+        m_services->panels().add(panel.id, *dock);
     }
+    connect(&m_services->panels(), &Panels::visibilityChanged, &actions, &Actions::refresh);
 }
 
 void MainWindow::addHelpActions() {
-    Actions& actions = m_bench->actions();
+    Actions& actions = m_services->actions();
     const auto add = [&](const QString& id, const QString& menu, const QString& text, const QKeySequence& keys,
                          std::function<void()> trigger) {
         actions.add({.id = id,
@@ -154,7 +158,7 @@ void MainWindow::addHelpActions() {
                          {volume, tr("Left drag of a clip handle; with Shift"), tr("cut; move the whole slab")},
                          {volume, tr("Esc"), tr("give up a drag")}});
     add("keysAction", tr("&Help"), tr("&Mouse and keys"), QKeySequence("F1"),
-        [this] { KeysDialog(m_bench->actions(), this).exec(); });
+        [this] { KeysDialog(m_services->actions(), this).exec(); });
     add("aboutAction", tr("&Help"), tr("&About Pellucid"), {}, [this] {
         QMessageBox::about(this, tr("About Pellucid"),
                            tr("<b>Pellucid %1</b><br>The volume explorer that finds the transfer function for you.")
@@ -175,17 +179,18 @@ void MainWindow::welcome() {
     m_row->insertWidget(0, card); // beside the picture, of which it hides nothing
     card->show();
     // Another volume: it is no sample any more, and the first thing to try has been done.
-    connect(&m_bench->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
+    connect(&m_services->store(), &SessionStore::changed, card, [card](const Scene& before, const Scene& after) {
         if (before.series && before.series != after.series) card->dismiss();
     });
 }
 
-bool MainWindow::isSettled() const { return m_bench->isIdle() && m_views->isComplete(); }
+bool MainWindow::isSettled() const { return m_services->isIdle() && m_views->isComplete(); }
 
 void MainWindow::updateTitle() {
-    SessionStore& store = m_bench->store();
+    SessionStore& store = m_services->store();
     if (!store.hasVolume()) return setWindowTitle(tr("Pellucid"));
-    const QString title = QString::fromStdString(store.scene().volume->title), file = m_bench->opening().sessionPath();
+    const QString title = QString::fromStdString(store.scene().volume->title),
+                  file = m_controllers->saving.sessionPath();
     setWindowTitle(file.isEmpty() ? tr("%1[*] – Pellucid").arg(title)
                                   : tr("%1 – %2[*] – Pellucid").arg(title, QFileInfo(file).fileName()));
     setWindowModified(!store.isClean());
@@ -193,15 +198,15 @@ void MainWindow::updateTitle() {
 
 void MainWindow::changeEvent(QEvent* event) {
     QMainWindow::changeEvent(event);
-    if (event->type() == QEvent::PaletteChange) m_bench->actions().refresh(); // the theme, perhaps by another window
+    if (event->type() == QEvent::PaletteChange) m_services->actions().refresh(); // the theme, perhaps by another window
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-    m_bench->optimizing().cancel();
-    if (!m_bench->saving().maybeSave()) return event->ignore();
-    m_bench->recovery().discard();
-    m_bench->opening().cancel();
-    m_bench->saving().cancel();
+    m_controllers->optimizing.cancel();
+    if (!m_controllers->saving.maybeSave()) return event->ignore();
+    m_controllers->recovery.discard();
+    m_controllers->opening.cancel();
+    m_controllers->saving.cancel();
     QSettings settings;
     settings.setValue("geometry", saveGeometry());
     settings.setValue("windowState", saveState());
@@ -221,7 +226,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
     event->acceptProposedAction();
     // In a later turn: a dialog must not keep the program waiting that the file was dragged from.
     QMetaObject::invokeMethod(
-        this, [this, paths] { m_bench->opening().openPaths(paths); }, Qt::QueuedConnection);
+        this, [this, paths] { m_controllers->opening.openPaths(paths); }, Qt::QueuedConnection);
 }
 
 } // namespace pellucid::gui

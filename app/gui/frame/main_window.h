@@ -5,7 +5,7 @@
 
 #include <QMainWindow>
 
-#include "services/workbench.h"
+#include "services/services.h"
 #include "view/view_grid.h"
 #include "view/volume_view.h"
 
@@ -13,13 +13,16 @@ class QHBoxLayout;
 
 namespace pellucid::gui {
 
+struct Controllers;
+
 class MainWindow : public QMainWindow {
     Q_OBJECT
 public:
     explicit MainWindow(ViewRenderer renderer = ViewRenderer::Auto, QWidget* parent = nullptr);
     ~MainWindow() override;
 
-    Workbench& workbench() { return *m_bench; }
+    Services& services() { return *m_services; }
+    Controllers& controllers() { return *m_controllers; }
     VolumeView& view() { return *m_view; }
     ViewGrid& views() { return *m_views; }
 
@@ -44,7 +47,8 @@ private:
     void addHelpActions();
     void updateTitle();
 
-    std::unique_ptr<Workbench> m_bench;
+    std::unique_ptr<Services> m_services;
+    std::unique_ptr<Controllers> m_controllers;
     VolumeView* m_view;
     ViewGrid* m_views;  // with m_view in it
     QHBoxLayout* m_row; // with m_views in it

@@ -6,10 +6,9 @@
 #include <QToolButton>
 
 #include "controllers/open_controller.h"
-#include "controllers/optimize_controller.h"
 #include "controllers/save_controller.h"
 #include "render/camera_motion.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "view/volume_view.h"
 #include "volume/orientation.h"
 #include "widgets/number_text.h"
@@ -21,10 +20,11 @@ constexpr int kMessageTime = 4000; // milliseconds
 
 } // namespace
 
-StatusLine::StatusLine(Workbench& bench, VolumeView& view, QStatusBar& bar)
-    : QObject(&bar), m_bench(bench), m_view(view), m_bar(bar), m_volume(new QLabel(&bar)), m_camera(new QLabel(&bar)),
-      m_renderer(new QLabel(&bar)), m_engine(new QLabel(&bar)), m_background(new QLabel(&bar)),
-      m_progress(new QProgressBar(&bar)), m_cancel(new QToolButton(&bar)) {
+StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, VolumeView& view,
+                       QStatusBar& bar)
+    : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_view(view), m_bar(bar),
+      m_volume(new QLabel(&bar)), m_camera(new QLabel(&bar)), m_renderer(new QLabel(&bar)), m_engine(new QLabel(&bar)),
+      m_background(new QLabel(&bar)), m_progress(new QProgressBar(&bar)), m_cancel(new QToolButton(&bar)) {
     m_volume->setObjectName("volumeLabel");
     m_camera->setObjectName("cameraLabel");
     m_renderer->setObjectName("rendererLabel");
@@ -43,8 +43,6 @@ StatusLine::StatusLine(Workbench& bench, VolumeView& view, QStatusBar& bar)
     bar.addWidget(m_cancel);
     for (QLabel* label : {m_volume, m_camera, m_renderer, m_engine}) bar.addPermanentWidget(label);
 
-    OpenController& opening = bench.opening();
-    SaveController& saving = bench.saving();
     connect(m_cancel, &QToolButton::clicked, this, [&opening, &saving] {
         opening.cancel();
         saving.cancel();
@@ -60,18 +58,19 @@ StatusLine::StatusLine(Workbench& bench, VolumeView& view, QStatusBar& bar)
     connect(&saving, &SaveController::cancelled, this, sayCancelled);
     connect(&opening, &OpenController::busyChanged, this, &StatusLine::followBackground);
     connect(&saving, &SaveController::busyChanged, this, &StatusLine::followBackground);
-    connect(&bench, &Workbench::message, this, [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
-    connect(&bench.store(), &SessionStore::changed, this, &StatusLine::followScene);
-    connect(&bench.results(), &Results::changed, this, &StatusLine::followFigures);
-    connect(&bench.optimizing(), &OptimizeController::runningChanged, this, &StatusLine::followFigures);
+    connect(&services, &Services::message, this,
+            [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
+    connect(&services.store(), &SessionStore::changed, this, &StatusLine::followScene);
+    connect(&services.results(), &Results::changed, this, &StatusLine::followFigures);
+    connect(&services, &Services::readOnlyChanged, this, &StatusLine::followFigures);
     connect(&view, &VolumeView::frameShown, this, &StatusLine::followView);
     followBackground();
     followScene();
 }
 
 void StatusLine::followScene() {
-    if (!m_bench.store().hasVolume()) return;
-    const Scene& scene = m_bench.scene();
+    if (!m_services.store().hasVolume()) return;
+    const Scene& scene = m_services.scene();
     const Volume& volume = *scene.volume;
     QString text = QStringLiteral("%1×%2×%3 %4")
                        .arg(volume.dims().x)
@@ -113,8 +112,8 @@ void StatusLine::followView() {
 }
 
 void StatusLine::followFigures() {
-    const Results& results = m_bench.results();
-    if (m_bench.optimizing().isRunning()) {
+    const Results& results = m_services.results();
+    if (m_services.isReadOnly()) {
         m_engine->setText(tr("optimizing"));
         return;
     }
@@ -131,8 +130,8 @@ void StatusLine::followFigures() {
 }
 
 void StatusLine::followBackground() {
-    const bool opening = m_bench.opening().isBusy(), busy = opening || m_bench.saving().isBusy();
-    const QString text = opening ? m_bench.opening().busyText() : m_bench.saving().busyText();
+    const bool opening = m_opening.isBusy(), busy = opening || m_saving.isBusy();
+    const QString text = opening ? m_opening.busyText() : m_saving.busyText();
     if (busy && (m_cancel->isHidden() || text != m_background->text())) m_progress->setRange(0, 0);
     m_background->setText(text);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_background, m_progress, m_cancel})

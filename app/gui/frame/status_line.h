@@ -11,12 +11,14 @@ class QToolButton;
 namespace pellucid::gui {
 
 class VolumeView;
-class Workbench;
+class OpenController;
+class SaveController;
+class Services;
 
 class StatusLine : public QObject {
     Q_OBJECT
 public:
-    StatusLine(Workbench& bench, VolumeView& view, QStatusBar& bar);
+    StatusLine(Services& services, OpenController& opening, SaveController& saving, VolumeView& view, QStatusBar& bar);
 
 private:
     void followScene();
@@ -24,7 +26,9 @@ private:
     void followFigures();
     void followBackground();
 
-    Workbench& m_bench;
+    Services& m_services;
+    OpenController& m_opening;
+    SaveController& m_saving;
     VolumeView& m_view;
     QStatusBar& m_bar;
     QLabel *m_volume, *m_camera, *m_renderer, *m_engine, *m_background;

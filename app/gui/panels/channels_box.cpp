@@ -15,8 +15,8 @@
 #include <QToolButton>
 
 #include "controllers/open_controller.h"
-#include "panels/variables_panel.h"
-#include "services/workbench.h"
+#include "panels/variable_words.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 
 namespace pellucid::gui {
@@ -54,11 +54,12 @@ QString channelTitle(Channel channel) {
 
 } // namespace
 
-ChannelsBox::ChannelsBox(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_on(new QCheckBox(tr("&Colours from variables"), this)),
-      m_frames(new QSpinBox(this)), m_swap(new QPushButton(tr("S&wap opacity and brightness"), this)),
-      m_hueSlider(new QSlider(Qt::Horizontal, this)), m_hueFrom(new QDoubleSpinBox(this)),
-      m_hueTo(new QDoubleSpinBox(this)), m_hueSwatch(new QLabel(this)), m_note(new QLabel(this)) {
+ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* parent)
+    : QWidget(parent), m_services(services), m_opening(opening),
+      m_on(new QCheckBox(tr("&Colours from variables"), this)), m_frames(new QSpinBox(this)),
+      m_swap(new QPushButton(tr("S&wap opacity and brightness"), this)), m_hueSlider(new QSlider(Qt::Horizontal, this)),
+      m_hueFrom(new QDoubleSpinBox(this)), m_hueTo(new QDoubleSpinBox(this)), m_hueSwatch(new QLabel(this)),
+      m_note(new QLabel(this)) {
     setObjectName("channelsBox");
     m_on->setObjectName("hsbCheck");
     m_on->setToolTip(tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
@@ -99,18 +100,17 @@ ChannelsBox::ChannelsBox(Workbench& bench, QWidget* parent)
     connect(m_on, &QCheckBox::clicked, this, &ChannelsBox::setOn);
     connect(m_frames, &QSpinBox::valueChanged, this, [this](int frames) {
         if (m_showing) return;
-        m_bench.opening().editInJob(tr("Frames of volatility"),
-                                    [frames](Session& session) { setVolatilityFrames(session, frames); });
+        m_opening.editInJob(tr("Frames of volatility"),
+                            [frames](Session& session) { setVolatilityFrames(session, frames); });
     });
-    connect(m_swap, &QPushButton::clicked, this, [this] {
-        m_bench.opening().editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); });
-    });
-    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(m_swap, &QPushButton::clicked, this,
+            [this] { m_opening.editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); }); });
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.colors != after.colors ||
             !before.session.variables.isSame(after.session.variables) || !before.session.hsb.isSame(after.session.hsb))
             follow();
     });
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &ChannelsBox::follow);
+    connect(&m_services, &Services::readOnlyChanged, this, &ChannelsBox::follow);
     follow();
 }
 
@@ -125,9 +125,9 @@ void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* nam
     form.addRow(label, combo);
     connect(combo, &QComboBox::activated, this, [this, combo, channel] {
         const std::string driver = combo->currentData().toString().toStdString();
-        if (m_showing || driver == channelOf(m_bench.store().session(), channel)) return;
-        m_bench.opening().editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
-                                    [channel, driver](Session& s) { setChannel(s, channel, driver); });
+        if (m_showing || driver == channelOf(m_services.store().session(), channel)) return;
+        m_opening.editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
+                            [channel, driver](Session& s) { setChannel(s, channel, driver); });
     });
 }
 
@@ -167,7 +167,7 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
     });
     connect(scale.slider, &QSlider::sliderReleased, this, [this, index] {
         const Scale& s = m_scales[index];
-        if (isFast()) return m_bench.store().commit();
+        if (isFast()) return m_services.store().commit();
         edit(s.name, {}, [&s, value = scaleAt(s.slider->value())](HsbMapping& h) { h.*s.value = value; });
     });
     connect(scale.box, &QDoubleSpinBox::valueChanged, this, [this, index](double value) {
@@ -176,8 +176,8 @@ void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* nam
     });
     connect(scale.automatic, &QToolButton::clicked, this, [this, index](bool automatic) {
         const Scale& s = m_scales[index];
-        const double present = m_bench.scene().*s.present;
-        m_bench.opening().editInJob(s.name, [&s, automatic, present](Session& session) {
+        const double present = m_services.scene().*s.present;
+        m_opening.editInJob(s.name, [&s, automatic, present](Session& session) {
             session.hsb.edit([&](HsbMapping& h) { h.*s.value = automatic ? std::nullopt : std::optional(present); });
         });
     });
@@ -215,36 +215,36 @@ void ChannelsBox::addHue(QFormLayout& form) {
     connect(m_hueSlider, &QSlider::valueChanged, this,
             [this](int hue) { slide(*m_hueSlider, tr("Hue"), [hue](HsbMapping& h) { h.hueFrom = hue; }); });
     connect(m_hueSlider, &QSlider::sliderReleased, this, [this] {
-        if (isFast()) return m_bench.store().commit();
+        if (isFast()) return m_services.store().commit();
         edit(tr("Hue"), {}, [hue = m_hueSlider->value()](HsbMapping& h) { h.hueFrom = hue; });
     });
 }
 
-void ChannelsBox::toggle() { setOn(!m_bench.store().session().hsb->on); }
+void ChannelsBox::toggle() { setOn(!m_services.store().session().hsb->on); }
 
 void ChannelsBox::setOn(bool on) {
-    const bool varies = m_bench.scene().series && m_bench.scene().series->varies();
+    const bool varies = m_services.scene().series && m_services.scene().series->varies();
     const auto change = [on, varies](Session& session) {
         if (on) startMapping(session, varies);
         session.hsb.edit([on](HsbMapping& h) { h.on = on; });
     };
-    m_bench.opening().editInJob(on ? tr("Colours from variables") : tr("Colours of the transfer function"), change);
-    m_on->setChecked(m_bench.store().session().hsb->on); // until it has been done
+    m_opening.editInJob(on ? tr("Colours from variables") : tr("Colours of the transfer function"), change);
+    m_on->setChecked(m_services.store().session().hsb->on); // until it has been done
 }
 
 bool ChannelsBox::isFast() const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     return !scene.session.hsb->on || (scene.volume && scene.volume->size() <= kFastVoxels);
 }
 
 void ChannelsBox::edit(const QString& text, const QString& mergeKey, const Change& change) {
     if (m_showing) return;
     const auto all = [change](Session& session) { session.hsb.edit(change); };
-    if (!isFast()) return m_bench.opening().editInJob(text, all);
+    if (!isFast()) return m_opening.editInJob(text, all);
     try {
-        m_bench.store().edit(text, mergeKey, all);
+        m_services.store().edit(text, mergeKey, all);
     } catch (const Error& error) { // a frame that has gone since
-        m_bench.showError(tr("Cannot make the colours"), error);
+        m_services.showError(tr("Cannot make the colours"), error);
     }
 }
 
@@ -253,15 +253,15 @@ void ChannelsBox::slide(const QSlider& slider, const QString& text, const Change
     if (!slider.isSliderDown()) return edit(text, slider.objectName(), change); // by keys
     if (!isFast()) return;                                                      // when it is released
     try {
-        m_bench.store().preview(text, [&](Session& session) { session.hsb.edit(change); });
+        m_services.store().preview(text, [&](Session& session) { session.hsb.edit(change); });
     } catch (const Error& error) {
-        m_bench.store().cancel();
-        m_bench.showError(tr("Cannot make the colours"), error);
+        m_services.store().cancel();
+        m_services.showError(tr("Cannot make the colours"), error);
     }
 }
 
 void ChannelsBox::followChannel(Channel channel) {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     const Session& session = scene.session;
     QComboBox& combo = *m_channels[indexOf(channel)];
     combo.clear();
@@ -291,9 +291,9 @@ void ChannelsBox::followChannel(Channel channel) {
 }
 
 void ChannelsBox::follow() {
-    const Scene& scene = m_bench.scene();
-    setEnabled(m_bench.store().hasVolume() && !m_bench.isReadOnly());
-    if (!m_bench.store().hasVolume()) return;
+    const Scene& scene = m_services.scene();
+    setEnabled(m_services.isEditable());
+    if (!m_services.store().hasVolume()) return;
     const HsbMapping& hsb = *scene.session.hsb;
     m_showing = true;
     m_on->setChecked(hsb.on);
@@ -331,36 +331,6 @@ void ChannelsBox::follow() {
                         : QString());
     m_note->setVisible(!m_note->text().isEmpty());
     m_showing = false;
-}
-
-QString curveTitle(const Session& session) {
-    const QString title = QObject::tr("Transfer function");
-    const HsbMapping& hsb = *session.hsb;
-    if (session.isEmpty() || (!hsb.on && session.variables->size() < 2)) return title;
-    const QString of = QObject::tr("%1 of %2").arg(title, QString::fromStdString(session.variable().name));
-    if (!hsb.on) return of;
-    QStringList channels;
-    const std::pair<QString, const std::string&> driven[] = {{QObject::tr("saturation"), hsb.saturation},
-                                                             {QObject::tr("brightness"), hsb.brightness},
-                                                             {QObject::tr("hue"), hsb.hue}};
-    for (const auto& [channel, name] : driven)
-        if (!name.empty()) channels << QStringLiteral("%1 ← %2").arg(channel, driverText(session, name));
-    return QObject::tr("%1: opacity alone, colours come from variables (%2)")
-        .arg(of, channels.isEmpty() ? QObject::tr("one hue") : channels.join(", "));
-}
-
-QString featuresTitle(const Session& session) {
-    if (session.isEmpty() || (!session.hsb->on && session.variables->size() < 2)) return QObject::tr("Features");
-    return QObject::tr("Features of %1").arg(QString::fromStdString(session.variable().name));
-}
-
-void followTitle(Workbench& bench, QWidget* dock, QString (*title)(const Session&)) {
-    QObject::connect(&bench.store(), &SessionStore::changed, dock,
-                     [dock, title](const Scene& before, const Scene& after) {
-                         if (!before.session.variables.isSame(after.session.variables) ||
-                             !before.session.hsb.isSame(after.session.hsb))
-                             dock->setWindowTitle(title(after.session));
-                     });
 }
 
 } // namespace pellucid::gui

@@ -21,12 +21,13 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class OpenController;
+class Services;
 
 class ChannelsBox : public QWidget {
     Q_OBJECT
 public:
-    explicit ChannelsBox(Workbench& bench, QWidget* parent = nullptr);
+    ChannelsBox(Services& services, OpenController& opening, QWidget* parent = nullptr);
     /// Colours of variables or of the transfer function, the one or the other.
     void toggle();
 
@@ -52,7 +53,8 @@ private:
     void slide(const QSlider& slider, const QString& text, const Change& change);
     bool isFast() const;
 
-    Workbench& m_bench;
+    Services& m_services;
+    OpenController& m_opening;
     QCheckBox* m_on;
     std::array<QComboBox*, 4> m_channels{}; ///< by Channel
     std::array<Scale, 2> m_scales{};
@@ -63,12 +65,5 @@ private:
     QLabel *m_hueSwatch, *m_note;
     bool m_showing = false; ///< the controls show, they do not edit
 };
-
-/// In words, whose opacity the curve says and where colours come from: title of the editor of transfer functions.
-QString curveTitle(const Session& session);
-/// In words, whose features those of the list are.
-QString featuresTitle(const Session& session);
-/// Keeps the title of a dock so; a title takes no room from the picture, whatever it says.
-void followTitle(Workbench& bench, QWidget* dock, QString (*title)(const Session&));
 
 } // namespace pellucid::gui

@@ -10,9 +10,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "render/clip_handles.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 #include "widgets/scrolled.h"
@@ -22,31 +23,30 @@ namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z"};
 
-bool isReady(Workbench& bench) { return bench.store().hasVolume() && !bench.isReadOnly(); }
+bool isReady(Services& services) { return services.isEditable(); }
 
-void addPlane(Workbench& bench) {
-    const Scene& scene = bench.scene();
+void addPlane(Services& services, QAction& handles) {
+    const Scene& scene = services.scene();
     const ClipPlane plane = planeFacing(scene.camera, scene.volume->geometry());
-    bench.store().edit(QObject::tr("Clip plane"), {}, [&](Session& session) {
+    services.store().edit(QObject::tr("Clip plane"), {}, [&](Session& session) {
         session.clipping.edit([&](Clipping& c) { c.planes.push_back(plane); });
     });
-    QAction* handles = bench.actions().find("clipHandlesAction");
-    if (!handles->isChecked()) handles->trigger(); // it is there to be moved
+    if (!handles.isChecked()) handles.trigger(); // it is there to be moved
 }
 
 } // namespace
 
-ClipPanel::ClipPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_add(new QPushButton(tr("&Add plane"), this)),
+ClipPanel::ClipPanel(Services& services, QAction& handles, QWidget* parent)
+    : QWidget(parent), m_services(services), m_add(new QPushButton(tr("&Add plane"), this)),
       m_reset(new QPushButton(tr("&Whole box"), this)) {
     setObjectName("clipPanel");
     m_add->setObjectName("addPlaneButton");
     m_add->setToolTip(tr("Cut away what is nearer than the middle; at most %1 planes (Shift+C)").arg(kMostClipPlanes));
     m_reset->setObjectName("resetClipButton");
     m_reset->setToolTip(tr("Cut nothing away"));
-    auto* handles = new QToolButton(this);
-    handles->setObjectName("clipHandlesButton");
-    handles->setDefaultAction(m_bench.actions().find("clipHandlesAction"));
+    auto* button = new QToolButton(this);
+    button->setObjectName("clipHandlesButton");
+    button->setDefaultAction(&handles);
 
     auto* content = new QWidget;
     auto* rows = new QVBoxLayout(content);
@@ -61,17 +61,18 @@ ClipPanel::ClipPanel(Workbench& bench, QWidget* parent)
     buttons->addWidget(m_add, 1);
     buttons->addWidget(m_reset, 1);
     rows->addLayout(buttons);
-    rows->addWidget(handles);
+    rows->addWidget(button);
     rows->addStretch(1);
     fillScrolled(this, content);
 
-    connect(m_add, &QPushButton::clicked, this, [this] { addPlane(m_bench); });
-    connect(m_reset, &QPushButton::clicked, this,
-            [this] { m_bench.store().edit(tr("Whole box"), {}, [](Session& session) { session.clipping.set({}); }); });
-    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(m_add, &QPushButton::clicked, this, [this, &handles] { addPlane(m_services, handles); });
+    connect(m_reset, &QPushButton::clicked, this, [this] {
+        m_services.store().edit(tr("Whole box"), {}, [](Session& session) { session.clipping.set({}); });
+    });
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || !before.session.clipping.isSame(after.session.clipping)) follow();
     });
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &ClipPanel::follow);
+    connect(&m_services, &Services::readOnlyChanged, this, &ClipPanel::follow);
     follow();
 }
 
@@ -157,13 +158,13 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
 }
 
 void ClipPanel::changePlanes(const QString& text, const std::function<void(std::vector<ClipPlane>&)>& change) {
-    m_bench.store().edit(text, {},
-                         [&](Session& session) { session.clipping.edit([&](Clipping& c) { change(c.planes); }); });
+    m_services.store().edit(text, {},
+                            [&](Session& session) { session.clipping.edit([&](Clipping& c) { change(c.planes); }); });
 }
 
 void ClipPanel::editBox(int axis, bool upper, double percent) {
     if (m_showing) return;
-    m_bench.store().edit(tr("Clip"), QStringLiteral("clip-%1-%2").arg(axis).arg(upper), [&](Session& session) {
+    m_services.store().edit(tr("Clip"), QStringLiteral("clip-%1-%2").arg(axis).arg(upper), [&](Session& session) {
         session.clipping.edit([&](Clipping& c) {
             c = withFaceMoved(c, axis, upper, percent / 100 - (upper ? c.hi : c.lo)[axis], false);
         });
@@ -172,7 +173,7 @@ void ClipPanel::editBox(int axis, bool upper, double percent) {
 
 void ClipPanel::editPlane(std::size_t index, int number, double value) {
     if (m_showing) return;
-    const std::vector<ClipPlane>& planes = m_bench.scene().session.clipping->planes;
+    const std::vector<ClipPlane>& planes = m_services.scene().session.clipping->planes;
     if (index >= planes.size()) return;
     ClipPlane plane = planes[index];
     if (number < 3)
@@ -180,7 +181,7 @@ void ClipPanel::editPlane(std::size_t index, int number, double value) {
     else
         plane.offset = value;
     if (!(glm::length(plane.normal) > 0)) return follow(); // no direction is left
-    m_bench.store().edit(
+    m_services.store().edit(
         tr("Clip plane"), QStringLiteral("clip-plane-%1-%2").arg(index).arg(number),
         [&](Session& session) { session.clipping.edit([&](Clipping& c) { c.planes.at(index) = plane; }); });
 }
@@ -188,12 +189,12 @@ void ClipPanel::editPlane(std::size_t index, int number, double value) {
 QSize ClipPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
 
 void ClipPanel::follow() {
-    const bool ready = isReady(m_bench);
+    const bool ready = isReady(m_services);
     setEnabled(ready);
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     const Clipping& clipping = *scene.session.clipping;
     for (std::size_t i = 0; i < m_planes.size(); ++i) m_planes[i].widget->setVisible(i < clipping.planes.size());
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     m_showing = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int a = static_cast<int>(axis);
@@ -218,44 +219,45 @@ void ClipPanel::follow() {
 }
 
 PanelInfo clipPanel() {
-    return {.id = "clip",
-            .title = QObject::tr("Clip"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = false,
-            .tabOf = "display",
-            .keys = QKeySequence("Ctrl+K"),
-            .tip = QObject::tr("The part of the box that is left, oblique planes"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                bench.actions().add({.id = "addPlaneAction",
-                                     .menu = QObject::tr("&View"),
-                                     .text = QObject::tr("Add clip p&lane"),
-                                     .keys = {QKeySequence("Shift+C")},
-                                     .tip = QObject::tr("Cut away what is nearer than the middle of the volume"),
-                                     .trigger = [&bench] { addPlane(bench); },
-                                     .enabled =
-                                         [&bench] {
-                                             return isReady(bench) &&
-                                                    bench.scene().session.clipping->planes.size() < kMostClipPlanes;
-                                         }});
-                bench.actions().add(
-                    {.id = "resetClipAction",
-                     .menu = QObject::tr("&View"),
-                     .text = QObject::tr("&Whole box"),
-                     .tip = QObject::tr("Cut nothing away"),
-                     .trigger =
-                         [&bench] {
-                             bench.store().edit(QObject::tr("Whole box"), {},
-                                                [](Session& session) { session.clipping.set({}); });
-                         },
-                     .enabled = [&bench] { return isReady(bench) && !bench.scene().session.clipping->isNone(); }});
-                QObject::connect(&bench.store(), &SessionStore::changed, &bench.actions(),
-                                 [&bench](const Scene& before, const Scene& after) {
-                                     const Clipping &old = *before.session.clipping, &now = *after.session.clipping;
-                                     if (old.isNone() != now.isNone() || old.planes.size() != now.planes.size())
-                                         bench.actions().refresh();
-                                 });
-                return new ClipPanel(bench, parent);
-            }};
+    return {
+        .id = "clip",
+        .title = QObject::tr("Clip"),
+        .area = Qt::RightDockWidgetArea,
+        .visible = false,
+        .tabOf = "display",
+        .keys = QKeySequence("Ctrl+K"),
+        .tip = QObject::tr("The part of the box that is left, oblique planes"),
+        .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+            services.actions().add(
+                {.id = "addPlaneAction",
+                 .menu = QObject::tr("&View"),
+                 .text = QObject::tr("Add clip p&lane"),
+                 .keys = {QKeySequence("Shift+C")},
+                 .tip = QObject::tr("Cut away what is nearer than the middle of the volume"),
+                 .trigger = [&services, &handles = *controllers.clipHandles] { addPlane(services, handles); },
+                 .enabled =
+                     [&services] {
+                         return isReady(services) && services.scene().session.clipping->planes.size() < kMostClipPlanes;
+                     }});
+            services.actions().add(
+                {.id = "resetClipAction",
+                 .menu = QObject::tr("&View"),
+                 .text = QObject::tr("&Whole box"),
+                 .tip = QObject::tr("Cut nothing away"),
+                 .trigger =
+                     [&services] {
+                         services.store().edit(QObject::tr("Whole box"), {},
+                                               [](Session& session) { session.clipping.set({}); });
+                     },
+                 .enabled = [&services] { return isReady(services) && !services.scene().session.clipping->isNone(); }});
+            QObject::connect(&services.store(), &SessionStore::changed, &services.actions(),
+                             [&services](const Scene& before, const Scene& after) {
+                                 const Clipping &old = *before.session.clipping, &now = *after.session.clipping;
+                                 if (old.isNone() != now.isNone() || old.planes.size() != now.planes.size())
+                                     services.actions().refresh();
+                             });
+            return new ClipPanel(services, *controllers.clipHandles, parent);
+        }};
 }
 
 } // namespace pellucid::gui

@@ -9,17 +9,19 @@
 
 #include "render/clipping.h"
 
+class QAction;
 class QDoubleSpinBox;
 class QPushButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class ClipPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit ClipPanel(Workbench& bench, QWidget* parent = nullptr);
+    /// `handles` shows them in the picture.
+    ClipPanel(Services& services, QAction& handles, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
 
@@ -36,7 +38,7 @@ private:
     void editPlane(std::size_t index, int number, double value);
     void changePlanes(const QString& text, const std::function<void(std::vector<ClipPlane>&)>& change);
 
-    Workbench& m_bench;
+    Services& m_services;
     std::array<std::array<QDoubleSpinBox*, 2>, 3> m_box{}; ///< [axis][lower, upper], per cent of the box
     std::array<PlaneRow, kMostClipPlanes> m_planes{};
     QPushButton *m_add, *m_reset;

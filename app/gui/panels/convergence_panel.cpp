@@ -5,7 +5,6 @@
 #include <QBoxLayout>
 #include <QCheckBox>
 #include <QDir>
-#include <QDockWidget>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QHeaderView>
@@ -18,13 +17,12 @@
 #include <QTreeWidget>
 
 #include "base/atomic_file.h"
-#include "controllers/optimize_controller.h"
-#include "controllers/save_controller.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "report/convergence.h"
 #include "report/csv.h"
 #include "report/svg_plot.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
 #include "widgets/plot_view.h"
@@ -74,8 +72,8 @@ QString tipOf(const Run& run) {
     return lines.join('\n');
 }
 
-void changeRuns(Workbench& bench, const QString& text, const std::function<void(std::vector<Run>&)>& change) {
-    bench.store().edit(text, {}, [&](Session& session) { session.runs.edit(change); });
+void changeRuns(Services& services, const QString& text, const std::function<void(std::vector<Run>&)>& change) {
+    services.store().edit(text, {}, [&](Session& session) { session.runs.edit(change); });
 }
 
 } // namespace
@@ -88,28 +86,25 @@ PanelInfo convergencePanel() {
             .tabOf = "tf",
             .keys = QKeySequence("Ctrl+Shift+C"),
             .tip = QObject::tr("How optimizations go: distance, VWS and opacities over the moves; runs compared"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                bench.actions().add({.id = "showConvergence",
-                                     .menu = QObject::tr("&Transfer function"),
-                                     .text = QObject::tr("Con&vergence of the optimization"),
-                                     .tip = QObject::tr("Distance, VWS and opacities over the moves"),
-                                     .trigger =
-                                         [&bench] {
-                                             auto* dock = bench.window()->findChild<QDockWidget*>("convergenceDock");
-                                             dock->show();
-                                             dock->raise();
-                                         },
-                                     .enabled = [&bench] { return bench.store().hasVolume(); }});
-                bench.actions().addGestures(
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                services.actions().add({.id = "showConvergence",
+                                        .menu = QObject::tr("&Transfer function"),
+                                        .text = QObject::tr("Con&vergence of the optimization"),
+                                        .tip = QObject::tr("Distance, VWS and opacities over the moves"),
+                                        .trigger = [&services] { services.panels().show("convergence"); },
+                                        .enabled = [&services] { return services.store().hasVolume(); }});
+                services.actions().addGestures(
                     {{QObject::tr("Convergence"), QObject::tr("Click on a dot"), QObject::tr("show that move")},
                      {QObject::tr("Convergence"), QObject::tr("Double-click"), QObject::tr("export")},
                      {QObject::tr("Convergence"), "F2, Del", QObject::tr("rename, delete the run")}});
-                return new ConvergencePanel(bench, parent);
+                return new ConvergencePanel(services, controllers.optimizing, controllers.saving, parent);
             }};
 }
 
-ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_row(new QBoxLayout(QBoxLayout::LeftToRight)), m_list(new QTreeWidget(this)),
+ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optimizing, SaveController& saving,
+                                   QWidget* parent)
+    : QWidget(parent), m_services(services), m_optimizing(optimizing), m_saving(saving),
+      m_row(new QBoxLayout(QBoxLayout::LeftToRight)), m_list(new QTreeWidget(this)),
       m_log(new QCheckBox(tr("Logarithmic"), this)), m_readOut(new QLabel(this)), m_start(new QToolButton(this)),
       m_export(new QToolButton(this)) {
     const char* const names[] = {"objectivePlot", "vwsPlot", "opacityPlot"};
@@ -180,7 +175,7 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     connect(m_start, &QToolButton::clicked, this, [this] {
         if (const Run* run = shownRun()) showMove(*run, 0);
     });
-    connect(&bench, &Workbench::readOnlyChanged, this, &ConvergencePanel::drawPlots);
+    connect(&services, &Services::readOnlyChanged, this, &ConvergencePanel::drawPlots);
     m_export->setObjectName("exportCurves");
     m_export->setText(tr("Export…"));
     m_export->setToolTip(tr("The curves as a table, the plots as a picture or drawing"));
@@ -207,7 +202,7 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
     column->addLayout(m_row, 1);
     column->addWidget(m_readOut);
 
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.series != after.series) {
             m_compared.clear();
             m_shown = -1;
@@ -215,22 +210,22 @@ ConvergencePanel::ConvergencePanel(Workbench& bench, QWidget* parent)
         }
         if (before.series != after.series || !before.session.runs.isSame(after.session.runs)) follow();
     });
-    connect(&bench.optimizing(), &OptimizeController::moved, this, [this] { drawPlots(); });
-    connect(&bench.optimizing(), &OptimizeController::runningChanged, this, &ConvergencePanel::follow);
+    connect(&optimizing, &OptimizeController::moved, this, [this] { drawPlots(); });
+    connect(&optimizing, &OptimizeController::runningChanged, this, &ConvergencePanel::follow);
     follow();
 }
 
 const Run* ConvergencePanel::runNumbered(int number) const {
-    if (number == kUnderWay) return m_bench.optimizing().underWay();
-    for (const Run& run : *m_bench.scene().session.runs)
+    if (number == kUnderWay) return m_optimizing.underWay();
+    for (const Run& run : *m_services.scene().session.runs)
         if (run.number == number && isCurve(run)) return &run;
     return nullptr;
 }
 
 const Run* ConvergencePanel::shownRun() const {
-    if (const Run* run = m_bench.optimizing().underWay()) return isCurve(*run) ? run : nullptr;
+    if (const Run* run = m_optimizing.underWay()) return isCurve(*run) ? run : nullptr;
     if (const Run* run = runNumbered(m_shown)) return run;
-    const std::vector<Run>& runs = *m_bench.scene().session.runs;
+    const std::vector<Run>& runs = *m_services.scene().session.runs;
     const auto latest = std::find_if(runs.rbegin(), runs.rend(), isCurve);
     return latest == runs.rend() ? nullptr : &*latest;
 }
@@ -239,7 +234,7 @@ std::vector<const Run*> ConvergencePanel::comparedRuns() const {
     std::vector<const Run*> runs;
     for (const int number : m_compared)
         if (const Run* run = number == kUnderWay ? nullptr : runNumbered(number)) runs.push_back(run);
-    const Run* const now = m_bench.optimizing().underWay();
+    const Run* const now = m_optimizing.underWay();
     if (now != nullptr && isCurve(*now)) runs.push_back(now);
     if (runs.empty())
         if (const Run* run = shownRun()) runs.push_back(run);
@@ -267,7 +262,7 @@ void ConvergencePanel::resizeEvent(QResizeEvent* event) {
 }
 
 void ConvergencePanel::follow() {
-    for (const Run& run : *m_bench.scene().session.runs)
+    for (const Run& run : *m_services.scene().session.runs)
         if (run.number > m_latest) { // it is what one wants to see now
             m_latest = run.number;
             if (!isCurve(run)) continue;
@@ -299,7 +294,7 @@ void ConvergencePanel::fillList() {
         m_list->insertTopLevelItem(0, item); // the latest first
         if (shownRun() == &run) m_list->setCurrentItem(item);
     };
-    for (const Run& run : *m_bench.scene().session.runs)
+    for (const Run& run : *m_services.scene().session.runs)
         if (isCurve(run)) add(run, true);
     m_filling = false;
 }
@@ -307,7 +302,7 @@ void ConvergencePanel::fillList() {
 void ConvergencePanel::drawPlots() {
     const bool any = shownRun() != nullptr;
     m_export->setEnabled(any);
-    m_start->setEnabled(any && !m_bench.isReadOnly());
+    m_start->setEnabled(any && !m_services.isReadOnly());
     m_log->setEnabled(any);
     if (!isVisible()) return;
     std::vector<Plot> all = plots();
@@ -319,15 +314,15 @@ void ConvergencePanel::drawPlots() {
 }
 
 void ConvergencePanel::showMove(const Run& run, int move) {
-    if (m_bench.isReadOnly() || move < 0 || move >= static_cast<int>(run.history.size())) return;
-    const TransferFunction& base = run.hasStart() ? run.start->tf : m_bench.scene().tf;
+    if (m_services.isReadOnly() || move < 0 || move >= static_cast<int>(run.history.size())) return;
+    const TransferFunction& base = run.hasStart() ? run.start->tf : m_services.scene().tf;
     const OptimizeState& state = run.history[static_cast<std::size_t>(move)];
     if (base.features.size() != state.opacity.size()) return;
     try {
-        editTf(m_bench.store(), withShownOpacities(base, state.opacity),
+        editTf(m_services.store(), withShownOpacities(base, state.opacity),
                move == 0 ? tr("Show the start") : tr("Show move %1").arg(move));
     } catch (const Error& error) {
-        m_bench.showError(tr("The move cannot be shown"), error);
+        m_services.showError(tr("The move cannot be shown"), error);
     }
 }
 
@@ -338,12 +333,12 @@ void ConvergencePanel::itemChanged(QTreeWidgetItem* item) {
     if (run == nullptr) return;
     item->checkState(kTitle) == Qt::Checked ? (void)m_compared.insert(number) : (void)m_compared.erase(number);
     const std::string name = item->text(kTitle).trimmed().toStdString();
-    if (name != titleOf(*run) && !m_bench.isReadOnly()) {
+    if (name != titleOf(*run) && !m_services.isReadOnly()) {
         // Later: the list is made anew by it, and this is called from inside the list.
         QMetaObject::invokeMethod(
             this,
             [this, number, name] {
-                changeRuns(m_bench, tr("Rename run"), [&](std::vector<Run>& runs) {
+                changeRuns(m_services, tr("Rename run"), [&](std::vector<Run>& runs) {
                     for (Run& r : runs)
                         if (r.number == number) r.name = name;
                 });
@@ -356,15 +351,15 @@ void ConvergencePanel::itemChanged(QTreeWidgetItem* item) {
 
 void ConvergencePanel::remove() {
     const QTreeWidgetItem* const item = m_list->currentItem();
-    if (item == nullptr || m_bench.isReadOnly()) return;
+    if (item == nullptr || m_services.isReadOnly()) return;
     const int number = item->data(kTitle, kNumber).toInt();
-    changeRuns(m_bench, tr("Delete run"),
+    changeRuns(m_services, tr("Delete run"),
                [&](std::vector<Run>& runs) { std::erase_if(runs, [&](const Run& r) { return r.number == number; }); });
 }
 
 void ConvergencePanel::clear() {
-    if (m_bench.isReadOnly()) return;
-    changeRuns(m_bench, tr("Clear runs"), [](std::vector<Run>& runs) { std::erase_if(runs, isCurve); });
+    if (m_services.isReadOnly()) return;
+    changeRuns(m_services, tr("Clear runs"), [](std::vector<Run>& runs) { std::erase_if(runs, isCurve); });
 }
 
 bool ConvergencePanel::eventFilter(QObject* watched, QEvent* event) {
@@ -383,7 +378,7 @@ bool ConvergencePanel::eventFilter(QObject* watched, QEvent* event) {
 
 void ConvergencePanel::rename() {
     QTreeWidgetItem* const item = m_list->currentItem();
-    if (item != nullptr && item->flags().testFlag(Qt::ItemIsEditable) && !m_bench.isReadOnly())
+    if (item != nullptr && item->flags().testFlag(Qt::ItemIsEditable) && !m_services.isReadOnly())
         m_list->editItem(item, kTitle); // whatever column the mouse was on
 }
 
@@ -393,7 +388,7 @@ void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
     const QTreeWidgetItem* const item = m_list->currentItem();
     const Run* const run = shownRun();
     if (ofList && item != nullptr) {
-        const bool ended = item->flags().testFlag(Qt::ItemIsEditable) && !m_bench.isReadOnly();
+        const bool ended = item->flags().testFlag(Qt::ItemIsEditable) && !m_services.isReadOnly();
         menu.addAction(tr("Rename"), this, &ConvergencePanel::rename)->setEnabled(ended);
         menu.addAction(tr("Delete"), this, &ConvergencePanel::remove)->setEnabled(ended);
         menu.addAction(tr("Delete all"), this, &ConvergencePanel::clear)->setEnabled(ended);
@@ -404,17 +399,17 @@ void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
                        [this, number = run->number] {
                            if (const Run* r = runNumbered(number)) showMove(*r, 0);
                        })
-            ->setEnabled(!m_bench.isReadOnly());
+            ->setEnabled(!m_services.isReadOnly());
         menu.addAction(tr("Show the answer"), this,
                        [this, number = run->number] {
                            if (const Run* r = runNumbered(number)) showMove(*r, static_cast<int>(r->best));
                        })
-            ->setEnabled(!m_bench.isReadOnly());
+            ->setEnabled(!m_services.isReadOnly());
         menu.addAction(tr("Save report…"), this,
                        [this, number = run->number] {
-                           if (const Run* r = runNumbered(number)) m_bench.saving().chooseReport(*r);
+                           if (const Run* r = runNumbered(number)) m_saving.chooseReport(*r);
                        })
-            ->setEnabled(run->hasStart() && !m_bench.isReadOnly());
+            ->setEnabled(run->hasStart() && !m_services.isReadOnly());
         menu.addSeparator();
         menu.addActions(m_export->menu()->actions());
     }
@@ -430,7 +425,7 @@ void ConvergencePanel::chooseFile(const QString& suffix) {
                             : suffix == "png" ? png
                                               : svg;
     const QString kind = suffix.isEmpty() ? QStringLiteral("csv") : suffix;
-    QString path = QFileDialog::getSaveFileName(m_bench.window(), tr("Export the curves"),
+    QString path = QFileDialog::getSaveFileName(m_services.window(), tr("Export the curves"),
                                                 QDir(folder).filePath("curves." + kind), filters);
     if (path.isEmpty()) return;
     if (QFileInfo(path).suffix().isEmpty()) path += "." + kind;
@@ -451,9 +446,9 @@ void ConvergencePanel::exportTo(const QString& path) {
         } else {
             writePlots(file, all);
         }
-        Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+        Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
     } catch (const Error& error) {
-        m_bench.showError(tr("Cannot export the curves"), error);
+        m_services.showError(tr("Cannot export the curves"), error);
     }
 }
 

@@ -19,7 +19,9 @@ class QTreeWidgetItem;
 namespace pellucid::gui {
 
 class PlotView;
-class Workbench;
+class OptimizeController;
+class SaveController;
+class Services;
 
 /// Three plots and a list. The first has F of all runs that are checked in the list; the others VWS and opacities of
 /// the one that is selected. While an optimization runs, it is checked and selected, and the plots follow its moves.
@@ -27,7 +29,7 @@ class Workbench;
 class ConvergencePanel : public QWidget {
     Q_OBJECT
 public:
-    ConvergencePanel(Workbench& bench, QWidget* parent);
+    ConvergencePanel(Services& services, OptimizeController& optimizing, SaveController& saving, QWidget* parent);
 
     /// Writes what is shown, by the suffix: .csv (the runs' curves), .png or .svg (the plots). Errors are shown.
     void exportTo(const QString& path);
@@ -55,7 +57,9 @@ private:
     void remove();
     void clear();
 
-    Workbench& m_bench;
+    Services& m_services;
+    OptimizeController& m_optimizing;
+    SaveController& m_saving;
     std::array<PlotView*, 3> m_plots{};
     QBoxLayout* m_row;
     QTreeWidget* m_list;

@@ -11,9 +11,8 @@
 #include <QSlider>
 #include <QToolButton>
 
-#include "controllers/optimize_controller.h"
 #include "optimize/answer/visibility_words.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "store/edits.h"
 #include "tf/edit.h"
 #include "tf/shown_tf.h"
@@ -40,15 +39,15 @@ QString textOf(double share) { return QString::fromStdString(percentText(share))
 
 } // namespace
 
-DensitySlider::DensitySlider(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_slider(new QSlider(Qt::Horizontal, this)), m_value(new QLabel(this)),
+DensitySlider::DensitySlider(Services& services, QWidget* parent)
+    : QWidget(parent), m_services(services), m_slider(new QSlider(Qt::Horizontal, this)), m_value(new QLabel(this)),
       m_all(new QToolButton(this)),
       m_job(
-          [&workspace = bench.workspace()](const Request& request, const JobControl& job) {
+          [&workspace = services.workspace()](const Request& request, const JobControl& job) {
               return workspace.densityCurve(request.input, request.limits, {job.stop, {}});
           },
           [this](const Request& request, DensityCurve& curve) { take(request, curve); }, WhenBusy::StopOld,
-          &bench.compute()) {
+          &services.compute()) {
     setObjectName("densityRow");
     m_slider->setObjectName("densitySlider");
     m_slider->setMinimumWidth(80);
@@ -85,24 +84,24 @@ DensitySlider::DensitySlider(Workbench& bench, QWidget* parent)
     });
     connect(&m_job, &JobBase::busyChanged, this, [this] { rest(); });
     connect(&m_job, &JobBase::failed, this,
-            [this](const Error& error) { m_bench.showError(tr("The curve of equal shares"), error); });
-    connect(&bench.optimizing(), &OptimizeController::runningChanged, this, [this] {
-        if (m_bench.optimizing().isRunning()) {
+            [this](const Error& error) { m_services.showError(tr("The curve of equal shares"), error); });
+    connect(&services, &Services::readOnlyChanged, this, [this] {
+        if (m_services.isReadOnly()) {
             m_later.stop();
             m_job.cancel();
         } else {
             m_later.start();
         }
     });
-    connect(&bench.store(), &SessionStore::changed, this, &DensitySlider::followScene);
-    connect(&bench.results(), &Results::changed, this, [this] {
+    connect(&services.store(), &SessionStore::changed, this, &DensitySlider::followScene);
+    connect(&services.results(), &Results::changed, this, [this] {
         if (!m_slider->isSliderDown()) rest();
     });
     rest();
 }
 
 DensitySlider::Request DensitySlider::present() const {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     return {measureInput(scene), scene.tf, limitsOf(scene.tf, *scene.session.goals)};
 }
 
@@ -121,9 +120,7 @@ std::optional<double> DensitySlider::placeOf(const Request& now) const {
 
 void DensitySlider::compute() {
     m_later.stop();
-    if (m_job.isRunning() || !m_bench.store().hasVolume() || m_bench.scene().tf.features.empty() ||
-        m_bench.optimizing().isRunning())
-        return;
+    if (m_job.isRunning() || !m_services.isEditable() || m_services.scene().tf.features.empty()) return;
     const Request now = present();
     if (placeOf(now)) return;
     m_curve.reset();
@@ -136,7 +133,7 @@ void DensitySlider::take(const Request& request, DensityCurve& curve) {
     if (!place) m_curve.reset(); // the scene has gone on
     if (place) {
         m_changing = true;
-        m_bench.store().amend([at = shareOf(*place)](Session& session) { session.density = at; });
+        m_services.store().amend([at = shareOf(*place)](Session& session) { session.density = at; });
         m_changing = false;
     }
     // What the mouse holds is where the scene is, wherever it took the slider.
@@ -168,7 +165,7 @@ double DensitySlider::shareOf(double coverage) const {
 int DensitySlider::valueOf(double coverage) const { return static_cast<int>(std::lround(kReach * shareOf(coverage))); }
 
 void DensitySlider::follow() {
-    if (m_givenUp || !m_bench.store().hasVolume()) return rest();
+    if (m_givenUp || !m_services.store().hasVolume()) return rest();
     if (m_scales)
         followFactor();
     else
@@ -176,7 +173,7 @@ void DensitySlider::follow() {
 }
 
 void DensitySlider::followFactor() {
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     m_value->setText(QStringLiteral("× %1").arg(factor(), 0, 'f', 2));
     if (m_slider->isSliderDown()) {
         previewTf(store, withDensity(store.committed().tf, factor()), tr("Density"));
@@ -197,10 +194,10 @@ void DensitySlider::followCurve() {
     };
     m_changing = true;
     if (m_slider->isSliderDown()) {
-        m_bench.store().preview(tr("Density"), change);
+        m_services.store().preview(tr("Density"), change);
     } else {
-        m_bench.store().commit();
-        m_bench.store().edit(tr("Density"), QStringLiteral("density at equal shares"), change);
+        m_services.store().commit();
+        m_services.store().edit(tr("Density"), QStringLiteral("density at equal shares"), change);
     }
     m_changing = false;
     showCoverage(coverage);
@@ -208,7 +205,7 @@ void DensitySlider::followCurve() {
 
 void DensitySlider::release() {
     m_changing = true;
-    m_bench.store().commit();
+    m_services.store().commit();
     m_changing = false;
     m_offset = 0;
     rest();
@@ -225,7 +222,7 @@ void DensitySlider::rest() {
     }
     const QSignalBlocker blocker(m_slider);
     QString tip;
-    const Measures* const measures = m_bench.results().measures();
+    const Measures* const measures = m_services.results().measures();
     if (m_scales) {
         const int reach = static_cast<int>(std::lround(std::log2(kMostDensity) * kPerDoubling));
         m_slider->setRange(-reach, reach);
@@ -239,12 +236,12 @@ void DensitySlider::rest() {
         m_slider->setRange(0, kReach);
         m_slider->setSingleStep(20);
         m_slider->setPageStep(100);
-        const std::optional<double> place = m_bench.store().hasVolume() ? placeOf(present()) : std::nullopt;
+        const std::optional<double> place = m_services.store().hasVolume() ? placeOf(present()) : std::nullopt;
         // Where nobody knows the way from here it stays where the session has left it.
-        const double left = m_bench.scene().session.density.value_or(0.5);
+        const double left = m_services.scene().session.density.value_or(0.5);
         m_slider->setValue(place ? valueOf(*place) : static_cast<int>(std::lround(kReach * left)));
         std::optional<double> coverage = place;
-        if (measures && measures->coverage && m_bench.results().measuresAreCurrent())
+        if (measures && measures->coverage && m_services.results().measuresAreCurrent())
             coverage = measures->coverage->coverage;
         showCoverage(coverage);
         tip = tr("Stronger or fainter with the same shares of saliency (VWS), from this camera.\n"
@@ -261,10 +258,10 @@ void DensitySlider::rest() {
     }
     m_slider->setToolTip(tip);
     QString value = tr("Coverage: mean alpha over the pixels whose rays meet a feature that is drawn");
-    if (measures && measures->coverage && measures->coverage->covers.size() == m_bench.scene().tf.features.size())
+    if (measures && measures->coverage && measures->coverage->covers.size() == m_services.scene().tf.features.size())
         for (std::size_t f = 0; f < measures->coverage->covers.size(); ++f)
             value += tr("\n%1: %2 of alpha where it is seen")
-                         .arg(QString::fromStdString(m_bench.scene().tf.features[f].name),
+                         .arg(QString::fromStdString(m_services.scene().tf.features[f].name),
                               textOf(measures->coverage->covers[f]));
     m_value->setToolTip(value);
 }
@@ -287,7 +284,7 @@ bool DensitySlider::eventFilter(QObject* watched, QEvent* event) {
         m_givenUp = true;
         m_offset = 0;
         m_changing = true;
-        m_bench.store().cancel();
+        m_services.store().cancel();
         m_changing = false;
         rest();
         return true;

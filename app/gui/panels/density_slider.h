@@ -16,7 +16,7 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Moves along the curve of equal shares (optimize/density_curve.h), from its faint end to its strong one. The curve of
 /// the present shares is computed after an optimization, or when the slider is touched for the first time; it is kept
@@ -26,7 +26,7 @@ class Workbench;
 class DensitySlider : public QWidget {
     Q_OBJECT
 public:
-    explicit DensitySlider(Workbench& bench, QWidget* parent = nullptr);
+    explicit DensitySlider(Services& services, QWidget* parent = nullptr);
 
     /// Along what it moves now; null: not known.
     const DensityCurve* curve() const { return m_curve ? &m_curve->curve : nullptr; }
@@ -65,7 +65,7 @@ private:
     double shareOf(double coverage) const; ///< of the way from the faint end of the curve to its strong one, [0,1]
     int valueOf(double coverage) const;
 
-    Workbench& m_bench;
+    Services& m_services;
     QSlider* m_slider; ///< per mille of the curve, even in ln coverage; or hundredths of doublings
     QLabel* m_value;
     QToolButton* m_all;

@@ -16,9 +16,9 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "controllers/open_controller.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 #include "widgets/scrolled.h"
@@ -53,10 +53,11 @@ QPixmap swatchOf(const Rgb& color) {
 
 } // namespace
 
-DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_mode(new QComboBox(this)), m_background(new QToolButton(this)),
-      m_gradient(new QCheckBox(tr("to the top"), this)), m_top(new QToolButton(this)), m_feature(new QComboBox(this)),
-      m_finest(new QComboBox(this)), m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
+DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget* parent)
+    : QWidget(parent), m_services(services), m_opening(opening), m_mode(new QComboBox(this)),
+      m_background(new QToolButton(this)), m_gradient(new QCheckBox(tr("to the top"), this)),
+      m_top(new QToolButton(this)), m_feature(new QComboBox(this)), m_finest(new QComboBox(this)),
+      m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
       m_wholeRange(new QPushButton(tr("&All values"), this)), m_component(new QSpinBox(this)),
       m_note(new QLabel(this)) {
     setObjectName("displayPanel");
@@ -120,16 +121,16 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     form->addRow(m_note);
     fillScrolled(this, content);
 
-    SessionStore& store = m_bench.store();
+    SessionStore& store = m_services.store();
     connect(m_mode, &QComboBox::activated, this, [this](int index) {
-        m_bench.store().edit(tr("Mode"), {}, [&](Session& session) {
+        m_services.store().edit(tr("Mode"), {}, [&](Session& session) {
             session.display.edit([&](DisplaySettings& d) { d.mode = static_cast<RenderMode>(index); });
         });
     });
     connect(m_background, &QToolButton::clicked, this, [this] { chooseBackground(false); });
     connect(m_top, &QToolButton::clicked, this, [this] { chooseBackground(true); });
     connect(m_gradient, &QCheckBox::clicked, this, [this](bool checked) {
-        m_bench.store().edit(tr("Background"), {}, [&](Session& session) {
+        m_services.store().edit(tr("Background"), {}, [&](Session& session) {
             session.display.edit([&](DisplaySettings& d) {
                 d.backgroundTop.reset();
                 if (checked) d.backgroundTop = kFirstTop;
@@ -138,30 +139,30 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
     });
     connect(m_feature, &QComboBox::activated, this, [this] {
         const auto id = static_cast<FeatureId>(m_feature->currentData().toULongLong());
-        m_bench.store().edit(tr("Feature alone"), {}, [&](Session& session) {
+        m_services.store().edit(tr("Feature alone"), {}, [&](Session& session) {
             session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; });
         });
     });
     connect(m_finest, &QComboBox::activated, this, [this] {
-        m_bench.store().edit(tr("Finest step"), {}, [&](Session& session) {
+        m_services.store().edit(tr("Finest step"), {}, [&](Session& session) {
             session.display.edit([&](DisplaySettings& d) { d.finestStep = m_finest->currentData().toDouble(); });
         });
     });
     connect(m_lo, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_hi, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_wholeRange, &QPushButton::clicked, this, [this] {
-        m_bench.opening().editData(tr("All values"), [](Session& session) {
+        m_opening.editData(tr("All values"), [](Session& session) {
             session.variables.edit([](std::vector<Variable>& all) { all.front().window.reset(); });
         });
     });
     connect(m_component, &QSpinBox::valueChanged, this, [this](int component) {
         if (m_showing) return;
-        m_bench.opening().editData(tr("Component"), [component](Session& session) {
+        m_opening.editData(tr("Component"), [component](Session& session) {
             session.variables.edit([&](std::vector<Variable>& all) { all.front().source.component = component; });
         });
     });
-    connect(&m_bench.opening(), &OpenController::busyChanged, this, [this] {
-        if (!m_bench.opening().isBusy()) follow(); // also where it failed; till then it shows what was asked for
+    connect(&m_opening, &OpenController::busyChanged, this, [this] {
+        if (!m_opening.isBusy()) follow(); // also where it failed; till then it shows what was asked for
     });
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         const Session &old = before.session, &now = after.session;
@@ -169,17 +170,17 @@ DisplayPanel::DisplayPanel(Workbench& bench, QWidget* parent)
             before.volume == after.volume && before.tf.features == after.tf.features && old.display.isSame(now.display);
         if (!same) follow(); // the view turns, the curve is dragged: nothing of this panel's
     });
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &DisplayPanel::follow);
+    connect(&m_services, &Services::readOnlyChanged, this, &DisplayPanel::follow);
     follow();
 }
 
 void DisplayPanel::chooseBackground(bool top) {
-    const DisplaySettings& display = *m_bench.store().session().display;
+    const DisplaySettings& display = *m_services.store().session().display;
     const Rgb now = top ? display.backgroundTop.value_or(display.background) : display.background;
     const QColor color = QColorDialog::getColor(
         colorFromRgb(now), this, top ? tr("Colour at the top of the picture") : tr("Colour behind the volume"));
     if (!color.isValid()) return;
-    m_bench.store().edit(tr("Background"), {}, [&](Session& session) {
+    m_services.store().edit(tr("Background"), {}, [&](Session& session) {
         session.display.edit([&](DisplaySettings& d) {
             if (top)
                 d.backgroundTop = rgbFromColor(color);
@@ -193,16 +194,16 @@ void DisplayPanel::editWindow() {
     if (m_showing) return;
     const ValueRange window{m_lo->value(), m_hi->value()};
     if (!(window.lo < window.hi)) return follow(); // nothing lies between them
-    m_bench.opening().editData(tr("Values"), [window](Session& session) {
+    m_opening.editData(tr("Values"), [window](Session& session) {
         session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
     });
 }
 
 void DisplayPanel::follow() {
-    const Scene& scene = m_bench.scene();
-    const bool ready = m_bench.store().hasVolume() && !m_bench.isReadOnly();
+    const Scene& scene = m_services.scene();
+    const bool ready = m_services.isEditable();
     setEnabled(ready);
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     m_showing = true;
     const DisplaySettings& display = *scene.session.display;
     m_mode->setCurrentIndex(static_cast<int>(display.mode));
@@ -253,7 +254,9 @@ PanelInfo displayPanel() {
             .keys = QKeySequence("Ctrl+D"),
             .tip =
                 QObject::tr("Mode, background, one feature alone, how finely it is drawn, range of values, component"),
-            .make = [](Workbench& bench, QWidget* parent) { return new DisplayPanel(bench, parent); }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                return new DisplayPanel(services, controllers.opening, parent);
+            }};
 }
 
 } // namespace pellucid::gui

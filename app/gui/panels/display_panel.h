@@ -13,19 +13,21 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class OpenController;
+class Services;
 
 class DisplayPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit DisplayPanel(Workbench& bench, QWidget* parent = nullptr);
+    DisplayPanel(Services& services, OpenController& opening, QWidget* parent = nullptr);
 
 private:
     void follow();
     void chooseBackground(bool top);
     void editWindow();
 
-    Workbench& m_bench;
+    Services& m_services;
+    OpenController& m_opening;
     QComboBox* m_mode;
     QToolButton* m_background;
     QCheckBox* m_gradient;

@@ -5,7 +5,6 @@
 
 #include <QColorDialog>
 #include <QComboBox>
-#include <QDockWidget>
 #include <QGridLayout>
 #include <QHeaderView>
 #include <QItemSelectionModel>
@@ -23,13 +22,11 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "controllers/feature_actions.h"
-#include "controllers/optimize_controller.h"
-#include "controllers/target_actions.h"
-#include "panels/channels_box.h"
+#include "controllers/controllers.h"
 #include "panels/density_slider.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "panels/panel.h"
+#include "panels/variable_words.h"
+#include "services/services.h"
 #include "widgets/lock_mark.h"
 #include "widgets/opacity_editor.h"
 #include "widgets/theme.h"
@@ -153,11 +150,12 @@ QPushButton* button(const QString& text, const char* name, const QString& tip, Q
 
 } // namespace
 
-FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_model(new FeaturesModel(bench.store(), bench.results(), this)),
-      m_table(new QTableView(this)), m_bars(new TargetBars(bench.store(), bench.results())),
-      m_density(new DensitySlider(bench, this)), m_add(new QToolButton(this)), m_colors(new QToolButton(this)),
-      m_targets(new QToolButton(this)), m_method(new QComboBox(this)),
+FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent)
+    : QWidget(parent), m_services(services), m_controllers(controllers),
+      m_model(new FeaturesModel(services.store(), services.results(), this)), m_table(new QTableView(this)),
+      m_bars(new TargetBars(services.store(), services.results())), m_density(new DensitySlider(services, this)),
+      m_add(new QToolButton(this)), m_colors(new QToolButton(this)), m_targets(new QToolButton(this)),
+      m_method(new QComboBox(this)),
       m_refine(button(tr("&Refine"), "refineButton",
                       tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this)),
       m_optimize(button(tr("&Optimize"), "optimizeButton",
@@ -200,14 +198,14 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
         select(m_table->rowAt(at.y()));
         QMenu menu(this);
         menu.setObjectName("featureContextMenu");
-        fillFeatureMenu(menu, m_bench);
+        m_controllers.features.fillMenu(menu);
         menu.exec(m_table->viewport()->mapToGlobal(at));
     });
     connect(m_table->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this](const QModelIndex& now) {
         if (!m_showingSelection && now.isValid()) select(now.row());
     });
     connect(m_bars, &TargetBars::currentChanged, this, &FeaturesPanel::select);
-    connect(&m_bench.selection(), &Selection::featureChanged, this, &FeaturesPanel::followSelection);
+    connect(&m_services.selection(), &Selection::featureChanged, this, &FeaturesPanel::followSelection);
     connect(m_model, &QAbstractItemModel::modelReset, this, &FeaturesPanel::adjustTable);
 
     auto* scroll = new QScrollArea(this);
@@ -236,7 +234,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     m_message->setObjectName("panelMessage");
     m_message->setWordWrap(true);
-    connect(m_message, &QLabel::linkActivated, this, [this] { m_bench.optimizing().takeExact(); });
+    connect(m_message, &QLabel::linkActivated, this, [this] { m_controllers.optimizing.takeExact(); });
     makeFaint(*m_message);
 
     auto* choices = new QGridLayout;
@@ -251,12 +249,7 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     settings->setObjectName("settingsButton");
     settings->setText(tr("Settings…"));
     settings->setToolTip(tr("Steps, tolerance and limit of optimizations; how saliency is measured"));
-    connect(settings, &QToolButton::clicked, this, [this] {
-        auto* dock = m_bench.window()->findChild<QDockWidget*>("settingsDock");
-        if (dock == nullptr) return;
-        dock->show();
-        dock->raise();
-    });
+    connect(settings, &QToolButton::clicked, this, [this] { m_services.panels().show("settings"); });
     choices->addWidget(settings, 0, 2);
     choices->setColumnStretch(1, 1);
     auto* buttons = new QGridLayout;
@@ -287,22 +280,19 @@ FeaturesPanel::FeaturesPanel(Workbench& bench, QWidget* parent)
     column->addLayout(choices);
     column->addLayout(buttons);
 
-    const auto triggers = [this](QPushButton* b, const char* action) {
-        connect(b, &QPushButton::clicked, this, [this, action] { m_bench.actions().find(action)->trigger(); });
-    };
-    triggers(m_refine, "refineAction");
-    triggers(m_optimize, "optimizeAction");
-    triggers(m_undo, "undoAction");
-    triggers(m_redo, "redoAction");
-    OptimizeController& optimizing = m_bench.optimizing();
+    OptimizeController& optimizing = controllers.optimizing;
+    connect(m_refine, &QPushButton::clicked, controllers.refining.actions().refine, &QAction::trigger);
+    connect(m_optimize, &QPushButton::clicked, &optimizing, &OptimizeController::start);
+    connect(m_undo, &QPushButton::clicked, &services, &Services::undo);
+    connect(m_redo, &QPushButton::clicked, &services, &Services::redo);
     connect(m_cancel, &QPushButton::clicked, &optimizing, &OptimizeController::cancel);
     connect(m_method, &QComboBox::activated, this, &FeaturesPanel::editOptions);
     connect(&optimizing, &OptimizeController::runningChanged, this, &FeaturesPanel::followRun);
     connect(&optimizing, &OptimizeController::moved, this, &FeaturesPanel::followRun);
     connect(&optimizing, &OptimizeController::messageChanged, this, &FeaturesPanel::showMessage);
-    connect(&m_bench.store(), &SessionStore::changed, this, &FeaturesPanel::follow);
-    connect(&m_bench.store(), &SessionStore::historyChanged, this, &FeaturesPanel::follow);
-    connect(&m_bench.results(), &Results::changed, this, &FeaturesPanel::follow);
+    connect(&m_services.store(), &SessionStore::changed, this, &FeaturesPanel::follow);
+    connect(&m_services.store(), &SessionStore::historyChanged, this, &FeaturesPanel::follow);
+    connect(&m_services.results(), &Results::changed, this, &FeaturesPanel::follow);
     adjustTable();
     followRun();
     showMessage();
@@ -320,17 +310,16 @@ QWidget* FeaturesPanel::makeShapeRow() {
     m_add->setPopupMode(QToolButton::InstantPopup);
     auto* shapes = new QMenu(m_add);
     shapes->setToolTipsVisible(true);
-    fillShapeMenu(*shapes, m_bench);
+    shapes->addActions(m_controllers.features.shapes());
     m_add->setMenu(shapes);
     row->addWidget(m_add);
-    for (const auto& [id, text] :
-         {std::pair{"featureSplit", tr("Split")}, std::pair{"featureMerge", tr("Merge")},
-          std::pair{"featureDuplicate", tr("Duplicate")}, std::pair{"featureRemove", tr("Remove")}}) {
-        QAction* const action = m_bench.actions().find(id);
-        action->setIconText(text); // what buttons say
+    const QString texts[] = {tr("Split"), tr("Merge"), tr("Duplicate"), tr("Remove")}; // what buttons say
+    const QList<QAction*>& actions = m_controllers.features.shaping();
+    for (qsizetype i = 0; i < actions.size(); ++i) {
+        actions[i]->setIconText(texts[i]);
         auto* b = new QToolButton(widget);
-        b->setDefaultAction(action);
-        b->setObjectName(QString::fromLatin1(id) + "Button");
+        b->setDefaultAction(actions[i]);
+        b->setObjectName(actions[i]->objectName() + "Button");
         row->addWidget(b);
     }
     row->addStretch(1);
@@ -348,10 +337,11 @@ QWidget* FeaturesPanel::makeTargetRow() {
     m_targets->setToolTip(tr("All targets at once: equal, by value, as now, for one feature, turned round; and locks"));
     m_targets->setPopupMode(QToolButton::InstantPopup);
     auto* menu = new QMenu(m_targets);
-    fillTargetMenu(*menu, m_bench);
+    menu->setToolTipsVisible(true);
+    menu->addActions(m_controllers.targets.entries());
     m_targets->setMenu(menu);
     row->addWidget(m_targets);
-    QAction* const live = m_bench.actions().find("liveTargetsAction");
+    QAction* const live = m_controllers.live.action();
     live->setIconText(tr("Live")); // what buttons say
     auto* b = new QToolButton(widget);
     b->setDefaultAction(live);
@@ -372,7 +362,7 @@ QWidget* FeaturesPanel::makeColorRow() {
     m_colors->setToolTip(tr("Colours by value from a map; opacities stay"));
     m_colors->setPopupMode(QToolButton::InstantPopup);
     auto* maps = new QMenu(m_colors);
-    fillColorMenu(*maps, m_bench);
+    m_controllers.features.fillColorMenu(*maps);
     m_colors->setMenu(maps);
     row->addWidget(m_density, 1);
     row->addWidget(m_colors);
@@ -391,10 +381,10 @@ bool FeaturesPanel::eventFilter(QObject* watched, QEvent* event) {
 bool FeaturesPanel::pressTable(const QMouseEvent& mouse) {
     const QPoint at = mouse.position().toPoint();
     const QModelIndex index = m_table->indexAt(at);
-    if (!index.isValid() || mouse.button() != Qt::LeftButton || m_bench.isReadOnly()) return false;
+    if (!index.isValid() || mouse.button() != Qt::LeftButton || m_services.isReadOnly()) return false;
     if (index.column() == FeaturesModel::Eye) {
         if (mouse.modifiers() & (Qt::AltModifier | Qt::ControlModifier))
-            toggleOnlyFeature(m_bench, index.row());
+            m_controllers.features.toggleOnly(index.row());
         else
             m_model->setData(index, !index.data(Qt::EditRole).toBool());
         return true;
@@ -415,13 +405,13 @@ bool FeaturesPanel::pressTable(const QMouseEvent& mouse) {
 }
 
 void FeaturesPanel::select(int row) {
-    const auto& features = m_bench.scene().tf.features;
+    const auto& features = m_services.scene().tf.features;
     if (row >= 0 && static_cast<std::size_t>(row) < features.size())
-        m_bench.selection().setFeature(features[static_cast<std::size_t>(row)].id);
+        m_services.selection().setFeature(features[static_cast<std::size_t>(row)].id);
 }
 
 void FeaturesPanel::followSelection() {
-    const int row = selectedFeature(m_bench);
+    const int row = m_services.selectedFeature();
     m_showingSelection = true;
     if (row >= 0 && row < m_model->rowCount()) {
         if (m_table->currentIndex().row() != row) m_table->setCurrentIndex(m_model->index(row, FeaturesModel::Name));
@@ -435,7 +425,7 @@ void FeaturesPanel::followSelection() {
 
 void FeaturesPanel::editOptions() {
     const auto method = static_cast<SearchMethod>(m_method->currentData().toInt());
-    m_bench.store().edit(tr("Optimization settings"), "optimize-settings", [&](Session& session) {
+    m_services.store().edit(tr("Optimization settings"), "optimize-settings", [&](Session& session) {
         session.optimize.edit([&](OptimizeOptions& options) { options.method = method; });
     });
 }
@@ -450,7 +440,7 @@ void FeaturesPanel::adjustTable() {
 }
 
 void FeaturesPanel::followRun() {
-    const OptimizeController& run = m_bench.optimizing();
+    const OptimizeController& run = m_controllers.optimizing;
     const bool on = run.isRunning();
     if (on && !m_cancel->isVisible()) m_cancel->setFocus();
     if (m_cancel->isHidden() == on) {
@@ -462,7 +452,7 @@ void FeaturesPanel::followRun() {
         m_progress->setFormat(on ? tr("measuring the start…") : QString());
     } else {
         // F falls by about the same factor in each move, so the way is measured in logarithms.
-        const double tolerance = m_bench.store().session().optimize->tolerance;
+        const double tolerance = m_services.store().session().optimize->tolerance;
         double done = 1;
         if (run.objective() > tolerance && run.firstObjective() > tolerance)
             done = std::log(run.firstObjective() / run.objective()) / std::log(run.firstObjective() / tolerance);
@@ -484,7 +474,7 @@ void FeaturesPanel::followRun() {
 }
 
 void FeaturesPanel::showMessage() {
-    const OptimizeController& optimizing = m_bench.optimizing();
+    const OptimizeController& optimizing = m_controllers.optimizing;
     const QString& text = optimizing.message();
     const QString link = QStringLiteral(" <a href=\"exact\">%1</a>").arg(tr("Use the exact shares"));
     m_message->setTextFormat(optimizing.hasExact() ? Qt::RichText : Qt::PlainText);
@@ -493,12 +483,12 @@ void FeaturesPanel::showMessage() {
 }
 
 void FeaturesPanel::follow() {
-    const SessionStore& store = m_bench.store();
+    const SessionStore& store = m_services.store();
     const OptimizeOptions& options = *store.session().optimize;
     const QSignalBlocker blockMethod(m_method);
     m_method->setCurrentIndex(m_method->findData(static_cast<int>(options.method)));
 
-    const bool ready = store.hasVolume() && !m_bench.isReadOnly();
+    const bool ready = m_services.isEditable();
     const bool features = !store.scene().tf.features.empty();
     m_refine->setEnabled(ready);
     m_optimize->setEnabled(ready && features);
@@ -508,7 +498,7 @@ void FeaturesPanel::follow() {
         widget->setEnabled(ready);
     followSelection();
 
-    const Results& results = m_bench.results();
+    const Results& results = m_services.results();
     m_distance->setEnabled(results.vwsIsCurrent());
     if (results.state() == Results::State::Failed) {
         m_distance->setText(tr("Not measured: %1").arg(QString::fromStdString(results.failure()->problem())));
@@ -527,10 +517,10 @@ PanelInfo featuresPanel() {
             .size = 380,
             .keys = QKeySequence("Ctrl+2"),
             .tip = QObject::tr("What each feature shows and what it should show"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                followTitle(bench, parent, featuresTitle);
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                followTitle(services, parent, featuresTitle);
                 const QString place = QObject::tr("Features");
-                bench.actions().addGestures(
+                services.actions().addGestures(
                     {{place, QObject::tr("Click on an eye"), QObject::tr("show or hide the feature")},
                      {place, QObject::tr("Alt or Ctrl+click on an eye"), QObject::tr("draw only this feature, or all")},
                      {place, QObject::tr("Click on a colour"), QObject::tr("change it")},
@@ -538,7 +528,7 @@ PanelInfo featuresPanel() {
                      {place, QObject::tr("Double-click on a target, Enter, a digit"), QObject::tr("type the target")},
                      {place, QObject::tr("Click on a target's padlock, L"),
                       QObject::tr("hold the target where others are set")}});
-                auto* panel = new FeaturesPanel(bench, parent);
+                auto* panel = new FeaturesPanel(services, controllers, parent);
                 panel->setMinimumWidth(340);
                 return panel;
             }};

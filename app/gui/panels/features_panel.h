@@ -17,12 +17,13 @@ class QToolButton;
 namespace pellucid::gui {
 
 class DensitySlider;
-class Workbench;
+class Services;
+struct Controllers;
 
 class FeaturesPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit FeaturesPanel(Workbench& bench, QWidget* parent = nullptr);
+    FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent = nullptr);
 
 protected:
     bool eventFilter(QObject* watched, QEvent* event) override; ///< the mouse on eyes and colours
@@ -40,7 +41,8 @@ private:
     void showMessage();
     void adjustTable();
 
-    Workbench& m_bench;
+    Services& m_services;
+    Controllers& m_controllers;
     FeaturesModel* m_model;
     QTableView* m_table;
     TargetBars* m_bars;

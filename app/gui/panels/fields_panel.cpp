@@ -16,9 +16,9 @@
 #include <QPushButton>
 #include <QSlider>
 
-#include "controllers/field_controller.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
+#include "services/services.h"
 #include "tf/color_maps.h"
 #include "widgets/number_box.h"
 #include "widgets/scrolled.h"
@@ -56,11 +56,11 @@ double strengthAt(int position) { return std::pow(kLeastStrength, 1 - static_cas
 
 } // namespace
 
-FieldsPanel::FieldsPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_kind(new QComboBox(this)), m_feature(new QComboBox(this)),
-      m_colorMap(new QComboBox(this)), m_strengthSlider(new QSlider(Qt::Horizontal, this)),
-      m_thresholdSlider(new QSlider(Qt::Horizontal, this)), m_strength(new QDoubleSpinBox(this)),
-      m_threshold(new QDoubleSpinBox(this)), m_top(new QLineEdit(this)),
+FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* parent)
+    : QWidget(parent), m_services(services), m_fields(fields), m_kind(new QComboBox(this)),
+      m_feature(new QComboBox(this)), m_colorMap(new QComboBox(this)),
+      m_strengthSlider(new QSlider(Qt::Horizontal, this)), m_thresholdSlider(new QSlider(Qt::Horizontal, this)),
+      m_strength(new QDoubleSpinBox(this)), m_threshold(new QDoubleSpinBox(this)), m_top(new QLineEdit(this)),
       m_usualTop(new QPushButton(tr("&Usual"), this)), m_stop(new QPushButton(this)),
       m_save(new QPushButton(tr("Sa&ve…"), this)), m_state(new QLabel(this)), m_progress(new QProgressBar(this)) {
     setObjectName("fieldsPanel");
@@ -109,7 +109,7 @@ FieldsPanel::FieldsPanel(Workbench& bench, QWidget* parent)
         slider->setToolTip(tip);
         box->setKeyboardTracking(false);
         box->setToolTip(tip);
-        connect(slider, &QSlider::sliderReleased, this, [this] { m_bench.store().commit(); });
+        connect(slider, &QSlider::sliderReleased, this, [this] { m_services.store().commit(); });
     }
     m_top->setObjectName("fieldTop");
     m_top->setToolTip(tr("Value of the field that the colours reach to, above 0; in the unit of the field"));
@@ -152,7 +152,7 @@ FieldsPanel::FieldsPanel(Workbench& bench, QWidget* parent)
 
     connect(m_kind, &QComboBox::activated, this, [this](int index) {
         const int kind = m_kind->itemData(index).toInt();
-        m_bench.fields().show(kind < 0 ? std::nullopt : std::optional(static_cast<FieldKind>(kind)));
+        m_fields.show(kind < 0 ? std::nullopt : std::optional(static_cast<FieldKind>(kind)));
     });
     connect(m_feature, &QComboBox::activated, this, [this] {
         const auto id = static_cast<FeatureId>(m_feature->currentData().toULongLong());
@@ -180,17 +180,17 @@ FieldsPanel::FieldsPanel(Workbench& bench, QWidget* parent)
     connect(m_usualTop, &QPushButton::clicked, this,
             [this] { edit(tr("Usual top of the field"), {}, [](FieldView& f) { f.top.reset(); }); });
     connect(m_stop, &QPushButton::clicked, this, [this] {
-        FieldController& fields = m_bench.fields();
+        FieldController& fields = m_fields;
         fields.state() == FieldController::State::Computing ? fields.cancel() : fields.compute();
     });
-    connect(m_save, &QPushButton::clicked, this, [this] { m_bench.fields().chooseFile(); });
-    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(m_save, &QPushButton::clicked, this, [this] { m_fields.chooseFile(); });
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features != after.tf.features ||
             !before.session.field.isSame(after.session.field))
             follow();
     });
-    connect(&m_bench.fields(), &FieldController::changed, this, &FieldsPanel::followField);
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &FieldsPanel::follow);
+    connect(&m_fields, &FieldController::changed, this, &FieldsPanel::followField);
+    connect(&m_services, &Services::readOnlyChanged, this, &FieldsPanel::follow);
     follow();
 }
 
@@ -198,13 +198,13 @@ QSize FieldsPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()
 
 void FieldsPanel::edit(const QString& text, const QString& mergeKey, const Change& change) {
     if (m_showing) return;
-    m_bench.store().edit(text, mergeKey, [&](Session& session) { session.field.edit(change); });
+    m_services.store().edit(text, mergeKey, [&](Session& session) { session.field.edit(change); });
 }
 
 void FieldsPanel::slide(const QSlider& slider, const QString& text, const Change& change) {
     if (m_showing) return;
     if (slider.isSliderDown())
-        m_bench.store().preview(text, [&](Session& session) { session.field.edit(change); });
+        m_services.store().preview(text, [&](Session& session) { session.field.edit(change); });
     else
         edit(text, slider.objectName(), change); // by keys
 }
@@ -218,8 +218,8 @@ void FieldsPanel::editTop() {
 }
 
 void FieldsPanel::follow() {
-    const Scene& scene = m_bench.scene();
-    setEnabled(m_bench.store().hasVolume() && !m_bench.isReadOnly());
+    const Scene& scene = m_services.scene();
+    setEnabled(m_services.isEditable());
     m_showing = true;
     const FieldView& view = *scene.session.field;
     const bool on = view.kind.has_value();
@@ -248,7 +248,7 @@ void FieldsPanel::follow() {
 
 void FieldsPanel::followField() {
     using State = FieldController::State;
-    const FieldController& fields = m_bench.fields();
+    const FieldController& fields = m_fields;
     const State state = fields.state();
     const Field* const field = fields.field();
     m_stop->setText(state == State::Computing ? tr("&Stop") : tr("&Compute"));
@@ -277,7 +277,7 @@ void FieldsPanel::followField() {
         break;
     }
     if (m_top->hasFocus() && m_top->isModified()) return; // somebody types
-    m_top->setText(field ? QString::number(topOf(*m_bench.scene().session.field, *field), 'g', 4) : QString());
+    m_top->setText(field ? QString::number(topOf(*m_services.scene().session.field, *field), 'g', 4) : QString());
     m_top->setModified(false);
 }
 
@@ -289,7 +289,9 @@ PanelInfo fieldsPanel() {
             .tabOf = "display",
             .keys = QKeySequence("Shift+V"),
             .tip = QObject::tr("Visibility, saliency and VWS of each voxel in the place of the data"),
-            .make = [](Workbench& bench, QWidget* parent) { return new FieldsPanel(bench, parent); }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                return new FieldsPanel(services, controllers.fields, parent);
+            }};
 }
 
 } // namespace pellucid::gui

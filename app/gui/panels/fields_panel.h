@@ -19,12 +19,13 @@ struct FieldView;
 
 namespace pellucid::gui {
 
-class Workbench;
+class FieldController;
+class Services;
 
 class FieldsPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit FieldsPanel(Workbench& bench, QWidget* parent = nullptr);
+    FieldsPanel(Services& services, FieldController& fields, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
 
@@ -37,7 +38,8 @@ private:
     void follow();      ///< the session
     void followField(); ///< what has become of the field
 
-    Workbench& m_bench;
+    Services& m_services;
+    FieldController& m_fields;
     QComboBox *m_kind, *m_feature, *m_colorMap;
     QSlider *m_strengthSlider, *m_thresholdSlider;
     QDoubleSpinBox *m_strength, *m_threshold; ///< opacity; per cent of the top

@@ -12,8 +12,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "panels/panel.h"
+#include "services/services.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
@@ -54,22 +54,19 @@ QString fileNameOf(const QString& title) {
 } // namespace
 
 PanelInfo galleryPanel() {
-    return {.id = "gallery",
-            .title = QObject::tr("Presets"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = true,
-            .tabOf = "features",
-            .keys = QKeySequence("Ctrl+9"),
-            .tip = QObject::tr("Transfer functions as small pictures of this volume"),
-            .make = [](Workbench& bench, QWidget* parent) { return new GalleryPanel(bench, parent); },
-            .shown =
-                [](Workbench& bench, bool visible) {
-                    if (auto* panel = bench.window()->findChild<GalleryPanel*>()) panel->setShown(visible);
-                }};
+    return {
+        .id = "gallery",
+        .title = QObject::tr("Presets"),
+        .area = Qt::RightDockWidgetArea,
+        .visible = true,
+        .tabOf = "features",
+        .keys = QKeySequence("Ctrl+9"),
+        .tip = QObject::tr("Transfer functions as small pictures of this volume"),
+        .make = [](Services& services, Controllers&, QWidget* parent) { return new GalleryPanel(services, parent); }};
 }
 
-GalleryPanel::GalleryPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_group(new QComboBox(this)), m_take(new QComboBox(this)),
+GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
+    : QWidget(parent), m_services(services), m_group(new QComboBox(this)), m_take(new QComboBox(this)),
       m_list(new QListWidget(this)), m_keep(new QToolButton(this)), m_remove(new QToolButton(this)),
       m_renderer(std::make_shared<KeptRenderer>()),
       m_job(
@@ -136,8 +133,11 @@ GalleryPanel::GalleryPanel(Workbench& bench, QWidget* parent)
     });
     connect(m_keep, &QToolButton::clicked, this, &GalleryPanel::keep);
     connect(m_remove, &QToolButton::clicked, this, &GalleryPanel::remove);
-    connect(&bench.store(), &SessionStore::changed, this, &GalleryPanel::follow);
-    connect(&bench, &Workbench::readOnlyChanged, this, [this] { m_list->setEnabled(!m_bench.isReadOnly()); });
+    connect(&services.store(), &SessionStore::changed, this, &GalleryPanel::follow);
+    connect(&services.panels(), &Panels::visibilityChanged, this, [this](const QString& id, bool visible) {
+        if (id == "gallery") setShown(visible);
+    });
+    connect(&services, &Services::readOnlyChanged, this, [this] { m_list->setEnabled(!m_services.isReadOnly()); });
     fill();
 }
 
@@ -174,7 +174,7 @@ void GalleryPanel::fill() {
             preset.group = tr("My own").toStdString();
             all.push_back({std::move(preset), file.filePath()});
         } catch (const Error& error) { // one broken file is no reason to do without the others
-            m_bench.notices().add({QString::fromUtf8(error.what()), {}});
+            m_services.notices().add({QString::fromUtf8(error.what()), {}});
         }
     }
 
@@ -210,9 +210,9 @@ void GalleryPanel::drawSoon() {
 }
 
 void GalleryPanel::draw() {
-    if (!m_shown || !m_bench.store().hasVolume()) return;
+    if (!m_shown || !m_services.store().hasVolume()) return;
     m_stale = false;
-    const Scene& scene = m_bench.store().committed();
+    const Scene& scene = m_services.store().committed();
     Task task;
     const double density = devicePixelRatioF();
     task.picture = pictureInput(scene, static_cast<int>(kWidth * density), static_cast<int>(kHeight * density));
@@ -232,22 +232,22 @@ void GalleryPanel::showPicture(int number, int row, const QImage& image) {
 }
 
 void GalleryPanel::apply(int row) {
-    SessionStore& store = m_bench.store();
-    if (row < 0 || row >= static_cast<int>(m_entries.size()) || !store.hasVolume() || m_bench.isReadOnly()) return;
+    SessionStore& store = m_services.store();
+    if (row < 0 || row >= static_cast<int>(m_entries.size()) || !m_services.isEditable()) return;
     store.commit();
     const Entry& entry = m_entries[static_cast<std::size_t>(row)];
     const auto what = static_cast<Take>(m_take->currentIndex());
     const TransferFunction tf =
-        taken(m_bench.scene().tf, placed(entry.preset.tf, m_bench.scene().volume->range()), what);
+        taken(m_services.scene().tf, placed(entry.preset.tf, m_services.scene().volume->range()), what);
     const QString title = QString::fromStdString(entry.preset.title);
     editTf(store, tf, tr("Preset %1").arg(title));
     const bool empty = what != Take::Colors && !entry.preset.tf.points.empty() && tf.points.empty();
-    Q_EMIT m_bench.message(empty ? tr("Preset %1 shows values that this volume does not have.").arg(title)
-                                 : tr("Preset %1.").arg(title));
+    Q_EMIT m_services.message(empty ? tr("Preset %1 shows values that this volume does not have.").arg(title)
+                                    : tr("Preset %1.").arg(title));
 }
 
 void GalleryPanel::keep() {
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     bool ok = false;
     const QString title =
         QInputDialog::getText(this, tr("Keep as a preset"), tr("Name:"), QLineEdit::Normal, {}, &ok).trimmed();
@@ -260,11 +260,11 @@ void GalleryPanel::keep() {
     try {
         if (!QDir().mkpath(presetFolder()))
             throw FileError("the folder of presets cannot be made", presetFolder().toStdString(), "check its rights");
-        TransferFunction tf = m_bench.scene().tf;
+        TransferFunction tf = m_services.scene().tf;
         for (Feature& f : tf.features) f.id = 0; // that is the session's
         writePreset(tf, title.toStdString(), path.toStdString());
     } catch (const Error& error) {
-        return m_bench.showError(tr("The preset cannot be kept"), error);
+        return m_services.showError(tr("The preset cannot be kept"), error);
     }
     fill();
 }
@@ -274,8 +274,9 @@ void GalleryPanel::remove() {
     if (row < 0 || m_entries[static_cast<std::size_t>(row)].path.isEmpty()) return;
     const Entry& entry = m_entries[static_cast<std::size_t>(row)];
     if (!QFile::moveToTrash(entry.path) && !QFile::remove(entry.path))
-        return m_bench.showError(tr("The preset cannot be removed"),
-                                 FileError("the file cannot be deleted", entry.path.toStdString(), "check its rights"));
+        return m_services.showError(
+            tr("The preset cannot be removed"),
+            FileError("the file cannot be deleted", entry.path.toStdString(), "check its rights"));
     fill();
 }
 

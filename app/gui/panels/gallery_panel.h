@@ -19,14 +19,14 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// What comes with the program, the thesis's own, and what people have kept, each drawn with the present camera. Own
 /// presets are files of the folder presetFolder().
 class GalleryPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit GalleryPanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit GalleryPanel(Services& services, QWidget* parent = nullptr);
 
     static QString presetFolder();
     /// Pictures are drawn while the panel can be seen, and then only.
@@ -53,7 +53,7 @@ private:
     void remove();
     void showMenu(const QPoint& at);
 
-    Workbench& m_bench;
+    Services& m_services;
     QComboBox *m_group, *m_take;
     QListWidget* m_list;
     QToolButton *m_keep, *m_remove;

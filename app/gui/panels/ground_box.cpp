@@ -17,7 +17,7 @@
 
 #include "controllers/open_controller.h"
 #include "dialogs/series_files.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "tf/terrain.h"
 #include "volume/procedural.h"
 #include "widgets/number_box.h"
@@ -29,11 +29,12 @@ constexpr int kReliefSteps = 100;
 
 } // namespace
 
-GroundBox::GroundBox(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_file(new QLabel(this)), m_choose(new QToolButton(this)),
-      m_remove(new QPushButton(tr("Remove"), this)), m_shown(new QCheckBox(tr("&Ground"), this)),
-      m_colorMap(new QComboBox(this)), m_scale(new QDoubleSpinBox(this)), m_relief(new QDoubleSpinBox(this)),
-      m_usualScale(new QToolButton(this)), m_reliefSlider(new QSlider(Qt::Horizontal, this)) {
+GroundBox::GroundBox(Services& services, OpenController& opening, QWidget* parent)
+    : QWidget(parent), m_services(services), m_opening(opening), m_file(new QLabel(this)),
+      m_choose(new QToolButton(this)), m_remove(new QPushButton(tr("Remove"), this)),
+      m_shown(new QCheckBox(tr("&Ground"), this)), m_colorMap(new QComboBox(this)), m_scale(new QDoubleSpinBox(this)),
+      m_relief(new QDoubleSpinBox(this)), m_usualScale(new QToolButton(this)),
+      m_reliefSlider(new QSlider(Qt::Horizontal, this)) {
     setObjectName("groundBox");
     m_shown->setObjectName("groundShown");
     m_shown->setToolTip(tr("A height field under the volume; figures do not depend on it"));
@@ -107,10 +108,10 @@ GroundBox::GroundBox(Workbench& bench, QWidget* parent)
     form->addRow(tr("Relief"), relief);
 
     connect(m_shown, &QCheckBox::clicked, this, [this](bool shown) {
-        m_bench.opening().editInJob(shown ? tr("Show ground") : tr("Hide ground"), [shown](Session& session) {
+        m_opening.editInJob(shown ? tr("Show ground") : tr("Hide ground"), [shown](Session& session) {
             session.ground.edit([shown](GroundView& g) { g.shown = shown; });
         });
-        m_shown->setChecked(m_bench.store().session().ground->shown); // until it has been done
+        m_shown->setChecked(m_services.store().session().ground->shown); // until it has been done
     });
     connect(m_remove, &QPushButton::clicked, this,
             [this] { edit(tr("Remove ground"), {}, [](GroundView& g) { g = {}; }); });
@@ -119,7 +120,7 @@ GroundBox::GroundBox(Workbench& bench, QWidget* parent)
              [name = m_colorMap->currentData().toString().toStdString()](GroundView& g) { g.colorMap = name; });
     });
     const auto setScale = [this](const std::optional<double>& value) {
-        m_bench.opening().editInJob(tr("Scale of the ground"), [value](Session& session) {
+        m_opening.editInJob(tr("Scale of the ground"), [value](Session& session) {
             session.ground.edit([&](GroundView& g) { g.scale = value; });
         });
     };
@@ -135,26 +136,27 @@ GroundBox::GroundBox(Workbench& bench, QWidget* parent)
         if (m_showing) return;
         const auto change = [value = static_cast<double>(position) / kReliefSteps](GroundView& g) { g.relief = value; };
         if (m_reliefSlider->isSliderDown())
-            m_bench.store().preview(tr("Relief of the ground"), [&](Session& session) { session.ground.edit(change); });
+            m_services.store().preview(tr("Relief of the ground"),
+                                       [&](Session& session) { session.ground.edit(change); });
         else
             edit(tr("Relief of the ground"), "ground-relief", change); // by keys
     });
-    connect(m_reliefSlider, &QSlider::sliderReleased, this, [this] { m_bench.store().commit(); });
-    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(m_reliefSlider, &QSlider::sliderReleased, this, [this] { m_services.store().commit(); });
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.ground != after.ground ||
             !before.session.ground.isSame(after.session.ground))
             follow();
     });
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &GroundBox::follow);
+    connect(&m_services, &Services::readOnlyChanged, this, &GroundBox::follow);
     follow();
 }
 
 void GroundBox::chooseFile() {
-    if (const auto source = m_bench.opening().askSource(tr("Heights of the ground"))) lay(*source);
+    if (const auto source = m_opening.askSource(tr("Heights of the ground"))) lay(*source);
 }
 
 void GroundBox::lay(const VolumeSource& source) {
-    m_bench.opening().editInJob(tr("Ground %1").arg(titleOf(source)), [source](Session& session) {
+    m_opening.editInJob(tr("Ground %1").arg(titleOf(source)), [source](Session& session) {
         session.ground.edit([&](GroundView& g) {
             g.path = source.path;
             g.raw = source.raw;
@@ -167,12 +169,12 @@ void GroundBox::lay(const VolumeSource& source) {
 
 void GroundBox::edit(const QString& text, const QString& mergeKey, const Change& change) {
     if (m_showing) return;
-    m_bench.store().edit(text, mergeKey, [&](Session& session) { session.ground.edit(change); });
+    m_services.store().edit(text, mergeKey, [&](Session& session) { session.ground.edit(change); });
 }
 
 void GroundBox::follow() {
-    setEnabled(m_bench.store().hasVolume() && !m_bench.isReadOnly());
-    const Scene& scene = m_bench.scene();
+    setEnabled(m_services.isEditable());
+    const Scene& scene = m_services.scene();
     const GroundView& view = *scene.session.ground;
     const bool any = !view.path.empty();
     m_showing = true;

@@ -15,12 +15,13 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class OpenController;
+class Services;
 
 class GroundBox : public QWidget {
     Q_OBJECT
 public:
-    explicit GroundBox(Workbench& bench, QWidget* parent = nullptr);
+    GroundBox(Services& services, OpenController& opening, QWidget* parent = nullptr);
 
 private:
     using Change = std::function<void(GroundView&)>;
@@ -29,7 +30,8 @@ private:
     void lay(const VolumeSource& source);
     void edit(const QString& text, const QString& mergeKey, const Change& change);
 
-    Workbench& m_bench;
+    Services& m_services;
+    OpenController& m_opening;
     QLabel* m_file;
     QToolButton* m_choose;
     QPushButton* m_remove;

@@ -14,8 +14,8 @@
 #include <QTimer>
 #include <QVBoxLayout>
 
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "panels/panel.h"
+#include "services/services.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -45,12 +45,15 @@ PanelInfo influencePanel() {
             .size = 0,
             .keys = QKeySequence("Ctrl+I"),
             .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
-            .make =
-                [](Workbench& bench, QWidget* parent) {
-                    bench.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
-                    return new InfluencePanel(bench.store(), bench.results(), parent);
-                },
-            .shown = [](Workbench& bench, bool visible) { bench.results().setInfluenceWanted(visible); }};
+            .make = [](Services& services, Controllers&, QWidget* parent) {
+                services.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
+                Results& results = services.results();
+                QObject::connect(&services.panels(), &Panels::visibilityChanged, &results,
+                                 [&results](const QString& id, bool visible) {
+                                     if (id == "influence") results.setInfluenceWanted(visible);
+                                 });
+                return new InfluencePanel(services.store(), results, parent);
+            }};
 }
 
 InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)

@@ -15,9 +15,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "panels/panel.h"
 #include "render/light_presets.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/scrolled.h"
 
@@ -27,7 +27,7 @@ namespace {
 constexpr int kSliderSteps = 200;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-bool isReady(Workbench& bench) { return bench.store().hasVolume() && !bench.isReadOnly(); }
+bool isReady(Services& services) { return services.isEditable(); }
 
 } // namespace
 
@@ -41,8 +41,8 @@ double LightPanel::Row::numberAt(int position) const {
     return logarithmic ? std::round(lo * std::pow(hi / lo, part)) : lo + part * (hi - lo);
 }
 
-LightPanel::LightPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_on(new QCheckBox(tr("&Light"), this)), m_preset(new QComboBox(this)),
+LightPanel::LightPanel(Services& services, QAction& light, QWidget* parent)
+    : QWidget(parent), m_services(services), m_on(new QCheckBox(tr("&Light"), this)), m_preset(new QComboBox(this)),
       m_right(new QDoubleSpinBox(this)), m_up(new QDoubleSpinBox(this)),
       m_fromEye(new QPushButton(tr("From the &eye"), this)) {
     setObjectName("lightPanel");
@@ -100,23 +100,23 @@ LightPanel::LightPanel(Workbench& bench, QWidget* parent)
            &Light::gradientOpacity, 0, 1);
     fillScrolled(this, content);
 
-    SessionStore& store = m_bench.store();
-    connect(m_on, &QCheckBox::clicked, this, [this] { m_bench.actions().find("shadingAction")->trigger(); });
+    SessionStore& store = m_services.store();
+    connect(m_on, &QCheckBox::clicked, &light, &QAction::trigger);
     connect(m_preset, &QComboBox::activated, this, [this](int index) {
         const LightPreset& preset = lightPresets()[static_cast<std::size_t>(index)];
-        m_bench.store().edit(tr("Light: %1").arg(QString::fromLatin1(preset.name)), {}, [&](Session& session) {
+        m_services.store().edit(tr("Light: %1").arg(QString::fromLatin1(preset.name)), {}, [&](Session& session) {
             session.display.edit([&](DisplaySettings& d) { d.light = withPreset(d.light, preset); });
         });
     });
     connect(m_fromEye, &QPushButton::clicked, this, [this] {
-        m_bench.store().edit(tr("Light from the eye"), {}, [](Session& session) {
+        m_services.store().edit(tr("Light from the eye"), {}, [](Session& session) {
             session.display.edit([](DisplaySettings& d) { d.light.direction = Light{}.direction; });
         });
     });
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || !before.session.display.isSame(after.session.display)) follow();
     });
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &LightPanel::follow);
+    connect(&m_services, &Services::readOnlyChanged, this, &LightPanel::follow);
     follow();
 }
 
@@ -146,7 +146,7 @@ void LightPanel::addRow(QFormLayout& form, const char* name, const QString& labe
     connect(row.slider, &QSlider::valueChanged, this, [this, index](int position) {
         if (!m_showing) edit(m_rows[index], m_rows[index].numberAt(position));
     });
-    connect(row.slider, &QSlider::sliderReleased, this, [this] { m_bench.store().commit(); });
+    connect(row.slider, &QSlider::sliderReleased, this, [this] { m_services.store().commit(); });
 }
 
 void LightPanel::edit(const Row& row, double number) {
@@ -154,16 +154,16 @@ void LightPanel::edit(const Row& row, double number) {
         session.display.edit([&](DisplaySettings& d) { d.light.*value = number; });
     };
     if (row.slider->isSliderDown())
-        m_bench.store().preview(row.name, change);
+        m_services.store().preview(row.name, change);
     else
-        m_bench.store().edit(row.name, row.box->objectName(), change);
+        m_services.store().edit(row.name, row.box->objectName(), change);
 }
 
 void LightPanel::editDirection() {
     if (m_showing) return;
     const double right = m_right->value() / kDegrees, up = m_up->value() / kDegrees;
     const Vec3 direction{std::sin(right) * std::cos(up), std::sin(up), std::cos(right) * std::cos(up)};
-    m_bench.store().edit(tr("Light's direction"), "lightDirection", [&](Session& session) {
+    m_services.store().edit(tr("Light's direction"), "lightDirection", [&](Session& session) {
         session.display.edit([&](DisplaySettings& d) { d.light.direction = direction; });
     });
 }
@@ -171,10 +171,10 @@ void LightPanel::editDirection() {
 QSize LightPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
 
 void LightPanel::follow() {
-    setEnabled(isReady(m_bench));
-    if (!m_bench.store().hasVolume()) return;
+    setEnabled(isReady(m_services));
+    if (!m_services.store().hasVolume()) return;
     m_showing = true;
-    const Light& light = m_bench.scene().session.display->light;
+    const Light& light = m_services.scene().session.display->light;
     m_on->setChecked(light.on);
     const LightPreset* preset = presetOf(light);
     m_preset->setCurrentIndex(preset == nullptr ? -1 : static_cast<int>(preset - lightPresets().data()));
@@ -206,29 +206,29 @@ PanelInfo lightPanel() {
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+L"),
             .tip = QObject::tr("Light and its presets, silhouettes, occlusion, depth cue"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                SessionStore& store = bench.store();
-                bench.actions().add({.id = "shadingAction",
-                                     .menu = QObject::tr("&View"),
-                                     .text = QObject::tr("&Light"),
-                                     .keys = {QKeySequence("L")},
-                                     .tip = QObject::tr("Light by the gradient of the values, or plain colours"),
-                                     .trigger =
-                                         [&store] {
-                                             store.edit(QObject::tr("Light"), {}, [](Session& session) {
-                                                 session.display.edit(
-                                                     [](DisplaySettings& d) { d.light.on = !d.light.on; });
-                                             });
-                                         },
-                                     .enabled = [&bench] { return isReady(bench); },
-                                     .checked = [&store] { return store.session().display->light.on; },
-                                     .separatorBefore = true});
-                QObject::connect(&store, &SessionStore::changed, &bench.actions(),
-                                 [&bench](const Scene& before, const Scene& after) {
+            .make = [](Services& services, Controllers&, QWidget* parent) {
+                SessionStore& store = services.store();
+                QAction* const light = services.actions().add(
+                    {.id = "shadingAction",
+                     .menu = QObject::tr("&View"),
+                     .text = QObject::tr("&Light"),
+                     .keys = {QKeySequence("L")},
+                     .tip = QObject::tr("Light by the gradient of the values, or plain colours"),
+                     .trigger =
+                         [&store] {
+                             store.edit(QObject::tr("Light"), {}, [](Session& session) {
+                                 session.display.edit([](DisplaySettings& d) { d.light.on = !d.light.on; });
+                             });
+                         },
+                     .enabled = [&services] { return isReady(services); },
+                     .checked = [&store] { return store.session().display->light.on; },
+                     .separatorBefore = true});
+                QObject::connect(&store, &SessionStore::changed, &services.actions(),
+                                 [&services](const Scene& before, const Scene& after) {
                                      if (before.session.display->light.on != after.session.display->light.on)
-                                         bench.actions().refresh();
+                                         services.actions().refresh();
                                  });
-                return new LightPanel(bench, parent);
+                return new LightPanel(services, *light, parent);
             }};
 }
 

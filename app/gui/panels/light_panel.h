@@ -7,6 +7,7 @@
 
 #include "render/render_settings.h"
 
+class QAction;
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
@@ -16,12 +17,13 @@ class QSlider;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 class LightPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit LightPanel(Workbench& bench, QWidget* parent = nullptr);
+    /// `light` puts it on and off.
+    LightPanel(Services& services, QAction& light, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
 
@@ -43,7 +45,7 @@ private:
     void edit(const Row& row, double number);
     void editDirection();
 
-    Workbench& m_bench;
+    Services& m_services;
     QCheckBox* m_on;
     QComboBox* m_preset;
     std::vector<Row> m_rows;

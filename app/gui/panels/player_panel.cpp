@@ -5,7 +5,6 @@
 
 #include <QAction>
 #include <QComboBox>
-#include <QDockWidget>
 #include <QDoubleSpinBox>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -15,11 +14,10 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "controllers/adapt_controller.h"
-#include "controllers/player_controller.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "panels/time_strip.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/theme.h"
 
@@ -115,31 +113,31 @@ PanelInfo playerPanel() {
             .below = "tf",
             .keys = QKeySequence("Ctrl+3"),
             .tip = QObject::tr("The frames of a series: play, step, key frames, transfer functions over time"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                bench.actions().addGestures(
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                services.actions().addGestures(
                     {{QObject::tr("Time"), QObject::tr("Drag over the frames"), QObject::tr("go to the frame")},
                      {QObject::tr("Time"), QObject::tr("Wheel, ← and →"), QObject::tr("one frame back, forward")},
                      {QObject::tr("Time"), QObject::tr("Page up, page down"), QObject::tr("ten frames")}});
-                return new PlayerPanel(bench, parent);
+                return new PlayerPanel(services, controllers.player, controllers.adapting, parent);
             }};
 }
 
-PlayerPanel::PlayerPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_strip(new TimeStrip(this)), m_frame(new QLabel(this)),
-      m_rate(new QLabel(this)), m_surveyText(new QLabel(this)), m_stopSurvey(new QToolButton(this)),
-      m_speed(new QDoubleSpinBox(this)), m_survey(new QProgressBar(this)) {
-    PlayerController& player = bench.player();
+PlayerPanel::PlayerPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent)
+    : QWidget(parent), m_services(services), m_player(player), m_adapting(adapting), m_strip(new TimeStrip(this)),
+      m_frame(new QLabel(this)), m_rate(new QLabel(this)), m_surveyText(new QLabel(this)),
+      m_stopSurvey(new QToolButton(this)), m_speed(new QDoubleSpinBox(this)), m_survey(new QProgressBar(this)) {
+    const PlayerActions& does = player.actions();
     auto* row = new QHBoxLayout;
     row->setSpacing(2);
-    for (const auto& [action, name, sign] : std::initializer_list<std::tuple<const char*, const char*, Sign>>{
-             {"firstFrameAction", "firstFrame", Sign::First},
-             {"previousFrameAction", "previousFrame", Sign::Previous},
-             {"playAction", "play", Sign::Play},
-             {"nextFrameAction", "nextFrame", Sign::Next},
-             {"lastFrameAction", "lastFrame", Sign::Last},
-             {"loopAction", "loopFrames", Sign::Loop},
-             {"backwardAction", "playBackward", Sign::Back}}) {
-        QToolButton* const made = button(action, name, signOf(sign));
+    for (const auto& [action, name, sign] : std::initializer_list<std::tuple<QAction*, const char*, Sign>>{
+             {does.first, "firstFrame", Sign::First},
+             {does.previous, "previousFrame", Sign::Previous},
+             {does.play, "play", Sign::Play},
+             {does.next, "nextFrame", Sign::Next},
+             {does.last, "lastFrame", Sign::Last},
+             {does.loops, "loopFrames", Sign::Loop},
+             {does.backward, "playBackward", Sign::Back}}) {
+        QToolButton* const made = button(*action, name, signOf(sign));
         if (sign == Sign::Play) m_play = made;
         row->addWidget(made);
     }
@@ -184,41 +182,39 @@ PlayerPanel::PlayerPanel(Workbench& bench, QWidget* parent)
 
     connect(m_strip, &TimeStrip::frameWanted, &player, &PlayerController::goTo);
     connect(m_strip, &TimeStrip::stepWanted, &player, &PlayerController::step);
-    connect(&bench.store(), &SessionStore::changed, this, &PlayerPanel::follow);
+    connect(&services.store(), &SessionStore::changed, this, &PlayerPanel::follow);
     connect(&player, &PlayerController::changed, this, &PlayerPanel::followPlayer);
     connect(&player, &PlayerController::surveyed, this, &PlayerPanel::followSurvey);
     connect(&player, &PlayerController::heldChanged, this, &PlayerPanel::followMarks);
-    connect(&player.adapting(), &AdaptController::changed, this, &PlayerPanel::followAdapting);
+    connect(&adapting, &AdaptController::changed, this, &PlayerPanel::followAdapting);
     followPlayer();
     followSurvey();
     followAdapting();
 }
 
-QToolButton* PlayerPanel::button(const char* action, const char* name, const QIcon& icon, const QString& text) {
+QToolButton* PlayerPanel::button(QAction& does, const char* name, const QIcon& icon, const QString& text) {
     auto* made = new QToolButton(this);
     made->setObjectName(name);
     made->setIcon(icon);
     made->setText(text);
     made->setAutoRaise(true);
-    QAction* const does = m_bench.actions().find(action);
-    made->setToolTip(does->toolTip());
-    made->setAccessibleName(does->toolTip());
-    made->setCheckable(does->isCheckable());
-    const auto followAction = [made, does] {
-        made->setEnabled(does->isEnabled());
-        made->setChecked(does->isChecked());
+    made->setToolTip(does.toolTip());
+    made->setAccessibleName(does.toolTip());
+    made->setCheckable(does.isCheckable());
+    const auto followAction = [made, &does] {
+        made->setEnabled(does.isEnabled());
+        made->setChecked(does.isChecked());
     };
-    connect(made, &QToolButton::clicked, does, [does, followAction] {
-        does->trigger();
+    connect(made, &QToolButton::clicked, &does, [&does, followAction] {
+        does.trigger();
         followAction(); // a click has checked it by itself
     });
-    connect(does, &QAction::changed, made, followAction);
+    connect(&does, &QAction::changed, made, followAction);
     followAction();
     return made;
 }
 
 QWidget* PlayerPanel::adaptRow() {
-    AdaptController& adapting = m_bench.player().adapting();
     auto* widget = new QWidget(this);
     auto* row = new QHBoxLayout(widget);
     row->setContentsMargins(0, 0, 0, 0);
@@ -231,7 +227,7 @@ QWidget* PlayerPanel::adaptRow() {
                           "refine: that of the frame before, refined by entropy, priorities included\n"
                           "optimize: opacities bring VWS to the targets in every frame"));
     connect(m_mode, &QComboBox::activated, this,
-            [&adapting](int index) { adapting.setMode(static_cast<AdaptSettings::Mode>(index)); });
+            [this](int index) { m_adapting.setMode(static_cast<AdaptSettings::Mode>(index)); });
     m_coherence = new QSlider(Qt::Horizontal, widget);
     m_coherence->setObjectName("coherence");
     m_coherence->setRange(0, kCoherenceSteps);
@@ -241,7 +237,7 @@ QWidget* PlayerPanel::adaptRow() {
            "frame are held back; 0: each frame for itself, ∞: as static\n"
            "optimize: over the whole series, for a mean distance (RMS) of a hundredth of this from the targets"));
     connect(m_coherence, &QSlider::valueChanged, this,
-            [&adapting](int step) { adapting.setCoherence(coherenceOf(step)); });
+            [this](int step) { m_adapting.setCoherence(coherenceOf(step)); });
     m_coherenceText = new QLabel(widget);
     m_coherenceText->setObjectName("coherenceLabel");
     m_coherenceText->setMinimumWidth(m_coherenceText->fontMetrics().horizontalAdvance("0.0099"));
@@ -254,13 +250,13 @@ QWidget* PlayerPanel::adaptRow() {
     row->addWidget(m_coherence);
     row->addWidget(m_coherenceText);
     row->addSpacing(6);
-    for (const auto& [action, name, text] : std::initializer_list<std::tuple<const char*, const char*, QString>>{
-             {"tfKeyAction", "tfKey", tr("◆ Key")},
-             {"targetKeyAction", "targetKey", tr("○ Targets")},
-             {"previousKeyAction", "previousKey", tr("‹ key")},
-             {"nextKeyAction", "nextKey", tr("key ›")},
-             {"fromHereAction", "fromHere", tr("From here on")}})
-        row->addWidget(button(action, name, {}, text));
+    const std::pair<const char*, QString> keys[] = {{"tfKey", tr("◆ Key")},
+                                                    {"targetKey", tr("○ Targets")},
+                                                    {"previousKey", tr("‹ key")},
+                                                    {"nextKey", tr("key ›")},
+                                                    {"fromHere", tr("From here on")}};
+    for (qsizetype i = 0; i < m_adapting.keyActions().size(); ++i)
+        row->addWidget(button(*m_adapting.keyActions()[i], keys[i].first, {}, keys[i].second));
     row->addStretch(1);
     m_adaptText = new QLabel(widget);
     m_adaptText->setObjectName("adaptLabel");
@@ -273,16 +269,15 @@ QWidget* PlayerPanel::adaptRow() {
     m_stopAdapt->setObjectName("adaptStop");
     m_stopAdapt->setAutoRaise(true);
     connect(m_stopAdapt, &QToolButton::clicked, this,
-            [&adapting] { adapting.isStopped() ? adapting.goOn() : adapting.stop(); });
+            [this] { m_adapting.isStopped() ? m_adapting.goOn() : m_adapting.stop(); });
     for (QWidget* w : std::initializer_list<QWidget*>{m_adaptText, m_adapt, m_stopAdapt}) row->addWidget(w);
     return widget;
 }
 
 void PlayerPanel::followAdapting() {
-    AdaptController& adapting = m_bench.player().adapting();
-    const Session& session = m_bench.store().session();
+    const Session& session = m_services.store().session();
     const AdaptSettings& settings = *session.adapt;
-    const bool open = m_bench.player().hasSeries() && !m_bench.isReadOnly();
+    const bool open = m_player.hasSeries() && !m_services.isReadOnly();
     const bool adapts = settings.mode != AdaptSettings::Mode::Static;
     m_mode->setEnabled(open);
     m_mode->setCurrentIndex(static_cast<int>(settings.mode));
@@ -293,7 +288,7 @@ void PlayerPanel::followAdapting() {
         if (coherenceOf(m_coherence->value()) != coherence) m_coherence->setValue(stepOf(coherence));
     }
     m_coherenceText->setText(coherenceText(coherence));
-    const AdaptProgress progress = adapting.progress();
+    const AdaptProgress progress = m_adapting.progress();
     m_adaptText->setVisible(adapts && open);
     m_adaptText->setText(progress.done < progress.all
                              ? tr("made for %L1 of %L2 frames").arg(progress.done).arg(progress.all)
@@ -304,16 +299,16 @@ void PlayerPanel::followAdapting() {
     m_adapt->setRange(0, 1000);
     m_adapt->setValue(
         static_cast<int>(1000 * (progress.done < progress.all ? static_cast<double>(progress.done) / progress.all
-                                                              : adapting.smoothing())));
+                                                              : m_adapting.smoothing())));
     m_stopAdapt->setVisible(making);
-    m_stopAdapt->setText(adapting.isStopped() ? tr("Go on") : tr("Stop"));
-    m_stopAdapt->setToolTip(adapting.isStopped() ? tr("Make the transfer functions of the other frames")
-                                                 : tr("Make no more transfer functions of other frames for now"));
+    m_stopAdapt->setText(m_adapting.isStopped() ? tr("Go on") : tr("Stop"));
+    m_stopAdapt->setToolTip(m_adapting.isStopped() ? tr("Make the transfer functions of the other frames")
+                                                   : tr("Make no more transfer functions of other frames for now"));
     followMarks();
 }
 
 void PlayerPanel::showDock(bool shown) {
-    auto* dock = m_bench.window()->findChild<QDockWidget*>("playerDock");
+    QDockWidget* const dock = m_services.panels().dock("player");
     if (dock == nullptr || dock->isHidden() == !shown) return;
     dock->setVisible(shown);
     m_shownByItself = shown;
@@ -337,52 +332,49 @@ void PlayerPanel::follow(const Scene& before, const Scene& after) {
 }
 
 void PlayerPanel::followPlayer() {
-    const PlayerController& player = m_bench.player();
-    const bool series = player.hasSeries();
-    m_play->setIcon(signOf(player.isPlaying() ? Sign::Pause : Sign::Play));
+    const bool series = m_player.hasSeries();
+    m_play->setIcon(signOf(m_player.isPlaying() ? Sign::Pause : Sign::Play));
     m_strip->setEnabled(series);
     m_speed->setEnabled(series);
-    showNumber(*m_speed, player.speed());
-    m_rate->setText(player.rateText());
+    showNumber(*m_speed, m_player.speed());
+    m_rate->setText(m_player.rateText());
     if (!series) return m_frame->setText({});
     m_frame->setText(tr("<b>%1</b> (%L2 of %L3)")
-                         .arg(player.label(player.frame()).toHtmlEscaped())
-                         .arg(player.frame() + 1)
-                         .arg(player.frameCount()));
-    m_strip->setFrame(player.frame(), player.awaited());
+                         .arg(m_player.label(m_player.frame()).toHtmlEscaped())
+                         .arg(m_player.frame() + 1)
+                         .arg(m_player.frameCount()));
+    m_strip->setFrame(m_player.frame(), m_player.awaited());
 }
 
 void PlayerPanel::followSurvey() {
-    const PlayerController& player = m_bench.player();
-    const int known = player.knownCount(), count = player.frameCount();
-    const bool open = player.hasSeries() && known < count;
+    const int known = m_player.knownCount(), count = m_player.frameCount();
+    const bool open = m_player.hasSeries() && known < count;
     for (QWidget* widget : std::initializer_list<QWidget*>{m_surveyText, m_survey, m_stopSurvey})
         widget->setVisible(open);
     m_survey->setRange(0, std::max(1, count));
     m_survey->setValue(known);
     m_surveyText->setText(tr("%L1 of %L2 frames known").arg(known).arg(count));
-    m_stopSurvey->setText(player.isSurveying() ? tr("Stop") : tr("Go on"));
-    m_stopSurvey->setToolTip(player.isSurveying() ? tr("Look at no more frames than are shown")
-                                                  : tr("Look at all frames, so that the strip shows them"));
+    m_stopSurvey->setText(m_player.isSurveying() ? tr("Stop") : tr("Go on"));
+    m_stopSurvey->setToolTip(m_player.isSurveying() ? tr("Look at no more frames than are shown")
+                                                    : tr("Look at all frames, so that the strip shows them"));
     m_strip->refresh();
     followMarks();
 }
 
 void PlayerPanel::followMarks() {
-    PlayerController& player = m_bench.player();
-    if (!player.hasSeries()) return;
-    const Session& session = m_bench.store().session();
+    if (!m_player.hasSeries()) return;
+    const Session& session = m_services.store().session();
     const TfTrack& track = session.variable().track;
-    std::vector<FrameMark> marks(static_cast<std::size_t>(player.frameCount()));
+    std::vector<FrameMark> marks(static_cast<std::size_t>(m_player.frameCount()));
     const bool keys = track.keys.size() > 1 || session.adapt->mode != AdaptSettings::Mode::Static;
-    for (int f = 0; f < player.frameCount(); ++f) {
+    for (int f = 0; f < m_player.frameCount(); ++f) {
         FrameMark& mark = marks[static_cast<std::size_t>(f)];
         mark.tfKey = keys && track.keys.contains(f);
         mark.targetKey = session.targetKeys->contains(f);
         mark.adapted = session.adapt->mode != AdaptSettings::Mode::Static && track.adapted.contains(f);
-        mark.stale = player.adapting().isStale(f);
-        mark.held = player.isHeld(f);
-        mark.problem = player.problemOf(f);
+        mark.stale = m_adapting.isStale(f);
+        mark.held = m_player.isHeld(f);
+        mark.problem = m_player.problemOf(f);
     }
     m_strip->setMarks(std::move(marks));
 }

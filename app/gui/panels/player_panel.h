@@ -3,6 +3,7 @@
 
 #include <QWidget>
 
+class QAction;
 class QComboBox;
 class QDoubleSpinBox;
 class QHBoxLayout;
@@ -17,14 +18,16 @@ struct Scene;
 
 namespace pellucid::gui {
 
+class AdaptController;
+class PlayerController;
+class Services;
 class TimeStrip;
-class Workbench;
 
 /// Comes up by itself where a series is opened, and goes with it.
 class PlayerPanel : public QWidget {
     Q_OBJECT
 public:
-    PlayerPanel(Workbench& bench, QWidget* parent);
+    PlayerPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent);
 
 private:
     void follow(const Scene& before, const Scene& after);
@@ -33,10 +36,12 @@ private:
     void followMarks();
     void followAdapting();
     QWidget* adaptRow();
-    QToolButton* button(const char* action, const char* name, const QIcon& icon, const QString& text = {});
+    QToolButton* button(QAction& action, const char* name, const QIcon& icon, const QString& text = {});
     void showDock(bool shown);
 
-    Workbench& m_bench;
+    Services& m_services;
+    PlayerController& m_player;
+    AdaptController& m_adapting;
     TimeStrip* m_strip;
     QLabel *m_frame, *m_rate, *m_surveyText;
     QToolButton *m_play = nullptr, *m_stopSurvey;

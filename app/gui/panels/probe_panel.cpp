@@ -16,7 +16,7 @@
 #include "controllers/probe_controller.h"
 #include "panels/probe_plot.h"
 #include "render/clip_handles.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "view/volume_view.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
@@ -64,10 +64,10 @@ QLabel* label(const char* name, QWidget* parent) {
 
 } // namespace
 
-ProbePanel::ProbePanel(Workbench& bench, ProbeController& probe, VolumeView& view)
-    : QFrame(&view), m_bench(bench), m_probe(probe), m_view(view), m_title(label("probeTitle", this)),
+ProbePanel::ProbePanel(Services& services, ProbeController& probe, VolumeView& view)
+    : QFrame(&view), m_services(services), m_probe(probe), m_view(view), m_title(label("probeTitle", this)),
       m_readout(label("probeReadout", this)), m_text(label("probeText", this)), m_hint(label("probeHint", this)),
-      m_plot(new ProbePlot(bench, probe, this)), m_shares(new ProbeShares(bench, probe, this)),
+      m_plot(new ProbePlot(services, probe, this)), m_shares(new ProbeShares(services, probe, this)),
       m_scroll(new QScrollArea(this)), m_more(new QPushButton(tr("More of this"), this)),
       m_less(new QPushButton(tr("Less of this"), this)) {
     setObjectName("probePanel");
@@ -133,8 +133,8 @@ ProbePanel::ProbePanel(Workbench& bench, ProbeController& probe, VolumeView& vie
     });
     m_readout->setText(tr("Point at the plot to read it"));
     connect(&m_probe, &ProbeController::changed, this, &ProbePanel::refresh);
-    connect(&bench, &Workbench::readOnlyChanged, this, &ProbePanel::refresh);
-    connect(&bench.store(), &SessionStore::changed, this, [this] { // its mode, names and colours
+    connect(&services, &Services::readOnlyChanged, this, &ProbePanel::refresh);
+    connect(&services.store(), &SessionStore::changed, this, [this] { // its mode, names and colours
         if (m_probe.isActive()) refresh();
     });
     connect(&view, &VolumeView::clicked, this, [this](const QPointF& point) {
@@ -170,7 +170,7 @@ void ProbePanel::refresh() {
 
 void ProbePanel::refreshText() {
     const RayProbe& ray = m_probe.ray();
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     const int f = m_probe.feature();
     const auto percent = [](double share) { return QStringLiteral("%1 %").arg(100 * share, 0, 'f', 1); };
     m_title->setText(f >= 0 ? tr("%1: %2 of the pixel")
@@ -236,11 +236,9 @@ bool ProbePanel::eventFilter(QObject* watched, QEvent* event) {
     return QFrame::eventFilter(watched, event);
 }
 
-void addProbe(Workbench& bench, VolumeView& view) {
-    auto* probe = new ProbeController(bench);
-    probe->addActions();
-    view.overlay().add(std::make_unique<ProbeLayer>(*probe));
-    new ProbePanel(bench, *probe, view);
+void addProbe(Services& services, ProbeController& probe, VolumeView& view) {
+    view.overlay().add(std::make_unique<ProbeLayer>(probe));
+    new ProbePanel(services, probe, view);
 }
 
 } // namespace pellucid::gui

@@ -13,13 +13,13 @@ class ProbeController;
 class ProbePlot;
 class ProbeShares;
 class VolumeView;
-class Workbench;
+class Services;
 
 /// Lies over the view while the probe is active, in a corner away from the click; it can be dragged elsewhere.
 class ProbePanel : public QFrame {
     Q_OBJECT
 public:
-    ProbePanel(Workbench& bench, ProbeController& probe, VolumeView& view);
+    ProbePanel(Services& services, ProbeController& probe, VolumeView& view);
 
 protected:
     void mousePressEvent(QMouseEvent* event) override;
@@ -34,7 +34,7 @@ private:
     void refreshText();
     void keepInView();
 
-    Workbench& m_bench;
+    Services& m_services;
     ProbeController& m_probe;
     VolumeView& m_view;
     QLabel *m_title, *m_readout, *m_text, *m_hint;
@@ -47,7 +47,7 @@ private:
     bool m_held = false;
 };
 
-/// The probe with its panel, the mark over the picture, and the actions.
-void addProbe(Workbench& bench, VolumeView& view);
+/// The panel, and the mark over the picture.
+void addProbe(Services& services, ProbeController& probe, VolumeView& view);
 
 } // namespace pellucid::gui

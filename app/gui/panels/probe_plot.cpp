@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "controllers/probe_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -29,8 +29,8 @@ QString percentText(double share) { return QStringLiteral("%1 %").arg(100 * shar
 
 } // namespace
 
-ProbePlot::ProbePlot(Workbench& bench, ProbeController& probe, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_probe(probe) {
+ProbePlot::ProbePlot(Services& services, ProbeController& probe, QWidget* parent)
+    : QWidget(parent), m_services(services), m_probe(probe) {
     setObjectName("probePlot");
     setAccessibleName(tr("Values and opacity along the ray"));
     setMouseTracking(true);
@@ -62,7 +62,7 @@ const ProbeSample& ProbePlot::sampleAt(double depth) const {
 void ProbePlot::paintEvent(QPaintEvent*) {
     if (!m_probe.isActive()) return;
     const RayProbe& ray = m_probe.ray();
-    const Volume& volume = *m_bench.scene().volume;
+    const Volume& volume = *m_services.scene().volume;
     const QRectF box = plot();
     QPainter painter(this);
     painter.setRenderHint(QPainter::Antialiasing);
@@ -122,7 +122,7 @@ void ProbePlot::paintEvent(QPaintEvent*) {
     painter.drawText(above, Qt::AlignRight | Qt::AlignVCenter, tr("opacity 0 – 1"));
     painter.drawText(below, Qt::AlignLeft | Qt::AlignTop, QStringLiteral("0"));
     painter.drawText(below, Qt::AlignRight | Qt::AlignTop,
-                     tr("depth %1 %2").arg(numberText(length(), length()), unitOf(m_bench.scene())));
+                     tr("depth %1 %2").arg(numberText(length(), length()), unitOf(m_services.scene())));
 }
 
 void ProbePlot::mouseMoveEvent(QMouseEvent* event) {
@@ -130,7 +130,7 @@ void ProbePlot::mouseMoveEvent(QMouseEvent* event) {
     if (!m_probe.isActive()) return;
     m_hovered = depthAt(event->position().x());
     const ProbeSample& s = sampleAt(*m_hovered);
-    const Volume& volume = *m_bench.scene().volume;
+    const Volume& volume = *m_services.scene().volume;
     QString value = tr("invalid");
     if (!std::isnan(s.intensity)) {
         const int f = featureAt(m_probe.tf().features, s.intensity);
@@ -138,24 +138,24 @@ void ProbePlot::mouseMoveEvent(QMouseEvent* event) {
         if (f >= 0)
             value += QStringLiteral(" (%1)").arg(
                 QString::fromStdString(m_probe.tf().features[static_cast<std::size_t>(f)].name));
-        m_bench.selection().setHoveredIntensity(s.intensity);
+        m_services.selection().setHoveredIntensity(s.intensity);
     } else {
-        m_bench.selection().setHoveredIntensity({});
+        m_services.selection().setHoveredIntensity({});
     }
     Q_EMIT readOut(tr("depth %1 %2: value %3, opacity %4")
-                       .arg(numberText(s.t, length()), unitOf(m_bench.scene()), value, percentText(s.opacity)));
+                       .arg(numberText(s.t, length()), unitOf(m_services.scene()), value, percentText(s.opacity)));
     update();
 }
 
 void ProbePlot::leaveEvent(QEvent*) {
     m_hovered.reset();
-    m_bench.selection().setHoveredIntensity({});
+    m_services.selection().setHoveredIntensity({});
     Q_EMIT readOut({});
     update();
 }
 
-ProbeShares::ProbeShares(Workbench& bench, ProbeController& probe, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_probe(probe) {
+ProbeShares::ProbeShares(Services& services, ProbeController& probe, QWidget* parent)
+    : QWidget(parent), m_services(services), m_probe(probe) {
     setObjectName("probeShares");
     setAccessibleName(tr("Shares of the pixel"));
     setCursor(Qt::PointingHandCursor);
@@ -219,7 +219,8 @@ void ProbeShares::mousePressEvent(QMouseEvent* event) {
     const int row = rowAt(event->position().toPoint());
     if (row < 0 || event->button() != Qt::LeftButton) return;
     const int feature = rows()[static_cast<std::size_t>(row)].feature;
-    if (feature >= 0) m_bench.selection().setFeature(m_bench.scene().tf.features[static_cast<std::size_t>(feature)].id);
+    if (feature >= 0)
+        m_services.selection().setFeature(m_services.scene().tf.features[static_cast<std::size_t>(feature)].id);
 }
 
 bool ProbeShares::event(QEvent* event) {

@@ -10,14 +10,14 @@
 namespace pellucid::gui {
 
 class ProbeController;
-class Workbench;
+class Services;
 
 /// Along the ray: values as an area in the colours of the transfer function, the opacity that has accumulated as a line
 /// from 0 to 1, and below which feature it is in. Depth is in world units from where the ray enters.
 class ProbePlot : public QWidget {
     Q_OBJECT
 public:
-    ProbePlot(Workbench& bench, ProbeController& probe, QWidget* parent);
+    ProbePlot(Services& services, ProbeController& probe, QWidget* parent);
 
     QRectF plot() const; ///< where the curves are
     double depthAt(double x) const;
@@ -38,7 +38,7 @@ private:
     const ProbeSample& sampleAt(double depth) const;
     double length() const;
 
-    Workbench& m_bench;
+    Services& m_services;
     ProbeController& m_probe;
     std::optional<double> m_hovered; ///< depth
 };
@@ -47,7 +47,7 @@ private:
 class ProbeShares : public QWidget {
     Q_OBJECT
 public:
-    ProbeShares(Workbench& bench, ProbeController& probe, QWidget* parent);
+    ProbeShares(Services& services, ProbeController& probe, QWidget* parent);
 
     struct Row {
         int feature = -1; ///< −1: what is in no feature
@@ -67,7 +67,7 @@ protected:
 
 private:
     int rowAt(const QPoint& point) const;
-    Workbench& m_bench;
+    Services& m_services;
     ProbeController& m_probe;
 };
 

@@ -6,7 +6,7 @@
 #include <QPushButton>
 
 #include "render/published_engine.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -20,8 +20,8 @@ bool looksAlong(const Camera& camera, const Geometry& geometry, Along along) {
 
 } // namespace
 
-ProfileSettings::ProfileSettings(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_profile(new QComboBox(this)), m_along(new QComboBox(this)),
+ProfileSettings::ProfileSettings(Services& services, QWidget* parent)
+    : QWidget(parent), m_services(services), m_profile(new QComboBox(this)), m_along(new QComboBox(this)),
       m_remark(new QLabel(this)), m_look(new QPushButton(tr("Look &there"), this)) {
     m_profile->setObjectName("profileCombo");
     m_profile->addItem(tr("Pellucid's"), static_cast<int>(Profile::Default));
@@ -60,15 +60,15 @@ ProfileSettings::ProfileSettings(Workbench& bench, QWidget* parent)
     connect(m_profile, &QComboBox::activated, this, &ProfileSettings::edit);
     connect(m_along, &QComboBox::activated, this, &ProfileSettings::edit);
     connect(m_look, &QPushButton::clicked, this, &ProfileSettings::lookAlong);
-    connect(&m_bench.store(), &SessionStore::changed, this, &ProfileSettings::follow);
-    connect(&m_bench.store(), &SessionStore::historyChanged, this, &ProfileSettings::follow);
+    connect(&m_services.store(), &SessionStore::changed, this, &ProfileSettings::follow);
+    connect(&m_services.store(), &SessionStore::historyChanged, this, &ProfileSettings::follow);
     follow();
 }
 
 void ProfileSettings::edit() {
     const auto profile = static_cast<Profile>(m_profile->currentData().toInt());
     const auto along = static_cast<Along>(m_along->currentData().toInt());
-    m_bench.store().edit(tr("Definitions of figures"), "profile", [&](Session& session) {
+    m_services.store().edit(tr("Definitions of figures"), "profile", [&](Session& session) {
         session.measure.edit([&](MeasureSettings& m) {
             m.profile = profile;
             m.along = along;
@@ -77,18 +77,18 @@ void ProfileSettings::edit() {
 }
 
 void ProfileSettings::lookAlong() {
-    const Scene& scene = m_bench.scene();
-    m_bench.store().setCamera(cameraAlong(scene.volume->geometry(), scene.session.measure->along));
+    const Scene& scene = m_services.scene();
+    m_services.store().setCamera(cameraAlong(scene.volume->geometry(), scene.session.measure->along));
 }
 
 void ProfileSettings::follow() {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     const MeasureSettings& settings = *scene.session.measure;
     const bool published = settings.profile == Profile::Published;
     m_profile->setCurrentIndex(m_profile->findData(static_cast<int>(settings.profile)));
     m_along->setCurrentIndex(m_along->findData(static_cast<int>(settings.along)));
     m_along->setVisible(published);
-    setEnabled(m_bench.store().hasVolume() && !m_bench.isReadOnly());
+    setEnabled(m_services.isEditable());
     const bool elsewhere =
         published && scene.volume && !looksAlong(scene.camera, scene.volume->geometry(), settings.along);
     m_remark->setText(tr("Figures are of the %1 of the grid, not of this view.").arg(m_along->currentText()));

@@ -9,21 +9,21 @@ class QPushButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Pellucid's own definitions or the published ones, and for those the face of the grid that they look at; a remark
 /// where that is not what the picture shows, and a button to go there.
 class ProfileSettings : public QWidget {
     Q_OBJECT
 public:
-    explicit ProfileSettings(Workbench& bench, QWidget* parent = nullptr);
+    explicit ProfileSettings(Services& services, QWidget* parent = nullptr);
 
 private:
     void edit();
     void follow();
     void lookAlong();
 
-    Workbench& m_bench;
+    Services& m_services;
     QComboBox *m_profile, *m_along;
     QLabel* m_remark;
     QPushButton* m_look;

@@ -19,9 +19,10 @@
 #include <QToolTip>
 #include <QVBoxLayout>
 
+#include "controllers/controllers.h"
 #include "optimize/refine/refine_features.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "panels/panel.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 #include "widgets/scrolled.h"
@@ -57,7 +58,9 @@ PanelInfo refinePanel() {
             .size = 0,
             .keys = QKeySequence("Ctrl+Shift+R"),
             .tip = QObject::tr("Opacities by entropy: how, for what, and what came of it"),
-            .make = [](Workbench& bench, QWidget* parent) { return new RefinePanel(bench, parent); }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                return new RefinePanel(services, controllers.refining, parent);
+            }};
 }
 
 void EdgeBars::setBars(std::vector<Bar> bars) {
@@ -166,8 +169,8 @@ void EnergyPlot::paintEvent(QPaintEvent*) {
                      tr("least %1").arg(shortNumber(least)));
 }
 
-RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_refine(new QPushButton(tr("&Refine"), this)),
+RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget* parent)
+    : QWidget(parent), m_services(services), m_refining(refining), m_refine(new QPushButton(tr("&Refine"), this)),
       m_pair(new QPushButton(tr("&Side by side…"), this)), m_live(new QCheckBox(tr("Li&ve"), this)),
       m_auto(new QCheckBox(tr("auto"), this)), m_ghost(new QCheckBox(tr("&Ghost of the curve"), this)),
       m_priority(new QLabel(this)), m_nothing(new QToolButton(this)), m_method(new QComboBox(this)),
@@ -258,17 +261,17 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     priority->addWidget(m_nothing);
     column->addLayout(priority);
     auto* selecting = new QHBoxLayout;
-    for (const auto& [id, text] :
-         {std::pair{"rectangleAction", tr("Select rectangle")}, std::pair{"lassoAction", tr("Select with lasso")}}) {
-        QAction* action = m_bench.actions().find(id);
+    const RefineActions& does = refining.actions();
+    for (const auto& [action, text] :
+         {std::pair{does.rectangle, tr("Select rectangle")}, std::pair{does.lasso, tr("Select with lasso")}}) {
         auto* button = new QToolButton(this);
-        button->setObjectName(QString(id).replace("Action", "Button"));
+        button->setObjectName(action->objectName().replace("Action", "Button"));
         button->setText(text);
         button->setToolTip(action->toolTip());
         button->setCheckable(true);
         button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
         connect(button, &QToolButton::clicked, action, &QAction::trigger);
-        connect(action, &QAction::changed, button, [button, action] {
+        connect(action, &QAction::changed, button, [button, action = action] {
             button->setChecked(action->isChecked());
             button->setEnabled(action->isEnabled());
         });
@@ -299,30 +302,27 @@ RefinePanel::RefinePanel(Workbench& bench, QWidget* parent)
     column->addStretch(1);
     fillScrolled(this, content);
 
-    const auto triggers = [this](QAbstractButton* button, const char* action) {
-        connect(button, &QAbstractButton::clicked, this, [this, action] { m_bench.actions().find(action)->trigger(); });
-    };
-    triggers(m_refine, "refineAction");
-    triggers(m_live, "liveRefineAction");
-    triggers(m_pair, "sideBySideAction");
-    triggers(m_ghost, "ghostAction");
-    triggers(m_nothing, "prioritizeNothingAction");
+    const std::pair<QAbstractButton*, QAction*> triggers[] = {{m_refine, does.refine},
+                                                              {m_live, does.live},
+                                                              {m_pair, does.pair},
+                                                              {m_ghost, does.ghost},
+                                                              {m_nothing, does.nothing}};
+    for (const auto& [button, action] : triggers) connect(button, &QAbstractButton::clicked, action, &QAction::trigger);
     m_help->setObjectName("refineHelpButton");
-    connect(m_help, &QPushButton::clicked, this, [this] { m_bench.refining().takeHelp(); });
+    connect(m_help, &QPushButton::clicked, this, [this] { m_refining.takeHelp(); });
     connect(m_method, &QComboBox::activated, this, &RefinePanel::editSettings);
     connect(m_auto, &QCheckBox::clicked, this, &RefinePanel::editSettings);
     connect(m_limit, &QSpinBox::valueChanged, this, &RefinePanel::editSettings);
     m_wait.setSingleShot(true);
     m_wait.setInterval(kRest);
     connect(&m_wait, &QTimer::timeout, this, &RefinePanel::compare);
-    RefineController& refining = m_bench.refining();
-    connect(&m_bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || !before.session.refine.isSame(after.session.refine)) follow();
     });
     connect(&refining, &RefineController::refined, this, &RefinePanel::follow);
     connect(&refining, &RefineController::busyChanged, this, &RefinePanel::showPriority);
     connect(&refining, &RefineController::ghostChanged, this, &RefinePanel::follow);
-    connect(&m_bench, &Workbench::readOnlyChanged, this, &RefinePanel::follow);
+    connect(&m_services, &Services::readOnlyChanged, this, &RefinePanel::follow);
     follow();
 }
 
@@ -334,7 +334,7 @@ void RefinePanel::showEvent(QShowEvent* event) {
 void RefinePanel::editSettings() {
     if (m_showing) return;
     QObject* const by = sender();
-    m_bench.store().edit(tr("Refinement settings"), "refine-settings", [&](Session& session) {
+    m_services.store().edit(tr("Refinement settings"), "refine-settings", [&](Session& session) {
         session.refine.edit([&](RefineSettings& r) {
             // Only the box that was edited counts: the others show rounded numbers.
             if (by == m_method) r.method = static_cast<RefineMethod>(m_method->currentData().toInt());
@@ -354,7 +354,7 @@ void RefinePanel::follow() {
 }
 
 void RefinePanel::showSettings() {
-    const RefineSettings& r = *m_bench.store().session().refine;
+    const RefineSettings& r = *m_services.store().session().refine;
     m_showing = true;
     m_live->setChecked(r.live);
     m_method->setCurrentIndex(m_method->findData(static_cast<int>(r.method)));
@@ -362,37 +362,37 @@ void RefinePanel::showSettings() {
     showNumber(*m_up, 256 * r.stepUp.value_or(r.stepDown));
     m_auto->setChecked(!r.stepUp);
     if (m_limit->value() != r.maxIterations) m_limit->setValue(r.maxIterations);
-    m_ghost->setChecked(m_bench.refining().isGhostShown());
+    m_ghost->setChecked(m_refining.isGhostShown());
     m_showing = false;
-    const bool ready = m_bench.store().hasVolume() && !m_bench.isReadOnly(), greedy = r.method == RefineMethod::Greedy;
+    const bool ready = m_services.isEditable(), greedy = r.method == RefineMethod::Greedy;
     for (QWidget* widget : std::initializer_list<QWidget*>{m_refine, m_live, m_method}) widget->setEnabled(ready);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_down, m_auto, m_limit})
         widget->setEnabled(ready && greedy);
     m_up->setEnabled(ready && greedy && r.stepUp);
-    m_pair->setEnabled(m_bench.refining().latest() != nullptr);
+    m_pair->setEnabled(m_refining.latest() != nullptr);
 }
 
 void RefinePanel::showPriority() {
-    const RefineSettings& r = *m_bench.store().session().refine;
+    const RefineSettings& r = *m_services.store().session().refine;
     QString text = tr("Prioritized: nothing");
-    if (m_bench.refining().isBusy()) {
+    if (m_refining.isBusy()) {
         text = tr("Looking at the region…");
-    } else if (r.intensity && m_bench.store().hasVolume()) {
-        const Volume& volume = *m_bench.scene().volume;
+    } else if (r.intensity && m_services.store().hasVolume()) {
+        const Volume& volume = *m_services.scene().volume;
         text = tr("Prioritized: value %1")
                    .arg(numberText(volume.valueOfIntensity(*r.intensity), volume.range().hi - volume.range().lo));
     } else if (r.region) {
         text = tr("Prioritized: a region");
     }
     m_priority->setText(text);
-    m_nothing->setEnabled((r.intensity || r.region) && !m_bench.isReadOnly());
+    m_nothing->setEnabled((r.intensity || r.region) && !m_services.isReadOnly());
 }
 
 void RefinePanel::showOutcome() {
     if (!isVisible()) return;
     m_compare.cancel();
     m_comparison->clear();
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     if (!scene.volume || !scene.histogram) {
         m_edges->setBars({});
         m_plot->setCurve({}, 0, true);
@@ -401,11 +401,11 @@ void RefinePanel::showOutcome() {
         m_figures->clear();
         return;
     }
-    const Refinement* now = m_bench.refining().current();
-    const Refinement* any = m_bench.refining().latest();
-    const std::vector<double> weights =
-        now != nullptr ? now->result.edgesAfter
-                       : edgeWeights(*scene.histogram, scene.tf, m_bench.refining().options().priority);
+    const Refinement* now = m_refining.current();
+    const Refinement* any = m_refining.latest();
+    const std::vector<double> weights = now != nullptr
+                                            ? now->result.edgesAfter
+                                            : edgeWeights(*scene.histogram, scene.tf, m_refining.options().priority);
     const std::vector<RefineEdge> edges =
         now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
     const TfSampler sampler(scene.tf);
@@ -456,13 +456,13 @@ void RefinePanel::showNote(const Refinement* refinement) {
     m_help->setText(dark->help == Darkening::Help::Exact
                         ? tr("Refine by Exact instead")
                         : tr("Stop after %L1 iterations instead").arg(dark->iterations));
-    m_help->setEnabled(refinement == m_bench.refining().current() && !m_bench.isReadOnly());
+    m_help->setEnabled(refinement == m_refining.current() && !m_services.isReadOnly());
 }
 
 void RefinePanel::compare() {
-    const Refinement* now = m_bench.refining().current();
-    if (now == nullptr || m_bench.store().isPreviewing() || !isVisible() || !m_bench.scene().histogram) return;
-    m_compare.start({m_bench.scene().histogram, now->start, now->options}, tr("the comparison"));
+    const Refinement* now = m_refining.current();
+    if (now == nullptr || m_services.store().isPreviewing() || !isVisible() || !m_services.scene().histogram) return;
+    m_compare.start({m_services.scene().histogram, now->start, now->options}, tr("the comparison"));
 }
 
 } // namespace pellucid::gui

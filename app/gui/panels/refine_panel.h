@@ -68,7 +68,7 @@ private:
 class RefinePanel : public QWidget {
     Q_OBJECT
 public:
-    explicit RefinePanel(Workbench& bench, QWidget* parent = nullptr);
+    RefinePanel(Services& services, RefineController& refining, QWidget* parent = nullptr);
 
 protected:
     void showEvent(QShowEvent* event) override;
@@ -87,7 +87,8 @@ private:
     void showNote(const Refinement* refinement); ///< null: there is none
     void compare();
 
-    Workbench& m_bench;
+    Services& m_services;
+    RefineController& m_refining;
     QPushButton *m_refine, *m_pair;
     QCheckBox *m_live, *m_auto, *m_ghost;
     QLabel* m_priority;

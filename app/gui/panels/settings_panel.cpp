@@ -9,9 +9,9 @@
 #include <QPushButton>
 #include <QSpinBox>
 
+#include "panels/panel.h"
 #include "panels/profile_settings.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_box.h"
 #include "widgets/scrolled.h"
 #include "widgets/theme.h"
@@ -46,18 +46,19 @@ QDoubleSpinBox* numberBox(const char* id, const Range& range, const QString& tip
 } // namespace
 
 PanelInfo settingsPanel() {
-    return {.id = "settings",
-            .title = QObject::tr("Settings"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = true,
-            .tabOf = "features",
-            .size = 0,
-            .keys = QKeySequence("Ctrl+8"),
-            .tip = QObject::tr("How visibility and saliency are measured, and how optimizations search"),
-            .make = [](Workbench& bench, QWidget* parent) { return new SettingsPanel(bench, parent); }};
+    return {
+        .id = "settings",
+        .title = QObject::tr("Settings"),
+        .area = Qt::RightDockWidgetArea,
+        .visible = true,
+        .tabOf = "features",
+        .size = 0,
+        .keys = QKeySequence("Ctrl+8"),
+        .tip = QObject::tr("How visibility and saliency are measured, and how optimizations search"),
+        .make = [](Services& services, Controllers&, QWidget* parent) { return new SettingsPanel(services, parent); }};
 }
 
-SettingsPanel::SettingsPanel(Workbench& bench, QWidget* parent) : QWidget(parent), m_bench(bench) {
+SettingsPanel::SettingsPanel(Services& services, QWidget* parent) : QWidget(parent), m_services(services) {
     setObjectName("settingsPanel");
     auto* content = new QWidget;
     auto* form = new QFormLayout(content);
@@ -67,33 +68,33 @@ SettingsPanel::SettingsPanel(Workbench& bench, QWidget* parent) : QWidget(parent
     addOptimization(*form);
     addMeasuring(*form);
     fillScrolled(this, content);
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || !before.session.measure.isSame(after.session.measure) ||
             !before.session.optimize.isSame(after.session.optimize))
             follow();
     });
-    connect(&bench, &Workbench::readOnlyChanged, this, &SettingsPanel::follow);
+    connect(&services, &Services::readOnlyChanged, this, &SettingsPanel::follow);
     follow();
 }
 
 void SettingsPanel::editOptions(const std::function<void(OptimizeOptions&)>& change) {
     if (m_showing) return;
-    m_bench.store().commit();
-    m_bench.store().edit(tr("Optimization settings"), "optimize-settings",
-                         [&](Session& session) { session.optimize.edit(change); });
+    m_services.store().commit();
+    m_services.store().edit(tr("Optimization settings"), "optimize-settings",
+                            [&](Session& session) { session.optimize.edit(change); });
     follow(); // also where nothing has come of it
 }
 
 void SettingsPanel::editMeasuring(const std::function<void(MeasureSettings&)>& change) {
     if (m_showing) return;
-    m_bench.store().commit();
-    m_bench.store().edit(tr("Settings of the figures"), "measure-settings",
-                         [&](Session& session) { session.measure.edit(change); });
+    m_services.store().commit();
+    m_services.store().edit(tr("Settings of the figures"), "measure-settings",
+                            [&](Session& session) { session.measure.edit(change); });
     follow();
 }
 
 void SettingsPanel::addOptimization(QFormLayout& form) {
-    const auto options = [this]() -> const OptimizeOptions& { return *m_bench.store().session().optimize; };
+    const auto options = [this]() -> const OptimizeOptions& { return *m_services.store().session().optimize; };
     const auto isStepped = [options] { return options().method != SearchMethod::Newton; };
     form.addRow(heading(tr("Optimization"), this));
 
@@ -173,9 +174,9 @@ void SettingsPanel::addOptimization(QFormLayout& form) {
 }
 
 void SettingsPanel::addMeasuring(QFormLayout& form) {
-    const auto settings = [this]() -> const MeasureSettings& { return *m_bench.store().session().measure; };
+    const auto settings = [this]() -> const MeasureSettings& { return *m_services.store().session().measure; };
     form.addRow(heading(tr("Saliency and visibility"), this));
-    form.addRow(new ProfileSettings(m_bench, this));
+    form.addRow(new ProfileSettings(m_services, this));
     const auto number = [&](const char* id, const QString& label, const Range& range, const QString& tip,
                             const QString& suffix, auto get, auto set) {
         auto* box = numberBox(id, range, tip);
@@ -262,14 +263,14 @@ void SettingsPanel::addMeasuring(QFormLayout& form) {
 }
 
 void SettingsPanel::chooseBackground() {
-    const Rgb now = m_bench.store().session().measure->saliency.background;
+    const Rgb now = m_services.store().session().measure->saliency.background;
     const QColor color = QColorDialog::getColor(colorFromRgb(now), this, tr("Colour of the surroundings"));
     if (color.isValid()) editMeasuring([&](MeasureSettings& m) { m.saliency.background = rgbFromColor(color); });
 }
 
 void SettingsPanel::follow() {
     m_showing = true;
-    const bool ready = m_bench.store().hasVolume() && !m_bench.isReadOnly();
+    const bool ready = m_services.isEditable();
     for (QWidget* widget : findChildren<QWidget*>()) {
         const bool isControl = qobject_cast<QComboBox*>(widget) || qobject_cast<QAbstractSpinBox*>(widget) ||
                                qobject_cast<QAbstractButton*>(widget);

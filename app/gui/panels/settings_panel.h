@@ -17,13 +17,13 @@ struct OptimizeOptions;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// All settings that figures and optimizations depend on, each an edit of the session.
 class SettingsPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit SettingsPanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit SettingsPanel(Services& services, QWidget* parent = nullptr);
 
 private:
     void addOptimization(QFormLayout& form);
@@ -33,7 +33,7 @@ private:
     void editMeasuring(const std::function<void(MeasureSettings&)>& change);
     void chooseBackground();
 
-    Workbench& m_bench;
+    Services& m_services;
     std::vector<std::function<void()>> m_show; ///< each brings one control to the present state
     bool m_showing = false;                    ///< what controls say comes of the session
 };

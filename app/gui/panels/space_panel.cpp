@@ -19,9 +19,9 @@
 
 #include "base/atomic_file.h"
 #include "image_io/image_file.h"
+#include "panels/panel.h"
 #include "panels/space_canvas.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "session/coarser_input.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
@@ -53,17 +53,17 @@ PanelInfo spacePanel() {
             .size = 0,
             .keys = QKeySequence("Ctrl+Shift+P"),
             .tip = QObject::tr("VWS and the distance from the targets over the opacities of two or three features"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                bench.actions().addGestures(
+            .make = [](Services& services, Controllers&, QWidget* parent) {
+                services.actions().addGestures(
                     {{QObject::tr("Parameter space"), QObject::tr("drag, wheel"), QObject::tr("turn, zoom")},
                      {QObject::tr("Parameter space"), QObject::tr("click"),
                       QObject::tr("set the opacities of this place of a heat map, or of this state of a path")}});
-                return new SpacePanel(bench, parent);
+                return new SpacePanel(services, parent);
             }};
 }
 
-SpacePanel::SpacePanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_features{new QComboBox(this), new QComboBox(this), new QComboBox(this)},
+SpacePanel::SpacePanel(Services& services, QWidget* parent)
+    : QWidget(parent), m_services(services), m_features{new QComboBox(this), new QComboBox(this), new QComboBox(this)},
       m_samples(new QSpinBox(this)), m_scale(new QComboBox(this)), m_factor(new QComboBox(this)),
       m_shown(new QComboBox(this)), m_compute(new QPushButton(tr("&Compute"), this)),
       m_cancel(new QPushButton(tr("Cancel"), this)), m_least(new QPushButton(tr("&Go to the least F"), this)),
@@ -94,7 +94,7 @@ SpacePanel::SpacePanel(Workbench& bench, QWidget* parent)
               return true;
           },
           [this](const Saving& task, bool&) {
-              Q_EMIT m_bench.message(tr("Saved %1.").arg(QString::fromStdString(task.path)));
+              Q_EMIT m_services.message(tr("Saved %1.").arg(QString::fromStdString(task.path)));
           }) {
     setObjectName("spacePanel");
     const char* const axisNames[] = {"X", "Y", "Z"};
@@ -181,12 +181,12 @@ SpacePanel::SpacePanel(Workbench& bench, QWidget* parent)
             [this](double fraction) { m_progress->setValue(static_cast<int>(1000 * fraction)); });
     connect(&m_job, &JobBase::busyChanged, this, &SpacePanel::refresh);
     connect(&m_job, &JobBase::failed, this,
-            [this](const Error& error) { m_bench.showError(tr("The parameter space cannot be computed"), error); });
+            [this](const Error& error) { m_services.showError(tr("The parameter space cannot be computed"), error); });
     connect(&m_saving, &JobBase::busyChanged, this, &SpacePanel::refresh);
     connect(&m_saving, &JobBase::failed, this,
-            [this](const Error& error) { m_bench.showError(tr("The parameter space cannot be saved"), error); });
-    connect(&bench.store(), &SessionStore::changed, this, &SpacePanel::follow);
-    connect(&bench, &Workbench::readOnlyChanged, this, &SpacePanel::refresh);
+            [this](const Error& error) { m_services.showError(tr("The parameter space cannot be saved"), error); });
+    connect(&services.store(), &SessionStore::changed, this, &SpacePanel::follow);
+    connect(&services, &Services::readOnlyChanged, this, &SpacePanel::refresh);
     fillFeatures();
 }
 
@@ -206,17 +206,17 @@ ParameterAxes SpacePanel::axes() const {
 }
 
 SpacePanel::Inputs SpacePanel::inputs() const {
-    Inputs inputs{measureInput(m_bench.scene()), {}, axes(), m_factor->currentData().toInt()};
+    Inputs inputs{measureInput(m_services.scene()), {}, axes(), m_factor->currentData().toInt()};
     inputs.others = featureOpacities(inputs.measured.tf);
     for (const std::size_t f : inputs.axes.features) inputs.others[f] = 0;
     inputs.measured.tf = shapesOf(inputs.measured.tf);
     return inputs;
 }
 
-std::vector<double> SpacePanel::targets() const { return m_bench.scene().targets(); }
+std::vector<double> SpacePanel::targets() const { return m_services.scene().targets(); }
 
 bool SpacePanel::isCurrent() const {
-    return m_space != nullptr && m_bench.store().hasVolume() && axes().features.size() >= 2 && inputs() == m_inputs;
+    return m_space != nullptr && m_services.store().hasVolume() && axes().features.size() >= 2 && inputs() == m_inputs;
 }
 
 bool SpacePanel::isPictureComplete() const { return m_canvas->isComplete(); }
@@ -231,7 +231,7 @@ void SpacePanel::follow(const Scene& before, const Scene& after) {
 }
 
 void SpacePanel::fillFeatures() {
-    const Scene& scene = m_bench.scene();
+    const Scene& scene = m_services.scene();
     const TransferFunction wanted = scene.wantedTf(); // what is empty changes nothing, whatever its opacity
     std::vector<int> shown;
     for (std::size_t f = 0; f < wanted.features.size(); ++f)
@@ -244,7 +244,7 @@ void SpacePanel::fillFeatures() {
                       });
     if (!kept) {
         chosen.clear();
-        if (m_bench.store().hasVolume() && shown.size() >= 2)
+        if (m_services.store().hasVolume() && shown.size() >= 2)
             for (const std::size_t f : defaultAxes(wanted, targets())) chosen.push_back(static_cast<int>(f));
     }
     for (std::size_t a = 0; a < 3; ++a) {
@@ -291,11 +291,11 @@ void SpacePanel::keepChosen() {
 }
 
 void SpacePanel::compute() {
-    if (!m_bench.store().hasVolume() || m_job.isRunning() || axes().features.size() < 2) return;
-    const std::vector<Feature>& features = m_bench.scene().tf.features;
+    if (!m_services.store().hasVolume() || m_job.isRunning() || axes().features.size() < 2) return;
+    const std::vector<Feature>& features = m_services.scene().tf.features;
     if (std::all_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; })) return;
     const Inputs now = inputs();
-    Task task{measureInput(m_bench.scene()), targets(), now.axes, now.factor, now, m_bench.scene().tf.features};
+    Task task{measureInput(m_services.scene()), targets(), now.axes, now.factor, now, m_services.scene().tf.features};
     if (task.measured.settings.profile == Profile::Published)
         task.factor = 1; // it knows planes of voxels, and no lengths
     else if (task.factor == 0)
@@ -307,22 +307,22 @@ void SpacePanel::compute() {
 SpaceView SpacePanel::view() const {
     SpaceView view;
     const bool current = isCurrent();
-    for (const Feature& f : current ? m_bench.scene().tf.features : m_computedFeatures) {
+    for (const Feature& f : current ? m_services.scene().tf.features : m_computedFeatures) {
         view.names.push_back(f.name);
         view.colors.push_back(f.color);
     }
     view.shown = m_shown->currentData().toInt();
     if (view.shown >= static_cast<int>(view.names.size())) view.shown = kObjective;
-    view.tolerance = m_bench.scene().session.optimize->tolerance;
+    view.tolerance = m_services.scene().session.optimize->tolerance;
     if (!current) return view;
-    view.paths = pathsOfRuns(*m_bench.scene().session.runs, m_bench.scene().tf, m_space->axes);
-    view.present = featureOpacities(shownTf(m_bench.scene().tf));
+    view.paths = pathsOfRuns(*m_services.scene().session.runs, m_services.scene().tf, m_space->axes);
+    view.present = featureOpacities(shownTf(m_services.scene().tf));
     return view;
 }
 
 void SpacePanel::refresh() {
-    const bool hasTwo = m_bench.store().hasVolume() && axes().features.size() >= 2;
-    const bool current = isCurrent(), running = m_job.isRunning(), mayEdit = current && !m_bench.isReadOnly();
+    const bool hasTwo = m_services.store().hasVolume() && axes().features.size() >= 2;
+    const bool current = isCurrent(), running = m_job.isRunning(), mayEdit = current && !m_services.isReadOnly();
     if (current) // F follows from W
         if (std::vector<double> wanted = targets(); wanted != m_targets && isAimed(wanted)) {
             m_space = std::make_shared<const ParameterSpace>(withTargets(*m_space, wanted));
@@ -346,7 +346,7 @@ QString SpacePanel::words(bool hasTwo, bool running, bool current) const {
     const ParameterAxes chosen = axes();
     if (running) return tr("Sampling %L1 combinations of opacities…").arg(chosen.sampleCount());
     if (!hasTwo)
-        return m_bench.store().hasVolume() ? tr("A parameter space needs two features that are shown.") : QString();
+        return m_services.store().hasVolume() ? tr("A parameter space needs two features that are shown.") : QString();
     if (!current)
         return tr("%L1 combinations of opacities, in %L2 sweeps over the volume.")
             .arg(chosen.sampleCount())
@@ -354,7 +354,7 @@ QString SpacePanel::words(bool hasTwo, bool running, bool current) const {
     const auto x = m_space->opacitiesAt(m_space->positionOfSample(m_space->best));
     QStringList places;
     for (const std::size_t f : m_space->axes.features)
-        places << QStringLiteral("%1 %2").arg(QString::fromStdString(m_bench.scene().tf.features[f].name),
+        places << QStringLiteral("%1 %2").arg(QString::fromStdString(m_services.scene().tf.features[f].name),
                                               QString::number(x[f], 'g', 3));
     QString text = tr("Least F of %L1 samples: %2, at %3.")
                        .arg(m_space->evaluations)
@@ -364,11 +364,11 @@ QString SpacePanel::words(bool hasTwo, bool running, bool current) const {
 }
 
 void SpacePanel::apply(const std::vector<double>& opacities, const QString& text) {
-    if (!isCurrent() || m_bench.isReadOnly()) return;
-    SessionStore& store = m_bench.store();
+    if (!isCurrent() || m_services.isReadOnly()) return;
+    SessionStore& store = m_services.store();
     store.commit();
-    editTf(store, withShownOpacities(m_bench.scene().tf, opacities), text);
-    Q_EMIT m_bench.message(text + ".");
+    editTf(store, withShownOpacities(m_services.scene().tf, opacities), text);
+    Q_EMIT m_services.message(text + ".");
 }
 
 void SpacePanel::save() {

@@ -20,7 +20,7 @@ class QToolButton;
 namespace pellucid::gui {
 
 class SpaceCanvas;
-class Workbench;
+class Services;
 
 /// Computes VWS and F on a grid of opacities where asked to, off this thread, and shows them with the session's
 /// optimizations as paths. What was computed stays true while the opacities of its axes and the targets change; when
@@ -28,7 +28,7 @@ class Workbench;
 class SpacePanel : public QWidget {
     Q_OBJECT
 public:
-    explicit SpacePanel(Workbench& bench, QWidget* parent = nullptr);
+    explicit SpacePanel(Services& services, QWidget* parent = nullptr);
 
     /// Null before anything was computed of this volume.
     const std::shared_ptr<const ParameterSpace>& space() const { return m_space; }
@@ -81,7 +81,7 @@ private:
     void apply(const std::vector<double>& opacities, const QString& text);
     void save();
 
-    Workbench& m_bench;
+    Services& m_services;
     std::array<QComboBox*, 3> m_features;
     QSpinBox* m_samples;
     QComboBox *m_scale, *m_factor, *m_shown;

@@ -14,11 +14,10 @@
 #include <QToolButton>
 
 #include "base/atomic_file.h"
-#include "controllers/adapt_controller.h"
-#include "controllers/player_controller.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "report/svg_plot.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "session/scene_data.h"
 #include "tf/tf_range.h"
 #include "widgets/plot_view.h"
@@ -46,11 +45,13 @@ PanelInfo temporalPanel() {
             .keys = QKeySequence("Ctrl+4"),
             .tip = QObject::tr("VWS, visibility, distance and flicker of all frames, with and without transfer "
                                "functions that follow them"),
-            .make = [](Workbench& bench, QWidget* parent) { return new TemporalPanel(bench, parent); }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                return new TemporalPanel(services, controllers.player, controllers.adapting, parent);
+            }};
 }
 
-TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_shown(new QComboBox(this)),
+TemporalPanel::TemporalPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent)
+    : QWidget(parent), m_services(services), m_player(player), m_adapting(adapting), m_shown(new QComboBox(this)),
       m_overGaps(new QCheckBox(tr("Flicker over gaps"), this)), m_words(new QLabel(this)), m_readOut(new QLabel(this)),
       m_measure(new QToolButton(this)), m_export(new QToolButton(this)), m_progress(new QProgressBar(this)),
       m_job(
@@ -79,7 +80,7 @@ TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
               return known;
           },
           [this](const Task& task, Known& known) {
-              if (m_bench.scene().series == task.basis.series) m_known[task.frame] = std::move(known);
+              if (m_services.scene().series == task.basis.series) m_known[task.frame] = std::move(known);
               refresh();
               next();
           },
@@ -145,15 +146,15 @@ TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
     row->addWidget(m_export);
     grid->addLayout(row, 1, 0, 1, 4);
 
-    connect(&bench.store(), &SessionStore::changed, this, &TemporalPanel::follow);
-    connect(&bench.player().adapting(), &AdaptController::changed, this, &TemporalPanel::next);
-    connect(&bench, &Workbench::readOnlyChanged, this, [this] {
-        if (m_bench.isReadOnly()) m_job.cancel();
+    connect(&services.store(), &SessionStore::changed, this, &TemporalPanel::follow);
+    connect(&adapting, &AdaptController::changed, this, &TemporalPanel::next);
+    connect(&services, &Services::readOnlyChanged, this, [this] {
+        if (m_services.isReadOnly()) m_job.cancel();
         next();
     });
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_asked = false;
-        m_bench.showError(tr("The frames cannot be measured"), error);
+        m_services.showError(tr("The frames cannot be measured"), error);
         refresh();
     });
     refresh();
@@ -162,7 +163,7 @@ TemporalPanel::TemporalPanel(Workbench& bench, QWidget* parent)
 TemporalPanel::~TemporalPanel() = default;
 
 TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
-    const Scene& scene = m_bench.store().committed();
+    const Scene& scene = m_services.store().committed();
     const Session& session = scene.session;
     const TfTrack& track = session.variable().track;
     Task task{scene, frame, {}};
@@ -197,7 +198,8 @@ bool TemporalPanel::isCurrent(const Known& known, const Known& wanted) {
 
 bool TemporalPanel::isKnown(int frame) const {
     const auto found = m_known.find(frame);
-    return found != m_known.end() && found->second.camera == m_bench.scene().camera && // most often told by that alone
+    return found != m_known.end() &&
+           found->second.camera == m_services.scene().camera && // most often told by that alone
            isCurrent(found->second, taskOf(frame).known);
 }
 
@@ -209,8 +211,8 @@ int TemporalPanel::knownCount() const {
 
 TemporalCurves TemporalPanel::curves() const {
     TemporalCurves curves;
-    if (!m_bench.player().hasSeries()) return curves;
-    const Scene& scene = m_bench.scene();
+    if (!m_player.hasSeries()) return curves;
+    const Scene& scene = m_services.scene();
     for (const Feature& f : scene.tf.features) {
         curves.features.push_back(f.name);
         curves.colors.push_back(f.color);
@@ -228,7 +230,7 @@ TemporalCurves TemporalPanel::curves() const {
 }
 
 void TemporalPanel::measure() {
-    if (!m_bench.player().hasSeries()) return;
+    if (!m_player.hasSeries()) return;
     m_asked = true;
     next();
     refresh();
@@ -241,18 +243,17 @@ void TemporalPanel::cancel() {
 }
 
 void TemporalPanel::next() {
-    if (!m_asked || m_job.isRunning() || !m_bench.player().hasSeries() || m_bench.isReadOnly()) return;
-    PlayerController& player = m_bench.player();
+    if (!m_asked || m_job.isRunning() || !m_player.hasSeries() || m_services.isReadOnly()) return;
     bool waits = false;
-    for (int f = 0; f < player.frameCount(); ++f) {
+    for (int f = 0; f < m_player.frameCount(); ++f) {
         if (isKnown(f)) continue;
         // Its transfer function is on its way.
-        if (player.adapting().isBusy() && player.adapting().isStale(f)) {
+        if (m_adapting.isBusy() && m_adapting.isStale(f)) {
             waits = true;
             continue;
         }
         if (Task task = taskOf(f); task.known.tf && task.known.fixedTf) {
-            m_job.start(std::move(task), player.label(f));
+            m_job.start(std::move(task), m_player.label(f));
             return;
         }
     }
@@ -299,8 +300,8 @@ std::vector<Plot> TemporalPanel::plots() const {
 }
 
 void TemporalPanel::refresh() {
-    const bool series = m_bench.player().hasSeries();
-    const int count = m_bench.player().frameCount(), known = series ? knownCount() : 0;
+    const bool series = m_player.hasSeries();
+    const int count = m_player.frameCount(), known = series ? knownCount() : 0;
     m_measure->setEnabled(series && (m_asked || known < count));
     m_measure->setText(m_asked ? tr("Stop") : tr("Measure all frames"));
     m_measure->setToolTip(m_asked ? tr("What is known so far stays")
@@ -317,7 +318,7 @@ void TemporalPanel::refresh() {
     } else {
         QStringList words;
         for (const TemporalRun& run : curves().runs) {
-            const double tolerance = m_bench.scene().session.optimize->tolerance;
+            const double tolerance = m_services.scene().session.optimize->tolerance;
             const SequenceFigures sum = summaryOf(run.frames, tolerance);
             if (sum.worst < 0) continue; // no frame could be read
             const QString above = sum.above == 0 ? QString() : tr(", %L1 not below %2").arg(sum.above).arg(tolerance);
@@ -342,10 +343,10 @@ void TemporalPanel::refresh() {
 }
 
 void TemporalPanel::chooseFile() {
-    if (!m_bench.player().hasSeries() || knownCount() == 0) return;
+    if (!m_player.hasSeries() || knownCount() == 0) return;
     const QString folder = QSettings().value("curvesFolder", QDir::homePath()).toString();
     QString path = QFileDialog::getSaveFileName(
-        m_bench.window(), tr("Export the curves over time"), QDir(folder).filePath("curves_over_time.csv"),
+        m_services.window(), tr("Export the curves over time"), QDir(folder).filePath("curves_over_time.csv"),
         QStringList{tr("Table (*.csv)"), tr("Picture (*.png)"), tr("Drawing (*.svg)")}.join(";;"));
     if (path.isEmpty()) return;
     if (QFileInfo(path).suffix().isEmpty()) path += ".csv";
@@ -362,9 +363,9 @@ void TemporalPanel::exportTo(const QString& path) {
         } else {
             writePlots(file, temporalPlots(curves()));
         }
-        Q_EMIT m_bench.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+        Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
     } catch (const Error& error) {
-        m_bench.showError(tr("Cannot export the curves"), error);
+        m_services.showError(tr("Cannot export the curves"), error);
     }
 }
 

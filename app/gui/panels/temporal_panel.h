@@ -19,15 +19,17 @@ class QToolButton;
 
 namespace pellucid::gui {
 
+class AdaptController;
+class PlayerController;
 class PlotView;
-class Workbench;
+class Services;
 
 /// Measures where asked to, frame by frame on a thread of its own, and draws what is known so far. What was measured
 /// stays true until camera, settings or the frame's transfer function are others; then it is measured anew when asked.
 class TemporalPanel : public QWidget {
     Q_OBJECT
 public:
-    TemporalPanel(Workbench& bench, QWidget* parent);
+    TemporalPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent);
     ~TemporalPanel() override;
 
     void measure(); ///< all frames that are not known as they are now
@@ -74,7 +76,9 @@ private:
     std::vector<Plot> plots() const;
     void chooseFile();
 
-    Workbench& m_bench;
+    Services& m_services;
+    PlayerController& m_player;
+    AdaptController& m_adapting;
     std::array<PlotView*, 4> m_plots{};
     QComboBox* m_shown;
     QCheckBox* m_overGaps;

@@ -13,12 +13,13 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
-#include "controllers/open_controller.h"
+#include "controllers/controllers.h"
 #include "dialogs/series_files.h"
 #include "panels/channels_box.h"
 #include "panels/ground_box.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "panels/panel.h"
+#include "panels/variable_words.h"
+#include "services/services.h"
 #include "session/scene_data.h"
 #include "volume/file_contents.h"
 #include "volume/procedural.h"
@@ -32,18 +33,6 @@ namespace {
 enum Column { kName, kDrives, kOrigin, kGrid, kRange, kColumns };
 
 QString textOf(const std::string& text) { return QString::fromStdString(text); }
-
-QString derivationText(const Derivation& d, const QString& of) {
-    switch (d.kind) {
-    case Derivation::Kind::Gradient:
-        return QObject::tr("gradient of %1").arg(of);
-    case Derivation::Kind::Volatility:
-        return QObject::tr("volatility of %1, %L2 frames").arg(of).arg(d.frames);
-    case Derivation::Kind::Difference:
-        return QObject::tr("%1 less its frame %L2").arg(of).arg(d.reference);
-    }
-    return of;
-}
 
 QString formulaOf(const Derivation& d) {
     switch (d.kind) {
@@ -99,22 +88,9 @@ bool sameVariables(const Session& a, const Session& b) {
 
 } // namespace
 
-QString originText(const Variable& variable) {
-    if (variable.derivation) return derivationText(*variable.derivation, textOf(variable.derivation->of));
-    const QString array = textOf(variable.source.array);
-    return array.isEmpty() ? titleOf(variable.source) : QStringLiteral("%1 ▸ %2").arg(titleOf(variable.source), array);
-}
-
-QString driverText(const Session& session, const std::string& name) {
-    if (session.variableNamed(name) == nullptr)
-        if (const auto derivation = parseDerivation(name))
-            return derivationText(*derivation, driverText(session, derivation->of));
-    return textOf(name);
-}
-
-VariablesPanel::VariablesPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_list(new QTreeWidget(this)), m_add(new QToolButton(this)),
-      m_addMenu(new QMenu(m_add)), m_remove(new QPushButton(tr("&Remove"), this)),
+VariablesPanel::VariablesPanel(Services& services, OpenController& opening, QWidget* parent)
+    : QWidget(parent), m_services(services), m_opening(opening), m_list(new QTreeWidget(this)),
+      m_add(new QToolButton(this)), m_addMenu(new QMenu(m_add)), m_remove(new QPushButton(tr("&Remove"), this)),
       m_wholeRange(new QPushButton(tr("All values"), this)), m_lo(new QLineEdit(this)), m_hi(new QLineEdit(this)),
       m_notice(new QLabel(this)), m_looking(lookAt, [this](const Scene&, std::map<std::string, VariableInfo>& infos) {
           m_infos = std::move(infos);
@@ -126,21 +102,21 @@ VariablesPanel::VariablesPanel(Workbench& bench, QWidget* parent)
     column->setContentsMargins(10, 8, 10, 8);
     column->setSpacing(8);
     column->addWidget(makeList());
-    column->addWidget(new ChannelsBox(bench, content));
+    column->addWidget(m_channels = new ChannelsBox(services, opening, content));
     auto* line = new QFrame(content);
     line->setFrameShape(QFrame::HLine);
     column->addWidget(line);
-    column->addWidget(new GroundBox(bench, content));
+    column->addWidget(new GroundBox(services, opening, content));
     column->addStretch(1);
     fillScrolled(this, content);
 
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.series != after.series || !sameVariables(before.session, after.session)) lookAtVariables();
         if (before.volume != after.volume || !before.session.variables.isSame(after.session.variables) ||
             !before.session.hsb.isSame(after.session.hsb))
             follow();
     });
-    connect(&bench, &Workbench::readOnlyChanged, this, &VariablesPanel::follow);
+    connect(&services, &Services::readOnlyChanged, this, &VariablesPanel::follow);
     lookAtVariables();
     follow();
 }
@@ -200,13 +176,12 @@ QWidget* VariablesPanel::makeList() {
         if (!m_showing && at == kName) rename(item);
     });
     connect(m_wholeRange, &QPushButton::clicked, this, [this] {
-        m_bench.opening().editInJob(tr("All values of %1").arg(textOf(selected())),
-                                    [name = selected()](Session& session) {
-                                        session.variables.edit([&](std::vector<Variable>& all) {
-                                            for (Variable& v : all)
-                                                if (v.name == name) v.window.reset();
-                                        });
-                                    });
+        m_opening.editInJob(tr("All values of %1").arg(textOf(selected())), [name = selected()](Session& session) {
+            session.variables.edit([&](std::vector<Variable>& all) {
+                for (Variable& v : all)
+                    if (v.name == name) v.window.reset();
+            });
+        });
     });
     return box;
 }
@@ -221,12 +196,12 @@ std::string VariablesPanel::selected() const {
 // ---- the list
 
 void VariablesPanel::lookAtVariables() {
-    if (m_bench.store().hasVolume()) m_looking.start(m_bench.scene());
+    if (m_services.store().hasVolume()) m_looking.start(m_services.scene());
 }
 
 void VariablesPanel::follow() {
-    setEnabled(m_bench.store().hasVolume() && !m_bench.isReadOnly());
-    const Session& session = m_bench.store().session();
+    setEnabled(m_services.isEditable());
+    const Session& session = m_services.store().session();
     const std::string chosen = selected();
     m_showing = true;
     m_list->clear();
@@ -281,7 +256,7 @@ void VariablesPanel::follow() {
 
 void VariablesPanel::showRange() {
     if (m_showing) return;
-    const Session& session = m_bench.store().session();
+    const Session& session = m_services.store().session();
     const std::string name = selected();
     const Variable* variable = session.variableNamed(name);
     const auto info = m_infos.find(name);
@@ -308,7 +283,7 @@ void VariablesPanel::rename(QTreeWidgetItem* item) {
     const std::string from = item->data(kName, Qt::UserRole).toString().toStdString();
     const std::string to = item->text(kName).trimmed().toStdString();
     if (from == to) return;
-    Session renamed = m_bench.store().session();
+    Session renamed = m_services.store().session();
     try {
         renameVariable(renamed, from, to);
     } catch (const Error& error) {
@@ -317,19 +292,19 @@ void VariablesPanel::rename(QTreeWidgetItem* item) {
             this,
             [this, error] {
                 follow();
-                m_bench.showError(tr("Cannot rename the variable"), error);
+                m_services.showError(tr("Cannot rename the variable"), error);
             },
             Qt::QueuedConnection);
         return;
     }
-    m_bench.opening().editInJob(tr("Rename %1").arg(textOf(from)), [from, to](Session& session) {
+    m_opening.editInJob(tr("Rename %1").arg(textOf(from)), [from, to](Session& session) {
         if (session.variableNamed(from) != nullptr && session.variableNamed(to) == nullptr)
             renameVariable(session, from, to);
     });
 }
 
 void VariablesPanel::remove() {
-    m_bench.opening().editInJob(tr("Remove %1").arg(textOf(selected())), [name = selected()](Session& session) {
+    m_opening.editInJob(tr("Remove %1").arg(textOf(selected())), [name = selected()](Session& session) {
         if (session.variableNamed(name) != nullptr && session.variables->size() > 1 && madeOf(session, name).empty())
             removeVariable(session, name);
     });
@@ -347,7 +322,7 @@ void VariablesPanel::editRange() {
     m_lo->setModified(false);
     m_hi->setModified(false);
     if (!isLo || !isHi || !(range.lo < range.hi) || !std::isfinite(range.hi - range.lo)) return showRange();
-    m_bench.opening().editInJob(tr("Range of %1").arg(textOf(selected())), [name = selected(), range](Session& s) {
+    m_opening.editInJob(tr("Range of %1").arg(textOf(selected())), [name = selected(), range](Session& s) {
         s.variables.edit([&](std::vector<Variable>& all) {
             for (Variable& v : all)
                 if (v.name == name) v.window = range;
@@ -359,7 +334,7 @@ void VariablesPanel::editRange() {
 
 void VariablesPanel::fillAddMenu() {
     m_addMenu->clear();
-    const Session& session = m_bench.store().session();
+    const Session& session = m_services.store().session();
     if (session.isEmpty()) return;
     const auto action = [](QMenu& menu, const QString& text, const QString& name) {
         QAction* made = menu.addAction(text);
@@ -367,10 +342,10 @@ void VariablesPanel::fillAddMenu() {
         return made;
     };
     connect(action(*m_addMenu, tr("&Files…"), "addFiles"), &QAction::triggered, this, [this] {
-        if (const auto source = m_bench.opening().askSource(tr("Add a variable"))) addFrom(*source);
+        if (const auto source = m_opening.askSource(tr("Add a variable"))) addFrom(*source);
     });
     connect(action(*m_addMenu, tr("&Series…"), "addSeries"), &QAction::triggered, this, [this] {
-        if (const auto source = m_bench.opening().askSeries()) addFrom(*source);
+        if (const auto source = m_opening.askSeries()) addFrom(*source);
     });
     QMenu* samplesMenu = m_addMenu->addMenu(tr("Sa&mple"));
     for (const SampleInfo& sample : samples()) {
@@ -379,7 +354,7 @@ void VariablesPanel::fillAddMenu() {
         connect(entry, &QAction::triggered, this, [this, name = sample.name] {
             VolumeSource source;
             source.path = "sample:" + name;
-            const Variable& first = m_bench.store().session().variable();
+            const Variable& first = m_services.store().session().variable();
             if (!first.derivation && first.source.isSample()) { // of the same make
                 source.sampleSize = first.source.sampleSize;
                 source.seed = first.source.seed;
@@ -399,7 +374,7 @@ void VariablesPanel::fillAddMenu() {
         }
     }
     m_addMenu->addSeparator();
-    const bool varies = m_bench.scene().series && m_bench.scene().series->varies();
+    const bool varies = m_services.scene().series && m_services.scene().series->varies();
     const std::tuple<Derivation::Kind, QString, const char*, QString> kinds[] = {
         {Derivation::Kind::Gradient, tr("&Gradient of"), "addGradient_", tr("gradient of %1")},
         {Derivation::Kind::Volatility, tr("&Volatility of"), "addVolatility_", tr("volatility of %1")},
@@ -425,7 +400,7 @@ void VariablesPanel::addFrom(const VolumeSource& source) {
 }
 
 void VariablesPanel::add(const Variable& variable, const QString& text) {
-    m_bench.opening().editInJob(text, [variable](Session& session) { addVariable(session, variable); });
+    m_opening.editInJob(text, [variable](Session& session) { addVariable(session, variable); });
 }
 
 PanelInfo variablesPanel() {
@@ -436,39 +411,40 @@ PanelInfo variablesPanel() {
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+Shift+V"),
             .tip = QObject::tr("Several variables, what each drives, and the ground"),
-            .make = [](Workbench& bench, QWidget* parent) {
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
                 const QString menu = QObject::tr("&View");
-                SessionStore& store = bench.store();
-                auto* panel = new VariablesPanel(bench, parent);
-                bench.actions().add({.id = "hsbAction",
-                                     .menu = menu,
-                                     .text = QObject::tr("Colours from &variables"),
-                                     .keys = {QKeySequence("Shift+S")},
-                                     .tip = QObject::tr("Saturation, brightness and hue from variables, or colours of "
-                                                        "the transfer function"),
-                                     .trigger = [panel] { panel->findChild<ChannelsBox*>()->toggle(); },
-                                     .enabled = [&bench] { return bench.store().hasVolume() && !bench.isReadOnly(); },
-                                     .checked = [&store] { return store.session().hsb->on; },
-                                     .separatorBefore = true});
-                bench.actions().add(
+                SessionStore& store = services.store();
+                auto* panel = new VariablesPanel(services, controllers.opening, parent);
+                services.actions().add(
+                    {.id = "hsbAction",
+                     .menu = menu,
+                     .text = QObject::tr("Colours from &variables"),
+                     .keys = {QKeySequence("Shift+S")},
+                     .tip = QObject::tr("Saturation, brightness and hue from variables, or colours of "
+                                        "the transfer function"),
+                     .trigger = [panel] { panel->channels().toggle(); },
+                     .enabled = [&services] { return services.isEditable(); },
+                     .checked = [&store] { return store.session().hsb->on; },
+                     .separatorBefore = true});
+                services.actions().add(
                     {.id = "swapVariablesAction",
                      .menu = menu,
                      .text = QObject::tr("S&wap opacity and brightness"),
                      .tip = QObject::tr("The variable of brightness drives opacity, and the other way round"),
                      .trigger =
-                         [&bench] {
-                             bench.opening().editInJob(QObject::tr("Swap variables"),
-                                                       [](Session& s) { swapOpacityAndBrightness(s); });
+                         [&opening = controllers.opening] {
+                             opening.editInJob(QObject::tr("Swap variables"),
+                                               [](Session& s) { swapOpacityAndBrightness(s); });
                          },
                      .enabled =
-                         [&bench] {
-                             const Session& s = bench.store().session();
-                             return !s.isEmpty() && !bench.isReadOnly() && !s.hsb->brightness.empty() &&
+                         [&services] {
+                             const Session& s = services.store().session();
+                             return !s.isEmpty() && !services.isReadOnly() && !s.hsb->brightness.empty() &&
                                     s.hsb->brightness != s.variable().name;
                          }});
-                QObject::connect(&store, &SessionStore::changed, &bench.actions(),
-                                 [&bench](const Scene& before, const Scene& after) {
-                                     if (!before.session.hsb.isSame(after.session.hsb)) bench.actions().refresh();
+                QObject::connect(&store, &SessionStore::changed, &services.actions(),
+                                 [&services](const Scene& before, const Scene& after) {
+                                     if (!before.session.hsb.isSame(after.session.hsb)) services.actions().refresh();
                                  });
                 return panel;
             }};

@@ -20,7 +20,9 @@ class QTreeWidgetItem;
 
 namespace pellucid::gui {
 
-class Workbench;
+class ChannelsBox;
+class OpenController;
+class Services;
 
 /// What is known of a variable once its present frame has been read.
 struct VariableInfo {
@@ -33,18 +35,14 @@ struct VariableInfo {
     std::string problem;             ///< why it cannot be read; empty: it can
 };
 
-/// A variable of the session in words: "volatility of x, 10 frames", "p*.mhd".
-QString originText(const Variable& variable);
-/// What a channel may name, in words: "x", "gradient of x".
-QString driverText(const Session& session, const std::string& name);
-
 class VariablesPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit VariablesPanel(Workbench& bench, QWidget* parent = nullptr);
+    VariablesPanel(Services& services, OpenController& opening, QWidget* parent = nullptr);
 
     QSize sizeHint() const override; ///< without scrolling
     std::string selected() const;    ///< name of the variable in the list; empty: none
+    ChannelsBox& channels() { return *m_channels; }
 
 private:
     QWidget* makeList();
@@ -58,8 +56,10 @@ private:
     void remove();
     void editRange();
 
-    Workbench& m_bench;
+    Services& m_services;
+    OpenController& m_opening;
     QTreeWidget* m_list;
+    ChannelsBox* m_channels;
     QToolButton* m_add;
     QMenu* m_addMenu;
     QPushButton *m_remove, *m_wholeRange;

@@ -10,13 +10,11 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
-#include "controllers/optimize_controller.h"
-#include "controllers/view_search_controller.h"
+#include "controllers/controllers.h"
+#include "panels/panel.h"
 #include "render/view_direction.h"
-#include "services/panel.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "view/view_globe.h"
-#include "view/volume_view.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -48,22 +46,17 @@ PanelInfo viewsPanel() {
             .size = 240,
             .keys = QKeySequence("Ctrl+B"),
             .tip = QObject::tr("How good each view is, as a sphere beside the picture"),
-            .make =
-                [](Workbench& bench, QWidget* parent) {
-                    const QString sphere = QObject::tr("Sphere of views");
-                    bench.actions().addGestures({{sphere, QObject::tr("Hover"), QObject::tr("look from there")},
-                                                 {sphere, QObject::tr("Click"), QObject::tr("go there")},
-                                                 {sphere, QObject::tr("Left drag"), QObject::tr("rotate")}});
-                    return new ViewsPanel(bench, parent);
-                },
-            .shown =
-                [](Workbench& bench, bool visible) {
-                    if (auto* panel = bench.window()->findChild<ViewsPanel*>()) panel->search().setWanted(visible);
-                }};
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                const QString sphere = QObject::tr("Sphere of views");
+                services.actions().addGestures({{sphere, QObject::tr("Hover"), QObject::tr("look from there")},
+                                                {sphere, QObject::tr("Click"), QObject::tr("go there")},
+                                                {sphere, QObject::tr("Left drag"), QObject::tr("rotate")}});
+                return new ViewsPanel(services, controllers.views, parent);
+            }};
 }
 
-ViewsPanel::ViewsPanel(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_search(new ViewSearchController(bench, this)), m_figure(new QComboBox(this)),
+ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget* parent)
+    : QWidget(parent), m_services(services), m_search(search), m_figure(new QComboBox(this)),
       m_globe(new ViewGlobe(this)), m_words(new QLabel(this)), m_progress(new QProgressBar(this)),
       m_look(new QPushButton(this)), m_go(new QPushButton(tr("Go there"), this)),
       m_optimize(new QPushButton(tr("Optimize view and opacities"), this)) {
@@ -98,10 +91,10 @@ ViewsPanel::ViewsPanel(Workbench& bench, QWidget* parent)
     column->addLayout(buttons);
     column->addWidget(m_optimize);
 
-    ViewSearchController& search = *m_search;
     search.addActions();
-    if (auto* view = bench.window()->findChild<VolumeView*>())
-        connect(&search, &ViewSearchController::glimpsed, view, &VolumeView::lookFrom);
+    connect(&services.panels(), &Panels::visibilityChanged, &search, [&search](const QString& id, bool visible) {
+        if (id == "views") search.setWanted(visible);
+    });
     connect(m_figure, &QComboBox::activated, this,
             [this, &search](int row) { search.setFeature(m_figure->itemData(row).value<FeatureId>()); });
     connect(m_look, &QPushButton::clicked, this, [&search] { search.isRunning() ? search.cancel() : search.start(); });
@@ -109,31 +102,31 @@ ViewsPanel::ViewsPanel(Workbench& bench, QWidget* parent)
     connect(m_optimize, &QPushButton::clicked, this,
             [&search] { search.isOptimizing() ? search.cancelOptimizing() : search.optimize(); });
     connect(m_globe, &ViewGlobe::hovered, this, [this, &search](const Vec3& toward) {
-        if (m_bench.store().hasVolume()) search.setGlimpse(search.cameraFor(toward));
+        if (m_services.store().hasVolume()) search.setGlimpse(search.cameraFor(toward));
     });
     connect(m_globe, &ViewGlobe::left, this, [&search] { search.setGlimpse({}); });
     connect(m_globe, &ViewGlobe::chosen, this, [this, &search](const Vec3& toward) {
-        if (m_bench.store().hasVolume()) search.goTo(search.cameraFor(toward));
+        if (m_services.store().hasVolume()) search.goTo(search.cameraFor(toward));
     });
     connect(m_globe, &ViewGlobe::dragBegan, this, [this] { m_gesture = SessionStore::newGesture(); });
     connect(m_globe, &ViewGlobe::dragged, this, [this](const QPointF& way) {
-        SessionStore& store = m_bench.store();
+        SessionStore& store = m_services.store();
         if (!store.hasVolume()) return;
         store.setCamera(rotated(store.scene().camera, store.scene().volume->geometry(), -way.x() * kDegreesPerRadius,
                                 way.y() * kDegreesPerRadius),
                         m_gesture);
     });
     m_globe->setWords([this](const Vec3& toward) {
-        const ViewSearchController& views = *m_search;
+        const ViewSearchController& views = m_search;
         if (views.map().isEmpty()) return anglesText(toward);
         const QString figure = figureText(views.map().metric, views.map().interpolated(toward), true);
         return tr("From %1: %2").arg(anglesText(toward), figure) +
                (views.isCurrent() ? QString() : tr("\nof an older state"));
     });
     connect(&search, &ViewSearchController::changed, this, &ViewsPanel::refresh);
-    connect(&bench.optimizing(), &OptimizeController::runningChanged, this, &ViewsPanel::refresh);
-    connect(&bench.results(), &Results::changed, this, &ViewsPanel::refresh);
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&services, &Services::readOnlyChanged, this, &ViewsPanel::refresh);
+    connect(&services.results(), &Results::changed, this, &ViewsPanel::refresh);
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (!std::equal(before.tf.features.begin(), before.tf.features.end(), after.tf.features.begin(),
                         after.tf.features.end(),
                         [](const Feature& f, const Feature& g) { return f.id == g.id && f.name == g.name; }))
@@ -148,13 +141,13 @@ void ViewsPanel::fillFigures() {
     const QSignalBlocker quiet(m_figure);
     m_figure->clear();
     m_figure->addItem(tr("Distance from the targets (F)"), QVariant::fromValue(FeatureId(0)));
-    for (const Feature& f : m_bench.scene().tf.features)
+    for (const Feature& f : m_services.scene().tf.features)
         m_figure->addItem(tr("Saliency (VWS) of %1").arg(QString::fromStdString(f.name)), QVariant::fromValue(f.id));
 }
 
 QString ViewsPanel::words() const {
-    const ViewSearchController& search = *m_search;
-    const SessionStore& store = m_bench.store();
+    const ViewSearchController& search = m_search;
+    const SessionStore& store = m_services.store();
     if (!store.hasVolume()) return {};
     if (store.session().measure->profile == Profile::Published)
         return tr("The published profile looks along the grid alone: it has no other views.");
@@ -177,16 +170,16 @@ QString ViewsPanel::words() const {
 
 // The figure that the other panels have of this view.
 std::optional<double> ViewsPanel::measuredHere(const ViewMetric& metric) const {
-    const Results& results = m_bench.results();
+    const Results& results = m_services.results();
     if (!results.vwsIsCurrent()) return {};
     if (metric.figure == ViewMetric::Figure::Objective) return results.objective();
     return results.measures()->features.at(metric.feature).vws;
 }
 
 void ViewsPanel::refresh() {
-    const ViewSearchController& search = *m_search;
-    const SessionStore& store = m_bench.store();
-    const bool ready = store.hasVolume() && !store.scene().tf.features.empty() && !m_bench.isReadOnly() &&
+    const ViewSearchController& search = m_search;
+    const SessionStore& store = m_services.store();
+    const bool ready = store.hasVolume() && !store.scene().tf.features.empty() && !m_services.isReadOnly() &&
                        store.session().measure->profile != Profile::Published;
     const bool current = search.isCurrent() && search.best();
     m_figure->setCurrentIndex(std::max(0, m_figure->findData(QVariant::fromValue(search.feature()))));

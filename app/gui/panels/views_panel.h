@@ -16,15 +16,13 @@ namespace pellucid::gui {
 
 class ViewGlobe;
 class ViewSearchController;
-class Workbench;
+class Services;
 
 /// What is judged, the sphere in its colours, the best view in words, and the ways there.
 class ViewsPanel : public QWidget {
     Q_OBJECT
 public:
-    explicit ViewsPanel(Workbench& bench, QWidget* parent = nullptr);
-
-    ViewSearchController& search() { return *m_search; }
+    ViewsPanel(Services& services, ViewSearchController& search, QWidget* parent = nullptr);
 
 private:
     void fillFigures();
@@ -32,8 +30,8 @@ private:
     QString words() const;
     std::optional<double> measuredHere(const ViewMetric& metric) const; ///< empty: not of the present state
 
-    Workbench& m_bench;
-    ViewSearchController* m_search; ///< a child
+    Services& m_services;
+    ViewSearchController& m_search;
     QComboBox* m_figure;
     ViewGlobe* m_globe;
     QLabel* m_words;

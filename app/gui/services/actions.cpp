@@ -50,11 +50,6 @@ void Actions::addGestures(std::vector<Gesture> gestures) {
     m_gestures.insert(m_gestures.end(), gestures.begin(), gestures.end());
 }
 
-QAction* Actions::find(const QString& id) const {
-    const auto at = std::find_if(m_entries.begin(), m_entries.end(), [&](const Entry& e) { return e.spec.id == id; });
-    return at == m_entries.end() ? nullptr : at->action;
-}
-
 void Actions::refresh() {
     for (const Entry& e : m_entries) {
         if (e.spec.enabled) e.action->setEnabled(e.spec.enabled());

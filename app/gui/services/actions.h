@@ -45,7 +45,6 @@ public:
 
     QAction* add(ActionSpec spec);
     void addGestures(std::vector<Gesture> gestures);
-    QAction* find(const QString& id) const;
     void refresh();
 
     /// Menus in the order in which they first occur, the tool bar after them.

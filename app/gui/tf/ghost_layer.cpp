@@ -4,7 +4,6 @@
 #include <QPainterPath>
 
 #include "controllers/refine_controller.h"
-#include "services/workbench.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -12,11 +11,11 @@ namespace {
 
 class GhostLayer : public CanvasLayer {
 public:
-    explicit GhostLayer(Workbench& bench) : m_bench(bench) {}
+    explicit GhostLayer(RefineController& refining) : m_refining(refining) {}
 
     void paint(QPainter& painter, const CanvasGeometry& where) override {
-        const Refinement* refinement = m_bench.refining().latest();
-        if (refinement == nullptr || !m_bench.refining().isGhostShown()) return;
+        const Refinement* refinement = m_refining.latest();
+        if (refinement == nullptr || !m_refining.isGhostShown()) return;
         painter.save();
         painter.setClipRect(where.plot().adjusted(-1, -1, 1, 1));
         painter.setBrush(Qt::NoBrush);
@@ -28,15 +27,15 @@ public:
     }
 
 private:
-    Workbench& m_bench;
+    RefineController& m_refining;
 };
 
 } // namespace
 
-void addGhostLayer(Workbench& bench, TfCanvas& canvas) {
-    canvas.addLayer(std::make_unique<GhostLayer>(bench));
-    QObject::connect(&bench.refining(), &RefineController::refined, &canvas, qOverload<>(&QWidget::update));
-    QObject::connect(&bench.refining(), &RefineController::ghostChanged, &canvas, qOverload<>(&QWidget::update));
+void addGhostLayer(RefineController& refining, TfCanvas& canvas) {
+    canvas.addLayer(std::make_unique<GhostLayer>(refining));
+    QObject::connect(&refining, &RefineController::refined, &canvas, qOverload<>(&QWidget::update));
+    QObject::connect(&refining, &RefineController::ghostChanged, &canvas, qOverload<>(&QWidget::update));
 }
 
 } // namespace pellucid::gui

@@ -7,9 +7,9 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class RefineController;
 
 /// Adds it to the canvas, which it keeps up to date.
-void addGhostLayer(Workbench& bench, TfCanvas& canvas);
+void addGhostLayer(RefineController& refining, TfCanvas& canvas);
 
 } // namespace pellucid::gui

@@ -10,7 +10,7 @@
 #include <QToolTip>
 
 #include "controllers/refine_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -22,27 +22,27 @@ constexpr double kHead = 6;              // half the width of the marker's head
 
 } // namespace
 
-PaletteBar::PaletteBar(Workbench& bench, TfCanvas& canvas, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_canvas(canvas) {
+PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas& canvas, QWidget* parent)
+    : QWidget(parent), m_services(services), m_refining(refining), m_canvas(canvas) {
     setObjectName("paletteBar");
     setAccessibleName(tr("Palette"));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setFixedHeight(30);
     setCursor(Qt::PointingHandCursor);
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.series != after.series) m_dragging = false;
         if (!(before.tf == after.tf) || !(before.session.refine == after.session.refine)) update();
     });
     connect(&canvas.axis(), &IntensityAxis::changed, this, qOverload<>(&QWidget::update));
-    connect(&bench.selection(), &Selection::hoveredChanged, this, qOverload<>(&QWidget::update));
+    connect(&services.selection(), &Selection::hoveredChanged, this, qOverload<>(&QWidget::update));
     const QString place = tr("Palette, below the curve");
-    bench.actions().addGestures({{place, tr("Click, drag"), tr("refine so that this value stands out")},
-                                 {place, tr("Arrow keys (Shift: finer)"), tr("move what stands out")},
-                                 {place, tr("Delete, Esc, right click"), tr("prioritize nothing")}});
+    services.actions().addGestures({{place, tr("Click, drag"), tr("refine so that this value stands out")},
+                                    {place, tr("Arrow keys (Shift: finer)"), tr("move what stands out")},
+                                    {place, tr("Delete, Esc, right click"), tr("prioritize nothing")}});
 }
 
-bool PaletteBar::isReady() const { return m_bench.store().hasVolume() && !m_bench.isReadOnly(); }
+bool PaletteBar::isReady() const { return m_services.isEditable(); }
 
 QRectF PaletteBar::strip() const {
     const QRectF plot = m_canvas.plot(); // of a canvas that begins where this does
@@ -59,18 +59,18 @@ double PaletteBar::intensityAt(const QPointF& position) const {
 }
 
 QString PaletteBar::valueText(double intensity) const {
-    const Volume& volume = *m_bench.scene().volume;
+    const Volume& volume = *m_services.scene().volume;
     return numberText(volume.valueOfIntensity(intensity), volume.range().hi - volume.range().lo);
 }
 
-std::optional<double> PaletteBar::marked() const { return m_bench.store().session().refine->intensity; }
+std::optional<double> PaletteBar::marked() const { return m_services.store().session().refine->intensity; }
 
 void PaletteBar::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     painter.fillRect(rect(), theme::kWindow);
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     const QRectF r = strip();
-    const TfSampler sampler(m_bench.scene().tf);
+    const TfSampler sampler(m_services.scene().tf);
     for (double x = r.left(); x < r.right(); ++x) {
         const double width = std::min(1.0, r.right() - x);
         painter.fillRect(QRectF(x, r.top(), width, r.height()),
@@ -86,7 +86,7 @@ void PaletteBar::paintEvent(QPaintEvent*) {
     painter.setBrush(Qt::NoBrush);
     painter.drawRect(r.adjusted(-0.5, -0.5, 0.5, 0.5));
     const auto inside = [&](const QPointF& at) { return at.x() >= r.left() - 0.5 && at.x() <= r.right() + 0.5; };
-    if (const auto hovered = m_hovered ? m_hovered : m_bench.selection().hoveredIntensity()) {
+    if (const auto hovered = m_hovered ? m_hovered : m_services.selection().hoveredIntensity()) {
         const QPointF at = positionOf(*hovered);
         if (inside(at)) {
             painter.setPen(QPen(QColor(0, 0, 0, 150), 3));
@@ -113,23 +113,23 @@ void PaletteBar::mousePressEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton || !isReady()) return event->ignore();
     if (m_dragging) return;
     m_dragging = true;
-    m_bench.refining().dragPriority(intensityAt(event->position()));
+    m_refining.dragPriority(intensityAt(event->position()));
 }
 
 void PaletteBar::mouseMoveEvent(QMouseEvent* event) {
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     m_hovered = intensityAt(event->position());
-    m_bench.selection().setHoveredIntensity(m_hovered);
+    m_services.selection().setHoveredIntensity(m_hovered);
     // A change that this drag did not make (undo, say) has ended it.
-    if (m_dragging && !m_bench.store().isPreviewing()) m_dragging = false;
-    if (m_dragging) m_bench.refining().dragPriority(*m_hovered);
+    if (m_dragging && !m_services.store().isPreviewing()) m_dragging = false;
+    if (m_dragging) m_refining.dragPriority(*m_hovered);
     update();
 }
 
 void PaletteBar::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton || !m_dragging) return;
     m_dragging = false;
-    m_bench.refining().endDrag();
+    m_refining.endDrag();
 }
 
 void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
@@ -138,9 +138,9 @@ void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
         event->reason() == QContextMenuEvent::Keyboard ? marked().value_or(0.5) : intensityAt(QPointF(event->pos()));
     QMenu menu(this);
     menu.setObjectName("paletteMenu");
-    menu.addAction(tr("Refine for %1").arg(valueText(x)), this, [this, x] { m_bench.refining().prioritize(x); });
-    QAction* nothing = menu.addAction(tr("Prioritize nothing"), &m_bench.refining(),
-                                      qOverload<>(&RefineController::prioritizeNothing));
+    menu.addAction(tr("Refine for %1").arg(valueText(x)), this, [this, x] { m_refining.prioritize(x); });
+    QAction* nothing =
+        menu.addAction(tr("Prioritize nothing"), &m_refining, qOverload<>(&RefineController::prioritizeNothing));
     nothing->setEnabled(marked().has_value());
     menu.exec(event->globalPos());
 }
@@ -148,13 +148,11 @@ void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
 void PaletteBar::keyPressEvent(QKeyEvent* event) {
     if (event->key() == Qt::Key_Escape && m_dragging) {
         m_dragging = false;
-        return m_bench.refining().cancelDrag();
+        return m_refining.cancelDrag();
     }
     if (!isReady() || m_dragging) return QWidget::keyPressEvent(event);
     const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 1.0 / 1024 : 1.0 / 128;
-    const auto go = [&](double x) {
-        m_bench.refining().prioritize(std::clamp(x, 0.0, 1.0), QStringLiteral("palette-keys"));
-    };
+    const auto go = [&](double x) { m_refining.prioritize(std::clamp(x, 0.0, 1.0), QStringLiteral("palette-keys")); };
     const IntensityAxis& axis = m_canvas.axis();
     const double middle = (axis.lo() + axis.hi()) / 2;
     switch (event->key()) {
@@ -169,7 +167,7 @@ void PaletteBar::keyPressEvent(QKeyEvent* event) {
     case Qt::Key_Delete:
     case Qt::Key_Backspace:
     case Qt::Key_Escape:
-        if (marked()) m_bench.refining().prioritizeNothing();
+        if (marked()) m_refining.prioritizeNothing();
         return;
     default:
         QWidget::keyPressEvent(event);
@@ -178,7 +176,7 @@ void PaletteBar::keyPressEvent(QKeyEvent* event) {
 
 void PaletteBar::leaveEvent(QEvent*) {
     m_hovered.reset();
-    m_bench.selection().setHoveredIntensity({});
+    m_services.selection().setHoveredIntensity({});
     update();
 }
 
@@ -186,7 +184,7 @@ void PaletteBar::focusInEvent(QFocusEvent*) { update(); }
 void PaletteBar::focusOutEvent(QFocusEvent*) { update(); }
 
 bool PaletteBar::event(QEvent* event) {
-    if (event->type() != QEvent::ToolTip || !m_bench.store().hasVolume()) return QWidget::event(event);
+    if (event->type() != QEvent::ToolTip || !m_services.store().hasVolume()) return QWidget::event(event);
     const auto* help = static_cast<QHelpEvent*>(event);
     QString text = tr("Value %1. Click: refine so that this value stands out; drag: the picture follows")
                        .arg(valueText(intensityAt(QPointF(help->pos()))));

@@ -9,7 +9,8 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class RefineController;
+class Services;
 
 /// A click refines for the intensity under the mouse (thesis 3.4.3), a drag goes on doing so. The marker shows what is
 /// prioritized.
@@ -17,7 +18,7 @@ class PaletteBar : public QWidget {
     Q_OBJECT
 public:
     /// Lies below `canvas`, as wide, and follows its axis.
-    PaletteBar(Workbench& bench, TfCanvas& canvas, QWidget* parent = nullptr);
+    PaletteBar(Services& services, RefineController& refining, TfCanvas& canvas, QWidget* parent = nullptr);
 
     /// The middle of the place of an intensity, widget pixels.
     QPointF positionOf(double intensity) const;
@@ -44,7 +45,8 @@ private:
     std::optional<double> marked() const;
     bool isReady() const;
 
-    Workbench& m_bench;
+    Services& m_services;
+    RefineController& m_refining;
     TfCanvas& m_canvas;
     bool m_dragging = false;
     std::optional<double> m_hovered;

@@ -9,21 +9,13 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
-#include <QMenu>
 #include <QPainter>
 #include <QSettings>
 #include <QSignalBlocker>
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include "controllers/feature_actions.h"
-#include "panels/channels_box.h"
-#include "services/panel.h"
-#include "services/workbench.h"
 #include "store/edits.h"
-#include "tf/ghost_layer.h"
-#include "tf/palette_bar.h"
-#include "tf/shapes.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
@@ -42,52 +34,7 @@ QIcon swatch(const QColor& color, const QSize& size = {22, 14}) {
     return pixmap;
 }
 
-/// What can be done to the feature under the mouse, which is selected for it.
-void addFeatureMenu(QMenu& menu, Workbench& bench, FeatureId id) {
-    const int feature = featureWithId(bench.scene().tf, id);
-    if (feature < 0) return fillShapeMenu(*menu.addMenu(QObject::tr("Add feature")), bench);
-    bench.selection().setFeature(id);
-    const std::string& name = bench.scene().tf.features[static_cast<std::size_t>(feature)].name;
-    const bool onBar = menu.isEmpty();
-    fillFeatureMenu(onBar ? menu : *menu.addMenu(QObject::tr("Feature %1").arg(QString::fromStdString(name))), bench);
-}
-
 } // namespace
-
-PanelInfo transferFunctionPanel() {
-    return {.id = "tf",
-            .title = QObject::tr("Transfer function"),
-            .area = Qt::BottomDockWidgetArea,
-            .visible = true,
-            .size = 250,
-            .keys = QKeySequence("Ctrl+1"),
-            .tip = QObject::tr("The curve of opacity and colour over the histogram"),
-            .make = [](Workbench& bench, QWidget* parent) {
-                auto* editor = new TfEditorWidget(bench.store(), bench.results(), bench.selection(), parent);
-                QObject::connect(&bench, &Workbench::readOnlyChanged, editor,
-                                 [editor, &bench] { editor->setReadOnly(bench.isReadOnly()); });
-                addGhostLayer(bench, editor->canvas());
-                editor->addRow(new PaletteBar(bench, editor->canvas(), editor));
-                followTitle(bench, parent, curveTitle);
-                QObject::connect(&editor->canvas(), &TfCanvas::menuOpening, editor,
-                                 [&bench](QMenu& menu, double, FeatureId id) { addFeatureMenu(menu, bench, id); });
-                const QString place = QObject::tr("Transfer function");
-                bench.actions().addGestures(
-                    {{place, QObject::tr("Drag a point (Shift: along one axis, Ctrl: finely)"),
-                      QObject::tr("change its value and opacity, and of all that are selected")},
-                     {place, QObject::tr("Drag over points, Ctrl+click, Ctrl+A"), QObject::tr("select several")},
-                     {place, QObject::tr("Double-click"), QObject::tr("add a point; on a point: its colour")},
-                     {place, QObject::tr("Enter, Space, Delete"), QObject::tr("colour, fix, remove the points")},
-                     {place, QObject::tr("Arrow keys (Shift: finer)"), QObject::tr("move the points")},
-                     {place, QObject::tr("Page Up, Page Down"), QObject::tr("choose another point")},
-                     {place, QObject::tr("Drag a feature's bar, its ends"), QObject::tr("move the feature, widen it")},
-                     {place, QObject::tr("Wheel; middle drag, Shift + wheel, drag of the axis"),
-                      QObject::tr("zoom into the values; move along")},
-                     {place, QObject::tr("Double-click on the axis, on a bar"),
-                      QObject::tr("see all values, those of the feature")}});
-                return editor;
-            }};
-}
 
 TfEditorWidget::TfEditorWidget(SessionStore& store, Results& results, Selection& selection, QWidget* parent)
     : QWidget(parent), m_store(store), m_canvas(new TfCanvas(store, results, selection, this)),

@@ -9,7 +9,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -112,7 +112,7 @@ std::vector<ClipLayer::Placed> ClipLayer::handles(const OverlayView& view) const
 }
 
 ClipLayer::Handle ClipLayer::handleAt(const QPointF& point, const OverlayView& view) const {
-    if (!m_shown || m_bench.isReadOnly()) return {};
+    if (!m_shown || m_services.isReadOnly()) return {};
     const std::vector<Placed> placed = handles(view);
     for (auto h = placed.rbegin(); h != placed.rend(); ++h)
         if (std::hypot(h->at.x() - point.x(), h->at.y() - point.y()) <= kReach) return h->handle;
@@ -205,10 +205,10 @@ Qt::CursorShape ClipLayer::cursorAt(const QPointF& point, const OverlayView& vie
 bool ClipLayer::press(const QPointF& point, Qt::KeyboardModifiers, const OverlayView& view) {
     const Handle handle = handleAt(point, view);
     if (handle.kind == Kind::None) return false;
-    m_bench.store().commit();
+    m_services.store().commit();
     m_held = handle;
     m_from = point;
-    m_start = *m_bench.store().session().clipping;
+    m_start = *m_services.store().session().clipping;
     return true;
 }
 
@@ -238,45 +238,28 @@ Clipping ClipLayer::dragged(const QPointF& point, Qt::KeyboardModifiers keys, co
 }
 
 void ClipLayer::drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) {
-    if (m_bench.isReadOnly()) return;
+    if (m_services.isReadOnly()) return;
     const QString text = m_held.kind == Kind::Face ? QObject::tr("Clip") : QObject::tr("Clip plane");
-    m_bench.store().preview(
+    m_services.store().preview(
         text, [clipping = dragged(point, keys, view)](Session& session) { session.clipping.set(clipping); });
 }
 
 void ClipLayer::release() {
     m_held = {};
-    m_bench.store().commit();
+    m_services.store().commit();
     m_overlay.update();
 }
 
 void ClipLayer::cancel() {
     m_held = {};
-    m_bench.store().cancel();
+    m_services.store().cancel();
     m_overlay.update();
 }
 
-void addClipHandles(Workbench& bench, ViewOverlay& overlay) {
-    auto owned = std::make_unique<ClipLayer>(bench, overlay);
-    ClipLayer* layer = owned.get();
+void addClipHandles(Services& services, QAction& shown, ViewOverlay& overlay) {
+    auto owned = std::make_unique<ClipLayer>(services, overlay);
+    QObject::connect(&shown, &QAction::toggled, &overlay, [layer = owned.get()](bool on) { layer->setShown(on); });
     overlay.add(std::move(owned));
-    // The state outlives the layer, as the action does.
-    const auto shown = std::make_shared<bool>(false);
-    bench.actions().add({.id = "clipHandlesAction",
-                         .menu = QObject::tr("&View"),
-                         .text = QObject::tr("Clip &handles"),
-                         .keys = {QKeySequence("C")},
-                         .tip = QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with "
-                                            "Shift the opposite face goes along; Esc gives up"),
-                         .trigger =
-                             [layer, shown] {
-                                 *shown = !*shown;
-                                 layer->setShown(*shown);
-                             },
-                         .enabled = [&bench] { return bench.store().hasVolume(); },
-                         .checked = [shown] { return *shown; },
-                         .separatorBefore = true,
-                         .inToolBar = true});
 }
 
 } // namespace pellucid::gui

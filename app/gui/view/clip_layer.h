@@ -4,15 +4,17 @@
 #include "render/clip_handles.h"
 #include "view/view_overlay.h"
 
+class QAction;
+
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// The box that is left with a handle on each face, and each oblique plane with one that moves and one that turns it.
 /// Drags are previews, so that picture and figures follow them.
 class ClipLayer : public OverlayLayer {
 public:
-    ClipLayer(Workbench& bench, QWidget& overlay) : m_bench(bench), m_overlay(overlay) {}
+    ClipLayer(Services& services, QWidget& overlay) : m_services(services), m_overlay(overlay) {}
 
     bool isShown() const { return m_shown; }
     void setShown(bool shown);
@@ -43,7 +45,7 @@ private:
     void paintPlanes(QPainter& painter, const OverlayView& view) const;
     Clipping dragged(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) const;
 
-    Workbench& m_bench;
+    Services& m_services;
     QWidget& m_overlay;
     bool m_shown = false;
     Handle m_hovered, m_held;
@@ -51,7 +53,7 @@ private:
     Clipping m_start; ///< when the handle was taken
 };
 
-/// The layer over the view, and the action "Show clip handles".
-void addClipHandles(Workbench& bench, ViewOverlay& overlay);
+/// The layer over the view, while the action is checked.
+void addClipHandles(Services& services, QAction& shown, ViewOverlay& overlay);
 
 } // namespace pellucid::gui

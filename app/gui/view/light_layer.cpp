@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "render/clip_handles.h"
-#include "services/workbench.h"
+#include "services/services.h"
 
 namespace pellucid::gui {
 namespace {
@@ -35,8 +35,8 @@ void LightLayer::paint(QPainter& painter, const OverlayView& view) {
 }
 
 bool LightLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) {
-    if (keys != Qt::ControlModifier || m_bench.isReadOnly()) return false;
-    m_bench.store().commit();
+    if (keys != Qt::ControlModifier || m_services.isReadOnly()) return false;
+    m_services.store().commit();
     m_held = true;
     m_from = point;
     m_start = view.scene.session.display->light.direction;
@@ -45,10 +45,10 @@ bool LightLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const O
 }
 
 void LightLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const OverlayView& view) {
-    if (m_bench.isReadOnly()) return;
+    if (m_services.isReadOnly()) return;
     const QPointF way = point - m_from;
     const Vec3 direction = turnedBall(m_start, way.x(), way.y(), kRadiusOfView * view.size.height());
-    m_bench.store().preview(QObject::tr("Light"), [&](Session& session) {
+    m_services.store().preview(QObject::tr("Light"), [&](Session& session) {
         session.display.edit([&](DisplaySettings& d) {
             d.light.on = true;
             d.light.direction = direction;
@@ -58,13 +58,13 @@ void LightLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const Overlay
 
 void LightLayer::release() {
     m_held = false;
-    m_bench.store().commit();
+    m_services.store().commit();
     m_overlay.update();
 }
 
 void LightLayer::cancel() {
     m_held = false;
-    m_bench.store().cancel();
+    m_services.store().cancel();
     m_overlay.update();
 }
 

@@ -5,12 +5,12 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Ctrl + left drag turns the light like a ball, which is shown meanwhile. It goes on where it was off.
 class LightLayer : public OverlayLayer {
 public:
-    LightLayer(Workbench& bench, QWidget& overlay) : m_bench(bench), m_overlay(overlay) {}
+    LightLayer(Services& services, QWidget& overlay) : m_services(services), m_overlay(overlay) {}
 
     void paint(QPainter& painter, const OverlayView& view) override;
     bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
@@ -19,7 +19,7 @@ public:
     void cancel() override;
 
 private:
-    Workbench& m_bench;
+    Services& m_services;
     QWidget& m_overlay;
     bool m_held = false;
     QPointF m_from;

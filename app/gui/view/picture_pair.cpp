@@ -4,7 +4,7 @@
 #include <QLabel>
 
 #include "controllers/refine_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/image_convert.h"
 
 namespace pellucid::gui {
@@ -14,8 +14,9 @@ constexpr int kRest = 150; // milliseconds without a change before both are draw
 
 } // namespace
 
-PicturePair::PicturePair(Workbench& bench, QWidget* parent)
-    : QDialog(parent), m_bench(bench), m_words(new QLabel(this)), m_renderer(std::make_shared<KeptRenderer>()),
+PicturePair::PicturePair(Services& services, RefineController& refining, QWidget* parent)
+    : QDialog(parent), m_services(services), m_refining(refining), m_words(new QLabel(this)),
+      m_renderer(std::make_shared<KeptRenderer>()),
       m_job(
           [renderer = m_renderer](const Inputs& inputs, const JobControl& job) {
               Pictures pictures;
@@ -61,11 +62,11 @@ PicturePair::PicturePair(Workbench& bench, QWidget* parent)
     m_wait.setInterval(kRest);
     connect(&m_wait, &QTimer::timeout, this, &PicturePair::start);
     const auto again = [this] { m_wait.start(); };
-    connect(&bench.store(), &SessionStore::changed, this, [this, again](const Scene& before, const Scene& after) {
+    connect(&services.store(), &SessionStore::changed, this, [this, again](const Scene& before, const Scene& after) {
         if (before.volume != after.volume) m_renderer->release();
         again();
     });
-    connect(&bench.refining(), &RefineController::refined, this, again);
+    connect(&refining, &RefineController::refined, this, again);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_words->setText(tr("The pictures could not be drawn: %1").arg(QString::fromUtf8(error.what())));
     });
@@ -75,13 +76,13 @@ PicturePair::PicturePair(Workbench& bench, QWidget* parent)
 PicturePair::~PicturePair() = default;
 
 void PicturePair::start() {
-    const Refinement* refinement = m_bench.refining().latest();
+    const Refinement* refinement = m_refining.latest();
     if (refinement == nullptr) { // of a volume that has gone
         close();
         return;
     }
     const QSize pixels = m_labels[0]->size() * devicePixelRatioF();
-    Scene scene = m_bench.scene();
+    Scene scene = m_services.scene();
     Inputs inputs;
     scene.tf = refinement->before;
     inputs[0] = pictureInput(scene, std::max(1, pixels.width()), std::max(1, pixels.height()));
@@ -107,14 +108,6 @@ void PicturePair::showPictures() {
 void PicturePair::resizeEvent(QResizeEvent* event) {
     QDialog::resizeEvent(event);
     m_wait.start();
-}
-
-void showPicturePair(Workbench& bench) {
-    auto* pair = bench.window()->findChild<PicturePair*>("picturePair");
-    if (pair == nullptr) pair = new PicturePair(bench, bench.window());
-    pair->show();
-    pair->raise();
-    pair->activateWindow();
 }
 
 } // namespace pellucid::gui

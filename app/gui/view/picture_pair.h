@@ -16,14 +16,15 @@ class QLabel;
 
 namespace pellucid::gui {
 
-class Workbench;
+class RefineController;
+class Services;
 
 /// Both are drawn by the CPU off this thread, from the present camera and in the present light, and follow camera,
 /// display and refinement while the window is open.
 class PicturePair : public QDialog {
     Q_OBJECT
 public:
-    explicit PicturePair(Workbench& bench, QWidget* parent);
+    PicturePair(Services& services, RefineController& refining, QWidget* parent);
     ~PicturePair() override;
 
     bool isComplete() const { return !m_wait.isActive() && !m_job.isRunning() && !m_pictures[0].isNull(); }
@@ -38,7 +39,8 @@ private:
     void start();
     void showPictures();
 
-    Workbench& m_bench;
+    Services& m_services;
+    RefineController& m_refining;
     std::array<QLabel*, 2> m_labels, m_captions;
     QLabel* m_words;
     Pictures m_pictures;
@@ -46,8 +48,5 @@ private:
     std::shared_ptr<KeptRenderer> m_renderer;
     Job<Inputs, Pictures> m_job; // last: it ends before the rest goes
 };
-
-/// Shows the one of the window, which is made where there is none yet.
-void showPicturePair(Workbench& bench);
 
 } // namespace pellucid::gui

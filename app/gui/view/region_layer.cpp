@@ -6,7 +6,7 @@
 #include <QPainter>
 
 #include "controllers/refine_controller.h"
-#include "services/workbench.h"
+#include "services/services.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -54,15 +54,16 @@ ImageRegion moved(ImageRegion region, glm::dvec2 by) {
 
 } // namespace
 
-RegionLayer::RegionLayer(Workbench& bench, QWidget& overlay) : m_bench(bench), m_overlay(overlay) {
+RegionLayer::RegionLayer(Services& services, RefineController& refining, QWidget& overlay)
+    : m_services(services), m_refining(refining), m_overlay(overlay) {
     for (const auto changed : {&RefineController::busyChanged, &RefineController::selectingChanged})
-        QObject::connect(&bench.refining(), changed, &overlay, qOverload<>(&QWidget::update));
+        QObject::connect(&refining, changed, &overlay, qOverload<>(&QWidget::update));
 }
 
 RegionLayer::Hold RegionLayer::holdAt(const QPointF& point, const OverlayView& view) const {
-    if (m_bench.isReadOnly()) return {};
-    const std::optional<ImageRegion> region = m_bench.refining().region();
-    if (m_bench.refining().selecting() != Selecting::Nothing) return {Grip::Draw}; // over an older one too
+    if (m_services.isReadOnly()) return {};
+    const std::optional<ImageRegion> region = m_refining.region();
+    if (m_refining.selecting() != Selecting::Nothing) return {Grip::Draw}; // over an older one too
     if (region) {
         if (isRectangle(*region)) {
             const QRectF r = polygonOf(*region, view.size).boundingRect();
@@ -110,7 +111,7 @@ bool RegionLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const 
         m_start = {};
         m_region = ImageRegion{{fractionOf(point, m_size)}};
     } else {
-        m_start = *m_bench.refining().region();
+        m_start = *m_refining.region();
         m_region = m_start;
     }
     return true;
@@ -122,7 +123,7 @@ void RegionLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const Overla
     const auto& start = m_start.outline;
     switch (m_hold.grip) {
     case Grip::Draw:
-        if (m_bench.refining().selecting() == Selecting::Rectangle) {
+        if (m_refining.selecting() == Selecting::Rectangle) {
             m_region = rectangle(from, to);
         } else {
             const glm::dvec2 last = m_region->outline.back();
@@ -155,14 +156,13 @@ void RegionLayer::release() {
     const Grip grip = std::exchange(m_hold, {}).grip;
     const std::optional<ImageRegion> region = std::exchange(m_region, {});
     m_overlay.update();
-    if (!region || m_bench.isReadOnly()) return;
+    if (!region || m_services.isReadOnly()) return;
     const QRectF bounds = polygonOf(*region, m_size).boundingRect();
     const bool click = region->outline.size() < 3 || bounds.width() < kSmallest || bounds.height() < kSmallest;
     if (click || *region == m_start) return;
-    RefineController& refining = m_bench.refining();
-    refining.prioritize(*region,
-                        grip == Grip::Draw ? QObject::tr("Refine for a region") : QObject::tr("Change region"));
-    if (grip == Grip::Draw) refining.setSelecting(Selecting::Nothing); // the mouse turns the volume again
+    m_refining.prioritize(*region,
+                          grip == Grip::Draw ? QObject::tr("Refine for a region") : QObject::tr("Change region"));
+    if (grip == Grip::Draw) m_refining.setSelecting(Selecting::Nothing); // the mouse turns the volume again
 }
 
 void RegionLayer::cancel() {
@@ -172,19 +172,18 @@ void RegionLayer::cancel() {
 }
 
 bool RegionLayer::key(int key, const OverlayView&) {
-    RefineController& refining = m_bench.refining();
-    if (key == Qt::Key_Escape && refining.selecting() != Selecting::Nothing) {
-        refining.setSelecting(Selecting::Nothing);
+    if (key == Qt::Key_Escape && m_refining.selecting() != Selecting::Nothing) {
+        m_refining.setSelecting(Selecting::Nothing);
         return true;
     }
     const bool removes = key == Qt::Key_Escape || key == Qt::Key_Delete || key == Qt::Key_Backspace;
-    if (!removes || m_bench.isReadOnly() || !refining.region()) return false;
-    refining.prioritizeNothing();
+    if (!removes || m_services.isReadOnly() || !m_refining.region()) return false;
+    m_refining.prioritizeNothing();
     return true;
 }
 
 void RegionLayer::paint(QPainter& painter, const OverlayView& view) {
-    const std::optional<ImageRegion> region = m_region ? m_region : m_bench.refining().region();
+    const std::optional<ImageRegion> region = m_region ? m_region : m_refining.region();
     if (!region) return;
     const QPolygonF outline = polygonOf(*region, view.size);
     painter.setBrush(QColor(255, 255, 255, m_region ? 30 : 14));

@@ -10,13 +10,14 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+class RefineController;
+class Services;
 
 /// While RefineController::selecting() says so a drag draws a rectangle or a lasso. What was drawn stays where it is in
 /// the picture: a rectangle has handles on corners and edges, and the inside of either moves it.
 class RegionLayer : public OverlayLayer {
 public:
-    RegionLayer(Workbench& bench, QWidget& overlay);
+    RegionLayer(Services& services, RefineController& refining, QWidget& overlay);
 
     void paint(QPainter& painter, const OverlayView& view) override;
     Qt::CursorShape cursorAt(const QPointF& point, const OverlayView& view) override;
@@ -34,7 +35,8 @@ private:
     };
     Hold holdAt(const QPointF& point, const OverlayView& view) const;
 
-    Workbench& m_bench;
+    Services& m_services;
+    RefineController& m_refining;
     QWidget& m_overlay;
     Hold m_hold;
     QPointF m_from;

@@ -8,16 +8,16 @@
 #include <QSlider>
 #include <QToolButton>
 
-#include "controllers/slice_actions.h"
-#include "services/workbench.h"
+#include "services/services.h"
+#include "store/view_edits.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 
 namespace pellucid::gui {
 
-SliceBar::SliceBar(Workbench& bench, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_strength(new QSlider(Qt::Horizontal, this)), m_lo(new QDoubleSpinBox(this)),
-      m_hi(new QDoubleSpinBox(this)), m_reset(new QToolButton(this)) {
+SliceBar::SliceBar(Services& services, QWidget* parent)
+    : QWidget(parent), m_services(services), m_strength(new QSlider(Qt::Horizontal, this)),
+      m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)), m_reset(new QToolButton(this)) {
     setObjectName("sliceBar");
     setAutoFillBackground(true);
     m_strength->setObjectName("sliceStrength");
@@ -56,12 +56,12 @@ SliceBar::SliceBar(Workbench& bench, QWidget* parent)
     row->addWidget(m_reset);
     row->addStretch(1);
     connect(m_strength, &QSlider::valueChanged, this, &SliceBar::editStrength);
-    connect(m_strength, &QSlider::sliderReleased, this, [this] { m_bench.store().commit(); });
-    connect(m_reset, &QToolButton::clicked, this, [this] { resetGreyWindow(m_bench.store()); });
-    connect(&bench.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(m_strength, &QSlider::sliderReleased, this, [this] { m_services.store().commit(); });
+    connect(m_reset, &QToolButton::clicked, this, [this] { resetGreyWindow(m_services.store()); });
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || !before.session.slices.isSame(after.session.slices)) follow();
     });
-    connect(&bench, &Workbench::readOnlyChanged, this, &SliceBar::follow);
+    connect(&services, &Services::readOnlyChanged, this, &SliceBar::follow);
     follow();
 }
 
@@ -72,25 +72,25 @@ void SliceBar::editStrength(int percent) {
         session.slices.edit([percent](SliceViews& s) { s.tfStrength = percent / 100.0; });
     };
     if (m_strength->isSliderDown())
-        m_bench.store().preview(text, change);
+        m_services.store().preview(text, change);
     else
-        m_bench.store().edit(text, "sliceStrength", change);
+        m_services.store().edit(text, "sliceStrength", change);
 }
 
 void SliceBar::editWindow() {
     if (m_showing) return;
-    ValueRange window = greyWindowOf(m_bench.scene());
+    ValueRange window = greyWindowOf(m_services.scene());
     // Only the box that was edited counts: the other one shows a rounded number.
     (sender() == m_lo ? window.lo : window.hi) = sender() == m_lo ? m_lo->value() : m_hi->value();
     if (!(window.lo < window.hi)) return follow(); // nothing lies between them
-    m_bench.store().edit(tr("Window of grey"), "greyWindow",
-                         [&](Session& session) { session.slices.edit([&](SliceViews& s) { s.window = window; }); });
+    m_services.store().edit(tr("Window of grey"), "greyWindow",
+                            [&](Session& session) { session.slices.edit([&](SliceViews& s) { s.window = window; }); });
 }
 
 void SliceBar::follow() {
-    if (!m_bench.store().hasVolume()) return;
-    const Scene& scene = m_bench.scene();
-    setEnabled(!m_bench.isReadOnly());
+    if (!m_services.store().hasVolume()) return;
+    const Scene& scene = m_services.scene();
+    setEnabled(!m_services.isReadOnly());
     m_showing = true;
     if (!m_strength->isSliderDown())
         m_strength->setValue(static_cast<int>(std::lround(100 * scene.session.slices->tfStrength)));

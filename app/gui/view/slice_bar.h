@@ -9,20 +9,20 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// How strong the transfer function's colours are, and the window of grey in data units.
 class SliceBar : public QWidget {
     Q_OBJECT
 public:
-    explicit SliceBar(Workbench& bench, QWidget* parent = nullptr);
+    explicit SliceBar(Services& services, QWidget* parent = nullptr);
 
 private:
     void follow();
     void editStrength(int percent);
     void editWindow();
 
-    Workbench& m_bench;
+    Services& m_services;
     QSlider* m_strength;
     QDoubleSpinBox *m_lo, *m_hi;
     QToolButton* m_reset;

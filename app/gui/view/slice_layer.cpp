@@ -4,9 +4,9 @@
 
 #include <QPainter>
 
-#include "controllers/slice_actions.h"
 #include "render/clip_handles.h"
 #include "render/slice.h"
+#include "store/view_edits.h"
 #include "view/slice_pane.h"
 
 namespace pellucid::gui {

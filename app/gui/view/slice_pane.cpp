@@ -14,8 +14,8 @@
 
 #include <glm/common.hpp>
 
-#include "controllers/slice_actions.h"
-#include "services/workbench.h"
+#include "services/services.h"
+#include "store/view_edits.h"
 #include "tf/shown_tf.h"
 #include "volume/orientation.h"
 #include "widgets/image_convert.h"
@@ -61,8 +61,8 @@ QColor slicePlaneColor(int worldAxis) {
     return kColors.at(static_cast<std::size_t>(worldAxis));
 }
 
-SlicePane::SlicePane(Workbench& bench, int worldAxis, Lane& lane, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_worldAxis(worldAxis), m_maximize(new QToolButton(this)),
+SlicePane::SlicePane(Services& services, int worldAxis, Lane& lane, QWidget* parent)
+    : QWidget(parent), m_services(services), m_worldAxis(worldAxis), m_maximize(new QToolButton(this)),
       m_job([](const Request& request, const JobControl&) { return drawn(request); },
             [this](const Request& request, Drawn& result) { show(request, result); }, WhenBusy::FinishOld, &lane) {
     const char axisLetter = "XYZ"[worldAxis];
@@ -79,7 +79,7 @@ SlicePane::SlicePane(Workbench& bench, int worldAxis, Lane& lane, QWidget* paren
     m_maximize->setFixedSize(20, 20);
     setMaximized(false);
     connect(m_maximize, &QToolButton::clicked, this, &SlicePane::maximizeWanted);
-    connect(&bench.store(), &SessionStore::changed, this, &SlicePane::follow);
+    connect(&services.store(), &SessionStore::changed, this, &SlicePane::follow);
 }
 
 void SlicePane::setMaximized(bool on) {
@@ -97,17 +97,17 @@ void SlicePane::setMaximized(bool on) {
 }
 
 int SlicePane::axis() const {
-    const Geometry& geometry = m_bench.scene().volume->geometry();
+    const Geometry& geometry = m_services.scene().volume->geometry();
     for (int a = 0; a < 3; ++a)
         if (sliceWorldAxis(geometry, a) == m_worldAxis) return a;
     return m_worldAxis;
 }
 
 SlicePlane SlicePane::planeOfSize(int pixelsWide, int pixelsHigh) const {
-    const Geometry& geometry = m_bench.scene().volume->geometry();
+    const Geometry& geometry = m_services.scene().volume->geometry();
     SlicePlane plane;
     plane.axis = axis();
-    plane.position = crosshairOf(m_bench.scene())[plane.axis];
+    plane.position = crosshairOf(m_services.scene())[plane.axis];
     plane.width = std::max(1, pixelsWide);
     plane.height = std::max(1, pixelsHigh);
     const SliceRect whole = fittedSlice(geometry, plane.axis, plane.width, plane.height);
@@ -128,7 +128,7 @@ void SlicePane::follow(const Scene& before, const Scene& after) {
         m_hovered.reset();
     }
     // A change that this drag did not make (undo, another file) ends it.
-    if (m_motion == Motion::Window && m_moved && !m_bench.store().isPreviewing()) m_motion = Motion::None;
+    if (m_motion == Motion::Window && m_moved && !m_services.store().isPreviewing()) m_motion = Motion::None;
     request();
     if (isHidden()) return;
     if (before.volume != after.volume || before.session.slices != after.session.slices || !(before.tf == after.tf)) {
@@ -138,8 +138,8 @@ void SlicePane::follow(const Scene& before, const Scene& after) {
 }
 
 void SlicePane::request() {
-    if (isHidden() || !m_bench.store().hasVolume() || width() <= 0 || height() <= 0) return;
-    const Scene& scene = m_bench.scene();
+    if (isHidden() || !m_services.store().hasVolume() || width() <= 0 || height() <= 0) return;
+    const Scene& scene = m_services.scene();
     const qreal ratio = devicePixelRatioF();
     Request next;
     next.volume = scene.volume;
@@ -202,7 +202,7 @@ void SlicePane::fit() {
 }
 
 void SlicePane::zoomAbout(const QPointF& point, double factor) {
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     const double zoom = std::clamp(m_zoom * factor, 1.0 / 4, kMostZoom);
     const SlicePlane before = plane();
     const double fx = point.x() / before.width, fy = point.y() / before.height;
@@ -226,27 +226,28 @@ void SlicePane::pan(const QPointF& way) {
 
 /// Toward +x, +y, +z of the world: left, posterior, superior.
 void SlicePane::step(int slices) {
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     const int a = axis();
-    const bool along = m_bench.scene().volume->geometry().directions[a][m_worldAxis] > 0;
-    Vec3 voxel = crosshairOf(m_bench.scene());
+    const bool along = m_services.scene().volume->geometry().directions[a][m_worldAxis] > 0;
+    Vec3 voxel = crosshairOf(m_services.scene());
     voxel[a] += along ? slices : -slices;
-    moveCrosshair(m_bench.store(), voxel);
+    moveCrosshair(m_services.store(), voxel);
 }
 
 void SlicePane::moveCrosshairTo(const QPointF& point) {
-    moveCrosshair(m_bench.store(), voxelAtPixel(m_bench.scene().volume->geometry(), plane(), {point.x(), point.y()}));
+    moveCrosshair(m_services.store(),
+                  voxelAtPixel(m_services.scene().volume->geometry(), plane(), {point.x(), point.y()}));
 }
 
 void SlicePane::dragWindow(const QPointF& way) {
-    if (m_bench.isReadOnly()) return;
-    const ValueRange all = m_bench.scene().data->range(), from = *m_windowBefore;
+    if (m_services.isReadOnly()) return;
+    const ValueRange all = m_services.scene().data->range(), from = *m_windowBefore;
     const double whole = all.hi - all.lo;
     if (!(whole > 0)) return;
     const double start = std::max(from.hi - from.lo, whole * 1e-6);
     const double width = std::clamp(start * std::exp2(way.x() / kWidthPixels), whole * 1e-6, 4 * whole);
     const double level = std::clamp(from.lo + (from.hi - from.lo) / 2 - start * way.y() / kLevelPixels, all.lo, all.hi);
-    m_bench.store().preview(tr("Window of grey"), [&](Session& session) {
+    m_services.store().preview(tr("Window of grey"), [&](Session& session) {
         session.slices.edit([&](SliceViews& s) { s.window = ValueRange{level - width / 2, level + width / 2}; });
     });
 }
@@ -254,8 +255,8 @@ void SlicePane::dragWindow(const QPointF& way) {
 void SlicePane::hover(const std::optional<QPointF>& point) {
     m_mouse = point;
     m_hovered.reset();
-    if (point && m_bench.store().hasVolume() && !isHidden()) {
-        const Volume& volume = *m_bench.scene().volume;
+    if (point && m_services.store().hasVolume() && !isHidden()) {
+        const Volume& volume = *m_services.scene().volume;
         const Vec3 voxel = voxelAtPixel(volume.geometry(), plane(), {point->x(), point->y()});
         const Vec3 lo = volume.geometry().voxelBoxMin(), hi = volume.geometry().voxelBoxMax();
         bool inside = true;
@@ -263,14 +264,14 @@ void SlicePane::hover(const std::optional<QPointF>& point) {
         if (inside) m_hovered = Hovered{voxel, volume.geometry().worldFromVoxel(voxel), valueAt(volume, voxel, false)};
     }
     std::optional<double> intensity;
-    if (m_hovered && m_hovered->value) intensity = m_bench.scene().volume->intensityOfValue(*m_hovered->value);
-    m_bench.selection().setHoveredIntensity(intensity);
+    if (m_hovered && m_hovered->value) intensity = m_services.scene().volume->intensityOfValue(*m_hovered->value);
+    m_services.selection().setHoveredIntensity(intensity);
     update();
 }
 
 QString SlicePane::hoverText() const {
-    if (!m_hovered || !m_bench.store().hasVolume()) return {};
-    const Scene& scene = m_bench.scene();
+    if (!m_hovered || !m_services.store().hasVolume()) return {};
+    const Scene& scene = m_services.scene();
     const Geometry& geometry = scene.volume->geometry();
     QString text = tr("invalid");
     if (m_hovered->value) {
@@ -290,14 +291,14 @@ QString SlicePane::hoverText() const {
 bool SlicePane::onTitle(const QPointF& point) const { return point.y() < kTitle; }
 
 void SlicePane::mousePressEvent(QMouseEvent* event) {
-    if (m_motion != Motion::None || !m_bench.store().hasVolume()) return; // the first button decides
+    if (m_motion != Motion::None || !m_services.store().hasVolume()) return; // the first button decides
     switch (event->button()) {
     case Qt::LeftButton:
         if (event->modifiers().testFlag(Qt::ShiftModifier)) {
             m_motion = Motion::Pan;
         } else if (!onTitle(event->position())) {
             m_motion = Motion::Crosshair;
-            m_crosshairBefore = crosshairOf(m_bench.scene());
+            m_crosshairBefore = crosshairOf(m_services.scene());
             moveCrosshairTo(event->position());
         }
         break;
@@ -305,10 +306,10 @@ void SlicePane::mousePressEvent(QMouseEvent* event) {
         m_motion = Motion::Pan;
         break;
     case Qt::RightButton:
-        if (m_bench.isReadOnly()) return;
-        m_bench.store().commit();
+        if (m_services.isReadOnly()) return;
+        m_services.store().commit();
         m_motion = Motion::Window;
-        m_windowBefore = greyWindowOf(m_bench.scene());
+        m_windowBefore = greyWindowOf(m_services.scene());
         break;
     default:
         return event->ignore();
@@ -321,7 +322,7 @@ void SlicePane::mousePressEvent(QMouseEvent* event) {
 void SlicePane::mouseMoveEvent(QMouseEvent* event) {
     const QPointF point = event->position();
     if (m_motion == Motion::None) setCursor(onTitle(point) ? Qt::ArrowCursor : Qt::CrossCursor);
-    if (m_motion == Motion::None || !m_bench.store().hasVolume()) return hover(point);
+    if (m_motion == Motion::None || !m_services.store().hasVolume()) return hover(point);
     if (!m_moved && (point - m_pressed).manhattanLength() < 3) return;
     m_moved = true;
     switch (m_motion) {
@@ -345,16 +346,16 @@ void SlicePane::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != m_button) return;
     const Motion motion = std::exchange(m_motion, Motion::None);
     m_button = Qt::NoButton;
-    if (motion == Motion::Window && m_moved) m_bench.store().commit();
+    if (motion == Motion::Window && m_moved) m_services.store().commit();
     update(); // the numbers of the drag go
 }
 
 void SlicePane::mouseDoubleClickEvent(QMouseEvent* event) {
-    if (!m_bench.store().hasVolume()) return;
-    if (event->button() == Qt::RightButton && !m_bench.isReadOnly()) return resetGreyWindow(m_bench.store());
+    if (!m_services.store().hasVolume()) return;
+    if (event->button() == Qt::RightButton && !m_services.isReadOnly()) return resetGreyWindow(m_services.store());
     if (event->button() != Qt::LeftButton) return;
     if (onTitle(event->position())) return Q_EMIT maximizeWanted();
-    if (m_crosshairBefore) m_bench.store().setCrosshair(*m_crosshairBefore); // the first click was half of this
+    if (m_crosshairBefore) m_services.store().setCrosshair(*m_crosshairBefore); // the first click was half of this
     fit();
 }
 
@@ -397,8 +398,8 @@ void SlicePane::keyPressEvent(QKeyEvent* event) {
 
 void SlicePane::cancelDrag() {
     const Motion motion = std::exchange(m_motion, Motion::None);
-    if (motion == Motion::Crosshair && m_crosshairBefore) m_bench.store().setCrosshair(*m_crosshairBefore);
-    if (motion == Motion::Window && m_moved) m_bench.store().cancel();
+    if (motion == Motion::Crosshair && m_crosshairBefore) m_services.store().setCrosshair(*m_crosshairBefore);
+    if (motion == Motion::Window && m_moved) m_services.store().cancel();
     update();
 }
 
@@ -435,9 +436,9 @@ void SlicePane::hideEvent(QHideEvent* event) {
 }
 
 QString SlicePane::titleText() const {
-    const Geometry& geometry = m_bench.scene().volume->geometry();
+    const Geometry& geometry = m_services.scene().volume->geometry();
     const int a = axis();
-    const Vec3 voxel = crosshairOf(m_bench.scene());
+    const Vec3 voxel = crosshairOf(m_services.scene());
     const double at = geometry.worldFromVoxel(voxel)[m_worldAxis];
     QString name = QString::fromLatin1(sliceName(geometry, a));
     if (geometry.frame == Frame::Patient) name[0] = name[0].toUpper(); // a word, not an axis
@@ -451,7 +452,7 @@ QString SlicePane::titleText() const {
 void SlicePane::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     painter.fillRect(rect(), QColor(0x0c, 0x0c, 0x0c)); // in any theme: grey is judged against black
-    if (!m_bench.store().hasVolume()) return;
+    if (!m_services.store().hasVolume()) return;
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
     if (!m_image.isNull()) painter.drawImage(QRectF(rect()), m_image);
     painter.setRenderHint(QPainter::Antialiasing);
@@ -470,7 +471,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
              metrics.elidedText(titleText(), Qt::ElideRight, width() - 2 * kMargin - m_maximize->width()), color);
     QString text = hoverText();
     if (m_motion == Motion::Window && m_moved) {
-        const ValueRange window = greyWindowOf(m_bench.scene());
+        const ValueRange window = greyWindowOf(m_services.scene());
         const double span = window.hi - window.lo;
         text = tr("window %1  level %2\n%3 to %4")
                    .arg(numberText(span, span), numberText(window.lo + span / 2, span), numberText(window.lo, span),
@@ -490,8 +491,8 @@ void SlicePane::paintEvent(QPaintEvent*) {
 }
 
 void SlicePane::paintCrosshair(QPainter& painter, const SlicePlane& plane) const {
-    const Geometry& geometry = m_bench.scene().volume->geometry();
-    const Vec2 at = pixelOfVoxel(geometry, plane, crosshairOf(m_bench.scene()));
+    const Geometry& geometry = m_services.scene().volume->geometry();
+    const Vec2 at = pixelOfVoxel(geometry, plane, crosshairOf(m_services.scene()));
     const SliceView view = sliceView(geometry, plane.axis);
     constexpr double kGap = 9; // so that what the lines point at is seen
     const QColor upright = slicePlaneColor(sliceWorldAxis(geometry, view.right)),
@@ -503,7 +504,7 @@ void SlicePane::paintCrosshair(QPainter& painter, const SlicePlane& plane) const
 }
 
 QStringList SlicePane::edgeLetters() const {
-    const Geometry& geometry = m_bench.scene().volume->geometry();
+    const Geometry& geometry = m_services.scene().volume->geometry();
     const SliceView view = sliceView(geometry, axis());
     const Vec3 right = geometry.directions[view.right] * (view.flipRight ? -1.0 : 1.0),
                up = geometry.directions[view.down] * (view.flipDown ? 1.0 : -1.0);
@@ -545,7 +546,7 @@ void SlicePane::paintScale(QPainter& painter, const SlicePlane& plane) const {
         haloLine(painter, line, theme::kMark);
     const QFontMetricsF metrics(painter.font());
     const QString text = QStringLiteral("%1 %2").arg(numberText(length, length),
-                                                     QLatin1String(unitOf(m_bench.scene().volume->geometry())));
+                                                     QLatin1String(unitOf(m_services.scene().volume->geometry())));
     haloText(painter, {right - metrics.horizontalAdvance(text), y - 6}, text, theme::kMark);
 }
 

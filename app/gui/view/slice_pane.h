@@ -15,7 +15,7 @@ class QToolButton;
 
 namespace pellucid::gui {
 
-class Workbench;
+class Services;
 
 /// Of the crosshair's lines, the titles and the planes in the volume: one for each world axis that a slice is
 /// perpendicular to. Colour-blind eyes can tell them apart.
@@ -28,7 +28,7 @@ class SlicePane : public QWidget {
     Q_OBJECT
 public:
     /// `lane` draws the slices of all panes, one after the other; it outlives this.
-    SlicePane(Workbench& bench, int worldAxis, Lane& lane, QWidget* parent = nullptr);
+    SlicePane(Services& services, int worldAxis, Lane& lane, QWidget* parent = nullptr);
 
     int worldAxis() const { return m_worldAxis; }
     int axis() const; ///< the index axis; there is a volume
@@ -104,7 +104,7 @@ private:
     void paintLetters(QPainter& painter) const;
     void paintScale(QPainter& painter, const SlicePlane& plane) const;
 
-    Workbench& m_bench;
+    Services& m_services;
     const int m_worldAxis;
     QToolButton* m_maximize;
     double m_zoom = 1;            ///< 1: the whole plane

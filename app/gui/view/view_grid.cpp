@@ -5,7 +5,7 @@
 #include <QMouseEvent>
 #include <QPainter>
 
-#include "services/workbench.h"
+#include "services/services.h"
 #include "view/slice_bar.h"
 #include "widgets/theme.h"
 
@@ -19,19 +19,19 @@ constexpr double kLeast = 0.12; // of the area, for each row and column
 
 } // namespace
 
-ViewGrid::ViewGrid(Workbench& bench, VolumeView& volume, QWidget* parent)
-    : QWidget(parent), m_bench(bench), m_volume(volume), m_bar(new SliceBar(bench, this)) {
+ViewGrid::ViewGrid(Services& services, VolumeView& volume, QWidget* parent)
+    : QWidget(parent), m_services(services), m_volume(volume), m_bar(new SliceBar(services, this)) {
     setObjectName("viewGrid");
     setMouseTracking(true);
     volume.setParent(this);
     for (int a = 0; a < 3; ++a) {
-        auto* pane = new SlicePane(bench, a, m_lane, this);
+        auto* pane = new SlicePane(services, a, m_lane, this);
         m_panes[static_cast<std::size_t>(a)] = pane;
         pane->hide();
         connect(pane, &SlicePane::frameShown, this, &ViewGrid::slicesShown);
         connect(pane, &SlicePane::maximizeWanted, this, [this, pane] { maximize(m_alone == pane ? nullptr : pane); });
     }
-    connect(&bench.store(), &SessionStore::changed, this, [this] {
+    connect(&services.store(), &SessionStore::changed, this, [this] {
         if (layoutNow() == m_arranged) return;
         m_alone = nullptr;
         arrange();
@@ -44,7 +44,7 @@ ViewGrid::~ViewGrid() {
 }
 
 SliceViews::Layout ViewGrid::layoutNow() const {
-    return m_bench.store().hasVolume() ? m_bench.store().session().slices->layout : Layout::Volume;
+    return m_services.store().hasVolume() ? m_services.store().session().slices->layout : Layout::Volume;
 }
 
 bool ViewGrid::isComplete() const {

@@ -21,7 +21,7 @@ class ViewGrid : public QWidget {
     Q_OBJECT
     Lane m_lane; // draws slices; outlives the panes, which are children
 public:
-    ViewGrid(Workbench& bench, VolumeView& volume, QWidget* parent = nullptr);
+    ViewGrid(Services& services, VolumeView& volume, QWidget* parent = nullptr);
     ~ViewGrid() override;
 
     VolumeView& volume() { return m_volume; }
@@ -51,7 +51,7 @@ private:
     int gapsAt(const QPoint& point) const;
     SliceViews::Layout layoutNow() const;
 
-    Workbench& m_bench;
+    Services& m_services;
     VolumeView& m_volume;
     SliceBar* m_bar;
     std::array<SlicePane*, 3> m_panes; // by world axis

@@ -13,8 +13,8 @@
 
 #include "base/parallel.h"
 #include "controllers/field_controller.h"
-#include "controllers/view_actions.h"
 #include "render/camera_motion.h"
+#include "store/view_edits.h"
 #include "view/annotation_layer.h"
 #include "view/cpu_surface.h"
 #include "view/gl_surface.h"

@@ -10,10 +10,11 @@
 
 namespace pellucid::gui {
 
-class Workbench;
+struct Controllers;
+class Services;
 
-/// What the frame needs to know of a panel. `make` is called once; the widget takes everything else (the store,
-/// results, actions, jobs) from the workbench, and adds its own actions there.
+/// What the frame needs to know of a panel. `make` is called once; the widget gets the services (the store, results,
+/// actions), adds its own actions there, and the controllers that it calls.
 struct PanelInfo {
     const char* id; ///< the dock's object name is "<id>Dock", its toggle's "<id>Action"
     QString title;
@@ -24,11 +25,10 @@ struct PanelInfo {
     int size = 0;                ///< width (or height, at the bottom) at the first start, pixels; 0: as it likes
     QKeySequence keys;           ///< show or hide it
     QString tip;
-    std::function<QWidget*(Workbench&, QWidget* parent)> make;
-    std::function<void(Workbench&, bool visible)> shown = {}; ///< it was shown or hidden; may be empty
+    std::function<QWidget*(Services&, Controllers&, QWidget* parent)> make;
 };
 
-/// All panels, in the order of the View menu. To add one: its own files, and its line in panels.cpp.
+/// All panels, in the order of the View menu. To add one: its own files, and its line in panel_registry.cpp.
 std::vector<PanelInfo> panelRegistry();
 
 } // namespace pellucid::gui

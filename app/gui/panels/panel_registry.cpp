@@ -1,4 +1,4 @@
-#include "services/panel.h"
+#include "panels/panel.h"
 
 // The registry: one line a panel. Each is a function of its own file that tells what the panel is.
 // clang-format off

@@ -1,12 +1,16 @@
-// What can be done with the slices beside the picture: layouts, the crosshair where they meet, the window of their
-// grey.
+// How camera, crosshair and slices are set: what menus and the hands on the pictures share.
 #pragma once
 
+#include "render/standard_view.h"
 #include "store/session_store.h"
 
 namespace pellucid::gui {
 
-class Workbench;
+void fitView(SessionStore& store);   ///< the same direction, the whole box
+void resetView(SessionStore& store); ///< as a volume opens
+void setStandardView(SessionStore& store, StandardView view);
+void setProjection(SessionStore& store, Projection projection);
+void zoomView(SessionStore& store, double factor, int gesture = 0);
 
 /// Where the slices meet, voxel coordinates within the grid; the scene has a volume.
 Vec3 crosshairOf(const Scene& scene);
@@ -18,7 +22,5 @@ void moveCrosshair(SessionStore& store, const Vec3& voxel);
 void moveCrosshairToWorld(SessionStore& store, const Vec3& world);
 void setLayout(SessionStore& store, SliceViews::Layout layout);
 void resetGreyWindow(SessionStore& store); ///< to the range of values that the transfer function covers
-
-void addSliceActions(Workbench& bench);
 
 } // namespace pellucid::gui

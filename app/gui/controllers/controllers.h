@@ -1,0 +1,44 @@
+// All that a window's menus do: the controllers, and how they hear of each other.
+#pragma once
+
+#include "controllers/adapt_controller.h"
+#include "controllers/feature_actions.h"
+#include "controllers/field_controller.h"
+#include "controllers/live_controller.h"
+#include "controllers/open_controller.h"
+#include "controllers/optimize_controller.h"
+#include "controllers/player_controller.h"
+#include "controllers/probe_controller.h"
+#include "controllers/recovery_controller.h"
+#include "controllers/refine_controller.h"
+#include "controllers/save_controller.h"
+#include "controllers/start_controller.h"
+#include "controllers/target_actions.h"
+#include "controllers/view_search_controller.h"
+
+namespace pellucid::gui {
+
+/// Each gets, besides the services, those that it calls; they come before it, and go after it.
+struct Controllers {
+    explicit Controllers(Services& services);
+    ~Controllers();
+
+    Services& services;
+    OptimizeController optimizing{services};
+    RefineController refining{services, optimizing};
+    FieldController fields{services}; ///< what is drawn in the place of the data
+    LiveController live{services, optimizing};
+    SaveController saving{services, fields};
+    OpenController opening{services, saving};
+    StartController starting{services, opening};
+    RecoveryController recovery{services, opening, saving};
+    PlayerController player{services, opening}; ///< frames of a series
+    AdaptController adapting{services, player}; ///< transfer functions over time
+    ViewSearchController views{services, optimizing};
+    ProbeController probe{services};
+    TargetActions targets{services};
+    FeatureActions features{services, targets};
+    QAction* clipHandles = nullptr;
+};
+
+} // namespace pellucid::gui

@@ -1,9 +1,0 @@
-// The Transfer function menu: presets, and features from the curve.
-#pragma once
-
-namespace pellucid::gui {
-
-class Workbench;
-void addTfActions(Workbench& bench);
-
-} // namespace pellucid::gui
