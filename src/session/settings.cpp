@@ -82,6 +82,14 @@ template <>
 std::span<const Setting> settingsOf<HsbMapping>() {
     using H = HsbMapping;
     constexpr auto isOn = [](const void* h) { return static_cast<const H*>(h)->on; };
+    constexpr auto hasSaturation = [](const void* h) {
+        const H& mapping = *static_cast<const H*>(h);
+        return mapping.on && !mapping.saturation.empty();
+    };
+    constexpr auto hasBrightness = [](const void* h) {
+        const H& mapping = *static_cast<const H*>(h);
+        return mapping.on && !mapping.brightness.empty();
+    };
     static const Setting kSettings[] = {
         {.key = "on",
          .at = member<&H::on>,
@@ -131,7 +139,7 @@ std::span<const Setting> settingsOf<HsbMapping>() {
                  "0 are not clipped.",
          .range = {0, kLargestScale},
          .option = "",
-         .used = isOn},
+         .used = hasSaturation},
         {.key = "b",
          .at = member<&H::b>,
          .words = "b",
@@ -139,7 +147,7 @@ std::span<const Setting> settingsOf<HsbMapping>() {
                  "clipped.",
          .range = {0, kLargestScale},
          .option = "",
-         .used = isOn},
+         .used = hasBrightness},
     };
     return kSettings;
 }
@@ -147,6 +155,11 @@ std::span<const Setting> settingsOf<HsbMapping>() {
 template <>
 std::span<const Setting> settingsOf<GroundView>() {
     using G = GroundView;
+    constexpr auto isThere = [](const void* g) { return !static_cast<const G*>(g)->path.empty(); };
+    constexpr auto isDrawn = [](const void* g) {
+        const G& ground = *static_cast<const G*>(g);
+        return !ground.path.empty() && ground.shown;
+    };
     static const Setting kSettings[] = {
         {.key = "shown", .at = member<&G::shown>, .words = "&Ground", .help = "Draw the ground.", .option = ""},
         {.key = "color_map",
@@ -156,6 +169,7 @@ std::span<const Setting> settingsOf<GroundView>() {
                  "green, brown "
                  "and white, from 0 on where some heights lie below.",
          .option = "ground-map",
+         .used = isDrawn,
          .checkText = [](const std::string& text) { (void)groundColors(text); }},
         {.key = "scale",
          .at = member<&G::scale>,
@@ -163,12 +177,14 @@ std::span<const Setting> settingsOf<GroundView>() {
          .help = "The length in the world of one unit of height; without a number it is 1 where the largest height "
                  "lies in the box and reaches a hundredth of it, else the highest rises to a tenth of the box.",
          .range = {0, NumberRange::kFinite, Open::Low},
-         .option = "ground-scale"},
+         .option = "ground-scale",
+         .used = isDrawn},
         {.key = "relief",
          .at = member<&G::relief>,
          .words = "Relief",
          .help = "How strongly the slopes of the ground are shaded, by a sun at the upper left of the map.",
-         .option = "ground-relief"},
+         .option = "ground-relief",
+         .used = isDrawn},
     };
     return kSettings;
 }
@@ -242,6 +258,7 @@ std::span<const Setting> settingsOf<SliceViews>() {
 template <>
 std::span<const Setting> settingsOf<FieldView>() {
     using F = FieldView;
+    constexpr auto isOn = [](const void* f) { return static_cast<const F*>(f)->kind.has_value(); };
     static const Setting kSettings[] = {
         {.key = "kind",
          .at = member<&F::kind>,
@@ -256,6 +273,7 @@ std::span<const Setting> settingsOf<FieldView>() {
          .help = "The colours from 0 to the top of the field: a colour map, or feature for black over the feature's "
                  "colour to white.",
          .option = "field-colormap",
+         .used = isOn,
          .checkText = checkFieldColorMap},
         {.key = "strength",
          .at = member<&F::strength>,
@@ -263,20 +281,23 @@ std::span<const Setting> settingsOf<FieldView>() {
          .help = "The opacity of a path of one reference length, the smallest voxel spacing, at the top of the field; "
                  "it falls evenly to 0 at the threshold.",
          .range = {0, 1, Open::Low},
-         .option = "field-strength"},
+         .option = "field-strength",
+         .used = isOn},
         {.key = "threshold",
          .at = member<&F::threshold>,
          .words = "Threshold",
          .help = "Values up to this share of the top are not drawn.",
          .range = {0, 1, Open::High},
-         .option = "field-threshold"},
+         .option = "field-threshold",
+         .used = isOn},
         {.key = "top",
          .at = member<&F::top>,
          .words = "Top",
          .help = "The value that the colours reach to, in the unit of the field; without one, 99.9 % of the values "
                  "above 0 lie below it.",
          .range = {0, NumberRange::kFinite, Open::Low},
-         .option = "field-top"},
+         .option = "field-top",
+         .used = isOn},
     };
     return kSettings;
 }

@@ -15,6 +15,7 @@
 #include <QToolButton>
 
 #include "controllers/open_controller.h"
+#include "panels/setting_rows.h"
 #include "panels/variable_words.h"
 #include "services/services.h"
 #include "widgets/number_box.h"
@@ -23,19 +24,15 @@ namespace pellucid::gui {
 namespace {
 
 constexpr double kLeastScale = 0.1, kMostScale = 1000; ///< of sliders
-constexpr int kScaleSteps = 400, kMostFrames = 2048;
+constexpr int kMostFrames = 2048;
 /// Voxels of which colours are made while the hand moves: some 40 ms.
 constexpr std::size_t kFastVoxels = std::size_t{4} << 20;
 constexpr Channel kChannels[] = {Channel::Opacity, Channel::Saturation, Channel::Brightness, Channel::Hue};
 
 std::size_t indexOf(Channel channel) { return static_cast<std::size_t>(channel); }
 
-int positionOf(double scale) {
-    const double part = std::log(std::max(scale, kLeastScale) / kLeastScale) / std::log(kMostScale / kLeastScale);
-    return static_cast<int>(std::lround(part * kScaleSteps));
-}
-double scaleAt(int position) {
-    return kLeastScale * std::pow(kMostScale / kLeastScale, static_cast<double>(position) / kScaleSteps);
+SessionStore::Change hueChange(bool to, double degrees) {
+    return [=](Session& session) { session.hsb.edit([=](HsbMapping& h) { (to ? h.hueTo : h.hueFrom) = degrees; }); };
 }
 
 QString channelTitle(Channel channel) {
@@ -79,14 +76,24 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
     m_frames->setSuffix(tr(" frames"));
     m_frames->setToolTip(tr("Volatility is the standard deviation of a voxel over the latest n frames"));
     form->addRow(QString(), m_frames);
-    addScale(*form, 0, "hsbA", tr("a"),
-             tr("Factor of saturation: values of 1/a and more are fully saturated. Automatic: 95 % of those above 0 "
-                "are not clipped"));
+    auto* scales = new SettingRows(m_services, *form, settingPart<HsbMapping>(&Session::hsb));
+    scales->setCommit([this](const QString& text, const QString& key, const auto& change) { edit(text, key, change); });
+    scales->setPreview([this](const QString& text, const auto& change) { preview(text, change); },
+                       [this] { return isFast(); });
+    const auto addScale = [&](const char* key, const QString& id, double Scene::*present, const QString& stepText) {
+        scales->add(key, {.id = id,
+                          .slider = true,
+                          .logarithmic = true,
+                          .decimals = 3,
+                          .least = kLeastScale,
+                          .most = kMostScale,
+                          .automatic = [this, present] { return m_services.scene().*present; },
+                          .stepText = stepText});
+    };
+    addScale("a", "hsbA", &Scene::hsbA, tr("Scale of saturation"));
     addChannel(*form, Channel::Brightness, "hsbBrightness", tr("Brightness ←"),
                tr("Brightness = 1 − clip(b · Y): the more of it, the darker"));
-    addScale(*form, 1, "hsbB", tr("b"),
-             tr("Factor of darkness: values of 1/b and more are black. Automatic: 95 % of those above 0 are not "
-                "clipped"));
+    addScale("b", "hsbB", &Scene::hsbB, tr("Scale of darkness"));
     m_swap->setObjectName("hsbSwap");
     m_swap->setToolTip(tr("The variable of brightness drives opacity, with its own transfer function, and the other "
                           "way round; again, and all is as before"));
@@ -99,18 +106,19 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
 
     connect(m_on, &QCheckBox::clicked, this, &ChannelsBox::setOn);
     connect(m_frames, &QSpinBox::valueChanged, this, [this](int frames) {
-        if (m_showing) return;
         m_opening.editInJob(tr("Frames of volatility"),
                             [frames](Session& session) { setVolatilityFrames(session, frames); });
     });
     connect(m_swap, &QPushButton::clicked, this,
             [this] { m_opening.editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); }); });
-    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+    connect(&m_services.store(), &SessionStore::changed, this, [=, this](const Scene& before, const Scene& after) {
+        if (before.colors != after.colors) scales->follow(); // what "auto" stands for
         if (before.volume != after.volume || before.colors != after.colors ||
             !before.session.variables.isSame(after.session.variables) || !before.session.hsb.isSame(after.session.hsb))
             follow();
     });
     connect(&m_services, &Services::readOnlyChanged, this, &ChannelsBox::follow);
+    scales->follow();
     follow();
 }
 
@@ -125,61 +133,9 @@ void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* nam
     form.addRow(label, combo);
     connect(combo, &QComboBox::activated, this, [this, combo, channel] {
         const std::string driver = combo->currentData().toString().toStdString();
-        if (m_showing || driver == channelOf(m_services.store().session(), channel)) return;
+        if (driver == channelOf(m_services.store().session(), channel)) return;
         m_opening.editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
                             [channel, driver](Session& s) { setChannel(s, channel, driver); });
-    });
-}
-
-void ChannelsBox::addScale(QFormLayout& form, std::size_t index, const char* name, const QString& label,
-                           const QString& tip) {
-    Scale& scale = m_scales[index];
-    scale = {index == 0 ? &HsbMapping::a : &HsbMapping::b,
-             index == 0 ? &Scene::hsbA : &Scene::hsbB,
-             new QSlider(Qt::Horizontal, this),
-             new QDoubleSpinBox(this),
-             new QToolButton(this),
-             index == 0 ? tr("Scale of saturation") : tr("Scale of darkness")};
-    scale.slider->setObjectName(QString::fromLatin1(name) + "Slider");
-    scale.slider->setRange(0, kScaleSteps);
-    scale.slider->setPageStep(kScaleSteps / 20);
-    scale.slider->setMinimumWidth(40);
-    scale.slider->setToolTip(tip);
-    scale.box->setObjectName(name);
-    scale.box->setRange(0, kLargestScale);
-    scale.box->setDecimals(3);
-    scale.box->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
-    scale.box->setKeyboardTracking(false);
-    scale.box->setMaximumWidth(76);
-    scale.box->setToolTip(tip);
-    scale.automatic->setObjectName(QString::fromLatin1(name) + "Automatic");
-    scale.automatic->setText(tr("auto"));
-    scale.automatic->setCheckable(true);
-    scale.automatic->setToolTip(tr("From the values of the variable, when colours begin to come from it"));
-    auto* row = new QHBoxLayout;
-    row->addWidget(scale.slider, 1);
-    row->addWidget(scale.box);
-    row->addWidget(scale.automatic);
-    form.addRow(label, row);
-    connect(scale.slider, &QSlider::valueChanged, this, [this, index](int position) {
-        const Scale& s = m_scales[index];
-        slide(*s.slider, s.name, [&s, value = scaleAt(position)](HsbMapping& h) { h.*s.value = value; });
-    });
-    connect(scale.slider, &QSlider::sliderReleased, this, [this, index] {
-        const Scale& s = m_scales[index];
-        if (isFast()) return m_services.store().commit();
-        edit(s.name, {}, [&s, value = scaleAt(s.slider->value())](HsbMapping& h) { h.*s.value = value; });
-    });
-    connect(scale.box, &QDoubleSpinBox::valueChanged, this, [this, index](double value) {
-        const Scale& s = m_scales[index];
-        edit(s.name, s.box->objectName(), [&s, value](HsbMapping& h) { h.*s.value = value; });
-    });
-    connect(scale.automatic, &QToolButton::clicked, this, [this, index](bool automatic) {
-        const Scale& s = m_scales[index];
-        const double present = m_services.scene().*s.present;
-        m_opening.editInJob(s.name, [&s, automatic, present](Session& session) {
-            session.hsb.edit([&](HsbMapping& h) { h.*s.value = automatic ? std::nullopt : std::optional(present); });
-        });
     });
 }
 
@@ -201,8 +157,7 @@ void ChannelsBox::addHue(QFormLayout& form) {
         box->setKeyboardTracking(false);
         box->setToolTip(tip);
         connect(box, &QDoubleSpinBox::valueChanged, this, [this, box = box](double value) {
-            edit(tr("Hue"), box->objectName(),
-                 [to = box == m_hueTo, value](HsbMapping& h) { (to ? h.hueTo : h.hueFrom) = value; });
+            edit(tr("Hue"), box->objectName(), hueChange(box == m_hueTo, value));
         });
     }
     m_hueTo->setPrefix(tr("to "));
@@ -212,12 +167,17 @@ void ChannelsBox::addHue(QFormLayout& form) {
     row->addWidget(m_hueFrom);
     row->addWidget(m_hueTo);
     form.addRow(QString(), row);
-    connect(m_hueSlider, &QSlider::valueChanged, this,
-            [this](int hue) { slide(*m_hueSlider, tr("Hue"), [hue](HsbMapping& h) { h.hueFrom = hue; }); });
+    connect(m_hueSlider, &QSlider::valueChanged, this, &ChannelsBox::slideHue);
     connect(m_hueSlider, &QSlider::sliderReleased, this, [this] {
         if (isFast()) return m_services.store().commit();
-        edit(tr("Hue"), {}, [hue = m_hueSlider->value()](HsbMapping& h) { h.hueFrom = hue; });
+        edit(tr("Hue"), {}, hueChange(false, m_hueSlider->value()));
     });
+}
+
+/// While the hand moves the picture follows, where making colours is fast enough for that.
+void ChannelsBox::slideHue(int hue) {
+    if (!m_hueSlider->isSliderDown()) return edit(tr("Hue"), m_hueSlider->objectName(), hueChange(false, hue));
+    if (isFast()) preview(tr("Hue"), hueChange(false, hue));
 }
 
 void ChannelsBox::toggle() { setOn(!m_services.store().session().hsb->on); }
@@ -237,23 +197,18 @@ bool ChannelsBox::isFast() const {
     return !scene.session.hsb->on || (scene.volume && scene.volume->size() <= kFastVoxels);
 }
 
-void ChannelsBox::edit(const QString& text, const QString& mergeKey, const Change& change) {
-    if (m_showing) return;
-    const auto all = [change](Session& session) { session.hsb.edit(change); };
-    if (!isFast()) return m_opening.editInJob(text, all);
+void ChannelsBox::edit(const QString& text, const QString& mergeKey, const SessionStore::Change& change) {
+    if (!isFast()) return m_opening.editInJob(text, change);
     try {
-        m_services.store().edit(text, mergeKey, all);
+        m_services.store().edit(text, mergeKey, change);
     } catch (const Error& error) { // a frame that has gone since
         m_services.showError(tr("Cannot make the colours"), error);
     }
 }
 
-void ChannelsBox::slide(const QSlider& slider, const QString& text, const Change& change) {
-    if (m_showing) return;
-    if (!slider.isSliderDown()) return edit(text, slider.objectName(), change); // by keys
-    if (!isFast()) return;                                                      // when it is released
+void ChannelsBox::preview(const QString& text, const SessionStore::Change& change) {
     try {
-        m_services.store().preview(text, [&](Session& session) { session.hsb.edit(change); });
+        m_services.store().preview(text, change);
     } catch (const Error& error) {
         m_services.store().cancel();
         m_services.showError(tr("Cannot make the colours"), error);
@@ -295,21 +250,12 @@ void ChannelsBox::follow() {
     setEnabled(m_services.isEditable());
     if (!m_services.store().hasVolume()) return;
     const HsbMapping& hsb = *scene.session.hsb;
-    m_showing = true;
     m_on->setChecked(hsb.on);
     for (const Channel channel : kChannels) followChannel(channel);
     const auto frames = volatilityFrames(scene.session);
     m_frames->setEnabled(hsb.on && frames.has_value());
+    const QSignalBlocker still(m_frames), quiet(m_hueSlider);
     if (frames) m_frames->setValue(*frames);
-    for (const Scale& scale : m_scales) {
-        const double value = (hsb.*scale.value).value_or(scene.*scale.present);
-        if (!scale.slider->isSliderDown()) scale.slider->setValue(positionOf(value));
-        showNumber(*scale.box, value);
-        scale.automatic->setChecked(!(hsb.*scale.value));
-        const bool driven = !(&scale == &m_scales[0] ? hsb.saturation : hsb.brightness).empty();
-        for (QWidget* widget : std::initializer_list<QWidget*>{scale.slider, scale.box, scale.automatic})
-            widget->setEnabled(hsb.on && driven);
-    }
     const bool constant = hsb.hue.empty();
     const double turned = hsb.hueFrom - 360 * std::floor(hsb.hueFrom / 360);
     if (!m_hueSlider->isSliderDown()) m_hueSlider->setValue(static_cast<int>(std::lround(turned)) % 360);
@@ -330,7 +276,6 @@ void ChannelsBox::follow() {
                         ? tr("There is one frame: its volatility is 0, and all is grey.")
                         : QString());
     m_note->setVisible(!m_note->text().isEmpty());
-    m_showing = false;
 }
 
 } // namespace pellucid::gui

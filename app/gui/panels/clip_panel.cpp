@@ -163,7 +163,6 @@ void ClipPanel::changePlanes(const QString& text, const std::function<void(std::
 }
 
 void ClipPanel::editBox(int axis, bool upper, double percent) {
-    if (m_showing) return;
     m_services.store().edit(tr("Clip"), QStringLiteral("clip-%1-%2").arg(axis).arg(upper), [&](Session& session) {
         session.clipping.edit([&](Clipping& c) {
             c = withFaceMoved(c, axis, upper, percent / 100 - (upper ? c.hi : c.lo)[axis], false);
@@ -172,7 +171,6 @@ void ClipPanel::editBox(int axis, bool upper, double percent) {
 }
 
 void ClipPanel::editPlane(std::size_t index, int number, double value) {
-    if (m_showing) return;
     const std::vector<ClipPlane>& planes = m_services.scene().session.clipping->planes;
     if (index >= planes.size()) return;
     ClipPlane plane = planes[index];
@@ -195,7 +193,6 @@ void ClipPanel::follow() {
     const Clipping& clipping = *scene.session.clipping;
     for (std::size_t i = 0; i < m_planes.size(); ++i) m_planes[i].widget->setVisible(i < clipping.planes.size());
     if (!m_services.store().hasVolume()) return;
-    m_showing = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int a = static_cast<int>(axis);
         showNumber(*m_box[axis][0], 100 * clipping.lo[a]);
@@ -208,6 +205,7 @@ void ClipPanel::follow() {
         const ClipPlane& plane = clipping.planes[i];
         for (int a = 0; a < 3; ++a) showNumber(*m_planes[i].boxes[static_cast<std::size_t>(a)], plane.normal[a]);
         QDoubleSpinBox& offset = *m_planes[i].boxes[3];
+        const QSignalBlocker quiet(&offset); // other decimals are another number to it
         offset.setSuffix(unit);
         offset.setDecimals(decimalsFor(size));
         offset.setSingleStep(size / 100);
@@ -215,7 +213,6 @@ void ClipPanel::follow() {
     }
     m_add->setEnabled(ready && clipping.planes.size() < kMostClipPlanes);
     m_reset->setEnabled(ready && !clipping.isNone());
-    m_showing = false;
 }
 
 PanelInfo clipPanel() {

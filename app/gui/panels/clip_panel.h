@@ -42,7 +42,6 @@ private:
     std::array<std::array<QDoubleSpinBox*, 2>, 3> m_box{}; ///< [axis][lower, upper], per cent of the box
     std::array<PlaneRow, kMostClipPlanes> m_planes{};
     QPushButton *m_add, *m_reset;
-    bool m_showing = false; ///< the controls show, they do not edit
 };
 
 } // namespace pellucid::gui

@@ -156,7 +156,6 @@ DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget*
         });
     });
     connect(m_component, &QSpinBox::valueChanged, this, [this](int component) {
-        if (m_showing) return;
         m_opening.editData(tr("Component"), [component](Session& session) {
             session.variables.edit([&](std::vector<Variable>& all) { all.front().source.component = component; });
         });
@@ -191,7 +190,6 @@ void DisplayPanel::chooseBackground(bool top) {
 }
 
 void DisplayPanel::editWindow() {
-    if (m_showing) return;
     const ValueRange window{m_lo->value(), m_hi->value()};
     if (!(window.lo < window.hi)) return follow(); // nothing lies between them
     m_opening.editData(tr("Values"), [window](Session& session) {
@@ -204,7 +202,7 @@ void DisplayPanel::follow() {
     const bool ready = m_services.isEditable();
     setEnabled(ready);
     if (!m_services.store().hasVolume()) return;
-    m_showing = true;
+    const QSignalBlocker low(m_lo), high(m_hi), quiet(m_component); // other decimals are other numbers to them
     const DisplaySettings& display = *scene.session.display;
     m_mode->setCurrentIndex(static_cast<int>(display.mode));
     m_background->setIcon(swatchOf(display.background));
@@ -242,7 +240,6 @@ void DisplayPanel::follow() {
     const VolumeSource& source = scene.session.variable().source;
     if (m_component->value() != source.component) m_component->setValue(source.component);
     m_component->setEnabled(ready && !source.isSample() && !source.raw);
-    m_showing = false;
 }
 
 PanelInfo displayPanel() {

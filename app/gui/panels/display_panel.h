@@ -38,7 +38,6 @@ private:
     QPushButton* m_wholeRange;
     QSpinBox* m_component;
     QLabel* m_note;
-    bool m_showing = false; ///< the controls show, they do not edit
 };
 
 } // namespace pellucid::gui

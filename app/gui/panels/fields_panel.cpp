@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -14,22 +13,17 @@
 #include <QPainter>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QSlider>
 
 #include "controllers/controllers.h"
 #include "panels/panel.h"
+#include "panels/setting_rows.h"
 #include "services/services.h"
 #include "tf/color_maps.h"
-#include "widgets/number_box.h"
 #include "widgets/scrolled.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {
-
-constexpr int kSteps = 200; ///< of sliders
-constexpr double kLeastStrength = 0.001;
-constexpr double kMostThreshold = 99; ///< per cent
 
 /// By FieldKind.
 const std::array kTips{
@@ -47,20 +41,11 @@ QIcon iconOf(const ColorMap& map) {
     return pixmap;
 }
 
-/// Strengths lie on a logarithmic slider.
-int positionOfStrength(double strength) {
-    return static_cast<int>(
-        std::lround(kSteps * (1 - std::log(std::max(strength, kLeastStrength)) / std::log(kLeastStrength))));
-}
-double strengthAt(int position) { return std::pow(kLeastStrength, 1 - static_cast<double>(position) / kSteps); }
-
 } // namespace
 
 FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* parent)
     : QWidget(parent), m_services(services), m_fields(fields), m_kind(new QComboBox(this)),
-      m_feature(new QComboBox(this)), m_colorMap(new QComboBox(this)),
-      m_strengthSlider(new QSlider(Qt::Horizontal, this)), m_thresholdSlider(new QSlider(Qt::Horizontal, this)),
-      m_strength(new QDoubleSpinBox(this)), m_threshold(new QDoubleSpinBox(this)), m_top(new QLineEdit(this)),
+      m_feature(new QComboBox(this)), m_colorMap(new QComboBox(this)), m_top(new QLineEdit(this)),
       m_usualTop(new QPushButton(tr("&Usual"), this)), m_stop(new QPushButton(this)),
       m_save(new QPushButton(tr("Sa&ve…"), this)), m_state(new QLabel(this)), m_progress(new QProgressBar(this)) {
     setObjectName("fieldsPanel");
@@ -88,29 +73,6 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
     m_colorMap->setItemData(m_colorMap->count() - 1,
                             tr("Black over the colour of the chosen feature to white; of all features, the usual map"),
                             Qt::ToolTipRole);
-    const QString strengthTip = tr(
-        "Opacity of a path of one reference length, the smallest voxel spacing, at the top of the field, 0.001 to 1");
-    m_strengthSlider->setObjectName("fieldStrengthSlider");
-    m_strength->setObjectName("fieldStrength");
-    m_strength->setRange(kLeastStrength, 1);
-    m_strength->setDecimals(3);
-    m_strength->setSingleStep(0.01);
-    const QString thresholdTip = tr("Values up to here are not drawn, per cent of the top");
-    m_thresholdSlider->setObjectName("fieldThresholdSlider");
-    m_threshold->setObjectName("fieldThreshold");
-    m_threshold->setRange(0, kMostThreshold);
-    m_threshold->setDecimals(1);
-    m_threshold->setSuffix(tr(" %"));
-    for (const auto& [slider, box, tip] : {std::tuple(m_strengthSlider, m_strength, strengthTip),
-                                           std::tuple(m_thresholdSlider, m_threshold, thresholdTip)}) {
-        slider->setRange(0, kSteps);
-        slider->setPageStep(kSteps / 10);
-        slider->setMinimumWidth(70);
-        slider->setToolTip(tip);
-        box->setKeyboardTracking(false);
-        box->setToolTip(tip);
-        connect(slider, &QSlider::sliderReleased, this, [this] { m_services.store().commit(); });
-    }
     m_top->setObjectName("fieldTop");
     m_top->setToolTip(tr("Value of the field that the colours reach to, above 0; in the unit of the field"));
     m_usualTop->setObjectName("fieldUsualTop");
@@ -133,15 +95,27 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
     form->addRow(tr("&Field"), m_kind);
     form->addRow(tr("F&eature"), m_feature);
     form->addRow(tr("&Colours"), m_colorMap);
-    const auto addPair = [&](const QString& label, QWidget* wide, QWidget* narrow) {
-        auto* row = new QHBoxLayout;
-        row->addWidget(wide, 1);
-        row->addWidget(narrow);
-        form->addRow(label, row);
-    };
-    addPair(tr("Strength"), m_strengthSlider, m_strength);
-    addPair(tr("Threshold"), m_thresholdSlider, m_threshold);
-    addPair(tr("Top"), m_top, m_usualTop);
+    auto* rows = new SettingRows(m_services, *form, settingPart<FieldView>(&Session::field));
+    rows->add("strength", {.id = "fieldStrength",
+                           .slider = true,
+                           .logarithmic = true,
+                           .decimals = 3,
+                           .step = 0.01,
+                           .least = 0.001,
+                           .stepText = tr("Strength of the field")});
+    rows->add("threshold", {.id = "fieldThreshold",
+                            .slider = true,
+                            .decimals = 1,
+                            .step = 1,
+                            .factor = 100,
+                            .suffix = tr(" %"),
+                            .most = 99,
+                            .stepText = tr("Threshold of the field")});
+    rows->follow();
+    auto* top = new QHBoxLayout;
+    top->addWidget(m_top, 1);
+    top->addWidget(m_usualTop);
+    form->addRow(tr("Top"), top);
     form->addRow(m_state);
     form->addRow(m_progress);
     auto* buttons = new QHBoxLayout;
@@ -161,20 +135,6 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
     connect(m_colorMap, &QComboBox::activated, this, [this] {
         edit(tr("Colours of the field"), {},
              [name = m_colorMap->currentData().toString().toStdString()](FieldView& f) { f.colorMap = name; });
-    });
-    connect(m_strength, &QDoubleSpinBox::valueChanged, this, [this](double value) {
-        edit(tr("Strength of the field"), "field-strength", [value](FieldView& f) { f.strength = value; });
-    });
-    connect(m_strengthSlider, &QSlider::valueChanged, this, [this](int position) {
-        slide(*m_strengthSlider, tr("Strength of the field"),
-              [value = strengthAt(position)](FieldView& f) { f.strength = value; });
-    });
-    connect(m_threshold, &QDoubleSpinBox::valueChanged, this, [this](double percent) {
-        edit(tr("Threshold of the field"), "field-threshold", [percent](FieldView& f) { f.threshold = percent / 100; });
-    });
-    connect(m_thresholdSlider, &QSlider::valueChanged, this, [this](int position) {
-        slide(*m_thresholdSlider, tr("Threshold of the field"),
-              [value = kMostThreshold / 100 * position / kSteps](FieldView& f) { f.threshold = value; });
     });
     connect(m_top, &QLineEdit::editingFinished, this, &FieldsPanel::editTop);
     connect(m_usualTop, &QPushButton::clicked, this,
@@ -197,20 +157,11 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
 QSize FieldsPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
 
 void FieldsPanel::edit(const QString& text, const QString& mergeKey, const Change& change) {
-    if (m_showing) return;
     m_services.store().edit(text, mergeKey, [&](Session& session) { session.field.edit(change); });
 }
 
-void FieldsPanel::slide(const QSlider& slider, const QString& text, const Change& change) {
-    if (m_showing) return;
-    if (slider.isSliderDown())
-        m_services.store().preview(text, [&](Session& session) { session.field.edit(change); });
-    else
-        edit(text, slider.objectName(), change); // by keys
-}
-
 void FieldsPanel::editTop() {
-    if (m_showing || !m_top->isModified()) return;
+    if (!m_top->isModified()) return;
     bool isNumber = false;
     const double value = QLocale::c().toDouble(m_top->text().trimmed(), &isNumber);
     if (!isNumber || !(value > 0) || !std::isfinite(value)) return followField(); // no such top
@@ -220,7 +171,6 @@ void FieldsPanel::editTop() {
 void FieldsPanel::follow() {
     const Scene& scene = m_services.scene();
     setEnabled(m_services.isEditable());
-    m_showing = true;
     const FieldView& view = *scene.session.field;
     const bool on = view.kind.has_value();
     m_kind->setCurrentIndex(on ? 1 + static_cast<int>(*view.kind) : 0);
@@ -233,16 +183,8 @@ void FieldsPanel::follow() {
     }
     m_feature->setCurrentIndex(scene.fieldFeature() + 1);
     m_colorMap->setCurrentIndex(m_colorMap->findData(QString::fromStdString(view.colorMap)));
-    if (!m_strengthSlider->isSliderDown()) m_strengthSlider->setValue(positionOfStrength(view.strength));
-    if (!m_thresholdSlider->isSliderDown())
-        m_thresholdSlider->setValue(static_cast<int>(std::lround(100 * view.threshold / kMostThreshold * kSteps)));
-    showNumber(*m_strength, view.strength);
-    showNumber(*m_threshold, 100 * view.threshold);
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_feature, m_colorMap, m_strengthSlider, m_strength,
-                                                           m_thresholdSlider, m_threshold, m_top})
-        widget->setEnabled(on);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_feature, m_colorMap, m_top}) widget->setEnabled(on);
     m_usualTop->setEnabled(on && view.top);
-    m_showing = false;
     followField();
 }
 

@@ -7,10 +7,8 @@
 
 class QCheckBox;
 class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QPushButton;
-class QSlider;
 class QToolButton;
 
 namespace pellucid::gui {
@@ -37,10 +35,6 @@ private:
     QPushButton* m_remove;
     QCheckBox* m_shown;
     QComboBox* m_colorMap;
-    QDoubleSpinBox *m_scale, *m_relief;
-    QToolButton* m_usualScale;
-    QSlider* m_reliefSlider;
-    bool m_showing = false; ///< the controls show, they do not edit
 };
 
 } // namespace pellucid::gui

@@ -5,8 +5,6 @@
 #include <tuple>
 
 #include <QCheckBox>
-#include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QHelpEvent>
@@ -14,7 +12,6 @@
 #include <QPainter>
 #include <QPainterPath>
 #include <QPushButton>
-#include <QSpinBox>
 #include <QToolButton>
 #include <QToolTip>
 #include <QVBoxLayout>
@@ -22,9 +19,10 @@
 #include "controllers/controllers.h"
 #include "optimize/refine/refine_features.h"
 #include "panels/panel.h"
+#include "panels/setting_rows.h"
 #include "services/services.h"
-#include "widgets/number_box.h"
 #include "widgets/number_text.h"
+#include "widgets/plot_view.h"
 #include "widgets/scrolled.h"
 #include "widgets/theme.h"
 
@@ -45,6 +43,30 @@ QFont smallFont(const QFont& font) {
     QFont small = font;
     small.setPointSizeF(small.pointSizeF() * 0.85);
     return small;
+}
+
+/// The energy over the iterations; empty where there is none above 0. `isPresent`: what came of it is still shown.
+Plot energyPlot(const RefineResult& result, bool isPresent) {
+    Plot plot{.title = QObject::tr("Energy of the edges").toStdString(),
+              .x = {.label = QObject::tr("iteration").toStdString(), .whole = true},
+              .y = {.label = {}, .logarithmic = true},
+              .series = {}};
+    double least = 0, most = 0;
+    for (const double e : result.energyCurve)
+        if (e > 0) {
+            least = least == 0 ? e : std::min(least, e);
+            most = std::max(most, e);
+        }
+    if (least == 0) return plot;
+    PlotSeries& curve = plot.series.emplace_back();
+    curve.dashed = !isPresent;
+    for (std::size_t i = 0; i < result.energyCurve.size(); ++i)
+        curve.points.push_back(
+            {static_cast<double>(i) * result.energyCurveStride, std::max(result.energyCurve[i], least)});
+    plot.x.hi = std::max({1.0, curve.points.back().x, static_cast<double>(result.iterations)});
+    plot.y.lo = least / 1.2;
+    plot.y.hi = most * 1.2;
+    return plot;
 }
 
 } // namespace
@@ -129,54 +151,13 @@ bool EdgeBars::event(QEvent* event) {
     return true;
 }
 
-void EnergyPlot::setCurve(std::vector<double> energies, int iterations, bool current) {
-    m_energies = std::move(energies);
-    m_iterations = iterations;
-    m_current = current;
-    update();
-}
-
-void EnergyPlot::paintEvent(QPaintEvent*) {
-    QPainter painter(this);
-    painter.fillRect(rect(), theme::kPanel);
-    std::vector<double> logs;
-    double least = 0;
-    for (const double e : m_energies)
-        if (e > 0) least = least == 0 ? e : std::min(least, e);
-    if (least == 0) return;
-    for (const double e : m_energies) logs.push_back(std::log10(std::max(e, least)));
-    const auto [lo, hi] = std::minmax_element(logs.begin(), logs.end());
-    const double bottom = *lo, span = std::max(1e-6, *hi - *lo);
-    painter.setFont(smallFont(font()));
-    const QFontMetricsF metrics(painter.font());
-    const QRectF plot(kMargin, 4 + metrics.height(), width() - 2 * kMargin, height() - 8 - 2 * metrics.height());
-    painter.setRenderHint(QPainter::Antialiasing);
-    painter.setPen(theme::kLine);
-    painter.drawLine(plot.bottomLeft(), plot.bottomRight());
-    QPolygonF line;
-    for (std::size_t i = 0; i < logs.size(); ++i)
-        line << QPointF(plot.left() + static_cast<double>(i) /
-                                          std::max<double>(1, static_cast<double>(logs.size()) - 1) * plot.width(),
-                        plot.bottom() - (logs[i] - bottom) / span * plot.height());
-    painter.setPen(QPen(m_current ? theme::kAccent : theme::kFaint, 1.5));
-    painter.drawPolyline(line);
-    painter.setPen(theme::kFaint);
-    painter.drawText(QRectF(plot.left(), 2, plot.width(), metrics.height()), Qt::AlignLeft,
-                     shortNumber(m_energies.front()));
-    const QString count = tr("%L1 iterations").arg(m_iterations);
-    painter.drawText(QRectF(plot.left(), plot.bottom() + 2, plot.width(), metrics.height()), Qt::AlignRight, count);
-    painter.drawText(QRectF(plot.left(), plot.bottom() + 2, plot.width(), metrics.height()), Qt::AlignLeft,
-                     tr("least %1").arg(shortNumber(least)));
-}
-
 RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget* parent)
     : QWidget(parent), m_services(services), m_refining(refining), m_refine(new QPushButton(tr("&Refine"), this)),
       m_pair(new QPushButton(tr("&Side by side…"), this)), m_live(new QCheckBox(tr("Li&ve"), this)),
-      m_auto(new QCheckBox(tr("auto"), this)), m_ghost(new QCheckBox(tr("&Ghost of the curve"), this)),
-      m_priority(new QLabel(this)), m_nothing(new QToolButton(this)), m_method(new QComboBox(this)),
-      m_down(new QDoubleSpinBox(this)), m_up(new QDoubleSpinBox(this)), m_limit(new QSpinBox(this)),
-      m_words(new QLabel(this)), m_note(new QLabel(this)), m_figures(new QLabel(this)), m_comparison(new QLabel(this)),
-      m_help(new QPushButton(this)), m_edges(new EdgeBars(this)), m_plot(new EnergyPlot(this)),
+      m_ghost(new QCheckBox(tr("&Ghost of the curve"), this)), m_priority(new QLabel(this)),
+      m_nothing(new QToolButton(this)), m_words(new QLabel(this)), m_note(new QLabel(this)),
+      m_figures(new QLabel(this)), m_comparison(new QLabel(this)), m_help(new QPushButton(this)),
+      m_edges(new EdgeBars(this)), m_plot(new PlotView(this)),
       m_compare([](const Comparing& task,
                    const JobControl& job) { return compareMethods(*task.histogram, task.start, task.options, job); },
                 [this](const Comparing&, RefineComparison& answer) {
@@ -196,8 +177,6 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
     m_live->setObjectName("liveRefineCheck");
     m_live->setToolTip(tr("Refine after every edit: what you move stays where you put it,\n"
                           "the other points give way evenly, so that the total opacity stays"));
-    m_auto->setObjectName("refineStepUpAuto");
-    m_auto->setToolTip(tr("From the step down and the ratio of the two points' significances (thesis 3.4.2)"));
     m_ghost->setObjectName("ghostCheck");
     m_ghost->setToolTip(tr("Dashed, behind the curve: what it was before the latest refinement"));
     m_priority->setObjectName("refinePriority");
@@ -206,29 +185,6 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
     m_nothing->setObjectName("clearPriorityButton");
     m_nothing->setText(tr("Clear"));
     m_nothing->setToolTip(tr("Prioritize nothing; opacities stay"));
-    m_method->setObjectName("refineMethodCombo");
-    m_method->addItem(tr("Greedy, as in the thesis"), static_cast<int>(RefineMethod::Greedy));
-    m_method->addItem(tr("Exact"), static_cast<int>(RefineMethod::Exact));
-    m_method->setToolTip(tr("Greedy: one opacity down, one up, while that helps (thesis 3.4.2).\n"
-                            "Exact: the least variance of edge weights at constant total opacity"));
-    for (const auto& [box, name, tip] :
-         {std::tuple{m_down, "refineStepDown", tr("Taken off an opacity in each iteration, in 1/256 of full opacity")},
-          std::tuple{m_up, "refineStepUp", tr("Added to an opacity in each iteration, in 1/256 of full opacity")}}) {
-        box->setObjectName(name);
-        box->setToolTip(tip);
-        box->setDecimals(3);
-        box->setRange(0.001, 256);
-        box->setSingleStep(0.25);
-        box->setSuffix(tr(" / 256"));
-        box->setKeyboardTracking(false);
-        connect(box, &QDoubleSpinBox::valueChanged, this, &RefinePanel::editSettings);
-    }
-    m_limit->setObjectName("refineLimit");
-    m_limit->setRange(0, 1'000'000);
-    m_limit->setGroupSeparatorShown(true);
-    m_limit->setSingleStep(500);
-    m_limit->setKeyboardTracking(false);
-    m_limit->setToolTip(tr("Iterations at most; greedy stops before where nothing improves any more"));
     m_edges->setObjectName("refineEdges");
     m_plot->setObjectName("refineCurve");
     m_plot->setToolTip(tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
@@ -280,13 +236,6 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
     column->addLayout(selecting);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(5);
-    form->addRow(tr("&Method"), m_method);
-    auto* up = new QHBoxLayout;
-    up->addWidget(m_up, 1);
-    up->addWidget(m_auto);
-    form->addRow(tr("Step &down"), m_down);
-    form->addRow(tr("Step up"), up);
-    form->addRow(tr("At most"), m_limit);
     column->addWidget(m_words);
     column->addWidget(m_note);
     column->addWidget(m_help);
@@ -301,6 +250,16 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
     column->addLayout(form); // what came of it is looked at more often
     column->addStretch(1);
     fillScrolled(this, content);
+    auto* rows = new SettingRows(services, *form, settingPart<RefineSteps>(&Session::refine),
+                                 {tr("Refinement settings"), "refine-settings"});
+    rows->add("method", {.id = "refineMethodCombo"});
+    RowLook step{.id = "refineStepDown", .decimals = 3, .step = 0.25, .factor = 256, .suffix = tr(" / 256")};
+    rows->add("step_down", step);
+    step.id = "refineStepUp";
+    step.automatic = [&services] { return services.store().session().refine->stepDown; };
+    rows->add("step_up", step);
+    rows->add("max_iterations", {.id = "refineLimit"});
+    rows->follow();
 
     const std::pair<QAbstractButton*, QAction*> triggers[] = {{m_refine, does.refine},
                                                               {m_live, does.live},
@@ -310,9 +269,6 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
     for (const auto& [button, action] : triggers) connect(button, &QAbstractButton::clicked, action, &QAction::trigger);
     m_help->setObjectName("refineHelpButton");
     connect(m_help, &QPushButton::clicked, this, [this] { m_refining.takeHelp(); });
-    connect(m_method, &QComboBox::activated, this, &RefinePanel::editSettings);
-    connect(m_auto, &QCheckBox::clicked, this, &RefinePanel::editSettings);
-    connect(m_limit, &QSpinBox::valueChanged, this, &RefinePanel::editSettings);
     m_wait.setSingleShot(true);
     m_wait.setInterval(kRest);
     connect(&m_wait, &QTimer::timeout, this, &RefinePanel::compare);
@@ -331,22 +287,6 @@ void RefinePanel::showEvent(QShowEvent* event) {
     showOutcome(); // while hidden it has followed nothing
 }
 
-void RefinePanel::editSettings() {
-    if (m_showing) return;
-    QObject* const by = sender();
-    m_services.store().edit(tr("Refinement settings"), "refine-settings", [&](Session& session) {
-        session.refine.edit([&](RefineSettings& r) {
-            // Only the box that was edited counts: the others show rounded numbers.
-            if (by == m_method) r.method = static_cast<RefineMethod>(m_method->currentData().toInt());
-            if (by == m_down) r.stepDown = m_down->value() / 256;
-            if (by == m_up) r.stepUp = m_up->value() / 256;
-            if (by == m_auto) r.stepUp = m_auto->isChecked() ? std::nullopt : std::optional(r.stepDown);
-            if (by == m_limit) r.maxIterations = m_limit->value();
-        });
-    });
-    showSettings(); // also where nothing has come of it
-}
-
 void RefinePanel::follow() {
     showSettings();
     showPriority();
@@ -355,20 +295,10 @@ void RefinePanel::follow() {
 
 void RefinePanel::showSettings() {
     const RefineSettings& r = *m_services.store().session().refine;
-    m_showing = true;
     m_live->setChecked(r.live);
-    m_method->setCurrentIndex(m_method->findData(static_cast<int>(r.method)));
-    showNumber(*m_down, 256 * r.stepDown);
-    showNumber(*m_up, 256 * r.stepUp.value_or(r.stepDown));
-    m_auto->setChecked(!r.stepUp);
-    if (m_limit->value() != r.maxIterations) m_limit->setValue(r.maxIterations);
     m_ghost->setChecked(m_refining.isGhostShown());
-    m_showing = false;
-    const bool ready = m_services.isEditable(), greedy = r.method == RefineMethod::Greedy;
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_refine, m_live, m_method}) widget->setEnabled(ready);
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_down, m_auto, m_limit})
-        widget->setEnabled(ready && greedy);
-    m_up->setEnabled(ready && greedy && r.stepUp);
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_refine, m_live})
+        widget->setEnabled(m_services.isEditable());
     m_pair->setEnabled(m_refining.latest() != nullptr);
 }
 
@@ -395,7 +325,7 @@ void RefinePanel::showOutcome() {
     const Scene& scene = m_services.scene();
     if (!scene.volume || !scene.histogram) {
         m_edges->setBars({});
-        m_plot->setCurve({}, 0, true);
+        m_plot->setPlot({});
         m_words->clear();
         showNote(nullptr);
         m_figures->clear();
@@ -428,7 +358,7 @@ void RefinePanel::showOutcome() {
     if (any == nullptr) {
         m_words->setText(tr("Not refined yet."));
         m_figures->setText(tr("Even edge weights mean: every part of the curve tells as much as any other."));
-        m_plot->setCurve({}, 0, true);
+        m_plot->setPlot({});
         return;
     }
     m_words->setText(any->words);
@@ -440,7 +370,7 @@ void RefinePanel::showOutcome() {
             .arg(evenness, shortNumber(result.energyMovableAfter), shortNumber(result.energyMovableBefore))
             .arg(result.iterations)
             .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")));
-    m_plot->setCurve(result.energyCurve, result.iterations, now != nullptr);
+    m_plot->setPlot(energyPlot(result, now != nullptr));
     if (now != nullptr) m_wait.start();
 }
 

@@ -10,14 +10,14 @@
 #include "controllers/refine_controller.h"
 
 class QCheckBox;
-class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QPushButton;
-class QSpinBox;
 class QToolButton;
 
 namespace pellucid::gui {
+
+class PlotView;
+class Services;
 
 /// One bar per edge of the curve: its weight before the refinement (pale) and now. Heights are square roots.
 class EdgeBars : public QWidget {
@@ -46,25 +46,6 @@ private:
     std::vector<Bar> m_bars;
 };
 
-/// The energy over the iterations, logarithmic.
-class EnergyPlot : public QWidget {
-    Q_OBJECT
-public:
-    using QWidget::QWidget;
-    void setCurve(std::vector<double> energies, int iterations, bool current);
-
-    QSize sizeHint() const override { return {260, 96}; }
-    QSize minimumSizeHint() const override { return {120, 80}; }
-
-protected:
-    void paintEvent(QPaintEvent* event) override;
-
-private:
-    std::vector<double> m_energies;
-    int m_iterations = 0;
-    bool m_current = true;
-};
-
 class RefinePanel : public QWidget {
     Q_OBJECT
 public:
@@ -79,7 +60,6 @@ private:
         TransferFunction start;
         RefineOptions options;
     };
-    void editSettings();
     void follow();
     void showSettings();
     void showPriority();
@@ -90,18 +70,14 @@ private:
     Services& m_services;
     RefineController& m_refining;
     QPushButton *m_refine, *m_pair;
-    QCheckBox *m_live, *m_auto, *m_ghost;
+    QCheckBox *m_live, *m_ghost;
     QLabel* m_priority;
     QToolButton* m_nothing;
-    QComboBox* m_method;
-    QDoubleSpinBox *m_down, *m_up;
-    QSpinBox* m_limit;
     QLabel *m_words, *m_note, *m_figures, *m_comparison;
     QPushButton* m_help; ///< what keeps the picture from getting dark
     EdgeBars* m_edges;
-    EnergyPlot* m_plot;
-    bool m_showing = false; ///< the boxes show, they do not edit
-    QTimer m_wait;          ///< before the methods are compared
+    PlotView* m_plot;
+    QTimer m_wait; ///< before the methods are compared
     Job<Comparing, RefineComparison> m_compare;
 };
 

@@ -7,6 +7,7 @@
 #include <QComboBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
+#include <QLabel>
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QSlider>
@@ -78,19 +79,26 @@ QString tipOf(const Setting& setting) {
     return lines;
 }
 
-SettingRows::SettingRows(Services& services, QFormLayout& form, SettingPart part, QString stepText)
+SettingRows::SettingRows(Services& services, QFormLayout& form, SettingPart part, RowStep step)
     : QObject(form.parentWidget()), m_services(services), m_form(form), m_part(std::move(part)),
-      m_stepText(std::move(stepText)) {
+      m_step(std::move(step)) {
     m_commit = [this](const QString& text, const QString& mergeKey, const SessionStore::Change& change) {
-        m_services.store().commit();
         m_services.store().edit(text, mergeKey, change);
     };
+    m_preview = [this](const QString& text, const SessionStore::Change& change) {
+        m_services.store().preview(text, change);
+    };
+    m_isFast = [] { return true; };
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.volume != after.volume || !m_part.isSame(before.session, after.session)) follow();
+    });
+    connect(&services, &Services::readOnlyChanged, this, &SettingRows::follow);
 }
 
 QWidget* SettingRows::add(const char* key, const RowLook& look) {
     const Setting& setting = settingOf(m_part.settings, key);
     const SettingValue kind = setting.at(const_cast<void*>(present()));
-    if (look.then) m_then[&setting] = look.then;
+    m_looks[&setting] = look;
     std::vector<QWidget*> controls; // the one that has the name first
     if (std::holds_alternative<bool*>(kind))
         addCheck(setting, controls);
@@ -111,13 +119,14 @@ QWidget* SettingRows::add(const char* key, const RowLook& look) {
 }
 
 void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
-    auto* box = new QDoubleSpinBox;
+    auto* box = new NumberBox;
     const double smallest = std::pow(10.0, -look.decimals);
-    const bool isOpen = setting.range.open == NumberRange::Open::Low;
-    const double least = look.least.value_or(setting.range.lo * look.factor + (isOpen ? smallest : 0));
-    const double most = look.most.value_or(std::min(setting.range.hi * look.factor, 1e9));
+    using Open = NumberRange::Open;
+    const double lowest = setting.range.lo * look.factor + (setting.range.open == Open::Low ? smallest : 0);
+    const double highest =
+        std::min(setting.range.hi * look.factor, 1e9) - (setting.range.open == Open::High ? smallest : 0);
     box->setDecimals(look.decimals);
-    box->setRange(least, most);
+    box->setRange(lowest, highest);
     box->setSingleStep(look.step);
     box->setKeyboardTracking(false);
     box->setSuffix(!look.suffix.isEmpty()  ? look.suffix
@@ -131,7 +140,7 @@ void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::ve
     controls.push_back(box);
     auto* row = new QHBoxLayout;
     QSlider* slider = nullptr;
-    const Scale scale{least, most, look.logarithmic};
+    const Scale scale{look.least.value_or(lowest), look.most.value_or(highest), look.logarithmic};
     if (look.slider) {
         slider = new QSlider(Qt::Horizontal);
         slider->setObjectName(look.id + "Slider");
@@ -140,18 +149,24 @@ void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::ve
         slider->setMinimumWidth(60);
         row->addWidget(slider, 1);
         controls.push_back(slider);
-        connect(slider, &QSlider::valueChanged, this,
-                [this, &setting, slider, scale, writeOf, id = look.id, unit = smallest](int place) {
-                    const auto write = writeOf(std::round(scale.numberAt(place) / unit) * unit);
-                    slider->isSliderDown() ? preview(setting, write) : edit(setting, id, write);
-                });
-        connect(slider, &QSlider::sliderReleased, this, [this] { m_services.store().commit(); });
+        const auto writeAt = [writeOf, scale, unit = smallest](int place) {
+            // Places of a linear scale are numbers with few digits as they are.
+            const double number = scale.numberAt(place);
+            return writeOf(scale.logarithmic ? std::round(number / unit) * unit : number);
+        };
+        connect(slider, &QSlider::valueChanged, this, [=, this, &setting, id = look.id](int place) {
+            if (!slider->isSliderDown()) return edit(setting, id, writeAt(place));
+            if (m_isFast()) preview(setting, writeAt(place));
+        });
+        connect(slider, &QSlider::sliderReleased, this, [=, this, &setting] {
+            m_isFast() ? m_services.store().commit() : edit(setting, {}, writeAt(slider->value()));
+        });
     }
     row->addWidget(box, look.slider ? 0 : 1);
     QToolButton* automatic = nullptr;
     if (std::holds_alternative<std::optional<double>*>(setting.at(const_cast<void*>(present())))) {
         automatic = new QToolButton;
-        automatic->setObjectName(look.id + "Auto");
+        automatic->setObjectName(look.id + "Automatic");
         automatic->setText(tr("auto"));
         automatic->setCheckable(true);
         row->addWidget(automatic);
@@ -162,12 +177,14 @@ void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::ve
     }
     m_form.addRow(QString::fromUtf8(setting.words), row);
     if (auto* label = qobject_cast<QLabel*>(m_form.labelForField(row))) label->setBuddy(box);
-    m_show.push_back([this, &setting, box, slider, automatic, scale, factor = look.factor] {
-        const std::optional<double> number = numberIn(setting, present());
-        const QSignalBlocker quiet(box);
-        if (number) showNumber(*box, *number * factor);
+    m_show.push_back([=, this, &setting, none = look.automatic, factor = look.factor] {
+        std::optional<double> number = numberIn(setting, present());
         if (automatic != nullptr) automatic->setChecked(!number);
-        if (slider == nullptr || slider->isSliderDown() || !number) return;
+        if (!number && none) number = none();
+        if (!number) return;
+        const QSignalBlocker quiet(box);
+        showNumber(*box, *number * factor);
+        if (slider == nullptr || slider->isSliderDown()) return;
         const QSignalBlocker still(slider);
         slider->setValue(scale.placeOf(*number * factor));
     });
@@ -243,12 +260,13 @@ void SettingRows::addColor(const Setting& setting, std::vector<QWidget*>& contro
 const void* SettingRows::present() const { return m_part.read(m_services.store().session()); }
 
 QString SettingRows::textOf(const Setting& setting) const {
-    return m_stepText.isEmpty() ? QString::fromStdString(setting.name()) : m_stepText;
+    if (!m_step.text.isEmpty()) return m_step.text;
+    const QString& own = m_looks.at(&setting).stepText;
+    return own.isEmpty() ? QString::fromStdString(setting.name()) : own;
 }
 
 SessionStore::Change SettingRows::changeOf(const Setting& setting, const Write& write) const {
-    const auto found = m_then.find(&setting);
-    return [edit = m_part.edit, write, then = found == m_then.end() ? Write() : found->second](Session& session) {
+    return [edit = m_part.edit, write, then = m_looks.at(&setting).then](Session& session) {
         edit(session, [&](void* settings) {
             write(settings);
             if (then) then(settings);
@@ -257,12 +275,12 @@ SessionStore::Change SettingRows::changeOf(const Setting& setting, const Write& 
 }
 
 void SettingRows::edit(const Setting& setting, const QString& mergeKey, const Write& write) {
-    m_commit(textOf(setting), mergeKey, changeOf(setting, write));
+    m_commit(textOf(setting), m_step.mergeKey.isEmpty() ? mergeKey : m_step.mergeKey, changeOf(setting, write));
     follow(); // also where nothing has come of it
 }
 
 void SettingRows::preview(const Setting& setting, const Write& write) {
-    m_services.store().preview(textOf(setting), changeOf(setting, write));
+    m_preview(textOf(setting), changeOf(setting, write));
 }
 
 void SettingRows::follow() {

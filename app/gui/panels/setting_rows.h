@@ -26,14 +26,15 @@ struct SettingPart {
     std::span<const Setting> settings;
     std::function<const void*(const Session&)> read;
     std::function<void(Session&, const std::function<void(void*)>&)> edit;
+    std::function<bool(const Session&, const Session&)> isSame;
 };
 /// `&Session::optimize`.
 template <class T, class Held>
 SettingPart settingPart(Part<Held> Session::*part) {
-    return {settingsOf<T>(), [part](const Session& s) -> const void* { return static_cast<const T*>(&*(s.*part)); },
-            [part](Session& s, const auto& change) {
-                (s.*part).edit([&](Held& held) { change(static_cast<T*>(&held)); });
-            }};
+    return {
+        settingsOf<T>(), [part](const Session& s) -> const void* { return static_cast<const T*>(&*(s.*part)); },
+        [part](Session& s, const auto& change) { (s.*part).edit([&](Held& held) { change(static_cast<T*>(&held)); }); },
+        [part](const Session& a, const Session& b) { return (a.*part).isSame(b.*part); }};
 }
 /// `&Session::measure, &MeasureSettings::saliency`.
 template <class T, class Held>
@@ -41,7 +42,8 @@ SettingPart settingPart(Part<Held> Session::*part, T Held::*member) {
     return {settingsOf<T>(), [part, member](const Session& s) -> const void* { return &((*(s.*part)).*member); },
             [part, member](Session& s, const auto& change) {
                 (s.*part).edit([&](Held& held) { change(&(held.*member)); });
-            }};
+            },
+            [part](const Session& a, const Session& b) { return (a.*part).isSame(b.*part); }};
 }
 
 /// What a row looks like, as far as its setting does not tell.
@@ -53,9 +55,16 @@ struct RowLook {
     double step = 0.05;
     double factor = 1;                           ///< from the setting to what is shown
     QString suffix = {};                         ///< in the place of the setting's unit
-    std::optional<double> least = {}, most = {}; ///< that are offered, as shown; else the ends of the range
+    std::optional<double> least = {}, most = {}; ///< of the slider, as shown; else the ends of the range
+    std::function<double()> automatic = {};      ///< of an optional number: what none stands for
+    QString stepText = {};                       ///< names its steps; empty: its setting does
     std::function<void(void*)> then = {}; ///< done to the settings after a change of this one: what follows of it
     std::vector<int> order = {};          ///< of an enumeration's values; empty: their own
+};
+
+/// Of the history, for rows that share it: steps of one key in a row become one. Empty: each row has its own.
+struct RowStep {
+    QString text = {}, mergeKey = {};
 };
 
 class SettingRows : public QObject {
@@ -65,13 +74,19 @@ public:
     using Commit =
         std::function<void(const QString& text, const QString& mergeKey, const SessionStore::Change& change)>;
 
-    /// Adds to `form`, whose widget is the owner. `stepText` names the steps; empty: each row names its own.
-    SettingRows(Services& services, QFormLayout& form, SettingPart part, QString stepText = {});
+    /// Adds to `form`, whose widget is the owner. The rows follow the session by themselves.
+    SettingRows(Services& services, QFormLayout& form, SettingPart part, RowStep step = {});
 
     /// The control of the setting with this key.
     QWidget* add(const char* key, const RowLook& look);
     /// In the place of the store's edit().
     void setCommit(Commit commit) { m_commit = std::move(commit); }
+    /// In the place of the store's preview(), and when there is one: the picture may be too slow to follow the hand.
+    using Preview = std::function<void(const QString& text, const SessionStore::Change& change)>;
+    void setPreview(Preview preview, std::function<bool()> isFast) {
+        m_preview = std::move(preview);
+        m_isFast = std::move(isFast);
+    }
     /// Shows the present session; what does not count there, and all where nothing can be edited, is grey.
     void follow();
 
@@ -91,9 +106,11 @@ private:
     Services& m_services;
     QFormLayout& m_form;
     SettingPart m_part;
-    QString m_stepText;
+    RowStep m_step;
     Commit m_commit;
-    std::map<const Setting*, Write> m_then;
+    Preview m_preview;
+    std::function<bool()> m_isFast;
+    std::map<const Setting*, RowLook> m_looks;
     std::vector<std::function<void()>> m_show;
 };
 

@@ -1,19 +1,9 @@
 // How figures are computed and how optimizations search.
 #pragma once
 
-#include <functional>
-#include <vector>
-
 #include <QWidget>
 
-class QComboBox;
-class QDoubleSpinBox;
 class QFormLayout;
-
-namespace pellucid {
-struct MeasureSettings;
-struct OptimizeOptions;
-} // namespace pellucid
 
 namespace pellucid::gui {
 
@@ -28,14 +18,8 @@ public:
 private:
     void addOptimization(QFormLayout& form);
     void addMeasuring(QFormLayout& form);
-    void follow();
-    void editOptions(const std::function<void(OptimizeOptions&)>& change);
-    void editMeasuring(const std::function<void(MeasureSettings&)>& change);
-    void chooseBackground();
 
     Services& m_services;
-    std::vector<std::function<void()>> m_show; ///< each brings one control to the present state
-    bool m_showing = false;                    ///< what controls say comes of the session
 };
 
 } // namespace pellucid::gui

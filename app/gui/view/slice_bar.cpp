@@ -5,6 +5,7 @@
 #include <QDoubleSpinBox>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QSignalBlocker>
 #include <QSlider>
 #include <QToolButton>
 
@@ -66,7 +67,6 @@ SliceBar::SliceBar(Services& services, QWidget* parent)
 }
 
 void SliceBar::editStrength(int percent) {
-    if (m_showing) return;
     const QString text = tr("Colours of the slices");
     const auto change = [percent](Session& session) {
         session.slices.edit([percent](SliceViews& s) { s.tfStrength = percent / 100.0; });
@@ -78,7 +78,6 @@ void SliceBar::editStrength(int percent) {
 }
 
 void SliceBar::editWindow() {
-    if (m_showing) return;
     ValueRange window = greyWindowOf(m_services.scene());
     // Only the box that was edited counts: the other one shows a rounded number.
     (sender() == m_lo ? window.lo : window.hi) = sender() == m_lo ? m_lo->value() : m_hi->value();
@@ -91,7 +90,7 @@ void SliceBar::follow() {
     if (!m_services.store().hasVolume()) return;
     const Scene& scene = m_services.scene();
     setEnabled(!m_services.isReadOnly());
-    m_showing = true;
+    const QSignalBlocker quiet(m_strength), low(m_lo), high(m_hi);
     if (!m_strength->isSliderDown())
         m_strength->setValue(static_cast<int>(std::lround(100 * scene.session.slices->tfStrength)));
     const ValueRange window = greyWindowOf(scene), all = scene.data->range();
@@ -103,7 +102,6 @@ void SliceBar::follow() {
     showNumber(*m_lo, window.lo);
     showNumber(*m_hi, window.hi);
     m_reset->setEnabled(scene.session.slices->window.has_value());
-    m_showing = false;
 }
 
 } // namespace pellucid::gui

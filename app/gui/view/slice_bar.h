@@ -26,7 +26,6 @@ private:
     QSlider* m_strength;
     QDoubleSpinBox *m_lo, *m_hi;
     QToolButton* m_reset;
-    bool m_showing = false; ///< the controls show, they do not edit
 };
 
 } // namespace pellucid::gui
