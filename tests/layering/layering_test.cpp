@@ -86,6 +86,9 @@ std::string fault(const Include& include) {
     if (startsWith(include.name, "render/gl/") && layer != "src/render/gl" && layer != "src/engines" &&
         layer != "app/gui" && layer != "app/gpu_check")
         return "only engines, the window and the GPU's check may include render/gl";
+    if (startsWith(include.file, "src/optimize/solve/") && folder == own &&
+        !startsWith(include.name, "optimize/solve/"))
+        return "solvers know nothing of the searches that use them";
     if (folder == own || kAllowed.at(layer).count(folder)) return "";
     return "an arrow that points up or sideways";
 }
@@ -111,6 +114,8 @@ TEST_CASE("the rule itself catches what it should", "[layering]") {
     CHECK(fault({"app/cli/a.cpp", 1, "render/gl/gl_engines.h"}) != "");
     CHECK(fault({"src/optimize/a.cpp", 1, "session/scene.h"}) != "");
     CHECK(fault({"src/optimize/a.h", 1, "QWidget"}) != "");
+    CHECK(fault({"src/optimize/solve/a.h", 1, "optimize/optimizer.h"}) != "");
+    CHECK(fault({"src/optimize/solve/a.h", 1, "optimize/solve/matrix.h"}) == "");
     CHECK(fault({"app/cli/a.cpp", 1, "QtWidgets/QWidget"}) != "");
     CHECK(fault({"app/cli/a.cpp", 1, "gui/main_window.h"}) != "");
     CHECK(fault({"src/session/a.cpp", 1, "report/plot.h"}) != "");

@@ -5,11 +5,11 @@
 #include <limits>
 #include <random>
 
+#include <Eigen/LU>
+
 #include "optimize/solve/boxed_step.h"
 #include "optimize/solve/least_variance.h"
 #include "optimize/solve/log_depths.h"
-
-#include <Eigen/LU>
 
 using namespace pellucid;
 
@@ -158,9 +158,9 @@ TEST_CASE("a step in a box of special cases", "[solve]") {
     CHECK(boxedStep(one, zero, -ones, ones) == zero);
     CHECK(boxedStep(one, ones, zero, zero) == zero);
     CHECK(boxedStep(one, ones, zero, zero, Sum::Kept) == zero);
-    // A matrix of zeros knows no minimum, but where the box ends there is no harm.
-    const Vector flat = boxedStep(Matrix::Zero(3, 3), zero, -ones, ones);
-    CHECK(flat == zero);
+    // A matrix of zeros knows no minimum, nor do slopes that are no numbers: nothing moves.
+    CHECK(boxedStep(Matrix::Zero(3, 3), ones, -ones, ones) == zero);
+    CHECK(boxedStep(one, ones * std::numeric_limits<double>::quiet_NaN(), -ones, ones) == zero);
     // The sum kept: ½|p|² − p₀ is least at p₀ = ⅔, p₁ = p₂ = −⅓; with p₀ ≤ ½ at −¼ each.
     Vector g = zero;
     g[0] = -1;
@@ -178,8 +178,7 @@ TEST_CASE("a step in a box of special cases", "[solve]") {
 }
 
 TEST_CASE("least squares within bounds let go of a bound that another one makes needless", "[solve]") {
-    // J = (1 0.9; 0 1), r = (−1, 1): without bounds d₁ = −1, d₀ = 1.9. Within [0, 1] × [0, 1] the second is at 0, the
-    // first then at 1. With d₁ ≥ −0.5: r + J d is (−1 + d₀ + 0.9 d₁, 1 + d₁), d₁ = −0.5, d₀ = 1.45 where that may be.
+    // r + J d = (−1 + d₀ + 0.9 d₁, 1 + d₁): 0 at d₁ = −1, d₀ = 1.9. With d₁ ≥ −½ the first is 0 at d₀ = 1 + 0.45.
     const Matrix j{{1, 0.9}, {0, 1}};
     const Vector r{{-1, 1}};
     const Vector d = leastSquaresStep(j, r, Vector{{0, -0.5}}, Vector{{2, 1}}, 1e-12);
