@@ -178,8 +178,7 @@ TEST_CASE("a step in a box of special cases", "[solve]") {
 }
 
 TEST_CASE("least squares within bounds let go of a bound that another one makes needless", "[solve]") {
-    // J = (1 0.9; 0 1), r = (−1, 1): without bounds d₁ = −1, d₀ = 1.9. Within [0, 1] × [0, 1] the second is at 0, the
-    // first then at 1. With d₁ ≥ −0.5: r + J d is (−1 + d₀ + 0.9 d₁, 1 + d₁), d₁ = −0.5, d₀ = 1.45 where that may be.
+    // r + J d = (−1 + d₀ + 0.9 d₁, 1 + d₁): 0 at d₁ = −1, d₀ = 1.9. With d₁ ≥ −½ the first is 0 at d₀ = 1 + 0.45.
     const Matrix j{{1, 0.9}, {0, 1}};
     const Vector r{{-1, 1}};
     const Vector d = leastSquaresStep(j, r, Vector{{0, -0.5}}, Vector{{2, 1}}, 1e-12);
