@@ -24,8 +24,9 @@
 #include "report/svg_plot.h"
 #include "report/temporal_curves.h"
 #include "resolve.h"
-#include "session/adapt.h"
+#include "session/frame_figures.h"
 #include "session/scene_data.h"
+#include "session/sequence.h"
 #include "tf/formats/tf_json.h"
 #include "tf/shown_tf.h"
 
@@ -128,7 +129,6 @@ public:
 
 private:
     void prepareKey();
-    void passOver(int frame, const FileError& error);
     void plan(ReadAhead& ahead);
     std::optional<Frame> next(int number);
     void finish(std::vector<Frame>& batch);
@@ -144,9 +144,8 @@ private:
     Progress& m_progress;
     int m_start = 0;
     double m_keySeconds = 0;
-    Workspace m_workspace;
+    SequenceMaker m_maker;
     std::vector<Workspace> m_sideBySide;
-    FrameAdapter m_adapter;
     TransferFunction m_fixed;                          ///< of the start frame, as static
     std::optional<TransferFunction> m_before, m_chain; ///< of the frame before; what the next one starts from
     int m_beforeNumber = -1;                           ///< of m_before
@@ -176,7 +175,7 @@ void Sequence::prepareKey() {
         JobControl job = m_progress.phase("optimizing");
         job.progress = nullptr;
         int moves = -1;
-        const OptimizeResult result = m_workspace.optimize(
+        const OptimizeResult result = m_maker.workspace().optimize(
             measureInput(m_scene), shownShares(m_scene.wantedTf(), targets), limitsOf(m_scene.tf, *session.goals),
             *session.optimize, job, [&](const OptimizeState& state) {
                 m_progress.tell(std::to_string(++moves) + " moves, distance " + plainText(state.objective));
@@ -186,32 +185,9 @@ void Sequence::prepareKey() {
         if (const std::string kept = keptText(result); !kept.empty())
             m_notices.push_back("frame " + std::to_string(m_start) + ": " + kept);
     }
-    session.variables.edit([&](std::vector<Variable>& all) { // what is before the start frame is not asked for
-        TfTrack& track = all.front().track;
-        track.keys.erase(track.keys.begin(), track.keys.lower_bound(m_start));
-    });
     m_fixed = m_scene.tf;
-    session.variables.edit(
-        [&](std::vector<Variable>& all) { all.front().track.keys[m_start] = Part<TransferFunction>(m_fixed); });
-    // Figures of all frames stand in the same columns.
-    const auto features = [](const TransferFunction& tf) {
-        std::vector<std::pair<FeatureId, std::string>> all;
-        for (const Feature& f : tf.features) all.emplace_back(f.id, f.name);
-        return all;
-    };
-    for (const auto& [frame, tf] : session.variable().track.keys)
-        if (features(*tf) != features(*session.variable().track.keys.at(m_start)))
-            throw UsageError("the transfer functions of frames " + std::to_string(m_start) + " and " +
-                                 std::to_string(frame) + " have other features",
-                             m_o.scene.session.file.value_or("the session"),
-                             "give both the same in the same order, or begin with --from " + std::to_string(frame));
+    session = beginningHere(std::move(session), m_fixed, m_o.scene.session.file.value_or("the session"));
     m_keySeconds = watch.seconds();
-}
-
-/// A frame whose own data are sound may want for those of another variable; Opened::notices() tells of both alike.
-void Sequence::passOver(int frame, const FileError& error) {
-    if (m_scene.series->summary(frame).problem.empty())
-        m_scene.series->noteProblem(frame, error.problem() + ", " + error.where());
 }
 
 /// What coherence asks for: all frames forward, then smoothed together.
@@ -219,32 +195,21 @@ void Sequence::plan(ReadAhead& ahead) {
     Session& session = m_scene.session;
     const TimeSeries& series = *m_scene.series;
     const JobControl job = m_progress.phase("following");
-    while (const auto task = nextToAdapt(session, series)) {
+    const auto begins = [&](int frame) { ahead.begin(frame + 1); };
+    for (SequenceMaker::Step step; (step = m_maker.next(m_scene, job, nullptr, begins)).goesOn();) {
         job.throwIfStopped();
-        ahead.begin(task->frame + 1);
-        try {
-            AdaptedFrame made = m_adapter.adapt(m_scene, *task, m_workspace, {job.stop, {}});
-            session = withAdapted(std::move(session), made.frame, made.forTrack());
-            m_planned[made.frame] = std::move(made);
-        } catch (const FileError& error) {
-            passOver(task->frame, error);
-        } catch (const Error&) {
-            if (series.summary(task->frame).problem.empty()) throw; // not of the frame
-        }
-        job.report((task->frame - m_start) / static_cast<double>(series.size() - m_start));
+        session = withStep(std::move(session), step);
+        job.report((step.firstStale - m_start) / static_cast<double>(series.size() - m_start));
+        if (step.made) m_planned[step.made->frame] = std::move(*step.made);
     }
     const JobControl smoothing = m_progress.phase("smoothing");
-    while (const auto task = nextToSmooth(session, series)) {
-        try {
-            const SmoothedFrames smooth = m_adapter.smooth(m_scene, *task, m_workspace, smoothing);
-            session = withSmoothed(std::move(session), smooth);
-            for (const int frame : task->frames) {
-                AdaptedFrame& made = m_planned[frame];
-                if (settings().mode == Mode::Optimize) ++made.moves;
-                made.seconds += smooth.seconds / static_cast<double>(task->frames.size());
-            }
-        } catch (const FileError&) { // a frame that broke meanwhile belongs to no task any more
-            if (const auto again = nextToSmooth(session, series); again && again->basis == task->basis) throw;
+    for (SequenceMaker::Step step; (step = m_maker.next(m_scene, job, &smoothing, begins)).goesOn();) {
+        session = withStep(std::move(session), step);
+        if (!step.smoothed) continue;
+        for (const auto& [frame, tf] : step.smoothed->tfs) {
+            AdaptedFrame& made = m_planned[frame];
+            if (settings().mode == Mode::Optimize) ++made.moves;
+            made.seconds += step.smoothed->seconds / static_cast<double>(step.smoothed->tfs.size());
         }
     }
 }
@@ -264,12 +229,12 @@ std::optional<Frame> Sequence::next(int number) {
             // Broken or not, what follows a key begins there.
             if (track.keys.contains(number) || !m_chain) m_chain = *track.keys.at(track.keyBefore(number));
             AdaptTask task{number, track.keyBefore(number), *m_chain, {}};
-            task.basis = fingerprintOf(m_scene.session, *m_scene.series, number, *m_chain);
+            task.basis = frameFingerprint(m_scene.session, *m_scene.series, number, *m_chain);
             const auto known = track.adapted.find(number); // a session brings some
             if (known != track.adapted.end() && known->second.basis == task.basis) {
                 tf = *known->second.tf;
             } else {
-                frame.made = m_adapter.adapt(m_scene, task, m_workspace, job);
+                frame.made = m_maker.adapter().adapt(m_scene, task, m_maker.workspace(), job);
                 tf = frame.made->tf;
             }
         }
@@ -283,7 +248,7 @@ std::optional<Frame> Sequence::next(int number) {
         m_beforeNumber = number;
         return frame;
     } catch (const FileError& error) {
-        passOver(number, error);
+        passOver(*m_scene.series, number, error);
         m_broken = brokenFigures(*m_scene.series, number);
         return {};
     }
@@ -294,7 +259,7 @@ void Sequence::finish(std::vector<Frame>& batch) {
     const JobControl job{interruptToken(), {}};
     parallelFor(batch.size(), [&](std::size_t i) {
         Frame& frame = batch[i];
-        Workspace& workspace = batch.size() == 1 ? m_workspace : m_sideBySide[i];
+        Workspace& workspace = batch.size() == 1 ? m_maker.workspace() : m_sideBySide[i];
         frame.figures = figuresOf(frame.scene, frame.before ? &*frame.before : nullptr, workspace, job);
         if (frame.made) {
             frame.figures.moves = frame.made->moves;
@@ -451,7 +416,7 @@ Answer Sequence::run(const Opened& opened) {
     const JobControl job = m_progress.phase("frames");
     // Contexts of GL are not shared by threads; threads share a CPU well.
     const bool cpu = makeRenderer(m_scene.session.measure->engine, m_scene.volume)->name() == "cpu" &&
-                     m_workspace.engine(measureInput(m_scene)).name() != "gl";
+                     m_maker.workspace().engine(measureInput(m_scene)).name() != "gl";
     const int most = cpu ? std::clamp(series.roomFor() - 1, 1, threadCount()) : 1;
     m_sideBySide = std::vector<Workspace>(static_cast<std::size_t>(most));
     std::vector<Frame> batch;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "report/plot.h"
-#include "session/adapt.h"
+#include "session/frame_figures.h"
 
 namespace pellucid {
 

@@ -21,10 +21,11 @@ double sum(const Grid<float>& field) { return std::accumulate(field.begin(), fie
 } // namespace
 
 TEST_CASE("fields have names", "[fields]") {
-    for (std::size_t i = 0; i < kFieldKinds.size(); ++i) {
-        CHECK(static_cast<std::size_t>(kFieldKinds[i].kind) == i);
-        CHECK(fromName<FieldKind>(kFieldKinds[i].name) == kFieldKinds[i].kind);
+    for (const FieldKind kind : allOf<FieldKind>()) {
+        CHECK(fromName<FieldKind>(name(kind)) == kind);
+        CHECK(std::string(title(kind)) != "");
     }
+    CHECK(fileStem(FieldKind::SaliencyBrightness) == "saliency_brightness");
     CHECK_THROWS_WITH(fromName<FieldKind>("depth"), Catch::Contains("saliency-brightness"));
 }
 

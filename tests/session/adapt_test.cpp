@@ -8,7 +8,9 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "optimize/time/tracking.h"
-#include "session/adapt.h"
+#include "session/frame_adapter.h"
+#include "session/frame_figures.h"
+#include "session/track_keys.h"
 #include "tf/opacity.h"
 
 using namespace pellucid;
@@ -142,7 +144,7 @@ TEST_CASE("every frame from the key on is adapted once, each from the one before
     for (const AdaptedFrame& f : made) {
         CHECK(*scene.session.tfAt(f.frame) == f.tf);
         const TransferFunction previous = f.frame == 0 ? key : *scene.session.tfAt(f.frame - 1);
-        CHECK(f.basis == fingerprintOf(scene.session, *scene.series, f.frame, previous));
+        CHECK(f.basis == frameFingerprint(scene.session, *scene.series, f.frame, previous));
     }
     // Static transfer functions are the keys', and nothing is to be made.
     scene.session.adapt.set({Mode::Static, 0});
@@ -200,7 +202,7 @@ TEST_CASE("the frame that a series starts from is made, too", "[adapt]") {
         const auto made = adaptAll(broken);
         CHECK(framesOf(made) == Ints{0, 1, 2, 4, 5, 6, 7});
         CHECK(made[3].basis ==
-              fingerprintOf(broken.session, *broken.series, 4, *broken.session.variable().track.keys.at(3)));
+              frameFingerprint(broken.session, *broken.series, 4, *broken.session.variable().track.keys.at(3)));
         for (const AdaptedFrame& f : made) CHECK(*f.objective < 0.03);
     }
 }
@@ -505,7 +507,7 @@ TEST_CASE("a broken frame is passed over", "[adapt]") {
     CHECK(framesOf(made) == Ints{0, 1, 2, 4, 5, 6, 7});
     CHECK(scene.series->summary(3).problem == "it ends too early");
     // The next one starts from the last that there is.
-    CHECK(made[3].basis == fingerprintOf(scene.session, *scene.series, 4, made[2].tf));
+    CHECK(made[3].basis == frameFingerprint(scene.session, *scene.series, 4, made[2].tf));
     CHECK(adaptProgress(scene.session, *scene.series).all == kFrames - 1);
     CHECK(brokenFigures(*scene.series, 3).problem == "it ends too early");
 }

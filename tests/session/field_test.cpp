@@ -144,9 +144,9 @@ TEST_CASE("fields that depend on no view are asked for without one", "[session]"
     const MeasureInput seen = inputOf(FieldKind::Visibility), vws = inputOf(FieldKind::Vws);
     CHECK(seen.tf.points == scene.tf.points);
     CHECK(vws.settings == measureInput(scene).settings);
-    for (const FieldKindInfo& info : kFieldKinds)
-        if (!dependsOnView(info.kind)) {
-            const MeasureInput input = inputOf(info.kind);
+    for (const FieldKind kind : allOf<FieldKind>())
+        if (!dependsOnView(kind)) {
+            const MeasureInput input = inputOf(kind);
             CHECK(input.view == View{});
             for (const ControlPoint& point : input.tf.points) CHECK(point.opacity == 0);
         }

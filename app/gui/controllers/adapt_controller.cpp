@@ -5,6 +5,7 @@
 
 #include "controllers/player_controller.h"
 #include "services/services.h"
+#include "session/track_keys.h"
 
 namespace pellucid::gui {
 namespace {
@@ -19,25 +20,9 @@ AdaptController::AdaptController(Services& services, PlayerController& player)
     : m_services(services), m_player(player),
       m_job(
           [this](const Scene& basis, const JobControl& job) {
-              Answer answer;
-              const auto task = nextToAdapt(basis.session, *basis.series);
-              answer.progress = adaptProgress(basis.session, *basis.series);
-              answer.firstStale = task ? task->frame : -1;
-              const auto smooth = task ? std::nullopt : nextToSmooth(basis.session, *basis.series);
-              try {
-                  if (task) answer.made = m_maker.adapter.adapt(basis, *task, m_maker.workspace, {job.stop, {}});
-                  if (smooth) answer.smoothed = m_maker.adapter.smooth(basis, *smooth, m_maker.workspace, job);
-              } catch (const FileError&) {
-                  // A frame is broken, which the player says; what can be made without it is looked for.
-                  const auto again = nextToAdapt(basis.session, *basis.series);
-                  if (task && again && again->frame == task->frame) throw;
-                  const auto others = nextToSmooth(basis.session, *basis.series);
-                  if (smooth && others && others->basis == smooth->basis) throw;
-                  answer.goesOn = true;
-              }
-              return answer;
+              return m_maker.next(basis, {job.stop, {}}, &job);
           },
-          [this](const Scene& basis, Answer& answer) { finish(basis, answer); }, WhenBusy::StopOld, &m_lane) {
+          [this](const Scene& basis, SequenceMaker::Step& step) { finish(basis, step); }, WhenBusy::StopOld, &m_lane) {
     m_timer.setSingleShot(true);
     m_timer.setInterval(kRest);
     connect(&m_timer, &QTimer::timeout, this, &AdaptController::look);
@@ -248,27 +233,24 @@ void AdaptController::look() {
     m_job.start(m_services.store().committed(), tr("the frames"));
 }
 
-void AdaptController::finish(const Scene& basis, Answer& answer) {
+void AdaptController::finish(const Scene& basis, SequenceMaker::Step& step) {
     SessionStore& store = m_services.store();
     if (!isWanted() || store.scene().series != basis.series) return;
-    m_progress = answer.progress;
-    m_firstStale = answer.firstStale;
+    m_progress = step.progress;
+    m_firstStale = step.firstStale;
     m_staleKey = m_firstStale < 0 ? -1 : basis.session.variable().track.keyBefore(m_firstStale);
-    if (answer.made && !store.isPreviewing()) {
-        const AdaptedFrame& made = *answer.made;
+    if ((step.made || step.smoothed) && !store.isPreviewing()) {
         // Where something has changed meanwhile its fingerprint is another one, and it will be made again.
-        store.amend([&](Session& session) { session = withAdapted(std::move(session), made.frame, made.forTrack()); });
-        ++m_progress.done;
+        store.amend([&](Session& session) { session = withStep(std::move(session), step); });
+        if (step.smoothed)
+            m_progress = adaptProgress(store.session(), *store.scene().series);
+        else
+            ++m_progress.done;
     }
-    if (answer.smoothed && !store.isPreviewing()) {
-        store.amend([&](Session& session) { session = withSmoothed(std::move(session), *answer.smoothed); });
-        m_progress = adaptProgress(store.session(), *store.scene().series);
-    }
-    const bool goesOn = answer.made || answer.smoothed || answer.goesOn;
-    if (goesOn && !store.isPreviewing()) {
+    if (step.goesOn() && !store.isPreviewing()) {
         m_timer.stop();
         look();
-    } else if (goesOn) {
+    } else if (step.goesOn()) {
         m_timer.start();
     }
     Q_EMIT changed();

@@ -7,7 +7,7 @@
 #include <QTimer>
 
 #include "jobs/job.h"
-#include "session/adapt.h"
+#include "session/sequence.h"
 
 class QAction;
 
@@ -59,21 +59,9 @@ Q_SIGNALS:
     void changed(); ///< progress, busy or stopped
 
 private:
-    /// The state of the track, and what was made for the first frame that lacked something, or for all at once.
-    struct Answer {
-        AdaptProgress progress;
-        int firstStale = -1;
-        std::optional<AdaptedFrame> made;
-        std::optional<SmoothedFrames> smoothed;
-        bool goesOn = false; ///< a frame is known to be broken now: there may be more to do
-    };
-    struct Maker { ///< what the frames share; used in m_job alone, which does one thing at a time
-        Workspace workspace;
-        FrameAdapter adapter;
-    };
     void follow(const Scene& before, const Scene& after);
     void look();
-    void finish(const Scene& basis, Answer& answer);
+    void finish(const Scene& basis, SequenceMaker::Step& step);
     bool isWanted() const;
 
     Services& m_services;
@@ -84,9 +72,9 @@ private:
     double m_smoothing = 0;
     bool m_stopped = false;
     QTimer m_timer;
-    Maker m_maker;
+    SequenceMaker m_maker; ///< used in m_job alone, which does one thing at a time
     Lane m_lane;
-    Job<Scene, Answer> m_job; // last: it ends before the rest goes
+    Job<Scene, SequenceMaker::Step> m_job; // last: it ends before the rest goes
 };
 
 } // namespace pellucid::gui
