@@ -111,6 +111,7 @@ QWidget* SettingRows::add(const char* key, const RowLook& look) {
     else
         addNumber(setting, look, controls);
     controls.front()->setObjectName(look.id);
+    m_rows.push_back({&setting, controls.front()});
     for (QWidget* control : controls) control->setToolTip(tipOf(setting));
     m_show.push_back([this, &setting, controls] {
         for (QWidget* control : controls) control->setEnabled(m_services.isEditable() && setting.isUsed(present()));

@@ -87,6 +87,13 @@ public:
         m_preview = std::move(preview);
         m_isFast = std::move(isFast);
     }
+    /// The rows from top to bottom: what they show, and the control that has their name.
+    struct Row {
+        const Setting* setting;
+        QWidget* control;
+    };
+    const std::vector<Row>& rows() const { return m_rows; }
+    const void* present() const; ///< the settings of the session
     /// Shows the present session; what does not count there, and all where nothing can be edited, is grey.
     void follow();
 
@@ -101,7 +108,6 @@ private:
     void preview(const Setting& setting, const Write& write);
     SessionStore::Change changeOf(const Setting& setting, const Write& write) const;
     QString textOf(const Setting& setting) const;
-    const void* present() const;
 
     Services& m_services;
     QFormLayout& m_form;
@@ -111,6 +117,7 @@ private:
     Preview m_preview;
     std::function<bool()> m_isFast;
     std::map<const Setting*, RowLook> m_looks;
+    std::vector<Row> m_rows;
     std::vector<std::function<void()>> m_show;
 };
 
