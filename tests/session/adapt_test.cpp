@@ -544,7 +544,7 @@ TEST_CASE("adapted transfer functions have the same bits on one thread and on tw
     }
 }
 
-TEST_CASE("keys of both kinds are set, found and removed", "[session]") {
+TEST_CASE("keys of both kinds are set, found and removed", "[adapt]") {
     Session session = sceneOf(Mode::Refine, 1).session;
     setTfKey(session);
     session.frame = 3;

@@ -133,16 +133,14 @@ TEST_CASE("the picture of a field is of the same view, other than that of the da
     CHECK(a.pixel(24, 24)[0] > 0.02f);
 }
 
-TEST_CASE("fields that depend on no view are asked for without one", "[session]") {
-    Scene scene;
-    scene.tf = tents(2, 0.3);
-    scene.session.setTf(scene.tf);
+TEST_CASE("fields that depend on no view are asked for without one", "[session][fields]") {
+    Scene scene = sceneOf("tents:2:0.3");
     const auto inputOf = [&](FieldKind kind) {
         scene.session.field.edit([&](FieldView& f) { f.kind = kind; });
         return fieldInput(scene);
     };
     const MeasureInput seen = inputOf(FieldKind::Visibility), vws = inputOf(FieldKind::Vws);
-    CHECK(seen.tf.points == scene.tf.points);
+    CHECK(seen.tf == measureInput(scene).tf);
     CHECK(vws.settings == measureInput(scene).settings);
     for (const FieldKind kind : allOf<FieldKind>())
         if (!dependsOnView(kind)) {

@@ -104,7 +104,7 @@ TEST_CASE("holding targets stops where it is asked to", "[session][live]") {
     CHECK_THROWS_AS(followTargets(workspace, held, {stop.get_token(), {}}), Cancelled);
 }
 
-TEST_CASE("an opacity that somebody sets is told from those that an update wants", "[session]") {
+TEST_CASE("an opacity that somebody sets is told from those that an update wants", "[session][live]") {
     TransferFunction before = tents(3, 0.2);
     for (std::size_t i = 0; i < 3; ++i) before.features[i].id = static_cast<FeatureId>(i + 1);
     const TransferFunction after = withFeatureOpacities(before, {0.2, 0.5, 0.4});

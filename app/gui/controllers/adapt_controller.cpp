@@ -44,20 +44,13 @@ AdaptController::AdaptController(Services& services, PlayerController& player)
     });
 }
 
-AdaptController::~AdaptController() = default;
-
 void AdaptController::addActions() {
     const QString menu = tr("T&ime");
     Actions& actions = m_services.actions();
     const auto open = [this] { return m_player.hasSeries() && !m_services.isReadOnly(); };
     const auto mode = [&](const char* id, const QString& text, const QString& tip, Mode which, bool separator) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .tip = tip,
-                     .trigger = [this, which] { setMode(which); },
-                     .enabled = open,
-                     .checked = [this, which] { return m_services.store().session().adapt->mode == which; },
+        actions.add(menu, id, text, {}, tip, [this, which] { setMode(which); }, open,
+                    {.checked = [this, which] { return m_services.store().session().adapt->mode == which; },
                      .separatorBefore = separator});
     };
     mode("adaptStaticAction", tr("&Static transfer function"), tr("The keys alone, and what lies between them"),
@@ -68,41 +61,26 @@ void AdaptController::addActions() {
     mode("adaptOptimizeAction", tr("&Optimize every frame"),
          tr("Each frame's opacities bring VWS to the targets, from those of the frame before"), Mode::Optimize, false);
     m_keyActions << actions.add(
-        {.id = "tfKeyAction",
-         .menu = menu,
-         .text = tr("Transfer function &key here"),
-         .keys = {QKeySequence("K")},
-         .tip = tr("This frame's transfer function is made by hand; what is made for frames begins at keys"),
-         .trigger = [this] { hasTfKey() ? removeTfKey() : setTfKey(); },
-         .enabled = open,
-         .checked = [this] { return hasTfKey(); },
-         .separatorBefore = true});
+        menu, "tfKeyAction", tr("Transfer function &key here"), "K",
+        tr("This frame's transfer function is made by hand; what is made for frames begins at keys"),
+        [this] { hasTfKey() ? removeTfKey() : setTfKey(); }, open,
+        {.checked = [this] { return hasTfKey(); }, .separatorBefore = true});
     m_keyActions << actions.add(
-        {.id = "targetKeyAction",
-         .menu = menu,
-         .text = tr("&Target key here"),
-         .keys = {QKeySequence("Shift+K")},
-         .tip = tr("The targets are those of this frame; between keys they go from the one to the other"),
-         .trigger = [this] { hasTargetKey() ? removeTargetKey() : setTargetKey(); },
-         .enabled = open,
-         .checked = [this] { return hasTargetKey(); }});
+        menu, "targetKeyAction", tr("&Target key here"), "Shift+K",
+        tr("The targets are those of this frame; between keys they go from the one to the other"),
+        [this] { hasTargetKey() ? removeTargetKey() : setTargetKey(); }, open,
+        {.checked = [this] { return hasTargetKey(); }});
     const auto go = [&](const char* id, const QString& text, const char* keys, int direction) {
-        m_keyActions << actions.add({.id = id,
-                                     .menu = menu,
-                                     .text = text,
-                                     .keys = {QKeySequence(keys)},
-                                     .trigger = [this, direction] { goToKey(direction); },
-                                     .enabled = [this] { return m_player.hasSeries(); }});
+        m_keyActions << actions.add(
+            menu, id, text, keys, {}, [this, direction] { goToKey(direction); },
+            [this] { return m_player.hasSeries(); });
     };
     go("previousKeyAction", tr("Pre&vious key"), "Ctrl+,", -1);
     go("nextKeyAction", tr("Ne&xt key"), "Ctrl+.", 1);
     m_keyActions << actions.add(
-        {.id = "fromHereAction",
-         .menu = menu,
-         .text = tr("From this frame o&n"),
-         .tip = tr("This frame's transfer function is where those of all frames after it begin: later keys go"),
-         .trigger = [this] { fromHereOn(); },
-         .enabled = open});
+        menu, "fromHereAction", tr("From this frame o&n"), {},
+        tr("This frame's transfer function is where those of all frames after it begin: later keys go"),
+        [this] { fromHereOn(); }, open);
 }
 
 // ---- edits

@@ -24,7 +24,6 @@ class AdaptController : public QObject {
     Q_OBJECT
 public:
     AdaptController(Services& services, PlayerController& player);
-    ~AdaptController() override;
 
     void addActions();
     /// Key of the transfer function, of targets, previous key, next key, from here on.

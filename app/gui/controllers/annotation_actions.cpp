@@ -40,36 +40,27 @@ void addAnnotationActions(Services& services) {
     SessionStore& store = services.store();
     const QString menu = QObject::tr("&View") + "/" + QObject::tr("Frame of re&ference");
     const auto editable = [&services] { return services.isEditable(); };
-    services.actions().add({.id = "frameAction",
-                            .menu = menu,
-                            .text = QObject::tr("S&how frame of reference"),
-                            .keys = {QKeySequence("A")},
-                            .tip = QObject::tr("All that stands around the picture, on and off"),
-                            .trigger =
-                                [&store] {
-                                    store.edit(QObject::tr("Frame of reference"), {}, [](Session& session) {
-                                        session.reference.edit([](FrameOfReference& r) { r.on = !r.on; });
-                                    });
-                                },
-                            .enabled = editable,
-                            .checked = [&store] { return store.session().reference->on; }});
+    services.actions().add(menu, "frameAction", QObject::tr("S&how frame of reference"), "A",
+                           QObject::tr("All that stands around the picture, on and off"),
+                           [&store] {
+                               store.edit(QObject::tr("Frame of reference"), {}, [](Session& session) {
+                                   session.reference.edit([](FrameOfReference& r) { r.on = !r.on; });
+                               });
+                           },
+                           editable, {.checked = [&store] { return store.session().reference->on; }});
     for (const FramePartInfo& info : kFrameParts) {
         const auto [id, text, tip] = textsOf(info.part);
-        services.actions().add({.id = id,
-                                .menu = menu,
-                                .text = text,
-                                .tip = tip,
-                                .trigger =
-                                    [&store, name = QString(text).remove('&'), shown = info.shown] {
-                                        store.edit(name, {}, [&](Session& session) {
-                                            session.reference.edit([&](FrameOfReference& r) {
-                                                r.*shown = !(r.on && r.*shown);
-                                                r.on = true;
-                                            });
-                                        });
-                                    },
-                                .enabled = editable,
-                                .checked = [&store, shown = info.shown] { return (*store.session().reference).*shown; },
+        services.actions().add(menu, id, text, {}, tip,
+                               [&store, name = QString(text).remove('&'), shown = info.shown] {
+                                   store.edit(name, {}, [&](Session& session) {
+                                       session.reference.edit([&](FrameOfReference& r) {
+                                           r.*shown = !(r.on && r.*shown);
+                                           r.on = true;
+                                       });
+                                   });
+                               },
+                               editable,
+                               {.checked = [&store, shown = info.shown] { return (*store.session().reference).*shown; },
                                 .separatorBefore = info.part == FramePart::Cube});
     }
 }

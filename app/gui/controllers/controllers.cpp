@@ -7,28 +7,20 @@ namespace pellucid::gui {
 namespace {
 
 void addEditActions(Services& services) {
-    SessionStore& store = services.store();
-    const auto keys = [](auto... texts) { return QList<QKeySequence>{QKeySequence(texts)...}; };
+    const SessionStore& store = services.store();
+    const auto undoTip = [&store] {
+        return store.canUndo() ? QObject::tr("Undo: %1").arg(store.undoText()) : QObject::tr("Undo");
+    };
+    const auto redoTip = [&store] {
+        return store.canRedo() ? QObject::tr("Redo: %1").arg(store.redoText()) : QObject::tr("Redo");
+    };
     services.actions().add(
-        {.id = "undoAction",
-         .menu = QObject::tr("&Edit"),
-         .text = QObject::tr("&Undo"),
-         .keys = keys("Ctrl+Z"),
-         .trigger = [&services] { services.undo(); },
-         .enabled = [&services, &store] { return !services.isReadOnly() && store.canUndo(); },
-         .say =
-             [&store] { return store.canUndo() ? QObject::tr("Undo: %1").arg(store.undoText()) : QObject::tr("Undo"); },
-         .inToolBar = true});
+        QObject::tr("&Edit"), "undoAction", QObject::tr("&Undo"), "Ctrl+Z", {}, [&services] { services.undo(); },
+        [&services, &store] { return !services.isReadOnly() && store.canUndo(); }, {.say = undoTip, .inToolBar = true});
     services.actions().add(
-        {.id = "redoAction",
-         .menu = QObject::tr("&Edit"),
-         .text = QObject::tr("&Redo"),
-         .keys = keys("Ctrl+Shift+Z", "Ctrl+Y"),
-         .trigger = [&services] { services.redo(); },
-         .enabled = [&services, &store] { return !services.isReadOnly() && store.canRedo(); },
-         .say =
-             [&store] { return store.canRedo() ? QObject::tr("Redo: %1").arg(store.redoText()) : QObject::tr("Redo"); },
-         .inToolBar = true});
+        QObject::tr("&Edit"), "redoAction", QObject::tr("&Redo"), "Ctrl+Shift+Z; Ctrl+Y", {},
+        [&services] { services.redo(); }, [&services, &store] { return !services.isReadOnly() && store.canRedo(); },
+        {.say = redoTip, .inToolBar = true});
 }
 
 } // namespace

@@ -148,51 +148,36 @@ void FeatureActions::addColorActions() {
     for (const ColorMap& map : colorMaps()) {
         const ColorMap* const which = &map;
         QAction* const action = actions.add(
-            {.id = QStringLiteral("colorMap-") + QString::fromStdString(map.name),
-             .menu = colorMenu(),
-             .text = QString::fromStdString(map.title),
-             .tip = map.visionSafe
-                        ? QObject::tr("Colours by value; told apart by colour-blind eyes too. Opacities stay")
-                        : QObject::tr("Colours by value; opacities stay"),
-             .trigger =
-                 [&services, which, overFeatures] {
-                     tryEdit(services, QObject::tr("Colours: %1").arg(QString::fromStdString(which->name)),
-                             [&](const TransferFunction& tf) {
-                                 ColorMapOptions options;
-                                 options.overFeatures = *overFeatures;
-                                 return withColorMap(tf, *which, options);
-                             });
-                 },
-             .enabled = editable});
+            colorMenu(), QStringLiteral("colorMap-") + QString::fromStdString(map.name),
+            QString::fromStdString(map.title), {},
+            map.visionSafe ? QObject::tr("Colours by value; told apart by colour-blind eyes too. Opacities stay")
+                           : QObject::tr("Colours by value; opacities stay"),
+            [&services, which, overFeatures] {
+                tryEdit(services, QObject::tr("Colours: %1").arg(QString::fromStdString(which->name)),
+                        [&](const TransferFunction& tf) {
+                            ColorMapOptions options;
+                            options.overFeatures = *overFeatures;
+                            return withColorMap(tf, *which, options);
+                        });
+            },
+            editable);
         action->setIcon(colorStrip(map, kSwatch));
         action->setIconVisibleInMenu(true);
         m_maps << action;
     }
+    m_colors << actions.add(colorMenu(), "colorsOverFeatures", QObject::tr("&One colour per feature"), {},
+                            QObject::tr("The next map gives each feature one colour, in the order of their values,\n"
+                                        "instead of a colour to every value"),
+                            [overFeatures] { *overFeatures = !*overFeatures; }, editable,
+                            {.checked = [overFeatures] { return *overFeatures; }, .separatorBefore = true});
+    m_colors << actions.add(colorMenu(), "colorsReverse", QObject::tr("&Reverse"), {},
+                            QObject::tr("The colours end to end: those of high values to low ones. Opacities stay"),
+                            [&services] { tryEdit(services, QObject::tr("Reverse colours"), withColorsReversed); },
+                            editable, {.separatorBefore = true});
     m_colors << actions.add(
-        {.id = "colorsOverFeatures",
-         .menu = colorMenu(),
-         .text = QObject::tr("&One colour per feature"),
-         .tip = QObject::tr("The next map gives each feature one colour, in the order of their values,\n"
-                            "instead of a colour to every value"),
-         .trigger = [overFeatures] { *overFeatures = !*overFeatures; },
-         .enabled = editable,
-         .checked = [overFeatures] { return *overFeatures; },
-         .separatorBefore = true});
-    m_colors << actions.add(
-        {.id = "colorsReverse",
-         .menu = colorMenu(),
-         .text = QObject::tr("&Reverse"),
-         .tip = QObject::tr("The colours end to end: those of high values to low ones. Opacities stay"),
-         .trigger = [&services] { tryEdit(services, QObject::tr("Reverse colours"), withColorsReversed); },
-         .enabled = editable,
-         .separatorBefore = true});
-    m_colors << actions.add(
-        {.id = "colorsInvert",
-         .menu = colorMenu(),
-         .text = QObject::tr("&Invert"),
-         .tip = QObject::tr("Light colours become dark and dark ones light, of the same hue. Opacities stay"),
-         .trigger = [&services] { tryEdit(services, QObject::tr("Invert colours"), withColorsInverted); },
-         .enabled = editable});
+        colorMenu(), "colorsInvert", QObject::tr("&Invert"), {},
+        QObject::tr("Light colours become dark and dark ones light, of the same hue. Opacities stay"),
+        [&services] { tryEdit(services, QObject::tr("Invert colours"), withColorsInverted); }, editable);
 }
 
 void FeatureActions::addActions() {
@@ -200,94 +185,70 @@ void FeatureActions::addActions() {
     Actions& actions = services.actions();
     const auto editable = [&services] { return services.isEditable(); };
     const auto selected = [&services, editable] { return editable() && services.selectedFeature() >= 0; };
-    const auto keys = [](const char* text) { return QList<QKeySequence>{QKeySequence(text)}; };
 
     for (const ShapeText& shape : kShapes)
-        m_shapes << actions.add({.id = shape.id,
-                                 .menu = featureMenu() + "/" + QObject::tr("&Add"),
-                                 .text = QObject::tr(shape.text),
-                                 .tip = QObject::tr(shape.tip),
-                                 .trigger = [&services, kind = shape.kind] { addShape(services, kind); },
-                                 .enabled = editable});
-    const auto add = [&](const QString& id, const QString& text, const QList<QKeySequence>& key, const QString& tip,
-                         bool separator, std::function<void(int)> trigger) {
-        return actions.add({.id = id,
-                            .menu = featureMenu(),
-                            .text = text,
-                            .keys = key,
-                            .tip = tip,
-                            .trigger =
-                                [&services, trigger = std::move(trigger)] {
-                                    if (const int f = services.selectedFeature(); f >= 0) trigger(f);
-                                },
-                            .enabled = selected,
-                            .separatorBefore = separator});
+        m_shapes << actions.add(
+            featureMenu() + "/" + QObject::tr("&Add"), shape.id, QObject::tr(shape.text), {}, QObject::tr(shape.tip),
+            [&services, kind = shape.kind] { addShape(services, kind); }, editable);
+    const auto add = [&](const QString& id, const QString& text, const QString& key, const QString& tip, bool separator,
+                         std::function<void(int)> trigger) {
+        return actions.add(featureMenu(), id, text, key, tip,
+                           [&services, trigger = std::move(trigger)] {
+                               if (const int f = services.selectedFeature(); f >= 0) trigger(f);
+                           },
+                           selected, {.separatorBefore = separator});
     };
     m_shaping << add(
-        "featureSplit", QObject::tr("&Split"), keys("Ctrl+Shift+X"),
+        "featureSplit", QObject::tr("&Split"), "Ctrl+Shift+X",
         QObject::tr("Two features of the selected one: in the deepest valley of the histogram within it, else in its\n"
                     "middle; with the mouse over the curve, there. The picture stays but for the new one's colour"),
         true, [&services](int f) { split(services, f); });
     m_shaping << add(
-        "featureMerge", QObject::tr("&Merge with the next"), keys("Ctrl+Shift+M"),
+        "featureMerge", QObject::tr("&Merge with the next"), "Ctrl+Shift+M",
         QObject::tr("One feature of the selected one and the next by value (of the last one: the one before)"), false,
         [&services](int f) { merge(services, f); });
-    m_shaping << add("featureDuplicate", QObject::tr("&Duplicate"), keys("Ctrl+Shift+D"),
+    m_shaping << add("featureDuplicate", QObject::tr("&Duplicate"), "Ctrl+Shift+D",
                      QObject::tr("A copy in the nearest gap between features"), false, [&services](int f) {
                          tryAdd(services, QObject::tr("Duplicate feature"),
                                 [&](const TransferFunction& tf) { return withFeatureDuplicated(tf, f); });
                      });
-    m_shaping << add("featureRemove", QObject::tr("R&emove"), keys("Ctrl+Delete"),
+    m_shaping << add("featureRemove", QObject::tr("R&emove"), "Ctrl+Delete",
                      QObject::tr("Remove the selected feature, and what it makes opaque"), false,
                      [&services](int f) { remove(services, f); });
     for (const ShapeText& shape : kShapes)
         m_kinds << actions.add(
-            {.id = QStringLiteral("featureAs-") + QString::fromStdString(name(shape.kind)),
-             .menu = featureMenu() + "/" + QObject::tr("&Change to"),
-             .text = QObject::tr(shape.text),
-             .tip = QObject::tr("The same values, peak and colour in another shape"),
-             .trigger =
-                 [&services, kind = shape.kind] {
-                     const int f = services.selectedFeature();
-                     if (f >= 0)
-                         tryEdit(services, QObject::tr("Change shape"),
-                                 [&](const TransferFunction& tf) { return withFeatureKind(tf, f, kind); });
-                 },
-             .enabled = selected});
-    m_showing << actions.add(
-        {.id = "featureShow",
-         .menu = featureMenu(),
-         .text = QObject::tr("S&hown"),
-         .keys = keys("H"),
-         .tip = QObject::tr("The eye of the selected feature: hidden, it is neither drawn nor measured"),
-         .trigger =
-             [&services] {
-                 const int f = services.selectedFeature();
-                 if (f < 0) return;
-                 const bool hidden = services.scene().tf.features[static_cast<std::size_t>(f)].hidden;
-                 tryEdit(services, hidden ? QObject::tr("Show feature") : QObject::tr("Hide feature"),
-                         [&](const TransferFunction& tf) { return withFeatureHidden(tf, f, !hidden); });
-             },
-         .enabled = selected,
-         .checked =
-             [&services] {
-                 const int f = services.selectedFeature();
-                 return f < 0 || !services.scene().tf.features[static_cast<std::size_t>(f)].hidden;
-             },
-         .separatorBefore = true});
-    m_showing << actions.add(
-        {.id = "featureOnly",
-         .menu = featureMenu(),
-         .text = QObject::tr("&Draw only this"),
-         .keys = keys("Shift+H"),
-         .tip = QObject::tr("The picture shows the selected feature alone; figures stay those of all"),
-         .trigger = [this] { toggleOnly(m_services.selectedFeature()); },
-         .enabled = selected,
-         .checked =
-             [&services] {
-                 const int f = services.selectedFeature();
-                 return f >= 0 && services.scene().onlyFeature() == f;
-             }});
+            featureMenu() + "/" + QObject::tr("&Change to"),
+            QStringLiteral("featureAs-") + QString::fromStdString(name(shape.kind)), QObject::tr(shape.text), {},
+            QObject::tr("The same values, peak and colour in another shape"),
+            [&services, kind = shape.kind] {
+                const int f = services.selectedFeature();
+                if (f >= 0)
+                    tryEdit(services, QObject::tr("Change shape"),
+                            [&](const TransferFunction& tf) { return withFeatureKind(tf, f, kind); });
+            },
+            selected);
+    m_showing << actions.add(featureMenu(), "featureShow", QObject::tr("S&hown"), "H",
+                             QObject::tr("The eye of the selected feature: hidden, it is neither drawn nor measured"),
+                             [&services] {
+                                 const int f = services.selectedFeature();
+                                 if (f < 0) return;
+                                 const bool hidden = services.scene().tf.features[static_cast<std::size_t>(f)].hidden;
+                                 tryEdit(services, hidden ? QObject::tr("Show feature") : QObject::tr("Hide feature"),
+                                         [&](const TransferFunction& tf) { return withFeatureHidden(tf, f, !hidden); });
+                             },
+                             selected,
+                             {.checked =
+                                  [&services] {
+                                      const int f = services.selectedFeature();
+                                      return f < 0 || !services.scene().tf.features[static_cast<std::size_t>(f)].hidden;
+                                  },
+                              .separatorBefore = true});
+    m_showing << actions.add(featureMenu(), "featureOnly", QObject::tr("&Draw only this"), "Shift+H",
+                             QObject::tr("The picture shows the selected feature alone; figures stay those of all"),
+                             [this] { toggleOnly(m_services.selectedFeature()); }, selected, {.checked = [&services] {
+                                 const int f = services.selectedFeature();
+                                 return f >= 0 && services.scene().onlyFeature() == f;
+                             }});
     m_showing << add("featureHideOthers", QObject::tr("Hide &others"), {},
                      QObject::tr("Close the eyes of all other features: picture and figures are of this one"), false,
                      [&services](int f) {
@@ -295,17 +256,13 @@ void FeatureActions::addActions() {
                                  [&](const TransferFunction& tf) { return withOthersHidden(tf, f); });
                      });
     m_showing << actions.add(
-        {.id = "featureShowAll",
-         .menu = featureMenu(),
-         .text = QObject::tr("Show &all"),
-         .tip = QObject::tr("Open the eyes of all features"),
-         .trigger = [&services] { tryEdit(services, QObject::tr("Show all features"), withAllShown); },
-         .enabled =
-             [&services, editable] {
-                 const auto& features = services.scene().tf.features;
-                 return editable() &&
-                        std::any_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; });
-             }});
+        featureMenu(), "featureShowAll", QObject::tr("Show &all"), {}, QObject::tr("Open the eyes of all features"),
+        [&services] { tryEdit(services, QObject::tr("Show all features"), withAllShown); },
+        [&services, editable] {
+            const auto& features = services.scene().tf.features;
+            return editable() &&
+                   std::any_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; });
+        });
     addColorActions();
 
     QObject::connect(&services.selection(), &Selection::featureChanged, &actions, &Actions::refresh);

@@ -56,8 +56,6 @@ FieldController::FieldController(Services& services)
             [this](const Error& error) { m_services.showError(tr("Cannot save the field"), error); });
 }
 
-FieldController::~FieldController() = default;
-
 FieldController::Request FieldController::requestOf(const Scene& scene) {
     return {fieldInput(scene), *scene.session.field->kind, scene.fieldFeature()};
 }
@@ -176,31 +174,20 @@ void FieldController::addActions() {
     SessionStore& store = m_services.store();
     const auto open = [this, &store] { return m_services.isEditable(); };
     const QString menu = tr("&View") + "/" + tr("F&ield");
-    actions.add(
-        {.id = "fieldAction",
-         .menu = menu,
-         .text = tr("&Show a field"),
-         .keys = {QKeySequence("V")},
-         .tip = tr("What each voxel contributes in the place of the data, and back"),
-         .trigger = [this, &store] { show(store.session().field->kind ? std::nullopt : std::optional(m_lastKind)); },
-         .enabled = open,
-         .checked = [&store] { return store.session().field->kind.has_value(); }});
+    actions.add(menu, "fieldAction", tr("&Show a field"), "V",
+                tr("What each voxel contributes in the place of the data, and back"),
+                [this, &store] { show(store.session().field->kind ? std::nullopt : std::optional(m_lastKind)); }, open,
+                {.checked = [&store] { return store.session().field->kind.has_value(); }});
     bool first = true;
     for (const FieldKind kind : allOf<FieldKind>())
-        actions.add({.id = QStringLiteral("field_%1").arg(QString::fromStdString(fileStem(kind))),
-                     .menu = menu,
-                     .text = QString::fromLatin1(title(kind)),
-                     .trigger = [this, kind] { show(kind); },
-                     .enabled = open,
-                     .checked = [&store, kind] { return store.session().field->kind == kind; },
+        actions.add(menu, QStringLiteral("field_%1").arg(QString::fromStdString(fileStem(kind))),
+                    QString::fromLatin1(title(kind)), {}, {}, [this, kind] { show(kind); }, open,
+                    {.checked = [&store, kind] { return store.session().field->kind == kind; },
                      .separatorBefore = std::exchange(first, false)});
-    actions.add({.id = "saveFieldAction",
-                 .menu = menu,
-                 .text = tr("Save &field…"),
-                 .tip = tr("The values of the field that is shown, as NRRD file on the grid of the data"),
-                 .trigger = [this] { chooseFile(); },
-                 .enabled = [this] { return m_state == State::Current; },
-                 .separatorBefore = true});
+    actions.add(
+        menu, "saveFieldAction", tr("Save &field…"), {},
+        tr("The values of the field that is shown, as NRRD file on the grid of the data"), [this] { chooseFile(); },
+        [this] { return m_state == State::Current; }, {.separatorBefore = true});
 }
 
 } // namespace pellucid::gui

@@ -28,7 +28,6 @@ public:
     };
 
     explicit FieldController(Services& services);
-    ~FieldController() override;
 
     void addActions();
 

@@ -45,27 +45,20 @@ LiveController::LiveController(Services& services, OptimizeController& optimizin
     connect(&m_job, &JobBase::busyChanged, this, &LiveController::busyChanged);
 }
 
-LiveController::~LiveController() = default;
-
 void LiveController::addActions() {
     m_action = m_services.actions().add(
-        {.id = "liveTargetsAction",
-         .menu = tr("&Transfer function"),
-         .text = tr("Hold targets &live"),
-         .keys = {QKeySequence("Ctrl+Shift+L")},
-         .tip = tr("Opacities follow while the view turns or a colour changes, so that VWS stays on the targets"),
-         .trigger =
-             [this] {
-                 const bool on = !isOn();
-                 m_services.store().edit(on ? tr("Live targets") : tr("Live targets off"), {}, [on](Session& session) {
-                     session.holdTargets = on;
-                     if (!on) return;
-                     session.refine.edit([](RefineSettings& r) { r.live = false; }); // all of them set opacities
-                     session.adapt.edit([](AdaptSettings& a) { a.mode = AdaptSettings::Mode::Static; });
-                 });
-             },
-         .enabled = [this] { return m_services.isEditable(); },
-         .checked = [this] { return isOn(); }});
+        tr("&Transfer function"), "liveTargetsAction", tr("Hold targets &live"), "Ctrl+Shift+L",
+        tr("Opacities follow while the view turns or a colour changes, so that VWS stays on the targets"),
+        [this] {
+            const bool on = !isOn();
+            m_services.store().edit(on ? tr("Live targets") : tr("Live targets off"), {}, [on](Session& session) {
+                session.holdTargets = on;
+                if (!on) return;
+                session.refine.edit([](RefineSettings& r) { r.live = false; }); // all of them set opacities
+                session.adapt.edit([](AdaptSettings& a) { a.mode = AdaptSettings::Mode::Static; });
+            });
+        },
+        [this] { return m_services.isEditable(); }, {.checked = [this] { return isOn(); }});
     connect(&m_optimizing, &OptimizeController::runningChanged, this, [this] {
         if (m_optimizing.isRunning())
             stop();

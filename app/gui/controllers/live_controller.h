@@ -25,7 +25,6 @@ class LiveController : public QObject {
     Q_OBJECT
 public:
     LiveController(Services& services, OptimizeController& optimizing);
-    ~LiveController() override;
 
     void addActions();
     QAction* action() const { return m_action; } ///< on and off

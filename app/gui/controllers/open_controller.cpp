@@ -104,70 +104,48 @@ OpenController::OpenController(Services& services, SaveController& saving)
     });
 }
 
-OpenController::~OpenController() = default;
-
 void OpenController::addActions() {
     Actions& actions = m_services.actions();
     const QString menu = tr("&File");
-    const auto add = [&](const QString& id, const QString& where, const QString& text, const QList<QKeySequence>& keys,
-                         const QString& tip, std::function<void()> trigger, std::function<bool()> enabled = {}) {
-        return ActionSpec{.id = id,
-                          .menu = where,
-                          .text = text,
-                          .keys = keys,
-                          .tip = tip,
-                          .trigger = std::move(trigger),
-                          .enabled = std::move(enabled)};
-    };
-    ActionSpec open = add("openAction", menu, tr("&Open…"), {QKeySequence("Ctrl+O")},
-                          tr("Open a volume, a session or a transfer function"), [this] { chooseVolume(); });
-    open.inToolBar = true;
-    actions.add(open);
-    actions.add(add("openSeriesAction", menu, tr("Open s&eries…"), {QKeySequence("Ctrl+Alt+O")},
-                    tr("Time steps: a folder, files by a pattern, or some of them"), [this] { chooseSeries(); }));
-    actions.add(add("openRawAction", menu, tr("Open ra&w data…"), {},
-                    tr("A file without a header: you say how its bytes lie"), [this] { chooseRaw(); }));
-    ActionSpec clearRecent = add("clearRecentAction", recentMenuName(), tr("&Clear this list"), {}, {}, [this] {
+    actions.add(menu, "openAction", tr("&Open…"), "Ctrl+O", tr("Open a volume, a session or a transfer function"),
+                [this] { chooseVolume(); }, {}, {.inToolBar = true});
+    actions.add(menu, "openSeriesAction", tr("Open s&eries…"), "Ctrl+Alt+O",
+                tr("Time steps: a folder, files by a pattern, or some of them"), [this] { chooseSeries(); });
+    actions.add(menu, "openRawAction", tr("Open ra&w data…"), {},
+                tr("A file without a header: you say how its bytes lie"), [this] { chooseRaw(); });
+    m_clearRecent = actions.add(recentMenuName(), "clearRecentAction", tr("&Clear this list"), {}, {}, [this] {
         QSettings().remove(kRecentKey);
         updateRecentFiles();
     });
-    m_clearRecent = actions.add(clearRecent);
     for (const SampleInfo& sample : samples()) {
         const QString name = QString::fromStdString(sample.name);
-        actions.add(add("sample_" + name, menu + "/" + tr("&Samples"),
-                        QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)) +
-                            (sample.frames > 1 ? tr(", %L1 frames").arg(sample.frames) : QString()),
-                        {}, {}, [this, name] {
-                            VolumeSource source;
-                            source.path = "sample:" + name.toStdString();
-                            if (m_saving.maybeSave()) openVolume(source);
-                        }));
+        actions.add(menu + "/" + tr("&Samples"), "sample_" + name,
+                    QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)) +
+                        (sample.frames > 1 ? tr(", %L1 frames").arg(sample.frames) : QString()),
+                    {}, {}, [this, name] {
+                        VolumeSource source;
+                        source.path = "sample:" + name.toStdString();
+                        if (m_saving.maybeSave()) openVolume(source);
+                    });
     }
-    ActionSpec openTf = add(
-        "openTfAction", menu, tr("Open &transfer function…"), {QKeySequence("Ctrl+Shift+O")}, {},
-        [this] { chooseTf(); }, [this] { return m_services.isEditable(); });
-    openTf.separatorBefore = true;
-    actions.add(openTf);
-    ActionSpec region = add(
-        "regionAction", menu, tr("Re&gion at full resolution"), {},
+    actions.add(
+        menu, "openTfAction", tr("Open &transfer function…"), "Ctrl+Shift+O", {}, [this] { chooseTf(); },
+        [this] { return m_services.isEditable(); }, {.separatorBefore = true});
+    actions.add(
+        menu, "regionAction", tr("Re&gion at full resolution"), {},
         tr("What the clipping box leaves of a volume that was too large for memory, in all its voxels"),
         [this] { openRegion(); },
         [this] {
-            const SessionStore& store = m_services.store();
             if (!m_services.isEditable()) return false;
-            const Clipping& clipping = *store.session().clipping;
-            const auto& excerpt = store.scene().volume->excerpt;
+            const Clipping& clipping = *m_services.scene().session.clipping;
+            const auto& excerpt = m_services.scene().volume->excerpt;
             return excerpt && excerpt->factor > 1 && (clipping.lo != Vec3(0) || clipping.hi != Vec3(1));
-        });
-    region.separatorBefore = true;
-    actions.add(region);
-    actions.add(add(
-        "wholeVolumeAction", menu, tr("W&hole volume"), {}, tr("All of the data, as fine as memory allows"),
+        },
+        {.separatorBefore = true});
+    actions.add(
+        menu, "wholeVolumeAction", tr("W&hole volume"), {}, tr("All of the data, as fine as memory allows"),
         [this] { openWhole(); },
-        [this] {
-            const SessionStore& store = m_services.store();
-            return m_services.isEditable() && store.session().variable().source.region.has_value();
-        }));
+        [this] { return m_services.isEditable() && m_services.scene().session.variable().source.region.has_value(); });
 }
 
 // ---- opening

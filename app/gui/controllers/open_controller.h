@@ -21,7 +21,6 @@ class OpenController : public QObject {
     Q_OBJECT
 public:
     OpenController(Services& services, SaveController& saving);
-    ~OpenController() override;
 
     void addActions();
     /// Fills the menu of recent files; after the menus have been built.

@@ -105,16 +105,9 @@ OptimizeController::~OptimizeController() { ++m_number; }
 
 void OptimizeController::addActions() {
     m_services.actions().add(
-        {.id = "optimizeAction",
-         .menu = tr("&Transfer function"),
-         .text = tr("&Optimize to the targets"),
-         .keys = {QKeySequence("Ctrl+Return")},
-         .tip = tr("Opacities until the features' saliency (VWS) meets the targets, from this camera"),
-         .trigger = [this] { start(); },
-         .enabled =
-             [this] {
-                 return m_services.store().hasVolume() && !isRunning() && !m_services.scene().tf.features.empty();
-             }});
+        tr("&Transfer function"), "optimizeAction", tr("&Optimize to the targets"), "Ctrl+Return",
+        tr("Opacities until the features' saliency (VWS) meets the targets, from this camera"), [this] { start(); },
+        [this] { return m_services.store().hasVolume() && !isRunning() && !m_services.scene().tf.features.empty(); });
 }
 
 OptimizeController::About OptimizeController::present() const {

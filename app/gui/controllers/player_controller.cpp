@@ -37,50 +37,29 @@ PlayerController::PlayerController(Services& services, OpenController& opening)
     m_sinceStart.start();
 }
 
-PlayerController::~PlayerController() = default;
-
 void PlayerController::addActions() {
     const QString menu = tr("T&ime");
     Actions& actions = m_services.actions();
     const auto series = [this] { return hasSeries(); };
-    const auto add = [&](const char* id, const QString& text, const char* keys, const QString& tip,
-                         std::function<void()> trigger) {
-        return actions.add({.id = id,
-                            .menu = menu,
-                            .text = text,
-                            .keys = {QKeySequence(keys)},
-                            .tip = tip,
-                            .trigger = std::move(trigger),
-                            .enabled = series});
-    };
-    m_actions.play = actions.add({.id = "playAction",
-                                  .menu = menu,
-                                  .text = tr("&Play"),
-                                  .keys = {QKeySequence("Space")},
-                                  .tip = tr("Play the frames of the series, or pause"),
-                                  .trigger = [this] { m_playing ? pause() : play(); },
-                                  .enabled = series,
-                                  .caption = [this] { return m_playing ? tr("&Pause") : tr("&Play"); }});
-    m_actions.next = add("nextFrameAction", tr("&Next frame"), ".", tr("One frame forward"), [this] { step(1); });
-    m_actions.previous =
-        add("previousFrameAction", tr("P&revious frame"), ",", tr("One frame back"), [this] { step(-1); });
-    m_actions.first = add("firstFrameAction", tr("&First frame"), "Ctrl+Home", {}, [this] { goTo(goodFrame(0, 1)); });
-    m_actions.last =
-        add("lastFrameAction", tr("&Last frame"), "Ctrl+End", {}, [this] { goTo(goodFrame(frameCount() - 1, -1)); });
-    m_actions.loops = actions.add({.id = "loopAction",
-                                   .menu = menu,
-                                   .text = tr("L&oop"),
-                                   .tip = tr("After the last frame the first one plays again"),
-                                   .trigger = [this] { setLoops(!m_loops); },
-                                   .enabled = series,
-                                   .checked = [this] { return m_loops; },
-                                   .separatorBefore = true});
-    m_actions.backward = actions.add({.id = "backwardAction",
-                                      .menu = menu,
-                                      .text = tr("Play &backward"),
-                                      .trigger = [this] { setBackward(!m_backward); },
-                                      .enabled = series,
-                                      .checked = [this] { return m_backward; }});
+    m_actions.play =
+        actions.add(menu, "playAction", tr("&Play"), "Space", tr("Play the frames of the series, or pause"),
+                    [this] { m_playing ? pause() : play(); }, series,
+                    {.caption = [this] { return m_playing ? tr("&Pause") : tr("&Play"); }});
+    m_actions.next = actions.add(
+        menu, "nextFrameAction", tr("&Next frame"), ".", tr("One frame forward"), [this] { step(1); }, series);
+    m_actions.previous = actions.add(
+        menu, "previousFrameAction", tr("P&revious frame"), ",", tr("One frame back"), [this] { step(-1); }, series);
+    m_actions.first = actions.add(
+        menu, "firstFrameAction", tr("&First frame"), "Ctrl+Home", {}, [this] { goTo(goodFrame(0, 1)); }, series);
+    m_actions.last = actions.add(
+        menu, "lastFrameAction", tr("&Last frame"), "Ctrl+End", {}, [this] { goTo(goodFrame(frameCount() - 1, -1)); },
+        series);
+    m_actions.loops = actions.add(menu, "loopAction", tr("L&oop"), {},
+                                  tr("After the last frame the first one plays again"), [this] { setLoops(!m_loops); },
+                                  series, {.checked = [this] { return m_loops; }, .separatorBefore = true});
+    m_actions.backward =
+        actions.add(menu, "backwardAction", tr("Play &backward"), {}, {}, [this] { setBackward(!m_backward); }, series,
+                    {.checked = [this] { return m_backward; }});
     connect(this, &PlayerController::changed, &actions, [this, was = false]() mutable {
         if (std::exchange(was, m_playing) != m_playing) m_services.actions().refresh();
     });

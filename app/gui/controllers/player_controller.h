@@ -34,7 +34,6 @@ public:
     static constexpr double kSlowest = 1, kFastest = 60; ///< frames a second
 
     PlayerController(Services& services, OpenController& opening);
-    ~PlayerController() override;
 
     void addActions();
     const PlayerActions& actions() const { return m_actions; }

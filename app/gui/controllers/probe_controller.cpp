@@ -31,14 +31,9 @@ ProbeController::ProbeController(Services& services) : m_services(services) {
 
 void ProbeController::addActions() {
     const auto add = [this](const char* id, const QString& text, const char* keys, const QString& tip, bool more) {
-        m_services.actions().add({.id = id,
-                                  .menu = tr("&Transfer function"),
-                                  .text = text,
-                                  .keys = {QKeySequence(keys)},
-                                  .tip = tip,
-                                  .trigger = [this, more] { emphasize(more); },
-                                  .enabled = [this] { return canEmphasize(); },
-                                  .separatorBefore = more});
+        m_services.actions().add(
+            tr("&Transfer function"), id, text, keys, tip, [this, more] { emphasize(more); },
+            [this] { return canEmphasize(); }, {.separatorBefore = more});
     };
     add("moreOfThisAction", tr("&More of this"), "Ctrl+]",
         tr("Raises the opacity of the feature under the probe and lowers that of what hides it there"), true);

@@ -37,8 +37,6 @@ RecoveryController::RecoveryController(Services& services, OpenController& openi
     });
 }
 
-RecoveryController::~RecoveryController() = default;
-
 QString RecoveryController::folder() {
     return QDir(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)).filePath("recovery");
 }

@@ -21,7 +21,6 @@ class RecoveryController : public QObject {
     Q_OBJECT
 public:
     RecoveryController(Services& services, OpenController& opening, SaveController& saving);
-    ~RecoveryController() override;
 
     /// Where recovery files lie for this user.
     static QString folder();

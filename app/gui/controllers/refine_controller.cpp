@@ -110,40 +110,25 @@ void RefineController::addActions() {
     Actions& actions = m_services.actions();
     const auto ready = [this] { return m_services.isEditable(); };
     const auto settings = [this]() -> const RefineSettings& { return *m_services.store().session().refine; };
-    m_actions.refine = actions.add(
-        {.id = "refineAction",
-         .menu = menu,
-         .text = tr("&Refine by entropy"),
-         .keys = {QKeySequence("Ctrl+R")},
-         .tip = tr("Opacities by entropy: values that are common get less, rare ones more; with a priority, "
-                   "what is like it gets more"),
-         .trigger = [this] { refine(); },
-         .enabled = ready,
-         .separatorBefore = true});
-    m_actions.live = actions.add(
-        {.id = "liveRefineAction",
-         .menu = menu,
-         .text = tr("Refine &live"),
-         .tip = tr("Refine after every edit; what you move stays where you put it, the other points give way"),
-         .trigger =
-             [this] {
-                 m_services.store().edit(tr("Live refinement"), {}, [](Session& session) {
-                     session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
-                     if (session.refine->live) session.holdTargets = false; // both set opacities
-                 });
-             },
-         .enabled = ready,
-         .checked = [settings] { return settings().live; }});
+    m_actions.refine =
+        actions.add(menu, "refineAction", tr("&Refine by entropy"), "Ctrl+R",
+                    tr("Opacities by entropy: values that are common get less, rare ones more; with a priority, "
+                       "what is like it gets more"),
+                    [this] { refine(); }, ready, {.separatorBefore = true});
+    m_actions.live =
+        actions.add(menu, "liveRefineAction", tr("Refine &live"), {},
+                    tr("Refine after every edit; what you move stays where you put it, the other points give way"),
+                    [this] {
+                        m_services.store().edit(tr("Live refinement"), {}, [](Session& session) {
+                            session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
+                            if (session.refine->live) session.holdTargets = false; // both set opacities
+                        });
+                    },
+                    ready, {.checked = [settings] { return settings().live; }});
     const auto select = [&](const char* id, const QString& text, const char* keys, const QString& tip, Selecting what) {
-        return actions.add({.id = id,
-                            .menu = menu,
-                            .text = text,
-                            .keys = {QKeySequence(keys)},
-                            .tip = tip,
-                            .trigger = [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); },
-                            .enabled = ready,
-                            .checked = [this, what] { return m_selecting == what; },
-                            .inToolBar = true});
+        return actions.add(menu, id, text, keys, tip,
+                           [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); }, ready,
+                           {.checked = [this, what] { return m_selecting == what; }, .inToolBar = true});
     };
     m_actions.rectangle =
         select("rectangleAction", tr("Select re&ctangle"), "Shift+R",
@@ -154,26 +139,17 @@ void RefineController::addActions() {
                tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
                Selecting::Lasso);
     m_actions.nothing = actions.add(
-        {.id = "prioritizeNothingAction",
-         .menu = menu,
-         .text = tr("Prioritize &nothing"),
-         .tip = tr("Forget the intensity or region that refinement brings out; opacities stay"),
-         .trigger = [this] { prioritizeNothing(); },
-         .enabled = [this,
-                     settings] { return m_services.isEditable() && (settings().intensity || settings().region); }});
-    m_actions.ghost = actions.add({.id = "ghostAction",
-                                   .menu = menu,
-                                   .text = tr("&Ghost of the curve before"),
-                                   .tip = tr("Behind the curve: what it was before the latest refinement"),
-                                   .trigger = [this] { setGhostShown(!m_ghost); },
-                                   .checked = [this] { return m_ghost; }});
-    m_actions.pair =
-        actions.add({.id = "sideBySideAction",
-                     .menu = menu,
-                     .text = tr("Before and after, side by &side…"),
-                     .tip = tr("The picture before and after the latest refinement, from the present camera"),
-                     .trigger = [this] { Q_EMIT pairWanted(); },
-                     .enabled = [this] { return m_services.store().hasVolume() && latest() != nullptr; }});
+        menu, "prioritizeNothingAction", tr("Prioritize &nothing"), {},
+        tr("Forget the intensity or region that refinement brings out; opacities stay"),
+        [this] { prioritizeNothing(); },
+        [this, settings] { return m_services.isEditable() && (settings().intensity || settings().region); });
+    m_actions.ghost = actions.add(menu, "ghostAction", tr("&Ghost of the curve before"), {},
+                                  tr("Behind the curve: what it was before the latest refinement"),
+                                  [this] { setGhostShown(!m_ghost); }, {}, {.checked = [this] { return m_ghost; }});
+    m_actions.pair = actions.add(
+        menu, "sideBySideAction", tr("Before and after, side by &side…"), {},
+        tr("The picture before and after the latest refinement, from the present camera"),
+        [this] { Q_EMIT pairWanted(); }, [this] { return m_services.store().hasVolume() && latest() != nullptr; });
     connect(this, &RefineController::refined, &actions, &Actions::refresh);
     connect(this, &RefineController::selectingChanged, &actions, &Actions::refresh);
     const QString volume = tr("Volume");

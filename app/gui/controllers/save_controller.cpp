@@ -66,43 +66,30 @@ SaveController::SaveController(Services& services, FieldController& fields)
             [this](const Error& error) { m_services.showError(tr("Cannot save the image"), error); });
 }
 
-SaveController::~SaveController() = default;
-
 void SaveController::addActions() {
     const QString menu = tr("&File");
     const auto open = [this] { return m_services.store().hasVolume(); };
-    const auto add = [&](const QString& id, const QString& text, const QList<QKeySequence>& keys, const QString& tip,
+    const auto add = [&](const QString& id, const QString& text, const QString& keys, const QString& tip,
                          bool separator, bool toolBar, std::function<void()> trigger) {
-        m_services.actions().add({.id = id,
-                                  .menu = menu,
-                                  .text = text,
-                                  .keys = keys,
-                                  .tip = tip,
-                                  .trigger = std::move(trigger),
-                                  .enabled = open,
-                                  .separatorBefore = separator,
-                                  .inToolBar = toolBar});
+        m_services.actions().add(menu, id, text, keys, tip, std::move(trigger), open,
+                                 {.separatorBefore = separator, .inToolBar = toolBar});
     };
-    add("saveSessionAction", tr("&Save session"), {QKeySequence("Ctrl+S")},
+    add("saveSessionAction", tr("&Save session"), "Ctrl+S",
         tr("Everything that you have set, with the name of the data, to go on from later"), true, false,
         [this] { chooseSession(false); });
-    add("saveSessionAsAction", tr("Save session &as…"), {QKeySequence("Ctrl+Shift+S")}, {}, false, false,
+    add("saveSessionAsAction", tr("Save session &as…"), "Ctrl+Shift+S", {}, false, false,
         [this] { chooseSession(true); });
-    add("saveTfAction", tr("Sa&ve transfer function"), {QKeySequence("Ctrl+T")}, {}, true, false,
-        [this] { chooseTf(false); });
-    add("saveTfAsAction", tr("Save transfer f&unction as…"), {QKeySequence("Ctrl+Shift+T")}, {}, false, false,
+    add("saveTfAction", tr("Sa&ve transfer function"), "Ctrl+T", {}, true, false, [this] { chooseTf(false); });
+    add("saveTfAsAction", tr("Save transfer f&unction as…"), "Ctrl+Shift+T", {}, false, false,
         [this] { chooseTf(true); });
-    add("saveImageAction", tr("Save &image…"), {QKeySequence("Ctrl+E")}, tr("Save the picture"), true, true,
-        [this] { chooseImage(); });
-    m_services.actions().add({.id = "saveReportAction",
-                              .menu = menu,
-                              .text = tr("Save &report of the last run…"),
-                              .tip = tr("One page about the latest optimization: pictures, bars, curves, settings"),
-                              .trigger =
-                                  [this] {
-                                      if (const Run* run = latestRun()) chooseReport(*run);
-                                  },
-                              .enabled = [this] { return latestRun() != nullptr && !m_services.isReadOnly(); }});
+    add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture"), true, true, [this] { chooseImage(); });
+    m_services.actions().add(
+        menu, "saveReportAction", tr("Save &report of the last run…"), {},
+        tr("One page about the latest optimization: pictures, bars, curves, settings"),
+        [this] {
+            if (const Run* run = latestRun()) chooseReport(*run);
+        },
+        [this] { return latestRun() != nullptr && !m_services.isReadOnly(); });
     connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (!before.session.runs.isSame(after.session.runs)) m_services.actions().refresh();
     });

@@ -16,7 +16,6 @@ class SaveController : public QObject {
     Q_OBJECT
 public:
     SaveController(Services& services, FieldController& fields);
-    ~SaveController() override;
 
     void addActions();
 

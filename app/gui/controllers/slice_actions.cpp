@@ -70,30 +70,22 @@ void addSliceActions(Services& services) {
     int key = 1;
     for (const Texts& t : layouts)
         actions
-            .add({.id = t.id,
-                  .menu = menu,
-                  .text = t.text,
-                  .keys = {QKeySequence(QStringLiteral("Ctrl+Shift+%1").arg(key++))},
-                  .tip = t.tip,
-                  .trigger = [&store, layout = t.layout] { setLayout(store, layout); },
-                  .enabled = editable,
-                  .checked = [&store, layout = t.layout] { return store.session().slices->layout == layout; },
+            .add(menu, t.id, t.text, QStringLiteral("Ctrl+Shift+%1").arg(key++), t.tip,
+                 [&store, layout = t.layout] { setLayout(store, layout); }, editable,
+                 {.checked = [&store, layout = t.layout] { return store.session().slices->layout == layout; },
                   .inToolBar = true})
             ->setIcon(iconOf(t.layout));
-    actions.add({.id = "centreCrosshairAction",
-                 .menu = menu,
-                 .text = QObject::tr("&Crosshair to the middle"),
-                 .tip = QObject::tr("The slices through the middle of the volume"),
-                 .trigger = [&store] { moveCrosshair(store, Vec3(store.scene().volume->dims() / 2)); },
-                 .enabled = [&store] { return store.hasVolume(); },
-                 .separatorBefore = true});
-    actions.add({.id = "resetGreyWindowAction",
-                 .menu = menu,
-                 .text = QObject::tr("&Reset the window of grey"),
-                 .tip = QObject::tr("Black and white of the slices at the ends of the range of values, as the transfer "
-                                    "function has it"),
-                 .trigger = [&store] { resetGreyWindow(store); },
-                 .enabled = [&store, editable] { return editable() && store.session().slices->window.has_value(); }});
+    actions.add(
+        menu, "centreCrosshairAction", QObject::tr("&Crosshair to the middle"), {},
+        QObject::tr("The slices through the middle of the volume"),
+        [&store] { moveCrosshair(store, Vec3(store.scene().volume->dims() / 2)); },
+        [&store] { return store.hasVolume(); }, {.separatorBefore = true});
+    actions.add(
+        menu, "resetGreyWindowAction", QObject::tr("&Reset the window of grey"), {},
+        QObject::tr("Black and white of the slices at the ends of the range of values, as the transfer "
+                    "function has it"),
+        [&store] { resetGreyWindow(store); },
+        [&store, editable] { return editable() && store.session().slices->window.has_value(); });
     const QString slices = QObject::tr("Slices");
     actions.addGestures(
         {{slices, QObject::tr("Left drag"), QObject::tr("move the crosshair")},

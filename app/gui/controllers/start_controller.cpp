@@ -75,15 +75,11 @@ StartController::StartController(Services& services, OpenController& opening)
             [this](const Error& error) { m_services.showError(tr("Automatic start failed"), error); });
 }
 
-StartController::~StartController() = default;
-
 void StartController::addActions() {
-    m_services.actions().add({.id = "automaticStartAction",
-                              .menu = tr("&Transfer function"),
-                              .text = tr("&Automatic start"),
-                              .tip = tr("Window and features from the data, opacities for this view"),
-                              .trigger = [this] { startAgain(); },
-                              .enabled = [this] { return m_services.isEditable(); }});
+    m_services.actions().add(
+        tr("&Transfer function"), "automaticStartAction", tr("&Automatic start"), {},
+        tr("Window and features from the data, opacities for this view"), [this] { startAgain(); },
+        [this] { return m_services.isEditable(); });
 }
 
 void StartController::follow() {

@@ -17,7 +17,6 @@ class StartController : public QObject {
     Q_OBJECT
 public:
     StartController(Services& services, OpenController& opening);
-    ~StartController() override;
 
     void addActions();
     /// Once more, from the present data and view: one step.

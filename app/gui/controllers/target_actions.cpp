@@ -74,8 +74,7 @@ void TargetActions::addActions() {
         return editable() && f >= 0 && !services.scene().wantedTf().features[static_cast<std::size_t>(f)].hidden;
     };
     const auto add = [&](const char* id, const QString& text, const QString& tip, auto trigger, auto enabled) {
-        m_entries << actions.add(
-            {.id = id, .menu = targetMenu(), .text = text, .tip = tip, .trigger = trigger, .enabled = enabled});
+        m_entries << actions.add(targetMenu(), id, text, {}, tip, trigger, enabled);
     };
     add(
         "targetsEqual", QObject::tr("&Equal"), QObject::tr("The same share for each feature; locked targets stay"),
@@ -115,23 +114,19 @@ void TargetActions::addActions() {
     auto* const gap = new QAction(&actions);
     gap->setSeparator(true);
     m_entries << gap;
-    m_entries << actions.add(
-        {.id = "targetLock",
-         .menu = targetMenu(),
-         .text = QObject::tr("&Lock target"),
-         .tip = QObject::tr("The selected feature's target stays where others are set (L in the bars)"),
-         .trigger =
-             [&services, goalOf] {
-                 const int f = services.selectedFeature();
-                 if (f >= 0) setTargetLocked(services.store(), f, !goalOf(f).targetLocked);
-             },
-         .enabled = selected,
-         .checked =
-             [&services, goalOf] {
-                 const int f = services.selectedFeature();
-                 return f >= 0 && goalOf(f).targetLocked;
-             },
-         .separatorBefore = true});
+    m_entries << actions.add(targetMenu(), "targetLock", QObject::tr("&Lock target"), {},
+                             QObject::tr("The selected feature's target stays where others are set (L in the bars)"),
+                             [&services, goalOf] {
+                                 const int f = services.selectedFeature();
+                                 if (f >= 0) setTargetLocked(services.store(), f, !goalOf(f).targetLocked);
+                             },
+                             selected,
+                             {.checked =
+                                  [&services, goalOf] {
+                                      const int f = services.selectedFeature();
+                                      return f >= 0 && goalOf(f).targetLocked;
+                                  },
+                              .separatorBefore = true});
     add(
         "targetsUnlock", QObject::tr("&Unlock all"), QObject::tr("No target is locked; shares stay as they are"),
         [&services] {
@@ -144,36 +139,31 @@ void TargetActions::addActions() {
         },
         editable);
     const QString menu = QObject::tr("&Transfer function") + "/" + QObject::tr("Feat&ure");
-    m_limits << actions.add({.id = "opacityLock",
-                             .menu = menu,
-                             .text = QObject::tr("Loc&k opacity"),
-                             .tip = QObject::tr("Optimize leaves the opacity of the selected feature as it is"),
-                             .trigger =
-                                 [&services] {
-                                     const int f = services.selectedFeature();
-                                     if (f < 0) return;
-                                     OpacityLimits limits = opacityLimits(services.store(), f);
-                                     limits.locked = !limits.locked;
-                                     editOpacityLimits(services.store(), f, limits,
-                                                       limits.locked ? QObject::tr("Lock opacity")
-                                                                     : QObject::tr("Unlock opacity"));
-                                 },
-                             .enabled = selected,
-                             .checked =
+    m_limits << actions.add(menu, "opacityLock", QObject::tr("Loc&k opacity"), {},
+                            QObject::tr("Optimize leaves the opacity of the selected feature as it is"),
+                            [&services] {
+                                const int f = services.selectedFeature();
+                                if (f < 0) return;
+                                OpacityLimits limits = opacityLimits(services.store(), f);
+                                limits.locked = !limits.locked;
+                                editOpacityLimits(services.store(), f, limits,
+                                                  limits.locked ? QObject::tr("Lock opacity")
+                                                                : QObject::tr("Unlock opacity"));
+                            },
+                            selected,
+                            {.checked =
                                  [&services, goalOf] {
                                      const int f = services.selectedFeature();
                                      return f >= 0 && goalOf(f).locked;
                                  },
                              .separatorBefore = true});
-    m_limits << actions.add({.id = "opacityLimits",
-                             .menu = menu,
-                             .text = QObject::tr("L&imits of opacity…"),
-                             .tip = QObject::tr("Between which opacities Optimize may move the selected feature"),
-                             .trigger =
-                                 [&services] {
-                                     if (const int f = services.selectedFeature(); f >= 0) askLimits(services, f);
-                                 },
-                             .enabled = selected});
+    m_limits << actions.add(
+        menu, "opacityLimits", QObject::tr("L&imits of opacity…"), {},
+        QObject::tr("Between which opacities Optimize may move the selected feature"),
+        [&services] {
+            if (const int f = services.selectedFeature(); f >= 0) askLimits(services, f);
+        },
+        selected);
     QObject::connect(&services.store(), &SessionStore::changed, &actions,
                      [&actions](const Scene& before, const Scene& after) {
                          if (!before.session.goals.isSame(after.session.goals) ||

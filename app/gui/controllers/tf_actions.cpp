@@ -14,16 +14,6 @@ QString menuName() { return QObject::tr("&Transfer function"); }
 void addTfActions(Services& services) {
     Actions& actions = services.actions();
     const auto editable = [&services] { return services.isEditable(); };
-    const auto add = [&](const QString& id, const QString& menu, const QString& text, const QString& tip,
-                         bool separator, std::function<void()> trigger) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .tip = tip,
-                     .trigger = std::move(trigger),
-                     .enabled = editable,
-                     .separatorBefore = separator});
-    };
     const QString presets = menuName() + "/" + QObject::tr("&Presets");
     for (const char* spec : {"tents:1", "tents:2", "tents:3", "tents:4", "tents:6", "tents:8", "ramp:6", "ramp:12"}) {
         const QString name = QString::fromLatin1(spec);
@@ -32,15 +22,18 @@ void addTfActions(Services& services) {
                                  ? (number == "1" ? QObject::tr("One tent, one feature")
                                                   : QObject::tr("%1 tents, one feature each").arg(number))
                                  : QObject::tr("Ramp of %1 points, one feature").arg(number);
-        add(name, presets, text, {}, false,
-            [&services, name] { editTf(services.store(), *tfFromSpec(name.toStdString()), name); });
+        actions.add(
+            presets, name, text, {}, {},
+            [&services, name] { editTf(services.store(), *tfFromSpec(name.toStdString()), name); }, editable);
     }
-    add("deriveFeaturesAction", menuName(), QObject::tr("&Features from the curve"),
-        QObject::tr("One feature for each interval of the curve between two points of opacity 0"), true, [&services] {
-            TransferFunction tf = services.scene().tf;
-            tf.features = deriveFeatures(tf);
-            editTf(services.store(), tf, QObject::tr("Features from the curve"));
-        });
+    actions.add(menuName(), "deriveFeaturesAction", QObject::tr("&Features from the curve"), {},
+                QObject::tr("One feature for each interval of the curve between two points of opacity 0"),
+                [&services] {
+                    TransferFunction tf = services.scene().tf;
+                    tf.features = deriveFeatures(tf);
+                    editTf(services.store(), tf, QObject::tr("Features from the curve"));
+                },
+                editable, {.separatorBefore = true});
 }
 
 } // namespace pellucid::gui

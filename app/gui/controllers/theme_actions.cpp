@@ -25,16 +25,12 @@ void addThemeActions(Services& services) {
         {Theme::System, "themeSystemAction", QObject::tr("As the &system"),
          QObject::tr("Dark or light, as the desktop is")}};
     for (const Texts& t : all)
-        services.actions().add({.id = t.id,
-                                .menu = QObject::tr("&View") + "/" + QObject::tr("&Theme"),
-                                .text = t.text,
-                                .tip = t.tip,
-                                .trigger =
-                                    [theme = t.theme] {
-                                        QSettings().setValue(kSetting, name(theme));
-                                        applyTheme(*qApp, theme);
-                                    },
-                                .checked = [theme = t.theme] { return appliedTheme() == theme; }});
+        services.actions().add(QObject::tr("&View") + "/" + QObject::tr("&Theme"), t.id, t.text, {}, t.tip,
+                               [theme = t.theme] {
+                                   QSettings().setValue(kSetting, name(theme));
+                                   applyTheme(*qApp, theme);
+                               },
+                               {}, {.checked = [theme = t.theme] { return appliedTheme() == theme; }});
 }
 
 } // namespace pellucid::gui

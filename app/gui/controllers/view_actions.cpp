@@ -55,82 +55,54 @@ void addViewActions(Services& services) {
     Actions& actions = services.actions();
     const QString menu = QObject::tr("&View");
     const auto open = [&store] { return store.hasVolume(); };
-    const auto add = [&](const QString& id, const QString& text, const QList<QKeySequence>& keys, const QString& tip,
+    const auto add = [&](const QString& id, const QString& text, const QString& keys, const QString& tip,
                          std::function<void()> trigger, bool separator = false) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .keys = keys,
-                     .tip = tip,
-                     .trigger = std::move(trigger),
-                     .enabled = open,
-                     .separatorBefore = separator,
-                     .inToolBar = true});
+        actions.add(menu, id, text, keys, tip, std::move(trigger), open,
+                    {.separatorBefore = separator, .inToolBar = true});
     };
-    add("fitAction", QObject::tr("&Fit"), {QKeySequence("R"), QKeySequence("F")},
+    add("fitAction", QObject::tr("&Fit"), "R; F",
         QObject::tr("The whole volume from the same direction; double-click does the same"),
         [&store] { fitView(store); });
-    add("resetViewAction", QObject::tr("&Reset"), {QKeySequence("Home")},
-        QObject::tr("The view that the volume opened with"), [&store] { resetView(store); });
+    add("resetViewAction", QObject::tr("&Reset"), "Home", QObject::tr("The view that the volume opened with"),
+        [&store] { resetView(store); });
     int key = 1;
     for (const StandardView view : kStandardViews) {
         const QString number = QString::number(key);
-        actions.add({.id = "view" + number,
-                     .menu = menu,
-                     .text = captionOf(view, Frame::File),
-                     .keys = {QKeySequence(number)},
-                     .trigger = [&store, view] { setStandardView(store, view); },
-                     .enabled = open,
-                     .say = [&store, view] { return tipOf(view, frameOf(store)); },
+        actions.add(menu, "view" + number, captionOf(view, Frame::File), number, {},
+                    [&store, view] { setStandardView(store, view); }, open,
+                    {.say = [&store, view] { return tipOf(view, frameOf(store)); },
+                     .caption = [&store, view] { return captionOf(view, frameOf(store)); },
                      .separatorBefore = key == 1,
-                     .inToolBar = true,
-                     .caption = [&store, view] { return captionOf(view, frameOf(store)); }});
+                     .inToolBar = true});
         ++key;
     }
-    actions.add({.id = "perspectiveAction",
-                 .menu = menu,
-                 .text = QObject::tr("&Perspective"),
-                 .keys = {QKeySequence("P")},
-                 .tip = QObject::tr("Perspective or parallel projection"),
-                 .trigger =
-                     [&store] {
-                         const bool perspective = store.scene().camera.projection == Projection::Perspective;
-                         setProjection(store, perspective ? Projection::Orthographic : Projection::Perspective);
-                     },
-                 .enabled = open,
-                 .checked = [&store] { return store.scene().camera.projection == Projection::Perspective; },
+    actions.add(menu, "perspectiveAction", QObject::tr("&Perspective"), "P",
+                QObject::tr("Perspective or parallel projection"),
+                [&store] {
+                    const bool perspective = store.scene().camera.projection == Projection::Perspective;
+                    setProjection(store, perspective ? Projection::Orthographic : Projection::Perspective);
+                },
+                open,
+                {.checked = [&store] { return store.scene().camera.projection == Projection::Perspective; },
                  .separatorBefore = true,
                  .inToolBar = true});
-    actions.add({.id = "undoViewAction",
-                 .menu = menu,
-                 .text = QObject::tr("&Previous view"),
-                 .keys = {QKeySequence("Alt+Left")},
-                 .tip = QObject::tr("Where the eye was before it moved last"),
-                 .trigger = [&store] { store.undoCamera(); },
-                 .enabled = [&store] { return store.canUndoCamera(); },
-                 .separatorBefore = true});
-    actions.add({.id = "redoViewAction",
-                 .menu = menu,
-                 .text = QObject::tr("&Next view"),
-                 .keys = {QKeySequence("Alt+Right")},
-                 .trigger = [&store] { store.redoCamera(); },
-                 .enabled = [&store] { return store.canRedoCamera(); }});
+    actions.add(
+        menu, "undoViewAction", QObject::tr("&Previous view"), "Alt+Left",
+        QObject::tr("Where the eye was before it moved last"), [&store] { store.undoCamera(); },
+        [&store] { return store.canUndoCamera(); }, {.separatorBefore = true});
+    actions.add(
+        menu, "redoViewAction", QObject::tr("&Next view"), "Alt+Right", {}, [&store] { store.redoCamera(); },
+        [&store] { return store.canRedoCamera(); });
 }
 
 QAction& addClipHandlesAction(Services& services) {
     const auto shown = std::make_shared<bool>(false);
     return *services.actions().add(
-        {.id = "clipHandlesAction",
-         .menu = QObject::tr("&View"),
-         .text = QObject::tr("Clip &handles"),
-         .keys = {QKeySequence("C")},
-         .tip = QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with "
-                            "Shift the opposite face goes along; Esc gives up"),
-         .trigger = [shown] { *shown = !*shown; },
-         .enabled = [&services] { return services.store().hasVolume(); },
-         .checked = [shown] { return *shown; },
-         .separatorBefore = true,
-         .inToolBar = true});
+        QObject::tr("&View"), "clipHandlesAction", QObject::tr("Clip &handles"), "C",
+        QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with "
+                    "Shift the opposite face goes along; Esc gives up"),
+        [shown] { *shown = !*shown; }, [&services] { return services.store().hasVolume(); },
+        {.checked = [shown] { return *shown; }, .separatorBefore = true, .inToolBar = true});
 }
 
 } // namespace pellucid::gui

@@ -93,21 +93,13 @@ ViewSearchController::~ViewSearchController() { ++m_number; }
 void ViewSearchController::addActions() {
     const auto ready = [this] { return m_services.store().hasVolume() && !m_services.scene().tf.features.empty(); };
     m_services.actions().add(
-        {.id = "goToBestViewAction",
-         .menu = tr("&View"),
-         .text = tr("Go to the &best view"),
-         .keys = {QKeySequence("Shift+B")},
-         .tip = tr("The view that the panel Best view has found; it looks for it where there is none"),
-         .trigger = [this] { goToBest(); },
-         .enabled = ready});
+        tr("&View"), "goToBestViewAction", tr("Go to the &best view"), "Shift+B",
+        tr("The view that the panel Best view has found; it looks for it where there is none"), [this] { goToBest(); },
+        ready);
     m_services.actions().add(
-        {.id = "optimizeViewAction",
-         .menu = tr("&Transfer function"),
-         .text = tr("Optimize &view and opacities"),
-         .keys = {QKeySequence("Ctrl+Shift+Return")},
-         .tip = tr("The view and the opacities that together come nearest to the targets"),
-         .trigger = [this] { optimize(); },
-         .enabled = [this, ready] { return ready() && !m_services.isReadOnly() && !isOptimizing(); }});
+        tr("&Transfer function"), "optimizeViewAction", tr("Optimize &view and opacities"), "Ctrl+Shift+Return",
+        tr("The view and the opacities that together come nearest to the targets"), [this] { optimize(); },
+        [this, ready] { return ready() && !m_services.isReadOnly() && !isOptimizing(); });
 }
 
 std::optional<ViewSearchController::Question> ViewSearchController::questionOf(FeatureId feature) const {

@@ -116,24 +116,20 @@ void MainWindow::addPanels() {
         if (panel.below != nullptr) splitDockWidget(m_services->panels().dock(panel.below), dock, Qt::Vertical);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
-        actions.add({.id = QString(panel.id) + "Action",
-                     .menu = tr("&View"),
-                     .text = tr("%1 panel").arg(panel.title),
-                     .keys = {panel.keys},
-                     .tip = panel.tip,
-                     .trigger =
-                         [this, dock, content] {
-                             dock->setVisible(!isInFront(*dock)); // what lies behind a tab is not put away unseen
-                             if (dock->isHidden()) return;
-                             dock->raise();
-                             // As high as it likes, where it would be much lower; as wide as it must be, if it can.
-                             const int wanted = content->sizeHint().height(), least = content->leastOfContent().width();
-                             if (content->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
-                             if (content->width() < least)
-                                 resizeDocks({dock}, {std::min(least, width() / 2)}, Qt::Horizontal);
-                         },
-                     .checked = [dock] { return isInFront(*dock); },
-                     .separatorBefore = std::exchange(first, false)});
+        actions.add(tr("&View"), QString(panel.id) + "Action", tr("%1 panel").arg(panel.title), panel.keys.toString(),
+                    panel.tip,
+                    [this, dock, content] {
+                        dock->setVisible(!isInFront(*dock)); // what lies behind a tab is not put away unseen
+                        if (dock->isHidden()) return;
+                        dock->raise();
+                        // As high as it likes, where it would be much lower; as wide as it must be, if it can.
+                        const int wanted = content->sizeHint().height(), least = content->leastOfContent().width();
+                        if (content->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
+                        if (content->width() < least)
+                            resizeDocks({dock}, {std::min(least, width() / 2)}, Qt::Horizontal);
+                    },
+                    {},
+                    {.checked = [dock] { return isInFront(*dock); }, .separatorBefore = std::exchange(first, false)});
         m_services->panels().add(panel.id, *dock);
     }
     connect(&m_services->panels(), &Panels::visibilityChanged, &actions, &Actions::refresh);
@@ -141,14 +137,6 @@ void MainWindow::addPanels() {
 
 void MainWindow::addHelpActions() {
     Actions& actions = m_services->actions();
-    const auto add = [&](const QString& id, const QString& menu, const QString& text, const QKeySequence& keys,
-                         std::function<void()> trigger) {
-        actions.add({.id = id,
-                     .menu = menu,
-                     .text = text,
-                     .keys = keys.isEmpty() ? QList<QKeySequence>{} : QList<QKeySequence>{keys},
-                     .trigger = std::move(trigger)});
-    };
     const QString volume = tr("Volume");
     actions.addGestures({{volume, tr("Left drag, arrow keys"), tr("rotate")},
                          {volume, tr("Middle drag, Shift + left drag"), tr("pan")},
@@ -157,14 +145,14 @@ void MainWindow::addHelpActions() {
                          {volume, tr("Ctrl + left drag"), tr("turn the light")},
                          {volume, tr("Left drag of a clip handle; with Shift"), tr("cut; move the whole slab")},
                          {volume, tr("Esc"), tr("give up a drag")}});
-    add("keysAction", tr("&Help"), tr("&Mouse and keys"), QKeySequence("F1"),
-        [this] { KeysDialog(m_services->actions(), this).exec(); });
-    add("aboutAction", tr("&Help"), tr("&About Pellucid"), {}, [this] {
+    actions.add(tr("&Help"), "keysAction", tr("&Mouse and keys"), "F1", {},
+                [this] { KeysDialog(m_services->actions(), this).exec(); });
+    actions.add(tr("&Help"), "aboutAction", tr("&About Pellucid"), {}, {}, [this] {
         QMessageBox::about(this, tr("About Pellucid"),
                            tr("<b>Pellucid %1</b><br>The volume explorer that finds the transfer function for you.")
                                .arg(QApplication::applicationVersion()));
     });
-    add("quitAction", tr("&File"), tr("&Quit"), QKeySequence("Ctrl+Q"), [] { QApplication::closeAllWindows(); });
+    actions.add(tr("&File"), "quitAction", tr("&Quit"), "Ctrl+Q", {}, [] { QApplication::closeAllWindows(); });
 }
 
 void MainWindow::restoreLayout() {

@@ -216,45 +216,37 @@ void ClipPanel::follow() {
 }
 
 PanelInfo clipPanel() {
-    return {
-        .id = "clip",
-        .title = QObject::tr("Clip"),
-        .area = Qt::RightDockWidgetArea,
-        .visible = false,
-        .tabOf = "display",
-        .keys = QKeySequence("Ctrl+K"),
-        .tip = QObject::tr("The part of the box that is left, oblique planes"),
-        .make = [](Services& services, Controllers& controllers, QWidget* parent) {
-            services.actions().add(
-                {.id = "addPlaneAction",
-                 .menu = QObject::tr("&View"),
-                 .text = QObject::tr("Add clip p&lane"),
-                 .keys = {QKeySequence("Shift+C")},
-                 .tip = QObject::tr("Cut away what is nearer than the middle of the volume"),
-                 .trigger = [&services, &handles = *controllers.clipHandles] { addPlane(services, handles); },
-                 .enabled =
-                     [&services] {
-                         return isReady(services) && services.scene().session.clipping->planes.size() < kMostClipPlanes;
-                     }});
-            services.actions().add(
-                {.id = "resetClipAction",
-                 .menu = QObject::tr("&View"),
-                 .text = QObject::tr("&Whole box"),
-                 .tip = QObject::tr("Cut nothing away"),
-                 .trigger =
-                     [&services] {
-                         services.store().edit(QObject::tr("Whole box"), {},
-                                               [](Session& session) { session.clipping.set({}); });
-                     },
-                 .enabled = [&services] { return isReady(services) && !services.scene().session.clipping->isNone(); }});
-            QObject::connect(&services.store(), &SessionStore::changed, &services.actions(),
-                             [&services](const Scene& before, const Scene& after) {
-                                 const Clipping &old = *before.session.clipping, &now = *after.session.clipping;
-                                 if (old.isNone() != now.isNone() || old.planes.size() != now.planes.size())
-                                     services.actions().refresh();
-                             });
-            return new ClipPanel(services, *controllers.clipHandles, parent);
-        }};
+    return {.id = "clip",
+            .title = QObject::tr("Clip"),
+            .area = Qt::RightDockWidgetArea,
+            .visible = false,
+            .tabOf = "display",
+            .keys = QKeySequence("Ctrl+K"),
+            .tip = QObject::tr("The part of the box that is left, oblique planes"),
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                services.actions().add(
+                    QObject::tr("&View"), "addPlaneAction", QObject::tr("Add clip p&lane"), "Shift+C",
+                    QObject::tr("Cut away what is nearer than the middle of the volume"),
+                    [&services, &handles = *controllers.clipHandles] { addPlane(services, handles); },
+                    [&services] {
+                        return isReady(services) && services.scene().session.clipping->planes.size() < kMostClipPlanes;
+                    });
+                services.actions().add(
+                    QObject::tr("&View"), "resetClipAction", QObject::tr("&Whole box"), {},
+                    QObject::tr("Cut nothing away"),
+                    [&services] {
+                        services.store().edit(QObject::tr("Whole box"), {},
+                                              [](Session& session) { session.clipping.set({}); });
+                    },
+                    [&services] { return isReady(services) && !services.scene().session.clipping->isNone(); });
+                QObject::connect(&services.store(), &SessionStore::changed, &services.actions(),
+                                 [&services](const Scene& before, const Scene& after) {
+                                     const Clipping &old = *before.session.clipping, &now = *after.session.clipping;
+                                     if (old.isNone() != now.isNone() || old.planes.size() != now.planes.size())
+                                         services.actions().refresh();
+                                 });
+                return new ClipPanel(services, *controllers.clipHandles, parent);
+            }};
 }
 
 } // namespace pellucid::gui

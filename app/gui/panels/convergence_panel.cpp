@@ -87,12 +87,12 @@ PanelInfo convergencePanel() {
             .keys = QKeySequence("Ctrl+Shift+C"),
             .tip = QObject::tr("How optimizations go: distance, VWS and opacities over the moves; runs compared"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
-                services.actions().add({.id = "showConvergence",
-                                        .menu = QObject::tr("&Transfer function"),
-                                        .text = QObject::tr("Con&vergence of the optimization"),
-                                        .tip = QObject::tr("Distance, VWS and opacities over the moves"),
-                                        .trigger = [&services] { services.panels().show("convergence"); },
-                                        .enabled = [&services] { return services.store().hasVolume(); }});
+                services.actions().add(
+                    QObject::tr("&Transfer function"), "showConvergence",
+                    QObject::tr("Con&vergence of the optimization"), {},
+                    QObject::tr("Distance, VWS and opacities over the moves"),
+                    [&services] { services.panels().show("convergence"); },
+                    [&services] { return services.store().hasVolume(); });
                 services.actions().addGestures(
                     {{QObject::tr("Convergence"), QObject::tr("Click on a dot"), QObject::tr("show that move")},
                      {QObject::tr("Convergence"), QObject::tr("Double-click"), QObject::tr("export")},

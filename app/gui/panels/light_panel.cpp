@@ -145,20 +145,15 @@ PanelInfo lightPanel() {
             .make = [](Services& services, Controllers&, QWidget* parent) {
                 SessionStore& store = services.store();
                 QAction* const light = services.actions().add(
-                    {.id = "shadingAction",
-                     .menu = QObject::tr("&View"),
-                     .text = QObject::tr("&Light"),
-                     .keys = {QKeySequence("L")},
-                     .tip = QObject::tr("Light by the gradient of the values, or plain colours"),
-                     .trigger =
-                         [&store] {
-                             store.edit(QObject::tr("Light"), {}, [](Session& session) {
-                                 session.display.edit([](DisplaySettings& d) { d.light.on = !d.light.on; });
-                             });
-                         },
-                     .enabled = [&services] { return isReady(services); },
-                     .checked = [&store] { return store.session().display->light.on; },
-                     .separatorBefore = true});
+                    QObject::tr("&View"), "shadingAction", QObject::tr("&Light"), "L",
+                    QObject::tr("Light by the gradient of the values, or plain colours"),
+                    [&store] {
+                        store.edit(QObject::tr("Light"), {}, [](Session& session) {
+                            session.display.edit([](DisplaySettings& d) { d.light.on = !d.light.on; });
+                        });
+                    },
+                    [&services] { return isReady(services); },
+                    {.checked = [&store] { return store.session().display->light.on; }, .separatorBefore = true});
                 QObject::connect(&store, &SessionStore::changed, &services.actions(),
                                  [&services](const Scene& before, const Scene& after) {
                                      if (before.session.display->light.on != after.session.display->light.on)

@@ -48,8 +48,6 @@ SpaceCanvas::SpaceCanvas(QWidget* parent)
                   "Two features: a click anywhere sets the opacities there"));
 }
 
-SpaceCanvas::~SpaceCanvas() = default;
-
 void SpaceCanvas::setSpace(std::shared_ptr<const ParameterSpace> space, SpaceView view) {
     view.camera = m_view.camera; // those are the canvas's own
     view.width = m_view.width;

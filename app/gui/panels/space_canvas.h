@@ -17,7 +17,6 @@ class SpaceCanvas : public QWidget {
     Q_OBJECT
 public:
     explicit SpaceCanvas(QWidget* parent = nullptr);
-    ~SpaceCanvas() override;
 
     /// What is drawn; null: nothing. Camera and sizes of `view` are the canvas's own.
     void setSpace(std::shared_ptr<const ParameterSpace> space, SpaceView view);

@@ -160,8 +160,6 @@ TemporalPanel::TemporalPanel(Services& services, PlayerController& player, Adapt
     refresh();
 }
 
-TemporalPanel::~TemporalPanel() = default;
-
 TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
     const Scene& scene = m_services.store().committed();
     const Session& session = scene.session;

@@ -30,7 +30,6 @@ class TemporalPanel : public QWidget {
     Q_OBJECT
 public:
     TemporalPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent);
-    ~TemporalPanel() override;
 
     void measure(); ///< all frames that are not known as they are now
     void cancel();

@@ -2,6 +2,7 @@
 
 #include <QWidget>
 
+#include "dialogs/series_files.h"
 #include "services/services.h"
 #include "session/variable_edits.h"
 

@@ -416,32 +416,23 @@ PanelInfo variablesPanel() {
                 SessionStore& store = services.store();
                 auto* panel = new VariablesPanel(services, controllers.opening, parent);
                 services.actions().add(
-                    {.id = "hsbAction",
-                     .menu = menu,
-                     .text = QObject::tr("Colours from &variables"),
-                     .keys = {QKeySequence("Shift+S")},
-                     .tip = QObject::tr("Saturation, brightness and hue from variables, or colours of "
-                                        "the transfer function"),
-                     .trigger = [panel] { panel->channels().toggle(); },
-                     .enabled = [&services] { return services.isEditable(); },
-                     .checked = [&store] { return store.session().hsb->on; },
-                     .separatorBefore = true});
+                    menu, "hsbAction", QObject::tr("Colours from &variables"), "Shift+S",
+                    QObject::tr("Saturation, brightness and hue from variables, or colours of "
+                                "the transfer function"),
+                    [panel] { panel->channels().toggle(); }, [&services] { return services.isEditable(); },
+                    {.checked = [&store] { return store.session().hsb->on; }, .separatorBefore = true});
                 services.actions().add(
-                    {.id = "swapVariablesAction",
-                     .menu = menu,
-                     .text = QObject::tr("S&wap opacity and brightness"),
-                     .tip = QObject::tr("The variable of brightness drives opacity, and the other way round"),
-                     .trigger =
-                         [&opening = controllers.opening] {
-                             opening.editInJob(QObject::tr("Swap variables"),
-                                               [](Session& s) { swapOpacityAndBrightness(s); });
-                         },
-                     .enabled =
-                         [&services] {
-                             const Session& s = services.store().session();
-                             return !s.isEmpty() && !services.isReadOnly() && !s.hsb->brightness.empty() &&
-                                    s.hsb->brightness != s.variable().name;
-                         }});
+                    menu, "swapVariablesAction", QObject::tr("S&wap opacity and brightness"), {},
+                    QObject::tr("The variable of brightness drives opacity, and the other way round"),
+                    [&opening = controllers.opening] {
+                        opening.editInJob(QObject::tr("Swap variables"),
+                                          [](Session& s) { swapOpacityAndBrightness(s); });
+                    },
+                    [&services] {
+                        const Session& s = services.store().session();
+                        return !s.isEmpty() && !services.isReadOnly() && !s.hsb->brightness.empty() &&
+                               s.hsb->brightness != s.variable().name;
+                    });
                 QObject::connect(&store, &SessionStore::changed, &services.actions(),
                                  [&services](const Scene& before, const Scene& after) {
                                      if (!before.session.hsb.isSame(after.session.hsb)) services.actions().refresh();

@@ -16,33 +16,35 @@ QString plain(QString text) {
     return text;
 }
 
-QString keysText(const QList<QKeySequence>& keys) {
+QString keysText(const QAction& action) {
     QStringList all;
-    for (const QKeySequence& key : keys) all << key.toString(QKeySequence::NativeText);
+    for (const QKeySequence& key : action.shortcuts()) all << key.toString(QKeySequence::NativeText);
     return all.join(", ");
 }
 
-QString tipOf(const ActionSpec& spec, const QString& text) {
-    const QString head = spec.tip.isEmpty() ? plain(text) : spec.tip;
-    return spec.keys.isEmpty() ? head : QStringLiteral("%1 (%2)").arg(head, keysText(spec.keys));
+void setTips(QAction& action, const QString& tool, const QString& status) {
+    const QString keys = keysText(action);
+    action.setToolTip(keys.isEmpty() ? tool : QStringLiteral("%1 (%2)").arg(tool, keys));
+    action.setStatusTip(status);
 }
 
 } // namespace
 
 Actions::Actions(QObject* parent) : QObject(parent) {}
 
-QAction* Actions::add(ActionSpec spec) {
-    auto* action = new QAction(spec.text, this);
-    action->setObjectName(spec.id);
-    action->setShortcuts(spec.keys);
-    action->setToolTip(tipOf(spec, spec.text));
-    action->setStatusTip(spec.tip);
-    action->setCheckable(static_cast<bool>(spec.checked));
-    connect(action, &QAction::triggered, this, [this, trigger = spec.trigger] {
+QAction* Actions::add(const QString& menu, const QString& id, const QString& text, const QString& keys,
+                      const QString& tip, const std::function<void()>& trigger, const std::function<bool()>& enabled,
+                      const ActionMore& more) {
+    auto* action = new QAction(text, this);
+    action->setObjectName(id);
+    action->setShortcuts(QKeySequence::listFromString(keys));
+    action->setCheckable(static_cast<bool>(more.checked));
+    connect(action, &QAction::triggered, this, [this, trigger] {
         if (trigger) trigger();
         refresh(); // a check mark shows what is, not what was clicked
     });
-    m_entries.push_back({std::move(spec), action});
+    m_entries.push_back({menu, enabled, more, action});
+    setTips(*action, tip.isEmpty() ? plain(text) : tip, tip);
     return action;
 }
 
@@ -52,12 +54,10 @@ void Actions::addGestures(std::vector<Gesture> gestures) {
 
 void Actions::refresh() {
     for (const Entry& e : m_entries) {
-        if (e.spec.enabled) e.action->setEnabled(e.spec.enabled());
-        if (e.spec.checked) e.action->setChecked(e.spec.checked());
-        if (e.spec.caption) e.action->setText(e.spec.caption());
-        if (!e.spec.say) continue;
-        e.action->setToolTip(tipOf(e.spec, e.spec.say()));
-        e.action->setStatusTip(e.spec.say());
+        if (e.enabled) e.action->setEnabled(e.enabled());
+        if (e.more.checked) e.action->setChecked(e.more.checked());
+        if (e.more.caption) e.action->setText(e.more.caption());
+        if (e.more.say) setTips(*e.action, plain(e.more.say()), e.more.say());
     }
 }
 
@@ -85,16 +85,16 @@ void Actions::build(QMainWindow& window) {
     QString barGroup;
     for (const Entry& e : m_entries) {
         e.action->setParent(&window);
-        if (!e.spec.menu.isEmpty()) {
-            QMenu* menu = menuAt(window, e.spec.menu);
-            if (e.spec.separatorBefore) menu->addSeparator();
+        if (!e.menu.isEmpty()) {
+            QMenu* menu = menuAt(window, e.menu);
+            if (e.more.separatorBefore) menu->addSeparator();
             menu->addAction(e.action);
         } else {
             window.addAction(e.action); // its keys work all the same
         }
-        if (!e.spec.inToolBar) continue;
-        if (!bar->actions().isEmpty() && barGroup != e.spec.menu) bar->addSeparator();
-        barGroup = e.spec.menu;
+        if (!e.more.inToolBar) continue;
+        if (!bar->actions().isEmpty() && barGroup != e.menu) bar->addSeparator();
+        barGroup = e.menu;
         bar->addAction(e.action);
     }
     window.addToolBar(bar);
@@ -112,8 +112,8 @@ QString Actions::keyTable(const QString& text) const {
     };
     for (const Gesture& g : m_gestures) row(g.place, g.how, g.what);
     for (const Entry& e : m_entries)
-        if (!e.spec.keys.isEmpty() && e.spec.inKeyTable)
-            row(plain(e.spec.menu.section('/', 0, 0)), keysText(e.spec.keys), plain(e.action->text()));
+        if (const QString keys = keysText(*e.action); !keys.isEmpty())
+            row(plain(e.menu.section('/', 0, 0)), keys, plain(e.action->text()));
     return QStringLiteral("<table cellpadding=2>%1</table>").arg(rows);
 }
 

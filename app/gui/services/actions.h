@@ -14,21 +14,12 @@ class QMenu;
 
 namespace pellucid::gui {
 
-/// One entry of the list. Texts are for people; `id` is the action's object name, for tests and settings.
-struct ActionSpec {
-    QString id = {};
-    QString menu = {}; ///< "&File", or "&Transfer function/&Presets" for one inside another; empty: in no menu
-    QString text = {}; ///< with the menu's mnemonic
-    QList<QKeySequence> keys = {};
-    QString tip = {}; ///< beyond the text: tool tip and status line; may be empty
-    std::function<void()> trigger = {};
-    std::function<bool()> enabled = {}; ///< empty: always
-    std::function<bool()> checked = {}; ///< empty: not checkable
-    std::function<QString()> say = {};  ///< the tool tip's text, where it changes ("Undo: Move point")
-    bool separatorBefore = false;
-    bool inToolBar = false;
-    bool inKeyTable = true;                ///< only where it has keys
+/// What few entries of the list have.
+struct ActionMore {
+    std::function<bool()> checked = {};    ///< empty: not checkable
+    std::function<QString()> say = {};     ///< the tool tip's text, where it changes ("Undo: Move point")
     std::function<QString()> caption = {}; ///< the text, where it changes
+    bool separatorBefore = false, inToolBar = false;
 };
 
 /// What the mouse does somewhere, for the table of keys.
@@ -43,7 +34,13 @@ class Actions : public QObject {
 public:
     explicit Actions(QObject* parent = nullptr);
 
-    QAction* add(ActionSpec spec);
+    /// One entry of the list. Texts are for people; `id` is the action's object name, for tests and settings.
+    /// `menu`: "&File", or "&Transfer function/&Presets" for one inside another; empty: in no menu. `text`: with the
+    /// menu's mnemonic. `keys`: "Ctrl+Y", or several, "R; F". `tip`: beyond the text, tool tip and status line; may be
+    /// empty. `enabled` empty: always.
+    QAction* add(const QString& menu, const QString& id, const QString& text, const QString& keys, const QString& tip,
+                 const std::function<void()>& trigger, const std::function<bool()>& enabled = {},
+                 const ActionMore& more = {});
     void addGestures(std::vector<Gesture> gestures);
     void refresh();
 
@@ -57,7 +54,9 @@ public:
 
 private:
     struct Entry {
-        ActionSpec spec;
+        QString menu;
+        std::function<bool()> enabled;
+        ActionMore more;
         QAction* action;
     };
     std::vector<Entry> m_entries;

@@ -73,8 +73,6 @@ PicturePair::PicturePair(Services& services, RefineController& refining, QWidget
     m_wait.start();
 }
 
-PicturePair::~PicturePair() = default;
-
 void PicturePair::start() {
     const Refinement* refinement = m_refining.latest();
     if (refinement == nullptr) { // of a volume that has gone

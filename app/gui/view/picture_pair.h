@@ -25,7 +25,6 @@ class PicturePair : public QDialog {
     Q_OBJECT
 public:
     PicturePair(Services& services, RefineController& refining, QWidget* parent);
-    ~PicturePair() override;
 
     bool isComplete() const { return !m_wait.isActive() && !m_job.isRunning() && !m_pictures[0].isNull(); }
     const QImage& picture(int which) const { return m_pictures.at(static_cast<std::size_t>(which)); } ///< 0 before
