@@ -2,19 +2,36 @@
 # What is checked besides the tests: scripts/check.sh [--by SECONDS] [CHECK…], all of them without a name.
 #   format    every C++ file is as clang-format leaves it
 #   headless  the command line builds alone and needs neither Qt nor OpenGL to start
+#   headers   damaged headers of volume files, 2 000 of each format, are read or refused in words
 #   dev       everything builds with assertions and with warnings as errors
+#   asan      no fault of addresses or undefined behaviour in the tests of files, fields, sessions and commands
+#   tsan      no race in the tests that use threads
+#   zink      the tests of OpenGL with another driver: Mesa's zink over its software Vulkan
+#   tidy      clang-tidy has nothing to say of files that differ from PELLUCID_BASE (the commit before this one)
 # --by: no check begins later than so many seconds after now; those left out are named. Exit status 1 where one fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+all=(format headless headers dev asan tsan zink tidy)
+
+# Installs the packages of the commands that are missing: need COMMAND PACKAGE …
+need() {
+    local missing=()
+    while [ $# -gt 0 ]; do
+        command -v "$1" >/dev/null || missing+=("$2")
+        shift 2
+    done
+    scripts/setup.sh "${missing[@]}"
+}
+
+on_display() { xvfb-run -a -s "-screen 0 1600x1000x24" "$@"; }
 
 check_format() {
-    local missing=()
-    command -v clang-format >/dev/null || missing+=(clang-format)
-    scripts/setup.sh "${missing[@]}"
+    need clang-format clang-format
     git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run --Werror
 }
 
 check_headless() {
+    need
     cmake --preset headless >/dev/null
     cmake --build --preset headless --target pellucid-cli
     build/headless/bin/pellucid-cli samples >/dev/null
@@ -24,28 +41,69 @@ check_headless() {
     fi
 }
 
+check_headers() {
+    need
+    scripts/build.sh pellucid-cli
+    python3 tests/tools/mutate_headers.py build/release/bin/pellucid-cli --count 2000 --jobs "$(nproc)"
+}
+
 check_dev() {
+    need
     cmake --preset dev >/dev/null
     cmake --build --preset dev
+}
+
+check_asan() {
+    need
+    cmake --preset dev-asan >/dev/null
+    cmake --build --preset dev-asan --target \
+        pellucid-cli test_base test_volume test_tf test_saliency test_session test_cli
+    # The drivers of OpenGL keep what they have until the program ends; leaks of ours are found by the other tests.
+    ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
+        ctest --preset dev-asan --parallel 2 -L '^(base|volume|tf|saliency|session|cli)$'
+}
+
+check_tsan() {
+    need
+    cmake --preset dev-tsan >/dev/null
+    cmake --build --preset dev-tsan --target test_base test_parallel_threads test_volume test_session test_gui
+    local options="suppressions=$PWD/scripts/tsan.supp:halt_on_error=1:second_deadlock_stack=1"
+    TSAN_OPTIONS=$options on_display ctest --preset dev-tsan --parallel 2 -L '^(base|parallel_threads)$'
+    TSAN_OPTIONS=$options on_display ctest --preset dev-tsan --parallel 2 -R '[Ff]rames|workspace|thread|cancel' \
+        -L '^(volume|session)$'
+    TSAN_OPTIONS=$options on_display ctest --preset dev-tsan -L '^gui$' -R 'jobs?|lane|play|series|cancel'
+}
+
+check_zink() {
+    scripts/setup.sh mesa-vulkan-drivers
+    scripts/build.sh test_gl
+    LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=zink PELLUCID_REQUIRE_GL=1 PELLUCID_GL_DEBUG=1 \
+        ctest --preset release -L '^gl$'
+}
+
+check_tidy() {
+    need run-clang-tidy clang-tidy
+    cmake --preset dev >/dev/null
+    local changed
+    changed=$(git diff --name-only --diff-filter=d "${PELLUCID_BASE:-HEAD~1}" -- 'src/*.cpp' 'app/*.cpp')
+    [ -z "$changed" ] || run-clang-tidy -quiet -p build/dev $changed
 }
 
 by=
 checks=()
 while [ $# -gt 0 ]; do
-    case $1 in
-        --by)
-            by=${2:?--by needs seconds}
-            shift
-            ;;
-        format | headless | dev) checks+=("$1") ;;
-        *)
-            echo "check: no check is called '$1'; there are format, headless and dev" >&2
-            exit 2
-            ;;
-    esac
+    if [ "$1" = --by ]; then
+        by=${2:?--by needs seconds}
+        shift
+    elif [[ " ${all[*]} " == *" $1 "* ]]; then
+        checks+=("$1")
+    else
+        echo "check: no check is called '$1'; there are ${all[*]}" >&2
+        exit 2
+    fi
     shift
 done
-[ ${#checks[@]} -gt 0 ] || checks=(format headless dev)
+[ ${#checks[@]} -gt 0 ] || checks=("${all[@]}")
 
 failed=0
 start=$SECONDS

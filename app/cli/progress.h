@@ -1,7 +1,6 @@
 // How far a long command is, on stderr.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <string>

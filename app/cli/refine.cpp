@@ -2,7 +2,6 @@
 #include "optimize/refine/refine.h"
 
 #include <cmath>
-#include <functional>
 
 #include "commands.h"
 #include "optimize/coverage.h"

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <future>
-#include <limits>
 #include <map>
 
 #include "base/atomic_file.h"

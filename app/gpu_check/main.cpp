@@ -3,8 +3,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -7,8 +7,6 @@
 
 #include <QApplication>
 #include <QCommandLineParser>
-#include <QFileInfo>
-#include <QIcon>
 
 #include "controllers/controllers.h"
 #include "controllers/menu_actions.h"

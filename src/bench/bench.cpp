@@ -7,7 +7,6 @@
 #include <deque>
 #include <functional>
 #include <numbers>
-#include <numeric>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"

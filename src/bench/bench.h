@@ -1,7 +1,6 @@
 // How long the parts of a measurement take on one volume, with several numbers of threads (docs/performance.md).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <set>
@@ -36,7 +35,10 @@ enum class BenchRow {
     RefineDirect,
     Render
 };
-template <> inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "setup", "saliency", "saliency-direct", "sweep", "slices", "jacobian", "optimize", "optimize-newton", "optimize-whole", "refine", "refine-500", "refine-direct", "render");
+template <>
+inline constexpr auto kNamesOf<BenchRow> = enumNames("row", "setup", "saliency", "saliency-direct", "sweep", "slices",
+                                                     "jacobian", "optimize", "optimize-newton", "optimize-whole",
+                                                     "refine", "refine-500", "refine-direct", "render");
 
 /// One line of the table.
 struct BenchResult {

@@ -1,6 +1,5 @@
 #include "engines/renderer_probe.h"
 
-#include <algorithm>
 #include <chrono>
 
 #include "base/error.h"

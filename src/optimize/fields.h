@@ -1,7 +1,6 @@
 // What every voxel contributes, as values on the volume's grid (docs/method.md, "Fields"; thesis figs 4.1–4.4, 4.8).
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "base/enum_names.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "base/parallel.h"
 #include "optimize/bin_sampler.h"

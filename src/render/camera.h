@@ -1,7 +1,6 @@
 // Where the volume is looked at from.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include <glm/mat4x4.hpp>

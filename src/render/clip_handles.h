@@ -2,7 +2,6 @@
 // that they are tested without a window.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // A height field as ground under the volume (thesis figs 6.1–6.5).
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "render/render_settings.h"
 
-#include <array>
 #include <cmath>
 
 #include <glm/geometric.hpp>

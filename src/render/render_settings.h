@@ -1,10 +1,8 @@
 // What a picture should look like.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "base/color.h"
 #include "base/setting.h"

@@ -1,8 +1,6 @@
 // Centre against surround, per voxel (docs/method.md, "Saliency"; eq. 4.6–4.8).
 #pragma once
 
-#include <array>
-
 #include "base/job.h"
 #include "base/setting.h"
 #include "saliency/weight_fields.h"

@@ -1,8 +1,5 @@
 #include "saliency/vws.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace pellucid {
 
 namespace {

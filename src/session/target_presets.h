@@ -1,7 +1,6 @@
 // Targets that are set with one word.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "base/enum_names.h"

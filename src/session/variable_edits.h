@@ -1,7 +1,6 @@
 // What people do to the list of variables and to the channels that they drive.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>

@@ -4,7 +4,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "optimize/answer/density_curve.h"
 #include "optimize/answer/occlusion.h"

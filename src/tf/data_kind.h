@@ -1,7 +1,6 @@
 // What kind of data a volume holds, told from its values (docs/method.md, "The automatic start").
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "base/enum_names.h"
@@ -19,7 +18,9 @@ enum class DataKind {
     Constant,   ///< one value
     Empty       ///< no valid voxel
 };
-template <> inline constexpr auto kNamesOf<DataKind> = enumNames("kind of data", "continuous", "ct", "signed", "labels", "binary", "constant", "empty");
+template <>
+inline constexpr auto kNamesOf<DataKind> = enumNames("kind of data", "continuous", "ct", "signed", "labels", "binary",
+                                                     "constant", "empty");
 
 /// Of the values of such data: "HU" of CT, "" where nothing tells.
 const char* unitOf(DataKind kind);

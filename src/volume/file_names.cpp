@@ -1,7 +1,6 @@
 #include "volume/file_names.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 #include "base/text.h"

@@ -1,7 +1,6 @@
 #include "volume/procedural.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 

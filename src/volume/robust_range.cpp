@@ -1,7 +1,6 @@
 #include "volume/robust_range.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pellucid {
 

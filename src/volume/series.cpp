@@ -1,7 +1,6 @@
 #include "volume/series.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>

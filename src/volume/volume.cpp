@@ -1,9 +1,6 @@
 #include "volume/volume.h"
 
-#include <array>
 #include <limits>
-#include <mutex>
-#include <type_traits>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

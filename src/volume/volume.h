@@ -1,7 +1,6 @@
 // A scalar volume as it was read: samples in their own type, where they lie in the world, and which are invalid.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -18,7 +17,9 @@ namespace pellucid {
 
 enum class SampleType { U8, I8, U16, I16, U32, I32, F32, F64 };
 
-template <> inline constexpr auto kNamesOf<SampleType> = enumNames("sample type", "u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64");
+template <>
+inline constexpr auto kNamesOf<SampleType> = enumNames("sample type", "u8", "i8", "u16", "i16", "u32", "i32", "f32",
+                                                       "f64");
 constexpr std::size_t bytesPerSample(SampleType type) {
     return std::array<std::size_t, 8>{1, 1, 2, 2, 4, 4, 4, 8}[static_cast<std::size_t>(type)];
 }

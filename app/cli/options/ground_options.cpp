@@ -1,7 +1,5 @@
 #include "options/ground_options.h"
 
-#include <limits>
-
 #include "parse.h"
 #include "tf/terrain.h"
 

@@ -1,7 +1,6 @@
 #include "controllers/adapt_controller.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "controllers/player_controller.h"
 #include "services/services.h"

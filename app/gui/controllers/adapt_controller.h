@@ -1,8 +1,6 @@
 // Transfer functions that follow the frames of a series: key frames, and what is made for the frames between by itself.
 #pragma once
 
-#include <optional>
-
 #include <QObject>
 #include <QTimer>
 

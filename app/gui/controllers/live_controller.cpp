@@ -1,7 +1,6 @@
 #include "controllers/live_controller.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <QScopedValueRollback>
 

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <string>
 
 #include <QElapsedTimer>
 #include <QObject>

@@ -7,7 +7,6 @@
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
-#include <QMenu>
 
 #include "services/services.h"
 #include "session/target_presets.h"

@@ -1,6 +1,5 @@
 #include "controllers/menu_actions.h"
 
-#include <QApplication>
 #include <QSettings>
 
 #include "services/services.h"
@@ -12,7 +11,9 @@ const QString kSetting = QStringLiteral("theme");
 
 }
 
-Theme keptTheme() { return findNamed<Theme>(QSettings().value(kSetting).toString().toStdString()).value_or(Theme::Dark); }
+Theme keptTheme() {
+    return findNamed<Theme>(QSettings().value(kSetting).toString().toStdString()).value_or(Theme::Dark);
+}
 
 void addThemeActions(Services& services) {
     struct Texts {

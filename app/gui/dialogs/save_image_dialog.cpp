@@ -1,5 +1,6 @@
 #include "dialogs/save_image_dialog.h"
 
+#include "widgets/named.h"
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialogButtonBox>
@@ -26,8 +27,7 @@ SaveImageDialog::SaveImageDialog(const QString& path, const QSize& seen, bool re
     m_width->setObjectName("imageWidth");
     m_height->setObjectName("imageHeight");
     m_transparent->setObjectName("imageTransparent");
-    m_reference->setObjectName("imageReference");
-    m_reference->setToolTip(tr("What the window shows around the picture: View → Frame of reference"));
+    named(m_reference, "imageReference", tr("What the window shows around the picture: View → Frame of reference"));
     m_reference->setEnabled(reference);
     m_reference->setChecked(reference);
     for (QSpinBox* box : {m_width, m_height}) {

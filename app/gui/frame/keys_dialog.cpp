@@ -2,7 +2,6 @@
 
 #include <QDialogButtonBox>
 #include <QLineEdit>
-#include <QScreen>
 #include <QTextBrowser>
 #include <QVBoxLayout>
 

@@ -8,11 +8,8 @@
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QMessageBox>
-#include <QMimeData>
 #include <QPointer>
-#include <QScreen>
 #include <QSettings>
-#include <QStatusBar>
 #include <QVBoxLayout>
 
 #include "controllers/controllers.h"

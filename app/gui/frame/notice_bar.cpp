@@ -1,5 +1,6 @@
 #include "frame/notice_bar.h"
 
+#include "widgets/named.h"
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -41,8 +42,7 @@ void NoticeBar::refresh() {
         texts << notice.text;
         for (const Notice::Choice& choice : notice.choices) {
             auto* button = new QPushButton(choice.text, this);
-            button->setObjectName(QStringLiteral("noticeChoice%1").arg(number++));
-            button->setToolTip(notice.text);
+            named(button, QStringLiteral("noticeChoice%1").arg(number++), notice.text);
             connect(button, &QPushButton::clicked, &m_notices, [this, text = notice.text, act = choice.act] {
                 m_notices.remove(text);
                 act();

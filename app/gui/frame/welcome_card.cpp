@@ -1,5 +1,6 @@
 #include "frame/welcome_card.h"
 
+#include "widgets/named.h"
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -30,8 +31,7 @@ WelcomeCard::WelcomeCard(QWidget* parent) : QFrame(parent) {
     things->setObjectName("welcomeThings");
     things->setWordWrap(true);
     auto* close = new QPushButton(tr("Got it"), this);
-    close->setObjectName("welcomeClose");
-    close->setToolTip(tr("This card does not come again"));
+    named(close, "welcomeClose", tr("This card does not come again"));
     connect(close, &QPushButton::clicked, this, &WelcomeCard::dismiss);
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(14, 12, 14, 12);

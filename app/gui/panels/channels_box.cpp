@@ -11,13 +11,12 @@
 #include <QPushButton>
 #include <QSlider>
 #include <QSpinBox>
-#include <QStandardItemModel>
-#include <QToolButton>
 
 #include "controllers/open_controller.h"
 #include "panels/setting_rows.h"
 #include "panels/variable_words.h"
 #include "services/services.h"
+#include "widgets/named.h"
 #include "widgets/number_box.h"
 
 namespace pellucid::gui {
@@ -58,9 +57,9 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
       m_hueFrom(new QDoubleSpinBox(this)), m_hueTo(new QDoubleSpinBox(this)), m_hueSwatch(new QLabel(this)),
       m_note(new QLabel(this)) {
     setObjectName("channelsBox");
-    m_on->setObjectName("hsbCheck");
-    m_on->setToolTip(tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
-                        "function. Figures are measured with these colours."));
+    named(m_on, "hsbCheck",
+          tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
+             "function. Figures are measured with these colours."));
     auto* form = new QFormLayout(this);
     form->setContentsMargins(0, 0, 0, 0);
     form->setVerticalSpacing(6);
@@ -94,9 +93,9 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
     addChannel(*form, Channel::Brightness, "hsbBrightness", tr("Brightness ←"),
                tr("Brightness = 1 − clip(b · Y): the more of it, the darker"));
     addScale("b", "hsbB", &Scene::hsbB, tr("Scale of darkness"));
-    m_swap->setObjectName("hsbSwap");
-    m_swap->setToolTip(tr("The variable of brightness drives opacity, with its own transfer function, and the other "
-                          "way round; again, and all is as before"));
+    named(m_swap, "hsbSwap",
+          tr("The variable of brightness drives opacity, with its own transfer function, and the other "
+             "way round; again, and all is as before"));
     form->addRow(QString(), m_swap);
     addChannel(*form, Channel::Hue, "hsbHue", tr("Hue ←"), tr("One hue for all, or one for each value of a variable"));
     addHue(*form);
@@ -125,8 +124,7 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
 void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* name, const QString& label,
                              const QString& tip) {
     auto* combo = new QComboBox(this);
-    combo->setObjectName(name);
-    combo->setToolTip(tip);
+    named(combo, name, tip);
     combo->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     combo->setMinimumContentsLength(8);
     m_channels[indexOf(channel)] = combo;

@@ -14,6 +14,7 @@
 #include "panels/panel.h"
 #include "render/clip_handles.h"
 #include "services/services.h"
+#include "widgets/named.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 #include "widgets/scrolled.h"
@@ -40,10 +41,9 @@ ClipPanel::ClipPanel(Services& services, QAction& handles, QWidget* parent)
     : QWidget(parent), m_services(services), m_add(new QPushButton(tr("&Add plane"), this)),
       m_reset(new QPushButton(tr("&Whole box"), this)) {
     setObjectName("clipPanel");
-    m_add->setObjectName("addPlaneButton");
-    m_add->setToolTip(tr("Cut away what is nearer than the middle; at most %1 planes (Shift+C)").arg(kMostClipPlanes));
-    m_reset->setObjectName("resetClipButton");
-    m_reset->setToolTip(tr("Cut nothing away"));
+    named(m_add, "addPlaneButton",
+          tr("Cut away what is nearer than the middle; at most %1 planes (Shift+C)").arg(kMostClipPlanes));
+    named(m_reset, "resetClipButton", tr("Cut nothing away"));
     auto* button = new QToolButton(this);
     button->setObjectName("clipHandlesButton");
     button->setDefaultAction(&handles);
@@ -138,8 +138,7 @@ ClipPanel::PlaneRow ClipPanel::makeRow(std::size_t index) {
     grid->addWidget(distance, 1, 0);
     for (int column = 1; column < 4; ++column) grid->setColumnStretch(column, 1);
     auto* flip = new QPushButton(tr("Flip"));
-    flip->setObjectName(QStringLiteral("flipPlane%1").arg(index + 1));
-    flip->setToolTip(tr("Keep the other side"));
+    named(flip, QStringLiteral("flipPlane%1").arg(index + 1), tr("Keep the other side"));
     auto* remove = new QPushButton(tr("Remove"));
     remove->setObjectName(QStringLiteral("removePlane%1").arg(index + 1));
     grid->addWidget(flip, 1, 2);

@@ -25,6 +25,7 @@
 #include "services/services.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
+#include "widgets/named.h"
 #include "widgets/plot_view.h"
 #include "widgets/theme.h"
 
@@ -116,8 +117,7 @@ ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optim
         tr("The peak opacity of each feature, 0 to 1, of a path of one reference length d0")};
     for (std::size_t i = 0; i < m_plots.size(); ++i) {
         PlotView* const plot = m_plots[i] = new PlotView(this);
-        plot->setObjectName(names[i]);
-        plot->setToolTip(tips[i]);
+        named(plot, names[i], tips[i]);
         plot->setContextMenuPolicy(Qt::CustomContextMenu);
         m_row->addWidget(plot, 1);
         connect(plot, &PlotView::readOut, m_readOut, &QLabel::setText);
@@ -162,8 +162,7 @@ ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optim
     connect(m_list, &QWidget::customContextMenuRequested, this,
             [this](const QPoint& at) { showMenu(m_list->viewport()->mapToGlobal(at), true); });
 
-    m_log->setObjectName("convergenceLog");
-    m_log->setToolTip(tr("F and opacities on logarithmic axes"));
+    named(m_log, "convergenceLog", tr("F and opacities on logarithmic axes"));
     connect(m_log, &QCheckBox::toggled, this, &ConvergencePanel::drawPlots);
     m_readOut->setObjectName("convergenceReadOut");
     m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);

@@ -14,11 +14,11 @@
 #include <QPushButton>
 #include <QSpinBox>
 #include <QToolButton>
-#include <QVBoxLayout>
 
 #include "controllers/controllers.h"
 #include "panels/panel.h"
 #include "services/services.h"
+#include "widgets/named.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 #include "widgets/scrolled.h"
@@ -61,28 +61,21 @@ DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget*
       m_wholeRange(new QPushButton(tr("&All values"), this)), m_component(new QSpinBox(this)),
       m_note(new QLabel(this)) {
     setObjectName("displayPanel");
-    m_mode->setObjectName("modeCombo");
-    m_mode->setToolTip(tr("What becomes of the values along a ray"));
+    named(m_mode, "modeCombo", tr("What becomes of the values along a ray"));
     for (const auto& [text, tip] : kModes) {
         m_mode->addItem(tr(text));
         m_mode->setItemData(m_mode->count() - 1, tr(tip), Qt::ToolTipRole);
     }
-    m_background->setObjectName("backgroundColor");
-    m_background->setToolTip(tr("Colour behind the volume; a saved picture can be transparent instead"));
-    m_gradient->setObjectName("gradientCheck");
-    m_gradient->setToolTip(tr("Another colour at the top of the picture"));
-    m_top->setObjectName("backgroundTopColor");
-    m_top->setToolTip(tr("Colour at the top of the picture"));
-    m_feature->setObjectName("onlyFeatureCombo");
-    m_feature->setToolTip(tr("Draw the voxels of one feature alone; figures are of all"));
-    m_finest->setObjectName("finestStepCombo");
-    m_finest->setToolTip(
-        tr("How finely the picture is drawn when the scene rests: the steps along a ray are halved, down\n"
-           "to this, where the picture would change by 1/255 otherwise. Long steps leave rings where\n"
-           "opacity rises steeply. d0 is the smallest distance of voxels"));
+    named(m_background, "backgroundColor", tr("Colour behind the volume; a saved picture can be transparent instead"));
+    named(m_gradient, "gradientCheck", tr("Another colour at the top of the picture"));
+    named(m_top, "backgroundTopColor", tr("Colour at the top of the picture"));
+    named(m_feature, "onlyFeatureCombo", tr("Draw the voxels of one feature alone; figures are of all"));
+    named(m_finest, "finestStepCombo",
+          tr("How finely the picture is drawn when the scene rests: the steps along a ray are halved, down\n"
+             "to this, where the picture would change by 1/255 otherwise. Long steps leave rings where\n"
+             "opacity rises steeply. d0 is the smallest distance of voxels"));
     for (double step = kCoarsestFinest; step >= kMostFinest; step /= 2) m_finest->addItem(finestText(step), step);
-    m_wholeRange->setObjectName("wholeRangeButton");
-    m_wholeRange->setToolTip(tr("From the smallest to the largest value of the data"));
+    named(m_wholeRange, "wholeRangeButton", tr("From the smallest to the largest value of the data"));
     m_component->setObjectName("componentSpin");
     m_component->setRange(0, 1'000'000);
     m_component->setKeyboardTracking(false);

@@ -28,6 +28,7 @@
 #include "panels/variable_words.h"
 #include "services/services.h"
 #include "widgets/lock_mark.h"
+#include "widgets/named.h"
 #include "widgets/opacity_editor.h"
 #include "widgets/theme.h"
 
@@ -142,8 +143,7 @@ private:
 
 QPushButton* button(const QString& text, const char* name, const QString& tip, QWidget* parent) {
     auto* b = new QPushButton(text, parent);
-    b->setObjectName(name);
-    b->setToolTip(tip);
+    named(b, name, tip);
     b->setAutoDefault(false);
     return b;
 }
@@ -228,8 +228,7 @@ FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidg
     m_progress->setRange(0, 1000);
     m_progress->setTextVisible(true);
     m_progress->setMaximumHeight(18);
-    m_distance->setObjectName("distanceLabel");
-    m_distance->setToolTip(tr("F: root of the mean squared difference between VWS and targets"));
+    named(m_distance, "distanceLabel", tr("F: root of the mean squared difference between VWS and targets"));
     // What is said must not change how wide the dock is, else the picture would be drawn anew.
     for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     m_message->setObjectName("panelMessage");

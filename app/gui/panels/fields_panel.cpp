@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <tuple>
 
 #include <QComboBox>
 #include <QFormLayout>
@@ -19,6 +18,7 @@
 #include "panels/setting_rows.h"
 #include "services/services.h"
 #include "tf/color_maps.h"
+#include "widgets/named.h"
 #include "widgets/scrolled.h"
 #include "widgets/theme.h"
 
@@ -49,20 +49,17 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
       m_usualTop(new QPushButton(tr("&Usual"), this)), m_stop(new QPushButton(this)),
       m_save(new QPushButton(tr("Sa&ve…"), this)), m_state(new QLabel(this)), m_progress(new QProgressBar(this)) {
     setObjectName("fieldsPanel");
-    m_kind->setObjectName("fieldKindCombo");
-    m_kind->setToolTip(tr("What is drawn: the data, or what each voxel contributes to this picture (V)"));
+    named(m_kind, "fieldKindCombo", tr("What is drawn: the data, or what each voxel contributes to this picture (V)"));
     m_kind->addItem(tr("none: the data"), -1);
     for (const FieldKind kind : allOf<FieldKind>()) {
         const auto i = static_cast<std::size_t>(kind);
         m_kind->addItem(QString::fromLatin1(title(kind)), static_cast<int>(i));
         m_kind->setItemData(m_kind->count() - 1, tr(kTips[i]), Qt::ToolTipRole);
     }
-    m_feature->setObjectName("fieldFeatureCombo");
-    m_feature->setToolTip(
-        tr("The field in the voxels of one feature alone; its colours stay those of the whole field, so "
-           "that features compare"));
-    m_colorMap->setObjectName("fieldColorMapCombo");
-    m_colorMap->setToolTip(tr("Colours from 0 to the top of the field"));
+    named(m_feature, "fieldFeatureCombo",
+          tr("The field in the voxels of one feature alone; its colours stay those of the whole field, so "
+             "that features compare"));
+    named(m_colorMap, "fieldColorMapCombo", tr("Colours from 0 to the top of the field"));
     m_colorMap->setIconSize({48, 12});
     for (const ColorMap& map : colorMaps())
         if (map.kind != ColorMap::Kind::Categorical) {
@@ -73,13 +70,10 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
     m_colorMap->setItemData(m_colorMap->count() - 1,
                             tr("Black over the colour of the chosen feature to white; of all features, the usual map"),
                             Qt::ToolTipRole);
-    m_top->setObjectName("fieldTop");
-    m_top->setToolTip(tr("Value of the field that the colours reach to, above 0; in the unit of the field"));
-    m_usualTop->setObjectName("fieldUsualTop");
-    m_usualTop->setToolTip(tr("The value below which lie 99.9 % of those above 0, of all features"));
+    named(m_top, "fieldTop", tr("Value of the field that the colours reach to, above 0; in the unit of the field"));
+    named(m_usualTop, "fieldUsualTop", tr("The value below which lie 99.9 % of those above 0, of all features"));
     m_stop->setObjectName("fieldStop");
-    m_save->setObjectName("fieldSave");
-    m_save->setToolTip(tr("Write the values of this field to an NRRD file, on the grid of the data"));
+    named(m_save, "fieldSave", tr("Write the values of this field to an NRRD file, on the grid of the data"));
     m_state->setObjectName("fieldState");
     m_state->setWordWrap(true);
     makeFaint(*m_state);
@@ -139,9 +133,8 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
     connect(m_top, &QLineEdit::editingFinished, this, &FieldsPanel::editTop);
     connect(m_usualTop, &QPushButton::clicked, this,
             [this] { edit(tr("Usual top of the field"), {}, [](FieldView& f) { f.top.reset(); }); });
-    connect(m_stop, &QPushButton::clicked, this, [this] {
-        m_fields.state() == FieldController::State::Computing ? m_fields.cancel() : m_fields.compute();
-    });
+    connect(m_stop, &QPushButton::clicked, this,
+            [this] { m_fields.state() == FieldController::State::Computing ? m_fields.cancel() : m_fields.compute(); });
     connect(m_save, &QPushButton::clicked, this, [this] { m_fields.chooseFile(); });
     connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features != after.tf.features ||

@@ -4,7 +4,6 @@
 #include <QDir>
 #include <QHBoxLayout>
 #include <QInputDialog>
-#include <QLabel>
 #include <QListWidget>
 #include <QMenu>
 #include <QMessageBox>
@@ -18,6 +17,7 @@
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
 #include "widgets/image_convert.h"
+#include "widgets/named.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -83,8 +83,7 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
           },
           [](const Task&, int&) {}) {
     setObjectName("galleryPanel");
-    m_group->setObjectName("galleryGroup");
-    m_group->setToolTip(tr("Which presets are listed"));
+    named(m_group, "galleryGroup", tr("Which presets are listed"));
     m_take->setObjectName("galleryTake");
     m_take->addItem(tr("Take all"));
     m_take->addItem(tr("Take colours"));

@@ -1,7 +1,6 @@
 // The panel of presets: transfer functions as small pictures of the volume that is open.
 #pragma once
 
-#include <map>
 #include <vector>
 
 #include <QTimer>

@@ -1,7 +1,5 @@
 #include "panels/ground_box.h"
 
-#include <cmath>
-
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFormLayout>
@@ -19,6 +17,7 @@
 #include "services/services.h"
 #include "tf/terrain.h"
 #include "volume/procedural.h"
+#include "widgets/named.h"
 
 namespace pellucid::gui {
 GroundBox::GroundBox(Services& services, OpenController& opening, QWidget* parent)
@@ -26,8 +25,7 @@ GroundBox::GroundBox(Services& services, OpenController& opening, QWidget* paren
       m_choose(new QToolButton(this)), m_remove(new QPushButton(tr("Remove"), this)),
       m_shown(new QCheckBox(tr("&Ground"), this)), m_colorMap(new QComboBox(this)) {
     setObjectName("groundBox");
-    m_shown->setObjectName("groundShown");
-    m_shown->setToolTip(tr("A height field under the volume; figures do not depend on it"));
+    named(m_shown, "groundShown", tr("A height field under the volume; figures do not depend on it"));
     m_file->setObjectName("groundFile");
     m_file->setTextFormat(Qt::PlainText);
     m_file->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
@@ -50,10 +48,8 @@ GroundBox::GroundBox(Services& services, OpenController& opening, QWidget* paren
         action->setObjectName("ground_" + name);
     }
     m_choose->setMenu(menu);
-    m_remove->setObjectName("groundRemove");
-    m_remove->setToolTip(tr("No ground"));
-    m_colorMap->setObjectName("groundColorMap");
-    m_colorMap->setToolTip(tr("Colours from the lowest to the highest ground"));
+    named(m_remove, "groundRemove", tr("No ground"));
+    named(m_colorMap, "groundColorMap", tr("Colours from the lowest to the highest ground"));
     for (const std::string& name : groundColorNames())
         m_colorMap->addItem(QString::fromStdString(name), QString::fromStdString(name));
     auto* form = new QFormLayout(this);

@@ -8,10 +8,8 @@
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
-#include <QLabel>
 #include <QPushButton>
 #include <QSignalBlocker>
-#include <QVBoxLayout>
 
 #include <glm/geometric.hpp>
 
@@ -19,6 +17,7 @@
 #include "panels/setting_rows.h"
 #include "render/light_presets.h"
 #include "services/services.h"
+#include "widgets/named.h"
 #include "widgets/number_box.h"
 #include "widgets/scrolled.h"
 
@@ -36,17 +35,15 @@ LightPanel::LightPanel(Services& services, QAction& light, QWidget* parent)
       m_right(new QDoubleSpinBox(this)), m_up(new QDoubleSpinBox(this)),
       m_fromEye(new QPushButton(tr("From the &eye"), this)) {
     setObjectName("lightPanel");
-    m_on->setObjectName("shadingCheck");
-    m_on->setToolTip(tr("Light by the gradient of the values; figures do not depend on it (L)"));
-    m_preset->setObjectName("lightPresetCombo");
-    m_preset->setToolTip(tr("Ready-made light; where it comes from stays"));
+    named(m_on, "shadingCheck", tr("Light by the gradient of the values; figures do not depend on it (L)"));
+    named(m_preset, "lightPresetCombo", tr("Ready-made light; where it comes from stays"));
     for (const LightPreset& preset : lightPresets()) {
         m_preset->addItem(QString::fromLatin1(preset.name));
         m_preset->setItemData(m_preset->count() - 1, QString::fromLatin1(preset.description), Qt::ToolTipRole);
     }
     m_preset->setPlaceholderText(tr("own"));
-    m_fromEye->setObjectName("lightFromEyeButton");
-    m_fromEye->setToolTip(tr("The light goes with the viewer; drag in the picture with Ctrl held to turn it"));
+    named(m_fromEye, "lightFromEyeButton",
+          tr("The light goes with the viewer; drag in the picture with Ctrl held to turn it"));
 
     auto* content = new QWidget;
     auto* form = new QFormLayout(content);

@@ -1,8 +1,6 @@
 // The panel of light: what makes shapes visible. No figure depends on it.
 #pragma once
 
-#include <vector>
-
 #include <QWidget>
 
 #include "render/render_settings.h"

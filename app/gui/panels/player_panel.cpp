@@ -18,6 +18,7 @@
 #include "panels/panel.h"
 #include "panels/time_strip.h"
 #include "services/services.h"
+#include "widgets/named.h"
 #include "widgets/number_box.h"
 #include "widgets/theme.h"
 
@@ -150,13 +151,12 @@ PlayerPanel::PlayerPanel(Services& services, PlayerController& player, AdaptCont
     connect(m_speed, &QDoubleSpinBox::valueChanged, this, [&player](double value) { player.setSpeed(value); });
     row->addWidget(m_speed);
     row->addSpacing(8);
-    m_frame->setObjectName("frameLabel");
-    m_frame->setToolTip(tr("The frame that is shown: its time, in the unit of the data, and its number"));
+    named(m_frame, "frameLabel", tr("The frame that is shown: its time, in the unit of the data, and its number"));
     row->addWidget(m_frame);
     row->addSpacing(12);
-    m_rate->setObjectName("rateLabel");
-    m_rate->setToolTip(tr("Frames that were shown a second, of those that were due; frames that could not be read or\n"
-                          "drawn in time are dropped"));
+    named(m_rate, "rateLabel",
+          tr("Frames that were shown a second, of those that were due; frames that could not be read or\n"
+             "drawn in time are dropped"));
     makeFaint(*m_rate);
     row->addWidget(m_rate);
     row->addStretch(1);

@@ -18,6 +18,7 @@
 #include "render/clip_handles.h"
 #include "services/services.h"
 #include "view/volume_view.h"
+#include "widgets/named.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -76,12 +77,12 @@ ProbePanel::ProbePanel(Services& services, ProbeController& probe, VolumeView& v
     setAutoFillBackground(true);
     setFixedWidth(kWidth);
     setCursor(Qt::ArrowCursor);
-    m_more->setObjectName("moreOfThisButton");
-    m_more->setToolTip(tr("Raise the opacity of this feature, and lower that of what hides it here (Ctrl+]).\n"
-                          "Locked features and fixed points stay."));
-    m_less->setObjectName("lessOfThisButton");
-    m_less->setToolTip(tr("Lower the opacity of this feature, and raise that of what hides it here (Ctrl+[).\n"
-                          "Locked features and fixed points stay."));
+    named(m_more, "moreOfThisButton",
+          tr("Raise the opacity of this feature, and lower that of what hides it here (Ctrl+]).\n"
+             "Locked features and fixed points stay."));
+    named(m_less, "lessOfThisButton",
+          tr("Lower the opacity of this feature, and raise that of what hides it here (Ctrl+[).\n"
+             "Locked features and fixed points stay."));
     for (QPushButton* b : {m_more, m_less}) {
         b->setAutoDefault(false);
         b->setFocusPolicy(Qt::TabFocus); // a click leaves the keys to the picture

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include <QCheckBox>
 #include <QFormLayout>
@@ -10,7 +9,6 @@
 #include <QHelpEvent>
 #include <QLabel>
 #include <QPainter>
-#include <QPainterPath>
 #include <QPushButton>
 #include <QToolButton>
 #include <QToolTip>
@@ -21,6 +19,7 @@
 #include "panels/panel.h"
 #include "panels/setting_rows.h"
 #include "services/services.h"
+#include "widgets/named.h"
 #include "widgets/number_text.h"
 #include "widgets/plot_view.h"
 #include "widgets/scrolled.h"
@@ -170,24 +169,20 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
                                           .arg(QString::number(less, 'g', 3), shortNumber(exact), shortNumber(greedy)));
                 }) {
     setObjectName("refinePanel");
-    m_refine->setObjectName("refineNowButton");
-    m_refine->setToolTip(tr("Refine the opacities with these settings (Ctrl+R)"));
-    m_pair->setObjectName("sideBySideButton");
-    m_pair->setToolTip(tr("The picture before and after the latest refinement"));
-    m_live->setObjectName("liveRefineCheck");
-    m_live->setToolTip(tr("Refine after every edit: what you move stays where you put it,\n"
-                          "the other points give way evenly, so that the total opacity stays"));
-    m_ghost->setObjectName("ghostCheck");
-    m_ghost->setToolTip(tr("Dashed, behind the curve: what it was before the latest refinement"));
-    m_priority->setObjectName("refinePriority");
-    m_priority->setToolTip(tr("What becomes more opaque, relative to everything else. Click on the palette below the\n"
-                              "curve for a value, or select a part of the picture"));
+    named(m_refine, "refineNowButton", tr("Refine the opacities with these settings (Ctrl+R)"));
+    named(m_pair, "sideBySideButton", tr("The picture before and after the latest refinement"));
+    named(m_live, "liveRefineCheck",
+          tr("Refine after every edit: what you move stays where you put it,\n"
+             "the other points give way evenly, so that the total opacity stays"));
+    named(m_ghost, "ghostCheck", tr("Dashed, behind the curve: what it was before the latest refinement"));
+    named(m_priority, "refinePriority",
+          tr("What becomes more opaque, relative to everything else. Click on the palette below the\n"
+             "curve for a value, or select a part of the picture"));
     m_nothing->setObjectName("clearPriorityButton");
     m_nothing->setText(tr("Clear"));
     m_nothing->setToolTip(tr("Prioritize nothing; opacities stay"));
     m_edges->setObjectName("refineEdges");
-    m_plot->setObjectName("refineCurve");
-    m_plot->setToolTip(tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
+    named(m_plot, "refineCurve", tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
     const std::pair<QLabel*, const char*> labels[] = {{m_words, "refineWords"},
                                                       {m_note, "refineNote"},
                                                       {m_figures, "refineFigures"},

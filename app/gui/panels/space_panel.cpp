@@ -25,6 +25,7 @@
 #include "session/coarser_input.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
+#include "widgets/named.h"
 
 namespace pellucid::gui {
 namespace {
@@ -119,14 +120,12 @@ SpacePanel::SpacePanel(Services& services, QWidget* parent)
     m_factor->addItem(tr("a quarter"), 4);
     m_factor->setToolTip(tr("What is sampled: the volume, or a copy that is coarser along each axis.\n"
                             "Automatic: coarser where the whole would take long"));
-    m_shown->setObjectName("spaceShown");
-    m_shown->setToolTip(tr("F: distance from the targets, 0 is on target; W: the share of saliency (VWS) of a feature, "
-                           "0 to 1"));
-    m_compute->setObjectName("spaceCompute");
-    m_compute->setToolTip(tr("Samples VWS and F, from this camera"));
+    named(m_shown, "spaceShown",
+          tr("F: distance from the targets, 0 is on target; W: the share of saliency (VWS) of a feature, "
+             "0 to 1"));
+    named(m_compute, "spaceCompute", tr("Samples VWS and F, from this camera"));
     m_cancel->setObjectName("spaceCancel");
-    m_least->setObjectName("spaceLeast");
-    m_least->setToolTip(tr("Sets the opacities of the sample with the least F"));
+    named(m_least, "spaceLeast", tr("Sets the opacities of the sample with the least F"));
     m_save->setObjectName("spaceSave");
     m_save->setText(tr("Save…"));
     m_save->setToolTip(tr("Saves the picture, or all samples as a table (.csv)"));

@@ -13,6 +13,7 @@
 
 #include "store/edits.h"
 #include "widgets/lock_mark.h"
+#include "widgets/named.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -54,9 +55,8 @@ TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Minimum);
-    m_box->setObjectName("targetBox");
-    m_box->setToolTip(
-        tr("Share of the saliency from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"));
+    named(m_box, "targetBox",
+          tr("Share of the saliency from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"));
     m_box->setAlignment(Qt::AlignRight);
     m_box->hide();
     m_box->installEventFilter(this);

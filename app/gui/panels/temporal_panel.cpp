@@ -20,6 +20,7 @@
 #include "services/services.h"
 #include "session/scene_data.h"
 #include "tf/tf_range.h"
+#include "widgets/named.h"
 #include "widgets/plot_view.h"
 #include "widgets/theme.h"
 
@@ -98,8 +99,7 @@ TemporalPanel::TemporalPanel(Services& services, PlayerController& player, Adapt
     grid->setSpacing(2);
     for (std::size_t i = 0; i < m_plots.size(); ++i) {
         PlotView* const plot = m_plots[i] = new PlotView(this);
-        plot->setObjectName(names[i]);
-        plot->setToolTip(tips[i]);
+        named(plot, names[i], tips[i]);
         connect(plot, &PlotView::readOut, m_readOut, &QLabel::setText);
         connect(plot, &PlotView::exportWanted, this, &TemporalPanel::chooseFile);
         grid->addWidget(plot, 0, static_cast<int>(i));
@@ -111,9 +111,9 @@ TemporalPanel::TemporalPanel(Services& services, PlayerController& player, Adapt
     m_shown->setToolTip(tr("What the first two plots show of each feature: share of saliency (VWS), visibility (FV),\n"
                            "or the opacity of its peak, of a path of one reference length d0"));
     connect(m_shown, &QComboBox::activated, this, &TemporalPanel::refresh);
-    m_overGaps->setObjectName("temporalOverGaps");
-    m_overGaps->setToolTip(tr("After missing or broken frames, compare with the frame before the gap;\n"
-                              "otherwise no flicker is reported there"));
+    named(m_overGaps, "temporalOverGaps",
+          tr("After missing or broken frames, compare with the frame before the gap;\n"
+             "otherwise no flicker is reported there"));
     connect(m_overGaps, &QCheckBox::toggled, this, [this] {
         refresh();
         next();

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <QHBoxLayout>
-#include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
 #include <QLocale>
@@ -23,6 +22,7 @@
 #include "session/scene_data.h"
 #include "volume/file_contents.h"
 #include "volume/procedural.h"
+#include "widgets/named.h"
 #include "widgets/number_text.h"
 #include "widgets/scrolled.h"
 #include "widgets/theme.h"
@@ -155,8 +155,7 @@ QWidget* VariablesPanel::makeList() {
         edit->setToolTip(tr("Values of the variable that are intensity 0 and 1, in its unit"));
         connect(edit, &QLineEdit::editingFinished, this, &VariablesPanel::editRange);
     }
-    m_wholeRange->setObjectName("variableWholeRange");
-    m_wholeRange->setToolTip(tr("From the smallest to the largest value of all frames"));
+    named(m_wholeRange, "variableWholeRange", tr("From the smallest to the largest value of all frames"));
     auto* row = new QHBoxLayout;
     row->addWidget(m_add);
     row->addWidget(m_remove);

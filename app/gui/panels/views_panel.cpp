@@ -15,6 +15,7 @@
 #include "render/view_direction.h"
 #include "services/services.h"
 #include "view/view_globe.h"
+#include "widgets/named.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -61,9 +62,9 @@ ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget
       m_look(new QPushButton(this)), m_go(new QPushButton(tr("Go there"), this)),
       m_optimize(new QPushButton(tr("Optimize view and opacities"), this)) {
     setObjectName("viewsPanel");
-    m_figure->setObjectName("viewsFigure");
-    m_figure->setToolTip(tr("What a view is judged by: F, the distance of all shares of saliency from their targets\n"
-                            "(less is better), or the share (VWS, 0 to 1) of one feature (more is better)"));
+    named(m_figure, "viewsFigure",
+          tr("What a view is judged by: F, the distance of all shares of saliency from their targets\n"
+             "(less is better), or the share (VWS, 0 to 1) of one feature (more is better)"));
     m_figure->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     m_words->setObjectName("viewsWords");
     m_words->setWordWrap(true);
@@ -73,11 +74,10 @@ ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget
     m_progress->setTextVisible(false);
     m_progress->setFixedHeight(6);
     m_look->setObjectName("viewsLook");
-    m_go->setObjectName("viewsGo");
-    m_go->setToolTip(tr("The camera goes to the best view; Alt+Left comes back"));
-    m_optimize->setObjectName("viewsOptimize");
-    m_optimize->setToolTip(tr("The view and the opacities that together come nearest to the targets;\n"
-                              "opacities can be undone, and Alt+Left comes back to this view"));
+    named(m_go, "viewsGo", tr("The camera goes to the best view; Alt+Left comes back"));
+    named(m_optimize, "viewsOptimize",
+          tr("The view and the opacities that together come nearest to the targets;\n"
+             "opacities can be undone, and Alt+Left comes back to this view"));
 
     auto* buttons = new QHBoxLayout;
     buttons->addWidget(m_look);

@@ -4,7 +4,6 @@
 
 #include <QMainWindow>
 #include <QMenu>
-#include <QMenuBar>
 #include <QToolBar>
 
 namespace pellucid::gui {

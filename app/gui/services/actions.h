@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <QAction>
-#include <QKeySequence>
 #include <QObject>
 #include <QString>
 

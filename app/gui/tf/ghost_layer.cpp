@@ -1,7 +1,6 @@
 #include "tf/ghost_layer.h"
 
 #include <QPainter>
-#include <QPainterPath>
 
 #include "controllers/refine_controller.h"
 #include "widgets/theme.h"

@@ -1,8 +1,6 @@
 // The curve as it was before the latest refinement, behind the curve.
 #pragma once
 
-#include <memory>
-
 #include "tf/tf_canvas.h"
 
 namespace pellucid::gui {

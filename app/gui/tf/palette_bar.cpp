@@ -1,7 +1,5 @@
 #include "tf/palette_bar.h"
 
-#include <cmath>
-
 #include <QContextMenuEvent>
 #include <QHelpEvent>
 #include <QKeyEvent>

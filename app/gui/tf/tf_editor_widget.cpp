@@ -16,6 +16,7 @@
 #include <QVBoxLayout>
 
 #include "store/edits.h"
+#include "widgets/named.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
@@ -59,8 +60,7 @@ TfEditorWidget::TfEditorWidget(SessionStore& store, Results& results, Selection&
     m_color->setObjectName("pointColor");
     m_color->setIconSize({22, 14});
     m_color->setToolTip(tr("Colour of the points (Enter)"));
-    m_fixed->setObjectName("pointFixed");
-    m_fixed->setToolTip(tr("Refinement leaves fixed points alone (Space)"));
+    named(m_fixed, "pointFixed", tr("Refinement leaves fixed points alone (Space)"));
     m_remove->setObjectName("pointRemove");
     m_remove->setText(tr("Remove"));
     m_remove->setToolTip(tr("Remove the points (Delete)"));
@@ -100,14 +100,14 @@ QHBoxLayout* TfEditorWidget::makeRow() {
     connect(scale, &QComboBox::activated, this, [](int index) { QSettings().setValue(kScaleKey, index); });
     scale->setCurrentIndex(std::clamp(QSettings().value(kScaleKey, 0).toInt(), 0, scale->count() - 1));
     auto* gradients = new QCheckBox(tr("Gradients"), this);
-    gradients->setObjectName("jointHistogram");
-    gradients->setToolTip(tr("Behind the curve: how often values (to the right) meet gradient magnitudes (up).\n"
-                             "Matter lies at the bottom; arcs are borders between two matters"));
+    named(gradients, "jointHistogram",
+          tr("Behind the curve: how often values (to the right) meet gradient magnitudes (up).\n"
+             "Matter lies at the bottom; arcs are borders between two matters"));
     connect(gradients, &QCheckBox::toggled, m_canvas, &TfCanvas::setJointHistogramShown);
     auto* fine = new QCheckBox(tr("Fine opacity"), this);
-    fine->setObjectName("fineOpacityAxis");
-    fine->setToolTip(tr("Height shows the cube root of the opacity: fine control near zero, where\n"
-                        "most of the effect lies (opacity of a path one voxel long, d0)"));
+    named(fine, "fineOpacityAxis",
+          tr("Height shows the cube root of the opacity: fine control near zero, where\n"
+             "most of the effect lies (opacity of a path one voxel long, d0)"));
     connect(fine, &QCheckBox::toggled, m_canvas, &TfCanvas::setFineOpacityAxis);
     connect(fine, &QCheckBox::clicked, this, [](bool on) { QSettings().setValue(kFineKey, on); });
     m_canvas->setFineOpacityAxis(QSettings().value(kFineKey, true).toBool());

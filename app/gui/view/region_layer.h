@@ -3,8 +3,6 @@
 
 #include <optional>
 
-#include <QPolygonF>
-
 #include "render/image_region.h"
 #include "view/view_overlay.h"
 

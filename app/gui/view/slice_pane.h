@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include <QElapsedTimer>
 #include <QImage>
 #include <QWidget>
 

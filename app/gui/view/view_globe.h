@@ -4,7 +4,6 @@
 #include <functional>
 #include <optional>
 
-#include <QImage>
 #include <QWidget>
 
 #include "optimize/views/view_search.h"

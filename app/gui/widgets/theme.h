@@ -1,13 +1,10 @@
 // The look of the window: neutral, dark or light, so that only the data has colour.
 #pragma once
 
-#include <optional>
-#include <string_view>
-
 #include <QColor>
 
-#include "base/enum_names.h"
 #include "base/color.h"
+#include "base/enum_names.h"
 
 class QApplication;
 class QLabel;
@@ -16,7 +13,9 @@ namespace pellucid::gui {
 
 enum class Theme { Dark, Light, System }; ///< the last: what the desktop is set to
 } // namespace pellucid::gui
-template <> inline constexpr auto pellucid::kNamesOf<pellucid::gui::Theme> = pellucid::enumNames("theme", "dark", "light", "system");
+template <>
+inline constexpr auto pellucid::kNamesOf<pellucid::gui::Theme> = pellucid::enumNames("theme", "dark", "light",
+                                                                                     "system");
 namespace pellucid::gui {
 
 /// The colours of the present theme: who paints reads them when he paints. Those of marks over the picture belong to no

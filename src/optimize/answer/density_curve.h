@@ -2,7 +2,6 @@
 // curve, which is followed here from the faintest to the strongest picture (docs/method.md, "Density at equal shares").
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "optimize/coverage.h"

@@ -1,7 +1,6 @@
 #include "optimize/refine/refine.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.h"
 #include "optimize/refine/refine_edges.h"

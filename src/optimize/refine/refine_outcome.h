@@ -4,7 +4,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "optimize/ray_bundle.h"
 #include "optimize/refine/refine.h"

@@ -2,7 +2,6 @@
 // of opacities (thesis §5.3.2, docs/method.md, "Parameter space").
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +15,8 @@ enum class AxisScale {
     Linear,     ///< the opacity is the position
     Logarithmic ///< lowest^(1 − position): from `lowest` to 1 in equal factors
 };
-template <> inline constexpr auto kNamesOf<AxisScale> = enumNames("scale of an axis", "linear", "log");
+template <>
+inline constexpr auto kNamesOf<AxisScale> = enumNames("scale of an axis", "linear", "log");
 
 inline constexpr int kMostAxisSamples = 64;
 

@@ -7,7 +7,8 @@
     X(glActiveTexture) X(glAttachShader) X(glBindBuffer) X(glBindBufferBase) X(glBindFramebuffer)                     \
     X(glBindImageTexture) X(glBindTexture) X(glBindVertexArray) X(glBlendEquation) X(glBlendFunc) X(glBufferData)     \
     X(glBufferSubData) X(glCheckFramebufferStatus) X(glClear) X(glClearBufferfv) X(glClearColor) X(glColorMask)       \
-    X(glCompileShader) X(glCopyTexSubImage3D) X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers)                 \
+    X(glCompileShader) X(glCopyTexSubImage3D) X(glCreateProgram) X(glCreateShader) X(glDebugMessageCallback)          \
+    X(glDeleteBuffers)                                                                                                \
     X(glDeleteFramebuffers) X(glDeleteProgram) X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays)          \
     X(glDisable) X(glDispatchCompute) X(glDrawArrays) X(glEnable) X(glFinish) X(glFramebufferTexture2D)               \
     X(glGenBuffers) X(glGenFramebuffers) X(glGenTextures) X(glGenVertexArrays) X(glGetBufferSubData) X(glGetError)    \

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <vector>
@@ -99,6 +98,22 @@ std::vector<Candidate> eglCandidates() {
     return all;
 }
 
+/// For tests: what the driver calls an error is printed and ends the program.
+bool errorsEndTheProgram() { return std::getenv("PELLUCID_GL_DEBUG") != nullptr; }
+
+void watchErrors() {
+    if (!errorsEndTheProgram()) return;
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS); // so that the place is on the stack
+    glDebugMessageCallback(
+        [](GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* text, const void*) {
+            if (type != GL_DEBUG_TYPE_ERROR) return;
+            std::fprintf(stderr, "OpenGL: %s\n", text);
+            std::abort();
+        },
+        nullptr);
+}
+
 /// Makes a surfaceless context current; null, with the reason in `why`, where this display gives none.
 std::unique_ptr<EglContext> makeCurrentOn(EGLDisplay display, std::string& why) {
     EGLint major = 0, minor = 0;
@@ -122,12 +137,14 @@ std::unique_ptr<EglContext> makeCurrentOn(EGLDisplay display, std::string& why) 
         return {};
     }
     for (const int version : {45, 43}) {
-        const std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION,
+        const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
                                                version / 10,
                                                EGL_CONTEXT_MINOR_VERSION,
                                                version % 10,
                                                EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                                EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                               EGL_CONTEXT_OPENGL_DEBUG,
+                                               errorsEndTheProgram() ? EGL_TRUE : EGL_FALSE,
                                                EGL_NONE};
         const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
         if (context == EGL_NO_CONTEXT) continue;
@@ -166,6 +183,7 @@ CurrentContext makeAnyCurrent() {
             current.egl = makeCurrentOn(display, why);
             if (current.egl) {
                 requireGl43();
+                watchErrors();
                 current.info = describe(candidate.platform);
                 return current;
             }

@@ -1,7 +1,6 @@
 #include "render/gl/resident_volume.h"
 
 #include <algorithm>
-#include <array>
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "render/gl/gl_resources.h"
 #include "saliency/weight_fields.h"

@@ -1,7 +1,6 @@
 #include "volume/formats/file_check.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>

@@ -1,6 +1,7 @@
 #include "volume/formats/inflate_index.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <list>
 #include <utility>
 

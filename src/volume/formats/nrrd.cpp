@@ -8,7 +8,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include "base/round_numbers.h"
 #include "volume/formats/file_check.h"

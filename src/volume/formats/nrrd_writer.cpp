@@ -1,7 +1,6 @@
 // Writes NRRD0004, gzip-compressed, in the volume's own type.
 #include <bit>
 #include <charconv>
-#include <type_traits>
 
 #include <zlib.h>
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <mutex>
-#include <numbers>
 #include <optional>
 #include <vector>
 

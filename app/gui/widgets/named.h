@@ -1,0 +1,15 @@
+// What a control is called, and what it tells of itself.
+#pragma once
+
+#include <QString>
+#include <QWidget>
+
+namespace pellucid::gui {
+
+/// Gives the widget its object name, by which tests and style sheets find it, and its tool tip.
+inline void named(QWidget* widget, const QString& id, const QString& tip) {
+    widget->setObjectName(id);
+    widget->setToolTip(tip);
+}
+
+} // namespace pellucid::gui
