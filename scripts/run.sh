@@ -5,7 +5,7 @@ set -euo pipefail
 here=$PWD
 cd "$(dirname "$0")/.."
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
-    scripts/build.sh pellucid
+    scripts/build.sh pellucid pellucid-cli
     bin=$PWD/build/release/bin
     cd "$here"
     exec "$bin/pellucid" "$@"

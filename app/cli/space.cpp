@@ -127,7 +127,7 @@ std::vector<double> vwsAt(const ParameterSpace& space, std::size_t sample) {
 
 std::string textOf(const ParameterSpace& space, const std::vector<std::string>& names, int factor,
                    const std::vector<SpacePath>& paths, const std::vector<std::string>& files, double seconds) {
-    Table table({"feature", "axis", "target", "opacity at least F", "VWS there"});
+    Table table({"feature", "axis", "target", "best opacity", "VWS there"});
     const auto x = space.opacitiesAt(space.positionOfSample(space.best));
     const auto w = vwsAt(space, space.best);
     for (std::size_t f = 0; f < names.size(); ++f) {

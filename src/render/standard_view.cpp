@@ -45,7 +45,7 @@ std::optional<NamedView> namedView(const std::string& name) {
 
 ViewAngles anglesOf(const NamedView& view, Frame frame) {
     if (view.ofPatient && frame != Frame::Patient)
-        throw UsageError("the volume does not say how a patient lies in it", "view",
+        throw UsageError("the file does not say how the patient lies in it, so it has no such view", "view",
                          std::string("use ") + kSides[static_cast<std::size_t>(view.view)]);
     ViewAngles angles = anglesOf(view.view, frame);
     angles.zoom = view.zoom;

@@ -322,7 +322,7 @@ TEST_CASE("shares and parts of alpha in words", "[density]") {
           "shares asked for the picture is 6.5 % opaque, and 'f1' and 'f2' add at most 1.5 % where they "
           "are.");
     r.seen = Seen{{0.065, {0.1, 0.1, 0.001}}, true, {2}, {}, {}};
-    CHECK(faintText(r) == "The picture is 6.5 % opaque, and 'f3' adds 0.1 % where it is.");
+    CHECK(faintText(r) == "The picture is 6.5 % opaque, and 'f3' adds 0.1 % to the pixels that it covers.");
 }
 
 TEST_CASE("on a real view equal shares are kept over a tenth of the coverage and more", "[density]") {

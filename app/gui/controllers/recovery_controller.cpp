@@ -78,7 +78,7 @@ void RecoveryController::offerWhenOpen() {
 void RecoveryController::offer() {
     for (const Recovered& left : recoverableSessions(folder().toStdString())) {
         const QString title = QString::fromStdString(left.title);
-        m_services.notices().add({tr("Pellucid ended without saving your work on %1, as of %2.")
+        m_services.notices().add({tr("Pellucid closed before your work on %1 was saved. It was last kept at %2.")
                                       .arg(title, QString::fromStdString(left.when)),
                                   {{tr("Restore it"),
                                     [this, path = left.path] {

@@ -37,7 +37,7 @@ Run runOf(const Refinement& refinement) {
 QString evennessText(double energyBefore, double energyAfter) {
     if (!(energyAfter > 0) || energyBefore / energyAfter > 1e6) return QObject::tr("edge weights all but equal");
     const double ratio = energyBefore / energyAfter;
-    return QObject::tr("edge weights %1 × more even")
+    return QObject::tr("the edges weigh %1 times more evenly")
         .arg(ratio < 100 ? QString::number(ratio, 'g', 3) : QStringLiteral("%L1").arg(std::lround(ratio)));
 }
 
@@ -143,7 +143,7 @@ void RefineController::addActions() {
         tr("Forget the intensity or region that refinement brings out; opacities stay"),
         [this] { prioritizeNothing(); },
         [this, settings] { return m_services.isEditable() && (settings().intensity || settings().region); });
-    m_actions.ghost = actions.add(menu, "ghostAction", tr("&Ghost of the curve before"), {},
+    m_actions.ghost = actions.add(menu, "ghostAction", tr("Show the &curve before the refinement"), {},
                                   tr("Behind the curve: what it was before the latest refinement"),
                                   [this] { setGhostShown(!m_ghost); }, {}, {.checked = [this] { return m_ghost; }});
     m_actions.pair = actions.add(
@@ -398,7 +398,7 @@ void RefineController::refineForRegion(const Look& look) {
 void RefineController::prioritizeNothing() {
     if (!m_services.isEditable()) return;
     m_look.cancel();
-    m_services.store().edit(tr("Prioritize nothing"), {}, [](Session& session) {
+    m_services.store().edit(tr("Clear the priority"), {}, [](Session& session) {
         session.refine.edit([](RefineSettings& r) {
             r.intensity.reset();
             r.region.reset();

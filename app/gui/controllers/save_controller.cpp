@@ -228,10 +228,10 @@ void SaveController::chooseImage() {
 
 bool SaveController::maybeSave() {
     if (!m_services.store().hasVolume() || m_services.store().isClean()) return true;
-    QMessageBox box(QMessageBox::Question, tr("Unsaved changes"), tr("What you have changed has not been saved."),
+    QMessageBox box(QMessageBox::Question, tr("Unsaved changes"), tr("You have unsaved changes."),
                     QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, m_services.window());
     box.setObjectName("askSave");
-    box.setInformativeText(tr("Save the session before it is lost?"));
+    box.setInformativeText(tr("Do you want to save the session?"));
     box.setDefaultButton(QMessageBox::Save);
     switch (box.exec()) {
     case QMessageBox::Save:

@@ -48,7 +48,7 @@ QString beyondText(const Proposal& proposal, const ValueRange& data) {
     const auto plain = [](double v) { return QString::number(v, 'g', 4); };
     const QString ends = below && above ? QObject::tr("%1 and %2").arg(plain(data.lo), plain(data.hi))
                                         : plain(below ? data.lo : data.hi);
-    return QObject::tr("Values %1 are told apart; those of %2 of the voxels lie beyond, as far as %3.")
+    return QObject::tr("The colours cover values %1; the values of %2 of the voxels lie outside, up to %3.")
         .arg(rangeText(window), percentText(proposal.outside), ends);
 }
 

@@ -130,9 +130,9 @@ ProbePanel::ProbePanel(Services& services, ProbeController& probe, VolumeView& v
     connect(m_more, &QPushButton::clicked, this, [this] { m_probe.emphasize(true); });
     connect(m_less, &QPushButton::clicked, this, [this] { m_probe.emphasize(false); });
     connect(m_plot, &ProbePlot::readOut, this, [this](const QString& text) {
-        m_readout->setText(text.isEmpty() ? tr("Point at the plot to read it") : text);
+        m_readout->setText(text.isEmpty() ? tr("Move the mouse over the plot to read its values") : text);
     });
-    m_readout->setText(tr("Point at the plot to read it"));
+    m_readout->setText(tr("Move the mouse over the plot to read its values"));
     connect(&m_probe, &ProbeController::changed, this, &ProbePanel::refresh);
     connect(&services, &Services::readOnlyChanged, this, &ProbePanel::refresh);
     connect(&services.store(), &SessionStore::changed, this, [this] { // its mode, names and colours

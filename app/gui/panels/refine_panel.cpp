@@ -153,7 +153,7 @@ bool EdgeBars::event(QEvent* event) {
 RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget* parent)
     : QWidget(parent), m_services(services), m_refining(refining), m_refine(new QPushButton(tr("&Refine"), this)),
       m_pair(new QPushButton(tr("&Side by side…"), this)), m_live(new QCheckBox(tr("Li&ve"), this)),
-      m_ghost(new QCheckBox(tr("&Ghost of the curve"), this)), m_priority(new QLabel(this)),
+      m_ghost(new QCheckBox(tr("Show the &curve before"), this)), m_priority(new QLabel(this)),
       m_nothing(new QToolButton(this)), m_words(new QLabel(this)), m_note(new QLabel(this)),
       m_figures(new QLabel(this)), m_comparison(new QLabel(this)), m_help(new QPushButton(this)),
       m_edges(new EdgeBars(this)), m_plot(new PlotView(this)),
@@ -180,7 +180,7 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
              "curve for a value, or select a part of the picture"));
     m_nothing->setObjectName("clearPriorityButton");
     m_nothing->setText(tr("Clear"));
-    m_nothing->setToolTip(tr("Prioritize nothing; opacities stay"));
+    m_nothing->setToolTip(tr("Give no value or region priority; the opacities stay as they are"));
     m_edges->setObjectName("refineEdges");
     named(m_plot, "refineCurve", tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
     const std::pair<QLabel*, const char*> labels[] = {{m_words, "refineWords"},

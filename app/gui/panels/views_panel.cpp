@@ -153,7 +153,7 @@ QString ViewsPanel::words() const {
         return tr("The published profile looks along the grid alone: it has no other views.");
     if (store.scene().tf.features.empty()) return tr("The transfer function has no features to judge views by.");
     if (search.isOptimizing()) return tr("Looking for the view and the opacities…");
-    if (search.isRunning()) return tr("Looking from all over the sphere…");
+    if (search.isRunning()) return tr("Trying views from all sides…");
     if (search.map().isEmpty()) return tr("Nothing has been looked for yet.");
     if (!search.isCurrent()) return tr("Of an older state.");
     if (!search.best()) return tr("The best view was not looked for to the end.");
@@ -194,10 +194,9 @@ void ViewsPanel::refresh() {
                                                                      : 0);
     m_words->setText(words());
     m_look->setText(search.isRunning() ? tr("Stop") : tr("Look"));
-    m_look->setToolTip(search.isRunning()
-                           ? tr("Stops looking; nothing else changes")
-                           : tr("Looks from all over the sphere: some hundred views of a coarser copy of "
-                                "the volume,\nthe best of them at full resolution"));
+    m_look->setToolTip(search.isRunning() ? tr("Stops looking; nothing else changes")
+                                          : tr("Tries some hundred views from all sides on a coarser copy of "
+                                               "the volume,\nthe best of them at full resolution"));
     m_look->setEnabled(search.isRunning() || (ready && !current));
     m_go->setEnabled(ready && current);
     m_optimize->setText(search.isOptimizing() ? tr("Stop") : tr("Optimize view and opacities"));

@@ -37,7 +37,7 @@ PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas&
     const QString place = tr("Palette, below the curve");
     services.actions().addGestures({{place, tr("Click, drag"), tr("refine so that this value stands out")},
                                     {place, tr("Arrow keys (Shift: finer)"), tr("move what stands out")},
-                                    {place, tr("Delete, Esc, right click"), tr("prioritize nothing")}});
+                                    {place, tr("Delete, Esc, right click"), tr("clear the priority")}});
 }
 
 bool PaletteBar::isReady() const { return m_services.isEditable(); }
@@ -138,7 +138,7 @@ void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
     menu.setObjectName("paletteMenu");
     menu.addAction(tr("Refine for %1").arg(valueText(x)), this, [this, x] { m_refining.prioritize(x); });
     QAction* nothing =
-        menu.addAction(tr("Prioritize nothing"), &m_refining, qOverload<>(&RefineController::prioritizeNothing));
+        menu.addAction(tr("Clear the priority"), &m_refining, qOverload<>(&RefineController::prioritizeNothing));
     nothing->setEnabled(marked().has_value());
     menu.exec(event->globalPos());
 }

@@ -26,7 +26,7 @@ std::string sharesText(const std::vector<double>& shares) {
     return text;
 }
 
-/// "the picture is 0.4 % opaque, and 'f3' adds 0.1 % where it is"
+/// "the picture is 0.4 % opaque, and 'f3' adds 0.1 % to the pixels that it covers"
 std::string thinness(const TransferFunction& tf, const std::vector<double>& targets, const Coverage& look) {
     std::vector<std::size_t> unseen;
     double most = 0;
@@ -38,7 +38,7 @@ std::string thinness(const TransferFunction& tf, const std::vector<double>& targ
     std::string text = "the picture is " + percentText(look.coverage) + " opaque";
     if (!unseen.empty())
         text += ", and " + namesOf(tf, unseen) + (unseen.size() == 1 ? " adds " : " add at most ") + percentText(most) +
-                (unseen.size() == 1 ? " where it is" : " where they are");
+                (unseen.size() == 1 ? " to the pixels that it covers" : " to the pixels that they cover");
     return text;
 }
 

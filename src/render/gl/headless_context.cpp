@@ -1,6 +1,7 @@
 #include "render/gl/headless_context.h"
 
 #include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <string>
