@@ -178,9 +178,8 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
     connect(m_top, &QLineEdit::editingFinished, this, &FieldsPanel::editTop);
     connect(m_usualTop, &QPushButton::clicked, this,
             [this] { edit(tr("Usual top of the field"), {}, [](FieldView& f) { f.top.reset(); }); });
-    connect(m_stop, &QPushButton::clicked, this, [this] {
-        m_fields.state() == FieldController::State::Computing ? m_fields.cancel() : m_fields.compute();
-    });
+    connect(m_stop, &QPushButton::clicked, this,
+            [this] { m_fields.state() == FieldController::State::Computing ? m_fields.cancel() : m_fields.compute(); });
     connect(m_save, &QPushButton::clicked, this, [this] { m_fields.chooseFile(); });
     connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.volume != after.volume || before.tf.features != after.tf.features ||
