@@ -36,7 +36,9 @@ TEST_CASE("the points that an edit has set are held, all of them none", "[refine
     CHECK(heldPoints(before, quarters({0.2, 0.4, 0.6, 0.4, 0.2})).empty());
 
     TransferFunction added = before; // one more than there were
-    added.points.insert(added.points.begin() + 1, ControlPoint{.x = 0.1, .opacity = 0.5});
+    added.points.insert(added.points.begin() + 1, added.points[1]);
+    added.points[1].x = 0.1;
+    added.points[1].opacity = 0.5;
     CHECK(heldPoints(before, added) == std::vector<std::size_t>{1});
 
     TransferFunction fixed = quarters({0.1, 0.6, 0.3, 0.2, 0.1});

@@ -36,7 +36,7 @@ QAction* Actions::add(const QString& menu, const QString& id, const QString& tex
                       const ActionMore& more) {
     auto* action = new QAction(text, this);
     action->setObjectName(id);
-    action->setShortcuts(QKeySequence::listFromString(keys));
+    if (!keys.isEmpty()) action->setShortcuts(QKeySequence::listFromString(keys));
     action->setCheckable(static_cast<bool>(more.checked));
     connect(action, &QAction::triggered, this, [this, trigger] {
         if (trigger) trigger();

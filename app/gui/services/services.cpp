@@ -1,5 +1,7 @@
 #include "services/services.h"
 
+#include <algorithm>
+
 #include "dialogs/error_dialog.h"
 #include "tf/shapes.h"
 
