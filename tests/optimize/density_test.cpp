@@ -319,8 +319,8 @@ TEST_CASE("shares and parts of alpha in words", "[density]") {
     r.seen->exact = SeenShares{{0, 0, 0}, {0.25, 0.25, 0.5}, 0, {0.065, {0.001, 0.015, 0.1}}};
     CHECK(keptText(r) ==
           "Asked for 25 %, 25 % and 50 %; kept 30 %, 25 % and 45 %, so that all of it can be seen: with the "
-          "shares asked for the picture is 6.5 % opaque, and 'f1' and 'f2' add at most 1.5 % where they "
-          "are.");
+          "shares asked for the picture is 6.5 % opaque, and 'f1' and 'f2' add at most 1.5 % to the "
+          "pixels that they cover.");
     r.seen = Seen{{0.065, {0.1, 0.1, 0.001}}, true, {2}, {}, {}};
     CHECK(faintText(r) == "The picture is 6.5 % opaque, and 'f3' adds 0.1 % to the pixels that it covers.");
 }

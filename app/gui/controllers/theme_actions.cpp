@@ -1,5 +1,6 @@
 #include "controllers/menu_actions.h"
 
+#include <QApplication>
 #include <QSettings>
 
 #include "services/services.h"

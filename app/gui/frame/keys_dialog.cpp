@@ -2,6 +2,7 @@
 
 #include <QDialogButtonBox>
 #include <QLineEdit>
+#include <QScreen>
 #include <QTextBrowser>
 #include <QVBoxLayout>
 

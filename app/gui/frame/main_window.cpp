@@ -7,9 +7,12 @@
 #include <QDragEnterEvent>
 #include <QFileInfo>
 #include <QHBoxLayout>
+#include <QMenuBar>
 #include <QMessageBox>
+#include <QMimeData>
 #include <QPointer>
 #include <QSettings>
+#include <QStatusBar>
 #include <QVBoxLayout>
 
 #include "controllers/controllers.h"

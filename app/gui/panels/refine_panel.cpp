@@ -320,7 +320,7 @@ void RefinePanel::showOutcome() {
     const Scene& scene = m_services.scene();
     if (!scene.volume || !scene.histogram) {
         m_edges->setBars({});
-        m_plot->setPlot({});
+        m_plot->hide();
         m_words->clear();
         showNote(nullptr);
         m_figures->clear();
@@ -353,7 +353,7 @@ void RefinePanel::showOutcome() {
     if (any == nullptr) {
         m_words->setText(tr("Not refined yet."));
         m_figures->setText(tr("Even edge weights mean: every part of the curve tells as much as any other."));
-        m_plot->setPlot({});
+        m_plot->hide();
         return;
     }
     m_words->setText(any->words);
@@ -366,6 +366,7 @@ void RefinePanel::showOutcome() {
             .arg(result.iterations)
             .arg(now != nullptr ? tr(".") : tr("; the curve has changed since.")));
     m_plot->setPlot(energyPlot(result, now != nullptr));
+    m_plot->setVisible(!m_plot->plot().series.empty());
     if (now != nullptr) m_wait.start();
 }
 

@@ -194,6 +194,7 @@ void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::ve
 void SettingRows::addWhole(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
     auto* box = new QSpinBox;
     box->setRange(static_cast<int>(setting.range.lo), static_cast<int>(setting.range.hi));
+    box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     box->setGroupSeparatorShown(true);
     box->setKeyboardTracking(false);
     if (*setting.unit != '\0') box->setSuffix(QStringLiteral(" ") + QString::fromUtf8(setting.unit));

@@ -12,6 +12,8 @@
 namespace pellucid::gui {
 namespace {
 
+constexpr double kUsualCoverage = 0.5; ///< offered while that of the picture is not known
+
 QLabel* heading(const QString& text, QWidget* parent) {
     auto* label = new QLabel(text, parent);
     QFont bold = label->font();
@@ -56,7 +58,11 @@ void SettingsPanel::addOptimization(QFormLayout& form) {
     rows->add("b", {.id = "bSpin", .decimals = 6, .step = 0.1});
     rows->add("tolerance", {.id = "toleranceSpin", .decimals = 6, .step = 0.01});
     rows->add("max_iterations", {.id = "mostMovesSpin"});
-    rows->add("coverage", {.id = "coverageSpin", .decimals = 3});
+    rows->add("coverage", {.id = "coverageSpin", .decimals = 3, .automatic = [this] {
+                               const Measures* const now = m_services.results().measures();
+                               return now && now->coverage ? now->coverage->coverage : kUsualCoverage;
+                           }});
+    connect(&m_services.results(), &Results::changed, rows, &SettingRows::follow);
     rows->add("normalize", {.id = "normalizeCheck"});
     rows->add("coarse", {.id = "coarseCheck"});
     rows->add("restarts", {.id = "restartsCheck"});

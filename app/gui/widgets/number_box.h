@@ -16,10 +16,28 @@ public:
         QString text = QDoubleSpinBox::textFromValue(value);
         const QString point = locale().decimalPoint();
         if (!text.contains(point)) return text;
-        while (text.endsWith('0')) text.chop(1);
+        const auto fewest = text.indexOf(point) + (m_isMeasuring ? 1 + kMeasured : 0);
+        while (text.endsWith('0') && text.size() > fewest) text.chop(1);
         if (text.endsWith(point)) text.chop(static_cast<int>(point.size()));
         return text;
     }
+    QSize sizeHint() const override {
+        return measured([this] { return QDoubleSpinBox::sizeHint(); });
+    }
+    QSize minimumSizeHint() const override {
+        return measured([this] { return QDoubleSpinBox::minimumSizeHint(); });
+    }
+
+private:
+    static constexpr int kMeasured = 2; ///< decimals that there is room for
+    template <class Hint>
+    QSize measured(const Hint& hint) const {
+        m_isMeasuring = true;
+        const QSize size = hint();
+        m_isMeasuring = false;
+        return size;
+    }
+    mutable bool m_isMeasuring = false;
 };
 
 /// Shows `value`, without a signal. A box that shows it already is left alone, text, cursor and all: somebody may be
