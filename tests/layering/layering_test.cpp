@@ -276,3 +276,24 @@ TEST_CASE("the rules inside a layer catch what they should", "[layering]") {
     CHECK(circleIn({{"a", {"b"}}, {"b", {"a"}}}) == std::vector<std::string>{"a", "b"}); // a mutual pair
     CHECK(circleIn({{"a", {"b"}}, {"b", {"c"}}, {"c", {"d"}}, {"d", {"b"}}}).size() == 3);
 }
+
+TEST_CASE("a folder with many files says what each is", "[layering]") {
+    std::map<fs::path, std::set<std::string>> folders; // headers by folder
+    std::map<fs::path, int> files;
+    for (const char* top : {"src", "app"})
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(PELLUCID_SOURCE_DIR) / top)) {
+            const std::string suffix = entry.path().extension().string();
+            if (suffix != ".h" && suffix != ".cpp" && suffix != ".inl") continue;
+            ++files[entry.path().parent_path()];
+            if (suffix == ".h") folders[entry.path().parent_path()].insert(entry.path().stem().string());
+        }
+    for (const auto& [folder, headers] : folders) {
+        if (files[folder] <= 10) continue;
+        std::ifstream in(folder / "README.md");
+        const std::string text{std::istreambuf_iterator<char>(in), {}};
+        for (const std::string& header : headers) {
+            INFO(folder << ": " << header);
+            CHECK(text.find(header) != std::string::npos);
+        }
+    }
+}
