@@ -141,7 +141,7 @@ TEST_CASE("wrong values of refine and optimize are wrong usage", "[cli][errors]"
     checkFails(w, kRefine + Words{"--step-up", "automatic"}, 2, "--step-up");
     checkFails(w, kRefine + Words{"--max-iterations", "-1"}, 2, "--max-iterations");
     checkFails(w, kRefine + Words{"--fix", "1.5"}, 2, "--fix");
-    checkFails(w, kRefine + Words{"--method", "best"}, 2, "use greedy or exact");
+    checkFails(w, kRefine + Words{"--method", "best"}, 2, "give greedy or exact");
     for (const char* x : {"-0.1", "1.1", "300", "nan"})
         checkFails(w, kRefine + Words{"--intensity", x}, 2, "--intensity");
     checkFails(w, kRefine + Words{"--hue", "red"}, 2, "--hue");
@@ -195,7 +195,7 @@ TEST_CASE("wrong values of bench are wrong usage", "[cli][errors]") {
     const Workshop w;
     const Words bench = Words{"bench"} + kShells;
     for (const char* rows : {"paint", "", "sweep,", "sweep;render", "Sweep"})
-        checkFails(w, bench + Words{"--only", rows}, 2, "known: setup saliency saliency-direct sweep");
+        checkFails(w, bench + Words{"--only", rows}, 2, "choose one of setup, saliency, saliency-direct, sweep");
     for (const char* repeat : {"0", "-1", "many", "1001"})
         checkFails(w, bench + Words{"--repeat", repeat}, 2, "--repeat");
     checkFails(w, bench + Words{"--threads", "0"}, 2, "--threads");

@@ -114,7 +114,7 @@ TEST_CASE("render draws a field in the place of the data", "[cli][fields]") {
     CHECK(w.json(session + Words{"--field", "none", "--out", "t.png"}).count("field") == 0);
 
     for (const auto& [options, says] :
-         {std::pair{Words{"--field", "depth"}, "known: visibility"},
+         {std::pair{Words{"--field", "depth"}, "give visibility, saliency-brightness"},
           std::pair{Words{"--field", "vws", "--field-colormap", "rainbow"}, "--field-colormap"},
           std::pair{Words{"--field", "vws", "--field-strength", "0"}, "--field-strength"},
           std::pair{Words{"--field", "vws", "--mode", "mip"}, "--mode"},

@@ -66,7 +66,7 @@ std::string byOption(const Setting& setting, const std::string& text, T& values)
     else if (!isFlag)
         words.insert(words.begin(), text); // CLI11 takes them from the back
     try {
-        app.parse(words);
+        app.parse(std::vector<std::string>(words)); // which takes them away
     } catch (const UsageError& e) {
         CHECK(e.where() == setting.optionName());
         return e.problem() + " | " + e.whatToDo();

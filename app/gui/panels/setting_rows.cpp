@@ -150,10 +150,9 @@ void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::ve
         slider->setMinimumWidth(60);
         row->addWidget(slider, 1);
         controls.push_back(slider);
-        const auto writeAt = [writeOf, scale, unit = smallest](int place) {
-            // Places of a linear scale are numbers with few digits as they are.
+        const auto writeAt = [writeOf, scale, isWhole = look.decimals == 0](int place) {
             const double number = scale.numberAt(place);
-            return writeOf(scale.logarithmic ? std::round(number / unit) * unit : number);
+            return writeOf(isWhole ? std::round(number) : number);
         };
         connect(slider, &QSlider::valueChanged, this, [=, this, &setting, id = look.id](int place) {
             if (!slider->isSliderDown()) return edit(setting, id, writeAt(place));
