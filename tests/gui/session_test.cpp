@@ -78,7 +78,7 @@ public:
         case 7:
             return store.edit(name, "settings", [&](Session& s) {
                 s.measure.edit([&](MeasureSettings& m) { m.saliency.sigma = 0.1 + 7 * number(); });
-                s.optimize.edit([&](OptimizeOptions& o) { o.tolerance = 1e-3 + number(); });
+                s.optimize.edit([&](OptimizeOptions& o) { o.tolerance = 1e-3 + 0.9 * number(); });
             });
         default:
             return store.edit(name, {}, [&](Session& s) {

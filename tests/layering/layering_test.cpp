@@ -197,8 +197,6 @@ TEST_CASE("every include points down the layers", "[layering]") {
     REQUIRE(includes.size() > 100); // the sources were found
     for (const Include& include : includes) {
         INFO(include.file << ":" << include.line << " includes " << include.name);
-        if (include.file == "src/optimize/solve/log_depths.h" && include.name == "optimize/optimizer.h")
-            continue; // goes with the move of View to src/render
         CHECK(fault(include) == "");
         const fs::path header = fs::path(PELLUCID_SOURCE_DIR) / fs::path(include.file).replace_extension(".h");
         CHECK(controllerFault(include, textOf(header)) == "");
