@@ -133,7 +133,8 @@ void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::ve
     box->setSuffix(!look.suffix.isEmpty()  ? look.suffix
                    : *setting.unit == '\0' ? QString()
                                            : QStringLiteral(" ") + QString::fromUtf8(setting.unit));
-    const auto writeOf = [&setting, factor = look.factor](double shown) {
+    const double factor = look.factor;
+    const auto writeOf = [&setting, factor](double shown) {
         return [&setting, number = shown / factor](void* settings) { setNumber(setting, settings, number); };
     };
     connect(box, &QDoubleSpinBox::valueChanged, this,
@@ -171,13 +172,15 @@ void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::ve
         automatic->setCheckable(true);
         row->addWidget(automatic);
         controls.push_back(automatic);
-        connect(automatic, &QToolButton::clicked, this, [this, &setting, box, writeOf](bool on) {
-            edit(setting, {}, on ? Write([&setting](void* s) { setNumber(setting, s, {}); }) : writeOf(box->value()));
+        connect(automatic, &QToolButton::clicked, this, [=, this, &setting, none = look.automatic](bool on) {
+            std::optional<double> number; // what stood for none stays, with all its digits
+            if (!on) number = none ? none() : box->value() / factor;
+            edit(setting, {}, [&setting, number](void* settings) { setNumber(setting, settings, number); });
         });
     }
     m_form.addRow(QString::fromUtf8(setting.words), row);
     if (auto* label = qobject_cast<QLabel*>(m_form.labelForField(row))) label->setBuddy(box);
-    m_show.push_back([=, this, &setting, none = look.automatic, factor = look.factor] {
+    m_show.push_back([=, this, &setting, none = look.automatic] {
         std::optional<double> number = numberIn(setting, present());
         if (automatic != nullptr) automatic->setChecked(!number);
         if (!number && none) number = none();
