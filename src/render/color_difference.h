@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "render/image.h"
 #include "base/color.h"
+#include "render/image.h"
 
 namespace pellucid {
 

@@ -8,8 +8,10 @@ namespace pellucid {
 
 enum class EngineChoice { Auto, Gl, Cpu, Slices, Reference };
 
-template <> inline constexpr auto kNamesOf<EngineChoice> = enumNames("engine", "auto", "gl", "cpu", "slices", "reference");
+template <>
+inline constexpr auto kNamesOf<EngineChoice> = enumNames("engine", "auto", "gl", "cpu", "slices", "reference");
 
-template <> inline constexpr auto kNamesOf<Quality> = enumNames("quality", "normal", "high");
+template <>
+inline constexpr auto kNamesOf<Quality> = enumNames("quality", "normal", "high");
 
 } // namespace pellucid

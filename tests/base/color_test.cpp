@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "base/error.h"
 #include "base/color.h"
+#include "base/error.h"
 
 using namespace pellucid;
 

@@ -163,10 +163,10 @@ TEMPLATE_TEST_CASE("downsampling takes the means of blocks", "[large]", std::uin
     for (std::size_t i = 0; i < data.size(); i += 3) data[i] = TestType(7); // missing, most of all in the first block:
     for (const std::size_t i : {0u, 1u, 11u, 12u, 77u, 78u, 88u, 89u}) data[i] = TestType(7);
     const auto name = findNamed<SampleType>(std::is_same_v<TestType, float>    ? "f32"
-                                         : std::is_same_v<TestType, double> ? "f64"
-                                         : sizeof(TestType) == 1            ? "u8"
-                                         : sizeof(TestType) == 2            ? "i16"
-                                                                            : "u32");
+                                            : std::is_same_v<TestType, double> ? "f64"
+                                            : sizeof(TestType) == 1            ? "u8"
+                                            : sizeof(TestType) == 2            ? "i16"
+                                                                               : "u32");
     VolumeSource source;
     source.path = folder.write("a.raw", bytesOfValues(data));
     source.raw = RawLayout{full, *name, false, {0.5, 1, 2}, 0};

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "optimize/answer/visibility_words.h"
 #include "base/color.h"
+#include "optimize/answer/visibility_words.h"
 
 namespace pellucid {
 

@@ -28,7 +28,9 @@ enum class LimitReason {
     NoContrast  ///< it is in sight, but its colour is that of its surroundings: no saliency
 };
 
-template <> inline constexpr auto kNamesOf<LimitReason> = enumNames("reason", "locked", "lowest", "highest", "out-of-sight", "no-contrast");
+template <>
+inline constexpr auto kNamesOf<LimitReason> = enumNames("reason", "locked", "lowest", "highest", "out-of-sight",
+                                                        "no-contrast");
 
 struct ReachLimit {
     std::size_t feature = 0;
@@ -47,7 +49,8 @@ struct ReachHelp {
     double objective = 0;                ///< F that is reached with it
 };
 
-template <> inline constexpr auto kNamesOf<ReachHelp::Kind> = enumNames("help", "release", "view", "color", "clipping");
+template <>
+inline constexpr auto kNamesOf<ReachHelp::Kind> = enumNames("help", "release", "view", "color", "clipping");
 
 struct Verdict {
     double objective = 0;               ///< F of the nearest shares that can be reached

@@ -40,7 +40,8 @@ struct ViewMetric {
     bool operator==(const ViewMetric&) const = default;
 };
 
-template <> inline constexpr auto kNamesOf<ViewMetric::Figure> = enumNames("figure", "objective", "vws", "visibility");
+template <>
+inline constexpr auto kNamesOf<ViewMetric::Figure> = enumNames("figure", "objective", "vws", "visibility");
 
 /// What is shown, whatever it is looked at from.
 struct ViewSubject {
