@@ -44,14 +44,14 @@ struct Scale {
 std::optional<double> numberIn(const Setting& setting, const void* settings) {
     const SettingValue value = setting.at(const_cast<void*>(settings));
     if (const auto* plain = std::get_if<double*>(&value)) return **plain;
-    return **std::get_if<std::optional<double>*>(&value);
+    return *std::get<std::optional<double>*>(value);
 }
 void setNumber(const Setting& setting, void* settings, std::optional<double> number) {
     const SettingValue value = setting.at(settings);
     if (const auto* plain = std::get_if<double*>(&value))
         **plain = *number;
     else
-        **std::get_if<std::optional<double>*>(&value) = number;
+        *std::get<std::optional<double>*>(value) = number;
 }
 
 template <class T>
@@ -59,8 +59,7 @@ T& valueIn(const Setting& setting, const void* settings) {
     return *std::get<T*>(setting.at(const_cast<void*>(settings)));
 }
 
-} // namespace
-
+/// What a setting does, with its range and unit, in lines of a tool tip.
 QString tipOf(const Setting& setting) {
     QString text = QString::fromUtf8(setting.help);
     const NumberRange usual; // of what is no number, too
@@ -78,6 +77,8 @@ QString tipOf(const Setting& setting) {
     }
     return lines;
 }
+
+} // namespace
 
 SettingRows::SettingRows(Services& services, QFormLayout& form, SettingPart part, RowStep step)
     : QObject(form.parentWidget()), m_services(services), m_form(form), m_part(std::move(part)),
@@ -105,7 +106,7 @@ QWidget* SettingRows::add(const char* key, const RowLook& look) {
     else if (std::holds_alternative<int*>(kind))
         addWhole(setting, look, controls);
     else if (std::holds_alternative<Choice>(kind))
-        addChoice(setting, look, controls);
+        addChoice(setting, controls);
     else if (std::holds_alternative<Rgb*>(kind))
         addColor(setting, controls);
     else
@@ -221,14 +222,11 @@ void SettingRows::addCheck(const Setting& setting, std::vector<QWidget*>& contro
     m_show.push_back([this, &setting, box] { box->setChecked(valueIn<bool>(setting, present())); });
 }
 
-void SettingRows::addChoice(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
+void SettingRows::addChoice(const Setting& setting, std::vector<QWidget*>& controls) {
     auto* box = new QComboBox;
     const Choice choice = std::get<Choice>(setting.at(const_cast<void*>(present())));
-    std::vector<int> order = look.order;
-    if (order.empty())
-        for (std::size_t i = 0; i < choice.names.size(); ++i) order.push_back(static_cast<int>(i));
-    const auto names = setting.choices.empty() ? choice.names : setting.choices;
-    for (const int index : order) box->addItem(QString::fromUtf8(names[static_cast<std::size_t>(index)]), index);
+    for (const char* name : setting.choices.empty() ? choice.names : setting.choices)
+        box->addItem(QString::fromUtf8(name), box->count());
     m_form.addRow(QString::fromUtf8(setting.words), box);
     connect(box, &QComboBox::activated, this, [this, &setting, box] {
         edit(setting, {}, [&setting, index = box->currentData().toInt()](void* settings) {

@@ -59,7 +59,6 @@ struct RowLook {
     std::function<double()> automatic = {};      ///< of an optional number: what none stands for
     QString stepText = {};                       ///< names its steps; empty: its setting does
     std::function<void(void*)> then = {}; ///< done to the settings after a change of this one: what follows of it
-    std::vector<int> order = {};          ///< of an enumeration's values; empty: their own
 };
 
 /// Of the history, for rows that share it: steps of one key in a row become one. Empty: each row has its own.
@@ -102,7 +101,7 @@ private:
     void addNumber(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
     void addWhole(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
     void addCheck(const Setting& setting, std::vector<QWidget*>& controls);
-    void addChoice(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
+    void addChoice(const Setting& setting, std::vector<QWidget*>& controls);
     void addColor(const Setting& setting, std::vector<QWidget*>& controls);
     void edit(const Setting& setting, const QString& mergeKey, const Write& write);
     void preview(const Setting& setting, const Write& write);
@@ -120,8 +119,5 @@ private:
     std::vector<Row> m_rows;
     std::vector<std::function<void()>> m_show;
 };
-
-/// What a setting does, with its range and unit, in lines of a tool tip.
-QString tipOf(const Setting& setting);
 
 } // namespace pellucid::gui
