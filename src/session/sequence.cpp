@@ -8,7 +8,6 @@ SequenceMaker::Step SequenceMaker::next(const Scene& basis, const JobControl& jo
                                         const std::function<void(int)>& begins) {
     TimeSeries& series = *basis.series;
     Step step;
-    step.progress = adaptProgress(basis.session, series);
     if (const auto task = nextToAdapt(basis.session, series)) {
         step.firstStale = task->frame;
         if (begins) begins(task->frame);

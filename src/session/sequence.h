@@ -14,8 +14,7 @@ class SequenceMaker {
 public:
     /// What came of one call.
     struct Step {
-        AdaptProgress progress; ///< before it
-        int firstStale = -1;    ///< frame of nextToAdapt(); −1: none
+        int firstStale = -1; ///< frame of nextToAdapt(); −1: none
         std::optional<AdaptedFrame> made;
         std::optional<SmoothedFrames> smoothed;
         bool passedOver = false; ///< a frame is broken, which the series knows now

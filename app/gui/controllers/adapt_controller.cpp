@@ -19,9 +19,10 @@ AdaptController::AdaptController(Services& services, PlayerController& player)
     : m_services(services), m_player(player),
       m_job(
           [this](const Scene& basis, const JobControl& job) {
-              return m_maker.next(basis, {job.stop, {}}, &job);
+              const AdaptProgress before = adaptProgress(basis.session, *basis.series);
+              return Answer{before, m_maker.next(basis, {job.stop, {}}, &job)};
           },
-          [this](const Scene& basis, SequenceMaker::Step& step) { finish(basis, step); }, WhenBusy::StopOld, &m_lane) {
+          [this](const Scene& basis, Answer& answer) { finish(basis, answer); }, WhenBusy::StopOld, &m_lane) {
     m_timer.setSingleShot(true);
     m_timer.setInterval(kRest);
     connect(&m_timer, &QTimer::timeout, this, &AdaptController::look);
@@ -210,10 +211,11 @@ void AdaptController::look() {
     m_job.start(m_services.store().committed(), tr("the frames"));
 }
 
-void AdaptController::finish(const Scene& basis, SequenceMaker::Step& step) {
+void AdaptController::finish(const Scene& basis, const Answer& answer) {
+    const SequenceMaker::Step& step = answer.step;
     SessionStore& store = m_services.store();
     if (!isWanted() || store.scene().series != basis.series) return;
-    m_progress = step.progress;
+    m_progress = answer.before;
     m_firstStale = step.firstStale;
     m_staleKey = m_firstStale < 0 ? -1 : basis.session.variable().track.keyBefore(m_firstStale);
     if ((step.made || step.smoothed) && !store.isPreviewing()) {

@@ -56,9 +56,14 @@ Q_SIGNALS:
     void changed(); ///< progress, busy or stopped
 
 private:
+    /// What the job brings back.
+    struct Answer {
+        AdaptProgress before; ///< the step
+        SequenceMaker::Step step;
+    };
     void follow(const Scene& before, const Scene& after);
     void look();
-    void finish(const Scene& basis, SequenceMaker::Step& step);
+    void finish(const Scene& basis, const Answer& answer);
     bool isWanted() const;
 
     Services& m_services;
@@ -71,7 +76,7 @@ private:
     QTimer m_timer;
     SequenceMaker m_maker; ///< used in m_job alone, which does one thing at a time
     Lane m_lane;
-    Job<Scene, SequenceMaker::Step> m_job; // last: it ends before the rest goes
+    Job<Scene, Answer> m_job; // last: it ends before the rest goes
 };
 
 } // namespace pellucid::gui
