@@ -10,7 +10,7 @@
 
 #include "controllers/controllers.h"
 #include "controllers/menu_actions.h"
-#include "frame/main_window.h"
+#include "window/main_window.h"
 #include "tf/formats/tf_file.h"
 #include "version.h"
 #include "widgets/input_habits.h"

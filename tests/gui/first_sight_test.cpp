@@ -9,7 +9,7 @@
 #include <QSettings>
 
 #include "controllers/start_controller.h"
-#include "frame/welcome_card.h"
+#include "window/welcome_card.h"
 #include "support/outlier_boxes.h"
 
 using namespace pellucid;

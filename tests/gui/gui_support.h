@@ -8,7 +8,7 @@
 #include <QTest>
 
 #include "controllers/controllers.h"
-#include "frame/main_window.h"
+#include "window/main_window.h"
 #include "panels/features_panel.h"
 #include "panels/target_bars.h"
 #include "store/edits.h"

@@ -19,7 +19,7 @@
 #include <QTimer>
 #include <QToolButton>
 
-#include "frame/dock_space.h"
+#include "window/dock_space.h"
 #include "panels/density_slider.h"
 #include "panels/panel.h"
 #include "session/session_json.h"

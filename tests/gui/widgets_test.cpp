@@ -1,6 +1,6 @@
 #include "gui_support.h"
 
-#include "frame/notice_bar.h"
+#include "window/notice_bar.h"
 
 #include <cmath>
 #include <fstream>

@@ -42,7 +42,7 @@ const std::set<std::string> kOurFolders{"base",    "volume", "tf",      "salienc
 /// The folders of app/gui: each may include those before its row, and itself. What lies beside them, main.cpp, all.
 const std::vector<std::set<std::string>> kGuiRows{{"jobs"},       {"store"},    {"widgets"},
                                                   {"dialogs"},    {"services"}, {"controllers"},
-                                                  {"view", "tf"}, {"panels"},   {"frame"}};
+                                                  {"view", "tf"}, {"panels"},   {"window"}};
 
 struct Include {
     std::string file; ///< relative to the sources' top
@@ -249,11 +249,11 @@ TEST_CASE("the rules inside a layer catch what they should", "[layering]") {
     CHECK(fault({"app/gui/controllers/a.cpp", 1, "tf/tf_canvas.h"}) != "");
     CHECK(fault({"app/gui/view/a.cpp", 1, "tf/tf_canvas.h"}) != "");
     CHECK(fault({"app/gui/tf/a.cpp", 1, "panels/channels_box.h"}) != "");
-    CHECK(fault({"app/gui/panels/a.cpp", 1, "frame/main_window.h"}) != "");
+    CHECK(fault({"app/gui/panels/a.cpp", 1, "window/main_window.h"}) != "");
     CHECK(fault({"app/gui/jobs/a.h", 1, "store/session_store.h"}) != "");
     CHECK(fault({"app/gui/controllers/a.cpp", 1, "tf/transfer_function.h"}) == ""); // of src
     CHECK(fault({"app/gui/panels/a.cpp", 1, "panels/panel.h"}) == "");
-    CHECK(fault({"app/gui/main.cpp", 1, "frame/main_window.h"}) == "");
+    CHECK(fault({"app/gui/main.cpp", 1, "window/main_window.h"}) == "");
 
     CHECK(fault({"src/optimize/solve/a.h", 1, "optimize/optimizer.h"}) != "");
     CHECK(fault({"src/optimize/solve/a.h", 1, "optimize/refine/refine.h"}) != "");

@@ -1,4 +1,4 @@
-#include "frame/notice_bar.h"
+#include "window/notice_bar.h"
 
 #include "widgets/named.h"
 #include <QHBoxLayout>

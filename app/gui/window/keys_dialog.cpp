@@ -1,4 +1,4 @@
-#include "frame/keys_dialog.h"
+#include "window/keys_dialog.h"
 
 #include <QDialogButtonBox>
 #include <QLineEdit>

@@ -1,4 +1,4 @@
-#include "frame/main_window.h"
+#include "window/main_window.h"
 
 #include <QApplication>
 #include <QCloseEvent>
@@ -16,11 +16,6 @@
 #include <QVBoxLayout>
 
 #include "controllers/controllers.h"
-#include "frame/dock_space.h"
-#include "frame/keys_dialog.h"
-#include "frame/notice_bar.h"
-#include "frame/status_line.h"
-#include "frame/welcome_card.h"
 #include "panels/panel.h"
 #include "panels/probe_panel.h"
 #include "view/clip_layer.h"
@@ -29,6 +24,11 @@
 #include "view/region_layer.h"
 #include "view/slice_layer.h"
 #include "widgets/scrolled.h"
+#include "window/dock_space.h"
+#include "window/keys_dialog.h"
+#include "window/notice_bar.h"
+#include "window/status_line.h"
+#include "window/welcome_card.h"
 
 namespace pellucid::gui {
 

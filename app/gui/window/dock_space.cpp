@@ -1,4 +1,4 @@
-#include "frame/dock_space.h"
+#include "window/dock_space.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "frame/welcome_card.h"
+#include "window/welcome_card.h"
 
 #include "widgets/named.h"
 #include <QHBoxLayout>

@@ -1,4 +1,4 @@
-#include "frame/status_line.h"
+#include "window/status_line.h"
 
 #include <QLabel>
 #include <QProgressBar>
