@@ -1,4 +1,4 @@
-// The frame of reference of a picture: which way is which, how large, which colour is which value. Computed as marks in
+// What is written over a picture: which way is which, how large, which colour is which value. Computed as marks in
 // pixels, so that the window and saved pictures show the same.
 #pragma once
 
@@ -14,16 +14,16 @@
 namespace pellucid {
 
 /// What stands around and over a picture.
-struct FrameOfReference {
+struct AnnotationChoice {
     bool on = true; ///< false: nothing, whatever the others say
     bool cube = true, letters = true, axes = false, scale = true, legend = false, title = false;
-    bool operator==(const FrameOfReference&) const = default;
+    bool operator==(const AnnotationChoice&) const = default;
 
-    static FrameOfReference none() { return {true, false, false, false, false, false, false}; }
+    static AnnotationChoice none() { return {true, false, false, false, false, false, false}; }
     bool any() const { return on && (cube || letters || axes || scale || legend || title); }
 };
 
-enum class FramePart {
+enum class AnnotationPart {
     Cube,    ///< a cube that turns with the volume: L R A P S I on its faces, or the file's axes
     Letters, ///< the anatomical direction of each edge of the picture; only where the file knows
     Axes,    ///< the box around the volume along the world's axes, with coordinates
@@ -31,20 +31,21 @@ enum class FramePart {
     Legend,  ///< colours and opacities over the intensity window, in data units
     Title    ///< of the volume
 };
-struct FramePartInfo {
-    FramePart part;
+struct AnnotationPartInfo {
+    AnnotationPart part;
     const char* name; ///< "cube" …, as options and sessions call it
-    bool FrameOfReference::*shown;
+    bool AnnotationChoice::*shown;
 };
-inline constexpr std::array<FramePartInfo, 6> kFrameParts{{{FramePart::Cube, "cube", &FrameOfReference::cube},
-                                                           {FramePart::Letters, "letters", &FrameOfReference::letters},
-                                                           {FramePart::Axes, "axes", &FrameOfReference::axes},
-                                                           {FramePart::Scale, "scale", &FrameOfReference::scale},
-                                                           {FramePart::Legend, "legend", &FrameOfReference::legend},
-                                                           {FramePart::Title, "title", &FrameOfReference::title}}};
+inline constexpr std::array<AnnotationPartInfo, 6> kAnnotationParts{
+    {{AnnotationPart::Cube, "cube", &AnnotationChoice::cube},
+     {AnnotationPart::Letters, "letters", &AnnotationChoice::letters},
+     {AnnotationPart::Axes, "axes", &AnnotationChoice::axes},
+     {AnnotationPart::Scale, "scale", &AnnotationChoice::scale},
+     {AnnotationPart::Legend, "legend", &AnnotationChoice::legend},
+     {AnnotationPart::Title, "title", &AnnotationChoice::title}}};
 
 struct AnnotationInput {
-    FrameOfReference show;
+    AnnotationChoice show;
     Camera camera;
     Geometry geometry;
     TransferFunction tf;
@@ -57,7 +58,7 @@ struct AnnotationInput {
 /// One thing to draw: in pixels from the top left corner of the picture, y down.
 struct Mark {
     enum class Kind { Line, Area, Text };
-    FramePart part = FramePart::Cube;
+    AnnotationPart part = AnnotationPart::Cube;
     Kind kind = Kind::Line;
     std::vector<Vec2> points; ///< of a line; corners of a convex area; of a text: where its baseline begins
     Rgb color;
@@ -76,7 +77,11 @@ std::vector<Polyline> strokesOf(const Mark& mark);
 struct PixelBox {
     double left, top, right, bottom;
     bool meets(const PixelBox& o) const { return left < o.right && o.left < right && top < o.bottom && o.top < bottom; }
+    /// Wider by this much on all sides.
+    PixelBox widened(double by) const { return {left - by, top - by, right + by, bottom + by}; }
 };
+/// Around points, at least one.
+PixelBox boxAround(const std::vector<Vec2>& points);
 /// Around all that is drawn of a mark, its halo too.
 PixelBox extentOf(const Mark& mark);
 

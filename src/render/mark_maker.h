@@ -16,12 +16,12 @@ struct MarkMaker {
     bool onDark;      ///< the background is
     Rgb ink, haloInk;
 
-    Mark lineMark(FramePart part, std::vector<Vec2> points, double width) const;
-    Mark areaMark(FramePart part, std::vector<Vec2> corners, const Rgb& color, double alpha = 1) const;
-    Mark boxMark(FramePart part, const PixelBox& b, const Rgb& color, double alpha = 1) const;
+    Mark lineMark(AnnotationPart part, std::vector<Vec2> points, double width) const;
+    Mark areaMark(AnnotationPart part, std::vector<Vec2> corners, const Rgb& color, double alpha = 1) const;
+    Mark boxMark(AnnotationPart part, const PixelBox& b, const Rgb& color, double alpha = 1) const;
     /// `at`: the start, middle or end of its capitals' box in each direction; vertically Start is the top. `capital`:
     /// their height.
-    Mark textMark(FramePart part, const std::string& words, const Vec2& at, Align horizontal, Align vertical,
+    Mark textMark(AnnotationPart part, const std::string& words, const Vec2& at, Align horizontal, Align vertical,
                   double capital) const;
 };
 

@@ -1,4 +1,4 @@
-// A frame of reference whose axes are not those of the world.
+// A box drawn with axes and words of its own, not the world's.
 #pragma once
 
 #include "render/annotation.h"

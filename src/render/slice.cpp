@@ -166,7 +166,7 @@ std::vector<Overlay> overlays(const TransferFunction& tf, double strength) {
 SliceView sliceView(const Geometry& geometry, int axis) {
     PELLUCID_CHECK(axis >= 0 && axis < 3);
     const auto world = worldAxes(geometry);
-    const bool patient = geometry.frame == Frame::Patient; // L, P, S are positive
+    const bool patient = geometry.worldAxes == WorldAxes::Patient; // L, P, S are positive
     Across right{}, down{};
     switch (world[static_cast<std::size_t>(axis)]) {
     case 0:
@@ -192,7 +192,7 @@ int sliceWorldAxis(const Geometry& geometry, int axis) {
 const char* sliceName(const Geometry& geometry, int axis) {
     constexpr std::array kOfPatient{"sagittal", "coronal", "axial"}, kOfFile{"x", "y", "z"};
     const auto world = static_cast<std::size_t>(sliceWorldAxis(geometry, axis));
-    return geometry.frame == Frame::Patient ? kOfPatient[world] : kOfFile[world];
+    return geometry.worldAxes == WorldAxes::Patient ? kOfPatient[world] : kOfFile[world];
 }
 
 Vec2 sliceSize(const Geometry& geometry, int axis) {

@@ -11,8 +11,8 @@ constexpr std::array<const char*, 6> kAnatomy{"anterior", "posterior", "left", "
 
 } // namespace
 
-ViewAngles anglesOf(StandardView view, Frame frame) {
-    const bool patient = frame == Frame::Patient;
+ViewAngles anglesOf(StandardView view, WorldAxes axes) {
+    const bool patient = axes == WorldAxes::Patient;
     switch (view) {
     case StandardView::Front:
         return {0, 0, 1};
@@ -30,8 +30,8 @@ ViewAngles anglesOf(StandardView view, Frame frame) {
     return {};
 }
 
-const char* name(StandardView view, Frame frame) {
-    return (frame == Frame::Patient ? kAnatomy : kSides)[static_cast<std::size_t>(view)];
+const char* name(StandardView view, WorldAxes axes) {
+    return (axes == WorldAxes::Patient ? kAnatomy : kSides)[static_cast<std::size_t>(view)];
 }
 
 std::optional<NamedView> namedView(const std::string& name) {
@@ -43,11 +43,11 @@ std::optional<NamedView> namedView(const std::string& name) {
     return {};
 }
 
-ViewAngles anglesOf(const NamedView& view, Frame frame) {
-    if (view.ofPatient && frame != Frame::Patient)
+ViewAngles anglesOf(const NamedView& view, WorldAxes axes) {
+    if (view.ofPatient && axes != WorldAxes::Patient)
         throw UsageError("the file does not say how the patient lies in it, so it has no such view", "view",
                          std::string("use ") + kSides[static_cast<std::size_t>(view.view)]);
-    ViewAngles angles = anglesOf(view.view, frame);
+    ViewAngles angles = anglesOf(view.view, axes);
     angles.zoom = view.zoom;
     return angles;
 }

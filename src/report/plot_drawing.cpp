@@ -74,11 +74,11 @@ double legendTop(const Plot& plot, const PlotPage& page) { return plot.title.emp
 int ticksAcross(const PlotPage& page) { return std::clamp(static_cast<int>(page.width / 60), 2, 12); }
 int ticksUp(const PlotPage& page) { return std::clamp(static_cast<int>(page.height / 45), 2, 8); }
 
-void addSeries(PlotDrawing& drawing, const PlotSeries& s, const PlotFrame& frame) {
+void addSeries(PlotDrawing& drawing, const PlotSeries& s, const PlotBox& box) {
     const PlotInk ink = s.color ? PlotInk::Own : PlotInk::Text;
     const Rgb color = s.color.value_or(Rgb{});
     std::vector<Vec2> points;
-    for (const PlotPoint& p : s.points) points.emplace_back(frame.xOf(p.x), frame.yOf(p.y));
+    for (const PlotPoint& p : s.points) points.emplace_back(box.xOf(p.x), box.yOf(p.y));
     if (points.size() > 1) {
         if (s.color) drawing.strokes.push_back({points, PlotInk::Rim, {}, kRim, s.dashed});
         drawing.strokes.push_back({points, ink, color, s.dashed ? 1.2 : kCurve, s.dashed});
@@ -106,10 +106,10 @@ std::string PlotPage::fitted(const std::string& text, double most) const {
     return kept + dots;
 }
 
-double PlotFrame::xOf(double value) const { return left + clampedShare(x, value) * (right - left); }
-double PlotFrame::yOf(double value) const { return bottom - clampedShare(y, value) * (bottom - top); }
+double PlotBox::xOf(double value) const { return left + clampedShare(x, value) * (right - left); }
+double PlotBox::yOf(double value) const { return bottom - clampedShare(y, value) * (bottom - top); }
 
-double PlotFrame::valueAtX(double pixel) const {
+double PlotBox::valueAtX(double pixel) const {
     const double part = std::clamp((pixel - left) / std::max(1.0, right - left), 0.0, 1.0);
     return x.logarithmic ? x.lo * std::pow(x.hi / x.lo, part) : x.lo + part * (x.hi - x.lo);
 }
@@ -140,22 +140,22 @@ std::string tickText(const PlotAxis& axis, double value) {
     return numberText(value, axis.logarithmic ? 0 : axis.hi - axis.lo);
 }
 
-PlotFrame frameOf(const Plot& plot, const PlotPage& page) {
-    PlotFrame frame;
-    frame.x = plot.x;
-    frame.y = plot.y;
+PlotBox boxOf(const Plot& plot, const PlotPage& page) {
+    PlotBox box;
+    box.x = plot.x;
+    box.y = plot.y;
     double widest = 0;
     for (const double tick : ticksOf(plot.y, ticksUp(page)))
         widest = std::max(widest, page.widthOf(tickText(plot.y, tick)));
-    frame.left = kGap + (plot.y.label.empty() ? 0 : lineHeight(page)) + widest + kGap;
-    frame.right = std::max(frame.left + 1, page.width - 2 * kGap);
-    frame.top = legendTop(plot, page) + legendOf(plot, page, frame.left).rows * lineHeight(page) + kGap;
-    frame.bottom = std::max(frame.top + 1, page.height - kGap - lineHeight(page) * (plot.x.label.empty() ? 1.0 : 2.0));
-    return frame;
+    box.left = kGap + (plot.y.label.empty() ? 0 : lineHeight(page)) + widest + kGap;
+    box.right = std::max(box.left + 1, page.width - 2 * kGap);
+    box.top = legendTop(plot, page) + legendOf(plot, page, box.left).rows * lineHeight(page) + kGap;
+    box.bottom = std::max(box.top + 1, page.height - kGap - lineHeight(page) * (plot.x.label.empty() ? 1.0 : 2.0));
+    return box;
 }
 
 PlotDrawing drawingOf(const Plot& plot, const PlotPage& page) {
-    const PlotFrame frame = frameOf(plot, page);
+    const PlotBox box = boxOf(plot, page);
     const double size = page.fontSize, line = lineHeight(page);
     using Anchor = PlotText::Anchor;
     PlotDrawing drawing;
@@ -170,7 +170,7 @@ PlotDrawing drawingOf(const Plot& plot, const PlotPage& page) {
                                  size,
                                  false,
                                  true});
-    for (const LegendEntry& entry : legendOf(plot, page, frame.left).entries) {
+    for (const LegendEntry& entry : legendOf(plot, page, box.left).entries) {
         const double y = legendTop(plot, page) + (entry.row + 0.7) * line, middle = y - 0.35 * size;
         if (entry.series != nullptr) {
             const PlotInk ink = entry.series->color ? PlotInk::Own : PlotInk::Text;
@@ -187,36 +187,35 @@ PlotDrawing drawingOf(const Plot& plot, const PlotPage& page) {
     }
 
     for (const PlotBand& band : plot.bands) {
-        const double from = frame.xOf(band.from), to = frame.xOf(band.to);
-        drawing.areas.push_back({{from, frame.top}, {to, frame.bottom}, PlotInk::Shade, {}});
+        const double from = box.xOf(band.from), to = box.xOf(band.to);
+        drawing.areas.push_back({{from, box.top}, {to, box.bottom}, PlotInk::Shade, {}});
         const std::string text = page.fitted(band.text, to - from - 2);
         if (text.size() > 6 || text == band.text) // more than an ellipsis and a letter or two
             drawing.texts.push_back(
-                {{(from + to) / 2, frame.top + size}, text, PlotInk::Faint, Anchor::Middle, 0.85 * size});
+                {{(from + to) / 2, box.top + size}, text, PlotInk::Faint, Anchor::Middle, 0.85 * size});
     }
     for (const double tick : ticksOf(plot.x, ticksAcross(page))) {
-        const double x = frame.xOf(tick);
-        drawing.strokes.push_back({{{x, frame.bottom}, {x, frame.bottom + 4}}, PlotInk::Faint});
+        const double x = box.xOf(tick);
+        drawing.strokes.push_back({{{x, box.bottom}, {x, box.bottom + 4}}, PlotInk::Faint});
         drawing.texts.push_back(
-            {{x, frame.bottom + 4 + size}, tickText(plot.x, tick), PlotInk::Faint, Anchor::Middle, size});
+            {{x, box.bottom + 4 + size}, tickText(plot.x, tick), PlotInk::Faint, Anchor::Middle, size});
     }
     for (const double tick : ticksOf(plot.y, ticksUp(page))) {
-        const double y = frame.yOf(tick);
-        drawing.strokes.push_back({{{frame.left, y}, {frame.right, y}}, PlotInk::Grid});
+        const double y = box.yOf(tick);
+        drawing.strokes.push_back({{{box.left, y}, {box.right, y}}, PlotInk::Grid});
         drawing.texts.push_back(
-            {{frame.left - kGap, y + 0.35 * size}, tickText(plot.y, tick), PlotInk::Faint, Anchor::End, size});
+            {{box.left - kGap, y + 0.35 * size}, tickText(plot.y, tick), PlotInk::Faint, Anchor::End, size});
     }
-    drawing.strokes.push_back(
-        {{{frame.left, frame.top}, {frame.left, frame.bottom}, {frame.right, frame.bottom}}, PlotInk::Faint});
+    drawing.strokes.push_back({{{box.left, box.top}, {box.left, box.bottom}, {box.right, box.bottom}}, PlotInk::Faint});
     if (!plot.x.label.empty())
-        drawing.texts.push_back({{(frame.left + frame.right) / 2, page.height - kGap},
-                                 page.fitted(plot.x.label, frame.right - frame.left),
+        drawing.texts.push_back({{(box.left + box.right) / 2, page.height - kGap},
+                                 page.fitted(plot.x.label, box.right - box.left),
                                  PlotInk::Faint,
                                  Anchor::Middle,
                                  size});
     if (!plot.y.label.empty())
-        drawing.texts.push_back({{kGap + size, (frame.top + frame.bottom) / 2},
-                                 page.fitted(plot.y.label, frame.bottom - frame.top),
+        drawing.texts.push_back({{kGap + size, (box.top + box.bottom) / 2},
+                                 page.fitted(plot.y.label, box.bottom - box.top),
                                  PlotInk::Faint,
                                  Anchor::Middle,
                                  size,
@@ -224,18 +223,18 @@ PlotDrawing drawingOf(const Plot& plot, const PlotPage& page) {
     // Dashed lines, which are what curves are compared with, lie below these.
     for (const bool dashed : {true, false})
         for (const PlotSeries& s : plot.series)
-            if (s.dashed == dashed) addSeries(drawing, s, frame);
+            if (s.dashed == dashed) addSeries(drawing, s, box);
     return drawing;
 }
 
-std::optional<PlotHit> hitAt(const Plot& plot, const PlotFrame& frame, const Vec2& at, double reach) {
+std::optional<PlotHit> hitAt(const Plot& plot, const PlotBox& box, const Vec2& at, double reach) {
     std::optional<PlotHit> best;
     double nearest = reach;
     for (std::size_t s = 0; s < plot.series.size(); ++s) {
         if (!plot.series[s].dotted) continue;
         for (std::size_t i = 0; i < plot.series[s].points.size(); ++i) {
             const PlotPoint& p = plot.series[s].points[i];
-            const double distance = std::hypot(frame.xOf(p.x) - at.x, frame.yOf(p.y) - at.y);
+            const double distance = std::hypot(box.xOf(p.x) - at.x, box.yOf(p.y) - at.y);
             if (distance > nearest || (best && distance == nearest)) continue;
             nearest = distance;
             best = PlotHit{s, i};

@@ -80,11 +80,11 @@ struct PlotPage {
 };
 
 /// Where the axes of a plot lie on a page.
-struct PlotFrame {
+struct PlotBox {
     double left = 0, top = 0, right = 0, bottom = 0; ///< pixels
     PlotAxis x, y;
 
-    double xOf(double value) const; ///< clamped into the frame, as yOf()
+    double xOf(double value) const; ///< clamped into the box, as yOf()
     double yOf(double value) const;
     double valueAtX(double pixel) const;
 };
@@ -95,13 +95,13 @@ std::vector<double> ticksOf(const PlotAxis& axis, int wanted);
 /// The number beside a tick.
 std::string tickText(const PlotAxis& axis, double value);
 
-PlotFrame frameOf(const Plot& plot, const PlotPage& page);
+PlotBox boxOf(const Plot& plot, const PlotPage& page);
 PlotDrawing drawingOf(const Plot& plot, const PlotPage& page);
 
 /// The point of a dotted series nearest to a place on the page, within `reach` pixels.
 struct PlotHit {
     std::size_t series = 0, point = 0;
 };
-std::optional<PlotHit> hitAt(const Plot& plot, const PlotFrame& frame, const Vec2& at, double reach);
+std::optional<PlotHit> hitAt(const Plot& plot, const PlotBox& box, const Vec2& at, double reach);
 
 } // namespace pellucid

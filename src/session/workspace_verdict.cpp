@@ -1,4 +1,4 @@
-// What a verdict needs of a workspace.
+// What the workspace measures to say why a target is out of reach (optimize/answer/verdict.h).
 #include "session/workspace.h"
 
 namespace pellucid {

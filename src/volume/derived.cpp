@@ -82,7 +82,7 @@ constexpr float kInvalid = std::numeric_limits<float>::quiet_NaN();
 template <class ValueOf>
 std::vector<float> mapped(const Volume& volume, const JobControl& job, const ValueOf& valueOf) {
     std::vector<float> out(volume.size());
-    const std::size_t plane = static_cast<std::size_t>(volume.dims().x) * static_cast<std::size_t>(volume.dims().y);
+    const std::size_t plane = layerSize(volume.dims());
     const bool allValid = volume.invalidCount() == 0;
     std::visit(
         [&](const auto& values) {
@@ -109,8 +109,7 @@ Volume gradientOf(const Volume& volume, const ValueRange& range, const JobContro
     const Int3 n = g.dims;
     const Mat3 toWorld = glm::transpose(g.indexFromWorld()); // ∂/∂world of ∂/∂index
     const double scale = Normaliser(range).scale() * g.d0();
-    const std::array<std::size_t, 3> step{1, static_cast<std::size_t>(n.x),
-                                          static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y)};
+    const std::array<std::size_t, 3> step{1, static_cast<std::size_t>(n.x), layerSize(n)};
     const bool allValid = volume.invalidCount() == 0;
     std::vector<float> out = mapped(volume, job, [&](const auto& values, std::size_t i) {
         const std::array<std::size_t, 3> at{i % step[1], i / step[1] % static_cast<std::size_t>(n.y), i / step[2]};
@@ -312,7 +311,7 @@ Volume resampledTo(const Volume& volume, const Geometry& grid, const JobControl&
         [&](const auto& values) {
             parallelFor(static_cast<std::size_t>(grid.dims.z), [&](std::size_t k) {
                 job.throwIfStopped();
-                std::size_t index = k * static_cast<std::size_t>(grid.dims.x) * static_cast<std::size_t>(grid.dims.y);
+                std::size_t index = k * layerSize(grid.dims);
                 for (int j = 0; j < grid.dims.y; ++j)
                     for (int i = 0; i < grid.dims.x; ++i, ++index) {
                         const Vec3 at = from.voxelFromWorld(grid.worldFromVoxel({i, j, static_cast<int>(k)}));

@@ -18,10 +18,6 @@ namespace pellucid {
 
 namespace {
 
-std::string textOf(const Int3& dims) {
-    return std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z);
-}
-
 ExcerptPlan planOf(const VoxelRegion& region, const Int3& full, int factor) {
     ExcerptPlan plan;
     plan.region = region;
@@ -46,14 +42,14 @@ Geometry ExcerptPlan::geometryOf(const Geometry& full) const {
 std::vector<std::string> ExcerptPlan::notices() const {
     std::vector<std::string> all;
     if (excerpt.forMemory)
-        all.push_back("downsampled by " + std::to_string(excerpt.factor) + " to " + textOf(dims) + " voxels: all " +
-                      textOf(region.hi - region.lo) + " need " + describeBytes(neededAtFull) + " of memory, " +
+        all.push_back("downsampled by " + std::to_string(excerpt.factor) + " to " + dimsText(dims) + " voxels: all " +
+                      dimsText(region.hi - region.lo) + " need " + describeBytes(neededAtFull) + " of memory, " +
                       describeBytes(available) + " are free; a region of them can be opened at full resolution");
     else if (excerpt.factor > 1)
-        all.push_back("downsampled by " + std::to_string(excerpt.factor) + " to " + textOf(dims) + " of " +
-                      textOf(region.hi - region.lo) + " voxels");
+        all.push_back("downsampled by " + std::to_string(excerpt.factor) + " to " + dimsText(dims) + " of " +
+                      dimsText(region.hi - region.lo) + " voxels");
     if (region.lo != Int3(0) || region.hi != excerpt.fullDims)
-        all.push_back("a region of " + textOf(region.hi - region.lo) + " of " + textOf(excerpt.fullDims) +
+        all.push_back("a region of " + dimsText(region.hi - region.lo) + " of " + dimsText(excerpt.fullDims) +
                       " voxels is shown");
     return all;
 }
@@ -63,7 +59,7 @@ ExcerptPlan planExcerpt(const VolumeSource& source, const Int3& full, SampleType
     for (int a = 0; a < 3; ++a)
         if (region.lo[a] < 0 || region.lo[a] >= region.hi[a] || region.hi[a] > full[a])
             throw UsageError("the region " + std::to_string(region.lo[a]) + ":" + std::to_string(region.hi[a]) +
-                                 " along " + "xyz"[a] + " does not lie in " + textOf(full) + " voxels",
+                                 " along " + "xyz"[a] + " does not lie in " + dimsText(full) + " voxels",
                              source.path, "give 0 <= first < end <= the number of voxels, along each axis");
     if (source.downsample < 0)
         throw UsageError("the factor of downsampling is not positive", source.path, "give 1 or more");
@@ -174,7 +170,7 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl&
         [&](const auto& values) -> Samples {
             using T = typename std::decay_t<decltype(values)>::value_type;
             std::vector<T> kept(voxelCount(plan.dims));
-            const std::size_t layer = voxelCount({plan.dims.x, plan.dims.y, 1});
+            const std::size_t layer = layerSize(plan.dims);
             parallelFor(static_cast<std::size_t>(plan.dims.z), [&](std::size_t k) {
                 job.throwIfStopped();
                 LayerMeans<T> means({size.x, size.y}, plan.factors, whole.missing());
@@ -182,11 +178,7 @@ Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl&
                 for (int z = z0; z < z1; ++z)
                     for (int y = 0; y < size.y; ++y) {
                         const Int3 at = first + Int3(0, y, z);
-                        means.add(values.data() + static_cast<std::size_t>(at.x) +
-                                      static_cast<std::size_t>(full.x) *
-                                          (static_cast<std::size_t>(at.y) +
-                                           static_cast<std::size_t>(full.y) * static_cast<std::size_t>(at.z)),
-                                  y);
+                        means.add(values.data() + voxelIndex(full, at.x, at.y, at.z), y);
                     }
                 means.takeTo(kept.data() + k * layer);
             });
@@ -215,7 +207,7 @@ VoxelColors coarserColors(const VoxelColors& colors, int factor) {
     const Int3 d = coarse.dims, step = glm::min(Int3(factor), n);
     coarse.rgba.resize(voxelCount(d));
     parallelFor(static_cast<std::size_t>(d.z), [&](std::size_t slice) {
-        std::size_t out = slice * static_cast<std::size_t>(d.x) * static_cast<std::size_t>(d.y);
+        std::size_t out = slice * layerSize(d);
         const int k0 = static_cast<int>(slice) * step.z;
         for (int j0 = 0; j0 < d.y * step.y; j0 += step.y)
             for (int i0 = 0; i0 < d.x * step.x; i0 += step.x) {
@@ -224,11 +216,7 @@ VoxelColors coarserColors(const VoxelColors& colors, int factor) {
                 for (int k = k0; k < std::min(k0 + step.z, n.z); ++k)
                     for (int j = j0; j < std::min(j0 + step.y, n.y); ++j)
                         for (int i = i0; i < std::min(i0 + step.x, n.x); ++i) {
-                            const std::uint32_t c =
-                                colors.rgba[static_cast<std::size_t>(i) +
-                                            static_cast<std::size_t>(n.x) *
-                                                (static_cast<std::size_t>(j) +
-                                                 static_cast<std::size_t>(n.y) * static_cast<std::size_t>(k))];
+                            const std::uint32_t c = colors.rgba[voxelIndex(n, i, j, k)];
                             for (std::size_t a = 0; a < 3; ++a) sum[a] += c >> (8 * a) & 255u;
                             ++count;
                         }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <glm/mat3x3.hpp>
@@ -21,7 +22,24 @@ inline std::size_t voxelCount(const Int3& dims) {
     return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z);
 }
 
-/// shape (nx, ny, nz), x fastest: index = i + nx·(j + ny·k).
+/// Number of voxels of one layer along z.
+inline std::size_t layerSize(const Int3& dims) {
+    return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
+}
+
+/// Index of voxel (i, j, k) of a grid, x fastest: i + nx·(j + ny·k).
+inline std::size_t voxelIndex(const Int3& dims, int i, int j, int k) {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(dims.x) *
+               (static_cast<std::size_t>(j) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(k));
+}
+
+/// "64 x 64 x 48".
+inline std::string dimsText(const Int3& dims) {
+    return std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z);
+}
+
+/// shape (nx, ny, nz), values in the order of voxelIndex().
 template <class T>
 class Grid {
 public:
@@ -36,9 +54,7 @@ public:
     bool empty() const noexcept { return m_values.empty(); }
     std::size_t index(int i, int j, int k) const {
         PELLUCID_DCHECK(i >= 0 && j >= 0 && k >= 0 && i < m_dims.x && j < m_dims.y && k < m_dims.z);
-        return static_cast<std::size_t>(i) +
-               static_cast<std::size_t>(m_dims.x) *
-                   (static_cast<std::size_t>(j) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(k));
+        return voxelIndex(m_dims, i, j, k);
     }
     T& at(int i, int j, int k) { return m_values[index(i, j, k)]; }
     const T& at(int i, int j, int k) const { return m_values[index(i, j, k)]; }

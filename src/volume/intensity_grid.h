@@ -43,11 +43,7 @@ public:
 
     const Int3& dims() const noexcept { return m_dims; }
     std::size_t size() const noexcept { return voxelCount(m_dims); }
-    std::size_t index(int i, int j, int k) const {
-        return static_cast<std::size_t>(i) +
-               static_cast<std::size_t>(m_dims.x) *
-                   (static_cast<std::size_t>(j) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(k));
-    }
+    std::size_t index(int i, int j, int k) const { return voxelIndex(m_dims, i, j, k); }
     bool isNarrow() const noexcept { return m_narrow != nullptr; }
     const std::uint16_t* wide() const noexcept { return m_wide; }    ///< null where narrow
     const std::uint8_t* narrow() const noexcept { return m_narrow; } ///< null where wide

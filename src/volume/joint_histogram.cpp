@@ -54,10 +54,7 @@ public:
 private:
     std::size_t every() const { return static_cast<std::size_t>(m_every); }
     double at(int i, int j, int k) const {
-        const auto x = static_cast<std::size_t>(m_dims.x), y = static_cast<std::size_t>(m_dims.y);
-        return m_volume.intensityOfValue(
-            static_cast<double>(m_samples[static_cast<std::size_t>(i) +
-                                          x * (static_cast<std::size_t>(j) + y * static_cast<std::size_t>(k))]));
+        return m_volume.intensityOfValue(static_cast<double>(m_samples[voxelIndex(m_dims, i, j, k)]));
     }
     double difference(const Int3& at_, int axis) const {
         Int3 lo = at_, hi = at_;

@@ -17,49 +17,41 @@ namespace {
 
 constexpr std::string_view kSamplePrefix = "sample:";
 
-const std::array<const VolumeReader*, 5>& readers() {
-    static const std::array<const VolumeReader*, 5> kReaders{&nrrdReader(), &metaImageReader(), &niftiReader(),
-                                                             &vtiReader(), &pvdReader()};
-    return kReaders;
+const std::vector<VolumeFormat>& formats() {
+    static const std::vector<VolumeFormat> kFormats{nrrdFormat(), metaImageFormat(), niftiFormat(), vtiFormat(),
+                                                    pvdFormat()};
+    return kFormats;
 }
 
-const VolumeReader* readerFor(const std::string& path) {
+/// Null where there is none for this suffix.
+const VolumeFormat* findFormat(const std::string& path) {
     const std::string lower = lowerCase(std::filesystem::path(path).filename().string());
-    for (const VolumeReader* reader : readers())
-        for (const std::string& suffix : reader->suffixes())
-            if (lower.size() > suffix.size() && lower.ends_with(suffix)) return reader;
+    for (const VolumeFormat& format : formats())
+        for (const std::string& suffix : format.suffixes)
+            if (lower.size() > suffix.size() && lower.ends_with(suffix)) return &format;
     return nullptr;
 }
 
-std::string knownSuffixes() {
-    std::string list;
-    for (const VolumeReader* reader : readers())
-        for (const std::string& suffix : reader->suffixes()) list += (list.empty() ? "" : " ") + suffix;
-    return list;
-}
-
 /// Throws FileError where there is none for this suffix.
-const VolumeReader& readerOf(const std::string& path) {
-    if (const VolumeReader* reader = readerFor(path)) return *reader;
+const VolumeFormat& formatOf(const std::string& path) {
+    if (const VolumeFormat* format = findFormat(path)) return *format;
     if (const auto unread = unreadFormat(path)) throw *unread;
     const bool named = lowerCase(path).ends_with(".raw");
+    const auto suffixes = [](const VolumeFormat& format) { return joined(format.suffixes, " "); };
     throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format", path,
-                    named ? "say how its bytes lie" : "give one of " + knownSuffixes(), Remedy::GiveRawLayout);
+                    named ? "say how its bytes lie" : "give one of " + joined(formats(), " ", suffixes),
+                    Remedy::GiveRawLayout);
+}
+
+void requireNotEmpty(const std::string& path) {
+    if (readableFileBytes(path) == 0) throw FileError("the file is empty", path, "copy it again");
 }
 
 Volume readFile(const VolumeSource& source, const JobControl& job) {
-    if (readableFileBytes(source.path) == 0) throw FileError("the file is empty", source.path, "copy it again");
-    Volume volume = [&] {
-        if (source.raw) {
-            Volume read = readRaw(source, job);
-            read.format = "raw";
-            return read;
-        }
-        const VolumeReader& reader = readerOf(source.path);
-        Volume read = reader.read(source, job);
-        if (read.format.empty()) read.format = reader.name();
-        return read;
-    }();
+    requireNotEmpty(source.path);
+    const VolumeFormat* format = source.raw ? nullptr : &formatOf(source.path);
+    Volume volume = format != nullptr ? format->read(source, job) : readRaw(source, job);
+    if (volume.format.empty()) volume.format = format != nullptr ? format->name : "raw";
     volume.title = std::filesystem::path(source.path).filename().string();
     return volume;
 }
@@ -144,10 +136,10 @@ std::vector<std::string> filesOf(const VolumeSource& source) {
     std::vector<std::string> files;
     for (const std::string& path : seriesFiles(source)) {
         files.push_back(path);
-        const VolumeReader* reader = source.raw ? nullptr : readerFor(path);
-        if (reader == nullptr) continue;
+        const VolumeFormat* format = source.raw ? nullptr : findFormat(path);
+        if (format == nullptr || format->dataFiles == nullptr) continue;
         try {
-            for (std::string& data : reader->dataFiles(path)) files.push_back(std::move(data));
+            for (std::string& data : format->dataFiles(path)) files.push_back(std::move(data));
         } catch (const Error&) {
             continue; // loadVolume() tells what is wrong with it
         }
@@ -163,11 +155,11 @@ FileContents contentsOf(const VolumeSource& source, const JobControl& job) {
         contents.steps = rawSteps(source);
         return contents;
     }
-    if (readableFileBytes(source.path) == 0) throw FileError("the file is empty", source.path, "copy it again");
-    return readerOf(source.path).describe(source, job);
+    requireNotEmpty(source.path);
+    return formatOf(source.path).describe(source, job);
 }
 
-bool hasVolumeSuffix(const std::string& path) { return readerFor(path) != nullptr; }
+bool hasVolumeSuffix(const std::string& path) { return findFormat(path) != nullptr; }
 
 bool mayBeHeaderless(const std::string& path) {
     std::error_code ec;
@@ -177,8 +169,8 @@ bool mayBeHeaderless(const std::string& path) {
 const std::vector<std::string>& volumeFilePatterns() {
     static const std::vector<std::string> kPatterns = [] {
         std::vector<std::string> patterns;
-        for (const VolumeReader* reader : readers())
-            for (const std::string& suffix : reader->suffixes()) patterns.push_back("*" + suffix);
+        for (const VolumeFormat& format : formats())
+            for (const std::string& suffix : format.suffixes) patterns.push_back("*" + suffix);
         return patterns;
     }();
     return kPatterns;

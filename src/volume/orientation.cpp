@@ -56,7 +56,7 @@ std::string axesText(const Geometry& geometry) {
         const Vec3& d = geometry.directions[a];
         const int axis = largest(d);
         const bool positive = d[axis] > 0;
-        if (geometry.frame == Frame::Patient)
+        if (geometry.worldAxes == WorldAxes::Patient)
             text.append(1, patientLetter(axis, !positive)).append("→").append(1, patientLetter(axis, positive));
         else
             text.append(positive ? "+" : "-").append(1, "xyz"[axis]);

@@ -19,7 +19,7 @@ namespace {
 template <class T, class ValueAt>
 std::vector<T> fill(const Int3& dims, const JobControl& job, const ValueAt& valueAt) {
     std::vector<T> values(voxelCount(dims));
-    const std::size_t plane = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
+    const std::size_t plane = layerSize(dims);
     std::atomic<int> done = 0;
     parallelFor(static_cast<std::size_t>(dims.z), [&](std::size_t k) {
         job.throwIfStopped();

@@ -47,10 +47,6 @@ std::vector<std::uint32_t> valueCounts(const Volume& volume) {
     return counts;
 }
 
-std::string dimsOf(const Int3& d) {
-    return std::to_string(d.x) + " x " + std::to_string(d.y) + " x " + std::to_string(d.z);
-}
-
 /// Of the frame's data, and of its codes of 16 bits with a byte for validity, where not all voxels are valid.
 std::size_t bytesOf(const Volume& volume) {
     return (volume.isMapped() ? 0 : volume.memoryBytes()) + (volume.invalidCount() > 0 ? 3 : 2) * volume.size();
@@ -178,8 +174,8 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
             known = summary.isKnown && summary.problem.empty(); // a file may have come back
         }
         if (!onSameGrid(*grid, volume->geometry()))
-            throw FileError("its grid (" + dimsOf(volume->dims()) + ") is not that of the series (" +
-                                dimsOf(grid->dims) + ")",
+            throw FileError("its grid (" + dimsText(volume->dims()) + ") is not that of the series (" +
+                                dimsText(grid->dims) + ")",
                             m_listing.frames[static_cast<std::size_t>(frame)].source.path, "leave it out");
         if (varies()) volume->title = m_listing.title;
         if (!known) note(frame, *volume);

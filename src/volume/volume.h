@@ -35,7 +35,7 @@ struct ValueRange {
 };
 
 /// What the axes of the world are.
-enum class Frame {
+enum class WorldAxes {
     File,   ///< the file's own; units as it gives them
     Patient ///< millimetres to the patient's left, back and head (LPS)
 };
@@ -49,7 +49,7 @@ struct Geometry {
     Vec3 spacing{1, 1, 1}; ///< lengths of A's columns
     Vec3 origin{0, 0, 0};
     Mat3 directions{1}; ///< unit columns: where the axes i, j, k point in the world; need not be at right angles
-    Frame frame = Frame::File;
+    WorldAxes worldAxes = WorldAxes::File;
     /// World units; 0: the smallest spacing. A coarser copy of a volume keeps the length of the volume that it was made
     /// from, so that opacities and saliency mean the same in both.
     double referenceLength = 0;

@@ -21,6 +21,12 @@ std::uint32_t hashOf(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return h ^ (h >> 15);
 }
 
+/// The voxel of an index.
+Int3 voxelAt(const Int3& dims, std::size_t index) {
+    const auto nx = static_cast<std::size_t>(dims.x), layer = layerSize(dims);
+    return {static_cast<int>(index % nx), static_cast<int>(index % layer / nx), static_cast<int>(index / layer)};
+}
+
 /// Values of voxels: NaN where invalid or outside.
 template <class T>
 class Reader {
@@ -36,15 +42,7 @@ public:
         const auto value = static_cast<double>(m_samples[i]);
         return std::isfinite(value) && value != m_missing ? value : kNaN;
     }
-    std::size_t index(const Int3& v) const {
-        return static_cast<std::size_t>(v.x) +
-               static_cast<std::size_t>(m_dims.x) *
-                   (static_cast<std::size_t>(v.y) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(v.z));
-    }
-    Int3 voxel(std::size_t i) const {
-        const auto nx = static_cast<std::size_t>(m_dims.x), ny = static_cast<std::size_t>(m_dims.y);
-        return {static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / (nx * ny))};
-    }
+    std::size_t index(const Int3& v) const { return voxelIndex(m_dims, v.x, v.y, v.z); }
     /// Trilinear; NaN where a corner with weight is invalid or outside.
     double at(const Vec3& p) const {
         const Vec3 floor = glm::floor(p);
@@ -86,8 +84,7 @@ Vec3 differences(const Reader<T>& read, const Int3& v, double value) {
 } // namespace
 
 bool VoxelSurvey::onFace(std::size_t i) const {
-    const auto nx = static_cast<std::size_t>(dims.x), ny = static_cast<std::size_t>(dims.y);
-    const Int3 c(static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / (nx * ny)));
+    const Int3 c = voxelAt(dims, i);
     for (int a = 0; a < 3; ++a)
         if (dims[a] > 1 && (c[a] == 0 || c[a] == dims[a] - 1)) return true;
     return false;
@@ -122,7 +119,7 @@ VoxelSurvey surveyVoxels(const Volume& volume, const JobControl& job) {
             const Reader read(volume, samples.data());
             parallelFor(static_cast<std::size_t>(survey.dims.z), [&](std::size_t k) {
                 job.throwIfStopped();
-                std::size_t at = k * static_cast<std::size_t>(survey.dims.x) * static_cast<std::size_t>(survey.dims.y);
+                std::size_t at = k * layerSize(survey.dims);
                 for (int j = 0; j < survey.dims.y; ++j)
                     for (int i = 0; i < survey.dims.x; ++i, ++at) {
                         const auto z = static_cast<int>(k);
@@ -157,7 +154,7 @@ std::vector<BoundaryEnds> boundaryEnds(const Volume& volume, const VoxelSurvey& 
             parallelFor((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
                 job.throwIfStopped();
                 for (std::size_t n = piece * kPiece; n < std::min(count, (piece + 1) * kPiece); ++n) {
-                    const Int3 v = read.voxel(steep[n * steep.size() / count]);
+                    const Int3 v = voxelAt(volume.dims(), steep[n * steep.size() / count]);
                     const double value = read.at(v);
                     const Vec3 gradient = differences(read, v, value) * perD0;
                     const Vec3 step = gradient / glm::length(gradient) * perD0; // one d0, in voxels

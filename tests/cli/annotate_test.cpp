@@ -1,4 +1,4 @@
-// The frame of reference on the command line: --annotate, views by name, what `info` says of directions.
+// Annotations on the command line: --annotate, views by name, what `info` says of directions.
 #include <catch2/catch.hpp>
 
 #include "cli_runner.h"

@@ -15,11 +15,6 @@ using pellucid::cli::SettingOptions;
 
 namespace {
 
-bool isNumber(const SettingValue& value) {
-    return std::holds_alternative<int*>(value) || std::holds_alternative<double*>(value) ||
-           std::holds_alternative<std::optional<double>*>(value);
-}
-
 /// Values that the setting may have, as texts.
 std::vector<std::string> goodValues(const Setting& setting, const SettingValue& value) {
     std::vector<std::string> texts;

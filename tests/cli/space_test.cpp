@@ -165,7 +165,7 @@ TEST_CASE("space refuses what it cannot do", "[cli][space]") {
     refused(target + Words{"--features", "f1,f9"}, "known: 'f1', 'f2', 'f3'");
     refused(target + Words{"--features", "f1,f1"}, "a feature has two axes");
     refused(target + Words{"--samples", "65"}, "--samples");
-    refused(target + Words{"--scale", "cubic"}, "choose one of linear, log");
+    refused(target + Words{"--scale", "cubic"}, "give linear or log");
     refused(target + Words{"--scale", "linear:0.1"}, "--scale");
     refused(target + Words{"--show", "f9"}, "--show");
     refused(target + Words{"--paths", "shortcut"}, "--paths");

@@ -55,7 +55,7 @@ TEST_CASE("real volumes look and measure the same, however they are stored, on a
         source.downsample = std::string(name) == "mha/epi_short.mha" ? 1 : 3; // what storage means does not need all
         const auto volume = std::make_shared<const Volume>(loadVolume(source));
         const Geometry& g = volume->geometry();
-        REQUIRE(g.frame == Frame::Patient);
+        REQUIRE(g.worldAxes == WorldAxes::Patient);
         const TransferFunction tf = withFeatureOpacities(tents(3), {0.1, 0.1, 0.4});
         const Camera camera = cameraFromView(g, 25, 15, 1.2, Projection::Perspective);
         const Mat3& d = g.directions;

@@ -61,7 +61,7 @@ std::set<QRgb> colorsOf(QWidget& widget) {
 
 QPointF dotOf(const PlotView& view, std::size_t series, std::size_t point) {
     const PlotPoint& p = view.plot().series.at(series).points.at(point);
-    const PlotFrame frame = view.frame();
+    const PlotBox frame = view.frame();
     return {frame.xOf(p.x), frame.yOf(p.y)};
 }
 

@@ -228,8 +228,8 @@ TEST_CASE("what is chosen becomes more opaque than global refinement leaves it, 
     View headCut, toothCut;
     headCut.clipping.hi.z = 0.6;
     toothCut.clipping.lo.y = 0.5;
-    const RealCase cases[] = {{"cranium_ct/cranium_ct.nrrd", headCut, anglesOf(StandardView::Top, Frame::Patient), 96,
-                               150, 101, 190, 2.0 / 6, 4.0 / 6},
+    const RealCase cases[] = {{"cranium_ct/cranium_ct.nrrd", headCut, anglesOf(StandardView::Top, WorldAxes::Patient),
+                               96, 150, 101, 190, 2.0 / 6, 4.0 / 6},
                               {"tooth/tooth.mhd", toothCut, {0, 0, 1}, 105, 190, 115, 215, 4.0 / 6, 1}};
     for (const RealCase& c : cases) {
         VolumeSource source;

@@ -1,4 +1,4 @@
-// The frame of reference: what it says, and where.
+// Annotations: what they say, and where.
 #include <map>
 
 #include <catch2/catch.hpp>
@@ -15,25 +15,25 @@ using namespace pellucid::test;
 
 namespace {
 
-FrameOfReference only(bool FrameOfReference::*part) {
-    FrameOfReference show = FrameOfReference::none();
+AnnotationChoice only(bool AnnotationChoice::*part) {
+    AnnotationChoice show = AnnotationChoice::none();
     show.*part = true;
     return show;
 }
 
-FrameOfReference everything() {
-    FrameOfReference show;
-    for (const FramePartInfo& part : kFrameParts) show.*part.shown = true;
+AnnotationChoice everything() {
+    AnnotationChoice show;
+    for (const AnnotationPartInfo& part : kAnnotationParts) show.*part.shown = true;
     return show;
 }
 
 /// A box of 100 × 200 × 150 mm, seen from `azimuth`, `elevation`.
-AnnotationInput inputOf(double azimuth, double elevation, const FrameOfReference& show,
-                        Projection projection = Projection::Perspective, Frame frame = Frame::Patient) {
+AnnotationInput inputOf(double azimuth, double elevation, const AnnotationChoice& show,
+                        Projection projection = Projection::Perspective, WorldAxes axes = WorldAxes::Patient) {
     AnnotationInput input;
     input.show = show;
     input.geometry = geometryOf({100, 100, 100}, {1, 2, 1.5}, {-50, -100, 20});
-    input.geometry.frame = frame;
+    input.geometry.worldAxes = axes;
     input.camera = cameraFromView(input.geometry, azimuth, elevation, 1, projection);
     input.tf = tents(3);
     input.window = {-1000, 3000};
@@ -43,7 +43,7 @@ AnnotationInput inputOf(double azimuth, double elevation, const FrameOfReference
     return input;
 }
 
-std::vector<Mark> textsOf(const std::vector<Mark>& marks, FramePart part) {
+std::vector<Mark> textsOf(const std::vector<Mark>& marks, AnnotationPart part) {
     std::vector<Mark> texts;
     for (const Mark& mark : marks)
         if (mark.part == part && mark.kind == Mark::Kind::Text) texts.push_back(mark);
@@ -56,7 +56,7 @@ std::string edgeLetters(const AnnotationInput& input, int edge) {
     const std::array<Vec2, 4> middles{Vec2(0, h / 2), Vec2(w, h / 2), Vec2(w / 2, 0), Vec2(w / 2, h)};
     std::string nearest;
     double least = 1e9;
-    for (const Mark& mark : textsOf(annotationMarks(input), FramePart::Letters)) {
+    for (const Mark& mark : textsOf(annotationMarks(input), AnnotationPart::Letters)) {
         const PixelBox box = extentOf(mark);
         const Vec2 middle((box.left + box.right) / 2, (box.top + box.bottom) / 2);
         const double distance = glm::length(middle - middles[static_cast<std::size_t>(edge)]);
@@ -73,21 +73,21 @@ std::string allEdges(const AnnotationInput& input) {
            edgeLetters(input, 3);
 }
 
-AnnotationInput standardInput(StandardView view, const FrameOfReference& show) {
-    const ViewAngles angles = anglesOf(view, Frame::Patient);
+AnnotationInput standardInput(StandardView view, const AnnotationChoice& show) {
+    const ViewAngles angles = anglesOf(view, WorldAxes::Patient);
     return inputOf(angles.azimuth, angles.elevation, show);
 }
 
 std::string cubeLetters(const AnnotationInput& input) {
     std::string letters;
-    for (const Mark& mark : textsOf(annotationMarks(input), FramePart::Cube)) letters += mark.text + " ";
+    for (const Mark& mark : textsOf(annotationMarks(input), AnnotationPart::Cube)) letters += mark.text + " ";
     return letters;
 }
 
 } // namespace
 
 TEST_CASE("letters at the edges: left, right, top and bottom of the six views of a patient", "[annotation]") {
-    const FrameOfReference show = only(&FrameOfReference::letters);
+    const AnnotationChoice show = only(&AnnotationChoice::letters);
     // Face to face with the patient, whose right is at our left; from behind the other way.
     CHECK(allEdges(standardInput(StandardView::Front, show)) == "R L S I");
     CHECK(allEdges(standardInput(StandardView::Back, show)) == "L R S I");
@@ -100,7 +100,7 @@ TEST_CASE("letters at the edges: left, right, top and bottom of the six views of
 }
 
 TEST_CASE("an oblique edge has two letters, the main one first", "[annotation]") {
-    const FrameOfReference show = only(&FrameOfReference::letters);
+    const AnnotationChoice show = only(&AnnotationChoice::letters);
     // The eye moved by 30° toward the patient's left: right in the picture is (cos 30°, sin 30°, 0), left and back;
     // tan 30° = 0.58 is more than tan 22.5°. By 20° it is not.
     CHECK(edgeLetters(inputOf(30, 0, show), 1) == "LP");
@@ -112,22 +112,22 @@ TEST_CASE("an oblique edge has two letters, the main one first", "[annotation]")
 }
 
 TEST_CASE("no letters where the file does not know", "[annotation]") {
-    CHECK(
-        annotationMarks(inputOf(0, 0, only(&FrameOfReference::letters), Projection::Perspective, Frame::File)).empty());
-    FrameOfReference off = everything();
+    CHECK(annotationMarks(inputOf(0, 0, only(&AnnotationChoice::letters), Projection::Perspective, WorldAxes::File))
+              .empty());
+    AnnotationChoice off = everything();
     off.on = false;
     CHECK(annotationMarks(inputOf(0, 0, off)).empty());
 }
 
 TEST_CASE("the cube shows the faces that look toward the eye", "[annotation]") {
-    const FrameOfReference show = only(&FrameOfReference::cube);
+    const AnnotationChoice show = only(&AnnotationChoice::cube);
     CHECK(cubeLetters(inputOf(0, 0, show)) == "A ");
     CHECK(cubeLetters(inputOf(30, 20, show)) == "L A S "); // the eye at the left, in front, above
     CHECK(cubeLetters(inputOf(200, -40, show)) == "R P I ");
-    CHECK(cubeLetters(inputOf(30, 20, show, Projection::Orthographic, Frame::File)) == "X −Y Z ");
+    CHECK(cubeLetters(inputOf(30, 20, show, Projection::Orthographic, WorldAxes::File)) == "X −Y Z ");
     // Upright and not mirrored from the six sides.
     for (const StandardView view : kStandardViews) {
-        const auto texts = textsOf(annotationMarks(standardInput(view, show)), FramePart::Cube);
+        const auto texts = textsOf(annotationMarks(standardInput(view, show)), AnnotationPart::Cube);
         REQUIRE(texts.size() == 1);
         INFO(texts[0].text);
         CHECK(texts[0].across.x > 5);
@@ -139,7 +139,7 @@ TEST_CASE("the cube shows the faces that look toward the eye", "[annotation]") {
 TEST_CASE("the scale bar is as long as it says, at the depth of the camera's centre", "[annotation]") {
     for (const auto projection : {Projection::Perspective, Projection::Orthographic})
         for (const double zoom : {0.3, 1.0, 7.0, 300.0}) {
-            AnnotationInput input = inputOf(40, 25, only(&FrameOfReference::scale), projection);
+            AnnotationInput input = inputOf(40, 25, only(&AnnotationChoice::scale), projection);
             input.camera = cameraFromView(input.geometry, 40, 25, zoom, projection);
             const auto marks = annotationMarks(input);
             REQUIRE(marks.size() == 2);
@@ -159,14 +159,14 @@ TEST_CASE("the scale bar is as long as it says, at the depth of the camera's cen
             CHECK(pixels > 0.22 * 600 / 2.5 - 1e-9);
         }
     const auto file =
-        annotationMarks(inputOf(0, 0, only(&FrameOfReference::scale), Projection::Perspective, Frame::File));
+        annotationMarks(inputOf(0, 0, only(&AnnotationChoice::scale), Projection::Perspective, WorldAxes::File));
     CHECK(file.at(1).text.ends_with(" units"));
 }
 
 TEST_CASE("the legend has the colours of the transfer function at their values", "[annotation]") {
-    const AnnotationInput input = inputOf(0, 0, only(&FrameOfReference::legend));
+    const AnnotationInput input = inputOf(0, 0, only(&AnnotationChoice::legend));
     const auto marks = annotationMarks(input);
-    const auto texts = textsOf(marks, FramePart::Legend);
+    const auto texts = textsOf(marks, AnnotationPart::Legend);
     const auto yOf = [&](const std::string& text) {
         for (const Mark& mark : texts)
             if (mark.text == text) return mark.points[0].y - 0.5 * glm::length(mark.up);
@@ -204,9 +204,9 @@ TEST_CASE("the legend has the colours of the transfer function at their values",
 
 TEST_CASE("axes have the world's coordinates where they are", "[annotation]") {
     // From the front, parallel: x = −50.5 … 49.5 goes from left to right, and 0 lies 50.5 of 100 mm from the left.
-    AnnotationInput input = inputOf(0, 0, only(&FrameOfReference::axes), Projection::Orthographic);
+    AnnotationInput input = inputOf(0, 0, only(&AnnotationChoice::axes), Projection::Orthographic);
     const double perMm = 400 / input.camera.height;
-    const auto texts = textsOf(annotationMarks(input), FramePart::Axes);
+    const auto texts = textsOf(annotationMarks(input), AnnotationPart::Axes);
     const auto middleOf = [&](const std::string& text) {
         for (const Mark& mark : texts)
             if (mark.text == text) return mark.points[0].x + 0.5 * mark.across.x * textWidth(text);
@@ -233,20 +233,20 @@ TEST_CASE("nothing overlaps and nothing is lost, from 300x200 to 4K", "[annotati
                     input.tf.features[1].name = "a feature of a long name, too";
                     const auto marks = annotationMarks(input);
                     INFO(width << "x" << height << " density " << density << " view " << azimuth << "," << elevation);
-                    std::map<FramePart, std::vector<PixelBox>> boxes;
+                    std::map<AnnotationPart, std::vector<PixelBox>> boxes;
                     for (const Mark& mark : marks) {
-                        if (mark.part == FramePart::Axes && mark.kind != Mark::Kind::Text) continue;
+                        if (mark.part == AnnotationPart::Axes && mark.kind != Mark::Kind::Text) continue;
                         const PixelBox box = extentOf(mark);
                         CHECK((box.left >= 0 && box.top >= 0 && box.right <= width && box.bottom <= height));
                         boxes[mark.part].push_back(box);
                     }
                     CHECK(boxes.size() >= 5);
-                    for (const FramePartInfo& part : kFrameParts)
-                        if (part.part != FramePart::Axes) {
+                    for (const AnnotationPartInfo& part : kAnnotationParts)
+                        if (part.part != AnnotationPart::Axes) {
                             INFO(part.name);
                             CHECK_FALSE(boxes[part.part].empty());
                         }
-                    CHECK(boxes[FramePart::Letters].size() == 4);
+                    CHECK(boxes[AnnotationPart::Letters].size() == 4);
                     bool apart = true;
                     for (const auto& [a, inA] : boxes)
                         for (const auto& [b, inB] : boxes)
@@ -258,7 +258,7 @@ TEST_CASE("nothing overlaps and nothing is lost, from 300x200 to 4K", "[annotati
 
 TEST_CASE("text grows with the picture, and stays readable in a small one", "[annotation]") {
     const auto capital = [](int size, double density) {
-        AnnotationInput input = inputOf(0, 0, only(&FrameOfReference::scale));
+        AnnotationInput input = inputOf(0, 0, only(&AnnotationChoice::scale));
         input.picture.width = input.picture.height = size;
         input.density = density;
         return glm::length(annotationMarks(input).at(1).up);
@@ -347,10 +347,10 @@ TEST_CASE("views by name", "[annotation]") {
     CHECK_FALSE(namedView("left")->ofPatient);
     CHECK_FALSE(namedView("sideways"));
     // The patient's left is at +x, where positive azimuths lead; the file's left is the picture's left from the front.
-    CHECK(anglesOf(*namedView("left"), Frame::Patient).azimuth == 90);
-    CHECK(anglesOf(*namedView("left"), Frame::File).azimuth == -90);
-    CHECK(anglesOf(*namedView("front"), Frame::Patient).azimuth == 0);
-    CHECK_THROWS_AS(anglesOf(*namedView("superior"), Frame::File), UsageError);
-    CHECK(std::string(name(StandardView::Top, Frame::Patient)) == "superior");
-    CHECK(std::string(name(StandardView::Top, Frame::File)) == "top");
+    CHECK(anglesOf(*namedView("left"), WorldAxes::Patient).azimuth == 90);
+    CHECK(anglesOf(*namedView("left"), WorldAxes::File).azimuth == -90);
+    CHECK(anglesOf(*namedView("front"), WorldAxes::Patient).azimuth == 0);
+    CHECK_THROWS_AS(anglesOf(*namedView("superior"), WorldAxes::File), UsageError);
+    CHECK(std::string(name(StandardView::Top, WorldAxes::Patient)) == "superior");
+    CHECK(std::string(name(StandardView::Top, WorldAxes::File)) == "top");
 }

@@ -23,7 +23,7 @@ TEST_CASE("left is where the file says", "[image][cpu][affine]") {
     // azimuth 0 is in LPS, the patient's left is at the picture's right.
     for (const double sign : {1.0, -1.0}) {
         Geometry g{{9, 5, 5}};
-        g.frame = Frame::Patient;
+        g.worldAxes = WorldAxes::Patient;
         g.directions[0] = Vec3(sign, 0, 0);
         g.origin = Vec3(sign > 0 ? 0 : 8, 0, 0);
         std::vector<float> values(voxelCount(g.dims), 0.0f);

@@ -133,7 +133,7 @@ TEST_CASE("invalid voxels and what is clipped away are transparent in slices", "
 TEST_CASE("slices of a patient are turned as radiologists are used to, however the file stores them", "[slice]") {
     // A bright voxel at the patient's left, front and top: world (+, −, +) of LPS.
     Geometry g = geometryOf({6, 6, 6});
-    g.frame = Frame::Patient;
+    g.worldAxes = WorldAxes::Patient;
     const auto value = [](const Vec3& world) { return world == Vec3(5, 0, 5) ? 1.0 : 0.1 + 0.05 * world.x; };
     const auto make = [&](const Geometry& geometry) {
         return volumeFrom(geometry, [&](int i, int j, int k) {

@@ -32,7 +32,7 @@ bool hasText(const PlotDrawing& drawing, const std::string& text) {
 TEST_CASE("a plot lies where its axes say", "[plot]") {
     // Left: gap 6, the label's line 15, the widest tick "0.2" 30, gap 6: 57. Right: 400 − 2·6 = 388. Top: the title's
     // line and gap 21, one row of the legend 15, gap 6: 42. Bottom: 300 − 6 − two lines = 264.
-    const PlotFrame frame = frameOf(line(), page());
+    const PlotBox frame = boxOf(line(), page());
     CHECK(frame.left == Approx(57));
     CHECK(frame.right == Approx(388));
     CHECK(frame.top == Approx(42));
@@ -67,7 +67,7 @@ TEST_CASE("a plot lies where its axes say", "[plot]") {
 TEST_CASE("a logarithmic axis has equal decades", "[plot]") {
     Plot plot = line();
     plot.y = {.label = "F", .lo = 1e-4, .hi = 1, .logarithmic = true};
-    const PlotFrame frame = frameOf(plot, page());
+    const PlotBox frame = boxOf(plot, page());
     CHECK(frame.yOf(1e-2) == Approx((frame.top + frame.bottom) / 2));
     CHECK(frame.yOf(0) == frame.bottom); // zero has no place of its own
     // Four decades, about six ticks wanted: powers of ten alone. One decade: 2 and 5 between.
@@ -97,7 +97,7 @@ TEST_CASE("a legend that finds no room says how much is missing", "[plot]") {
     }
     CHECK(shown > 3);
     CHECK(shown + more == 32);
-    const PlotFrame frame = frameOf(plot, page());
+    const PlotBox frame = boxOf(plot, page());
     CHECK(frame.bottom - frame.top > 100); // room for what it is about
 }
 
@@ -111,7 +111,7 @@ TEST_CASE("long texts are cut between characters", "[plot]") {
 
 TEST_CASE("the dot under the mouse", "[plot]") {
     const Plot plot = line();
-    const PlotFrame frame = frameOf(plot, page());
+    const PlotBox frame = boxOf(plot, page());
     const auto hit = hitAt(plot, frame, {frame.xOf(5) + 3, frame.yOf(0.5) - 3}, 8);
     REQUIRE(hit);
     CHECK(hit->point == 1);

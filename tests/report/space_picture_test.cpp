@@ -294,7 +294,7 @@ TEST_CASE("the contour of a heat map is where F is the tolerance", "[space]") {
     const PixelBox box = heatMapBox(space, view);
     int ends = 0;
     for (const Mark& mark : spaceMarks(space, view)) {
-        if (mark.part != FramePart::Axes || mark.kind != Mark::Kind::Line || std::abs(mark.width - width) > 1e-9)
+        if (mark.part != AnnotationPart::Axes || mark.kind != Mark::Kind::Line || std::abs(mark.width - width) > 1e-9)
             continue;
         for (const Vec2& p : mark.points) {
             const Vec3 position{(p.x - box.left) / (box.right - box.left), (box.bottom - p.y) / (box.bottom - box.top),

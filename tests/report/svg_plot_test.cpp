@@ -57,7 +57,7 @@ TEST_CASE("an SVG file is well-formed and has the curve where it belongs", "[svg
     // The second plot lies below the first.
     CHECK(svg.find("translate(0 200)") != std::string::npos);
     // The curve goes through (left, bottom), (middle, top), (right, halfway).
-    const PlotFrame frame = frameOf(plots[0], page);
+    const PlotBox frame = boxOf(plots[0], page);
     const auto number = [](double v) {
         std::string text = std::to_string(std::round(v * 100) / 100);
         while (text.back() == '0') text.pop_back();

@@ -121,7 +121,7 @@ TEST_CASE("plots are pictures", "[temporal]") {
     };
     CHECK(isNear(1, 1, {1, 1, 1})); // the ground
     // The skin's curve passes where the frame of the plot says.
-    const PlotFrame frame = frameOf(plots[0], page);
+    const PlotBox frame = boxOf(plots[0], page);
     const double x = 2.25, y = 0.5 + 0.02 * 0.25;
     bool red = false;
     for (int dy = -2; dy <= 2; ++dy)

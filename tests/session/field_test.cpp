@@ -108,7 +108,7 @@ TEST_CASE("a field is drawn from its threshold to its top", "[session][fields]")
     CHECK(picture.camera == scene.camera);
     CHECK(picture.settings.width == 32);
     CHECK_FALSE(picture.settings.light.on);
-    const AnnotationInput around = fieldAnnotationInput(picture, scene, field, FrameOfReference::none());
+    const AnnotationInput around = fieldAnnotationInput(picture, scene, field, AnnotationChoice::none());
     CHECK(around.window == ValueRange{0, 0.05});
     CHECK(around.show.legend);
     CHECK(around.title == "Visibility");

@@ -43,7 +43,7 @@ struct OrientationCase {
     explicit OrientationCase(int size = 52) {
         const Volume knee = makeSample("knee", size);
         Geometry g = knee.geometry();
-        g.frame = Frame::Patient;
+        g.worldAxes = WorldAxes::Patient;
         // Air all around, as deep as fourteen voxels, so that the ends of the box cut nothing.
         const Volume inPatient(g, knee.samples());
         const Geometry wide = regridded(g, g.dims + 28, g.directions, g.spacing);

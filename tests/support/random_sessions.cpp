@@ -345,9 +345,9 @@ Session randomSession(std::uint32_t number) {
         s.display = d;
     }
     if (random.chance(0.5)) {
-        FrameOfReference reference;
+        AnnotationChoice reference;
         reference.on = random.chance(0.8);
-        for (const FramePartInfo& part : kFrameParts) reference.*part.shown = random.chance(0.5);
+        for (const AnnotationPartInfo& part : kAnnotationParts) reference.*part.shown = random.chance(0.5);
         s.reference = reference;
     }
     if (random.chance(0.7)) s.measure = randomMeasure(random);

@@ -282,7 +282,7 @@ TEST_CASE("NIfTI says where the volume lies", "[formats]") {
     CHECK(read().geometry().spacing == Vec3(1000, 2000, 3000));
     nifti.units = 2;
     CHECK(read().geometry().directions == Mat3(1));
-    CHECK(read().geometry().frame == Frame::Patient);
+    CHECK(read().geometry().worldAxes == WorldAxes::Patient);
     nifti.sform[0] = 1; // i goes to the right: against our x
     CHECK(read().geometry().directions[0] == Vec3(-1, 0, 0));
     CHECK(read().geometry().directions[1] == Vec3(0, 1, 0));
@@ -291,7 +291,7 @@ TEST_CASE("NIfTI says where the volume lies", "[formats]") {
     CHECK(glm::length(read().geometry().directions[1] - Vec3(-1, 2, 0) / std::sqrt(5.0)) < 1e-6);
     CHECK(std::abs(read().geometry().spacing.y - std::sqrt(5.0)) < 1e-6); // the length of the map's column
     nifti.sformCode = nifti.qformCode = 0;
-    CHECK(read().geometry().frame == Frame::File); // no form at all: the grid's own axes
+    CHECK(read().geometry().worldAxes == WorldAxes::File); // no form at all: the grid's own axes
     CHECK(read().geometry().directions == Mat3(1));
     nifti.sformCode = 1;
     const Volume packed = load(folder.write("b.nii", gzipped(nifti.header() + data))); // .gz left out of the name
@@ -541,7 +541,7 @@ TEST_CASE("MetaImage and NRRD say where the axes point", "[formats]") {
     CHECK(turned.geometry().spacing == Vec3(1, 2, 3));
     // Row n of the matrix is axis n: i points along y, j against x.
     CHECK(turned.geometry().directions == Mat3(Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1)));
-    CHECK(turned.geometry().frame == Frame::File); // nobody speaks of a patient
+    CHECK(turned.geometry().worldAxes == WorldAxes::File); // nobody speaks of a patient
     CHECK(turned.geometry().worldFromVoxel({1, 1, 0}) == Vec3(-2, 1, 0));
     CHECK(turned.value(0) == 'a');
     const auto nrrd = [&](const std::string& space, const std::string& units) {
@@ -552,17 +552,17 @@ TEST_CASE("MetaImage and NRRD say where the axes point", "[formats]") {
     };
     CHECK(nrrd("left-posterior-superior", "").directions == Mat3(Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)));
     const Geometry ras = nrrd("RAS", "space units: \"m\" \"m\" \"m\"\n");
-    CHECK(ras.frame == Frame::Patient);
+    CHECK(ras.worldAxes == WorldAxes::Patient);
     CHECK(ras.directions == Mat3(Vec3(0, -1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1))); // x and y are the other way round
     CHECK(ras.origin == Vec3(-1000, -2000, 3000));
     CHECK(ras.spacing == Vec3(2000, 1000, 3000));
-    CHECK(nrrd("3D-right-handed", "").frame == Frame::File);
+    CHECK(nrrd("3D-right-handed", "").worldAxes == WorldAxes::File);
     CHECK(nrrd("3D-right-handed", "").directions[0] == Vec3(0, 1, 0));
     // What is written says the same.
     writeNrrd(Volume(ras, std::vector<std::uint8_t>{1, 2}), folder.path("c.nrrd"));
     const Geometry again = load(folder.path("c.nrrd")).geometry();
     CHECK(again.directions == ras.directions);
-    CHECK(again.frame == Frame::Patient);
+    CHECK(again.worldAxes == WorldAxes::Patient);
     CHECK(again.origin == ras.origin);
 }
 

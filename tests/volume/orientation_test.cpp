@@ -12,7 +12,7 @@ Geometry patient(const Mat3& directions) {
     Geometry g;
     g.dims = {4, 4, 4};
     g.directions = directions;
-    g.frame = Frame::Patient;
+    g.worldAxes = WorldAxes::Patient;
     return g;
 }
 
@@ -43,7 +43,7 @@ TEST_CASE("a text says how the voxels' axes run, and how oblique they are", "[or
     CHECK(obliqueAngle(oblique) == Approx(10));
     CHECK(axesText(oblique) == "R→L, A→P, I→S, 10° oblique");
     Geometry file = patient(Mat3(Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)));
-    file.frame = Frame::File;
+    file.worldAxes = WorldAxes::File;
     CHECK(axesText(file) == "-y, +x, +z");
     CHECK(obliqueAngle(file) == Approx(0).margin(1e-6));
 }

@@ -71,10 +71,10 @@ void ViewGlobe::setMap(const ViewMap& map, bool current, const std::optional<Vec
         }
 }
 
-void ViewGlobe::setCamera(const Camera& camera, Frame frame) {
-    if (camera == m_camera && frame == m_frame) return;
+void ViewGlobe::setCamera(const Camera& camera, WorldAxes axes) {
+    if (camera == m_camera && axes == m_worldAxes) return;
     m_camera = camera;
-    m_frame = frame;
+    m_worldAxes = axes;
     update();
 }
 
@@ -149,7 +149,7 @@ void ViewGlobe::paintMarks(QPainter& painter) const {
         draw();
     };
     // Where the axes of the world come out.
-    const bool patient = m_frame == Frame::Patient;
+    const bool patient = m_worldAxes == WorldAxes::Patient;
     const std::array<std::pair<Vec3, QString>, 6> axes{{{{1, 0, 0}, patient ? tr("L") : QStringLiteral("x")},
                                                         {{-1, 0, 0}, patient ? tr("R") : QStringLiteral("−x")},
                                                         {{0, 1, 0}, patient ? tr("P") : QStringLiteral("y")},

@@ -19,7 +19,7 @@ public:
 
     /// Pale where it is not `current`. `best`: the direction of the best view, where it is known.
     void setMap(const ViewMap& map, bool current, const std::optional<Vec3>& best);
-    void setCamera(const Camera& camera, Frame frame);
+    void setCamera(const Camera& camera, WorldAxes axes);
     /// What is said of a direction under the mouse.
     void setWords(std::function<QString(const Vec3&)> words) { m_words = std::move(words); }
 
@@ -63,7 +63,7 @@ private:
     bool m_current = false;
     std::optional<Vec3> m_bestDirection;
     Camera m_camera;
-    Frame m_frame = Frame::File;
+    WorldAxes m_worldAxes = WorldAxes::File;
     std::function<QString(const Vec3&)> m_words;
     bool m_hovering = false, m_pressed = false, m_dragging = false;
     QPointF m_from, m_last;

@@ -11,9 +11,9 @@
 #include <glm/matrix.hpp>
 #include <zlib.h>
 
-#include "volume/formats/file_check.h"
+#include "base/round_numbers.h"
 #include "volume/formats/reader.h"
-#include "volume/formats/samples.h"
+#include "volume/formats/text_header.h"
 
 namespace pellucid {
 
@@ -229,14 +229,11 @@ void placeGrid(FileLayout& layout, const NiftiHeader& header, const std::string&
     const int axes = std::min(header.dim(0), 3);
     const double millimetres = millimetresIn(header);
     for (int a = 1; a <= axes; ++a) {
-        if (!(header.pixdim(a) > 0) || !std::isfinite(header.pixdim(a)))
-            throw FileError("the spacing of axis " + std::to_string(a - 1) + " is " + std::to_string(header.pixdim(a)) +
-                                ", it must be positive and finite",
-                            path, "correct pixdim in the header");
         layout.spacing[a - 1] = header.pixdim(a);
+        requireSpacing(layout.spacing[a - 1], static_cast<std::size_t>(a - 1), plainText(layout.spacing[a - 1]), path);
     }
     if (const std::optional<Placement> placement = placementIn(header, layout.spacing, path, layout.notices)) {
-        layout.frame = Frame::Patient;
+        layout.worldAxes = WorldAxes::Patient;
         const Vec3 flip{-1, -1, 1}; // our x goes to the left, our y to the back
         for (int a = 0; a < 3; ++a) {
             layout.origin[a] = placement->origin[a] == 0 ? 0 : flip[a] * placement->origin[a] * millimetres;
@@ -260,8 +257,8 @@ std::optional<StepTimes> timesIn(const NiftiHeader& header) {
     return StepTimes{std::isfinite(first) ? first : 0, width, ""};
 }
 
-/// `step`: the one to be read, for which everything is checked; empty: nothing but the header is looked at.
-FileLayout checkedLayout(const std::string& path, std::optional<int> step, const JobControl& job) {
+FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const JobControl& job) {
+    const std::string& path = source.path;
     const std::uint64_t fileBytes = readableFileBytes(path);
     const NiftiHeader header(path);
     const NiftiType type = typeOf(header.datatype(), path);
@@ -275,49 +272,24 @@ FileLayout checkedLayout(const std::string& path, std::optional<int> step, const
         header.dim(5) == 6)                         // the file has xx xy yy xz yz zz
         layout.componentOrder = {0, 1, 3, 2, 4, 5}; // as NRRD: xx xy xz yy yz zz
     layout.scaling = scalingIn(header, type, path);
-    const std::uint64_t values = valuesIn(layout, path);
-    const std::uint64_t bytes = values * bytesPerValue(layout.type);
+    valuesIn(layout, path); // throws where they are too many to count
     placeGrid(layout, header, path);
-
     const float offset = header.voxOffset();
     if (!(offset >= 0) || offset > 1e9f)
         throw FileError("the header gives a wrong place of the data", path, "correct vox_offset in the header");
     layout.times = timesIn(header);
     if (!step) return layout;
-    const std::uint64_t wanted = valuesUpTo(layout, *step);
     const std::uint64_t start = std::max<std::uint64_t>(static_cast<std::uint64_t>(offset), kHeaderBytes);
     const bool compressed = fileHead(path, 2) == "\x1f\x8b";
     layout.encoding = compressed ? Encoding::Deflate : Encoding::Raw;
     (compressed ? layout.skip : layout.start) = start;
-    const std::uint64_t stored = compressed ? fileBytes : fileBytes - std::min(start, fileBytes);
-    requireStored(path, layout.encoding, wanted, bytesPerValue(layout.type), stored,
-                  "check dim and datatype in the header, or copy the file again");
-    if (compressed) requireInflated(layout, start + wanted * bytesPerValue(layout.type), job);
-    if (!compressed && stored > bytes)
-        layout.notices.push_back("the data has " + std::to_string(stored - bytes) + " bytes more than the header says");
+    requireData(layout, fileBytes - std::min(layout.start, fileBytes), valuesUpTo(layout, *step),
+                "check dim and datatype in the header, or copy the file again", job);
     return layout;
 }
 
-class NiftiReader final : public VolumeReader {
-public:
-    const char* name() const override { return "NIfTI"; }
-    const std::vector<std::string>& suffixes() const override {
-        static const std::vector<std::string> kSuffixes{".nii", ".nii.gz"};
-        return kSuffixes;
-    }
-    FileContents describe(const VolumeSource& source, const JobControl& job) const override {
-        return contentsOf(checkedLayout(source.path, std::nullopt, job));
-    }
-    Volume read(const VolumeSource& source, const JobControl& job) const override {
-        return readSamples(source, checkedLayout(source.path, source.step, job), job);
-    }
-};
-
 } // namespace
 
-const VolumeReader& niftiReader() {
-    static const NiftiReader reader;
-    return reader;
-}
+VolumeFormat niftiFormat() { return {"NIfTI", {".nii", ".nii.gz"}, describeLayout<layoutOf>, readLayout<layoutOf>}; }
 
 } // namespace pellucid

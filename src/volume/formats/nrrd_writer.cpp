@@ -21,25 +21,8 @@ std::string exactText(double value) {
 }
 
 const char* nrrdType(SampleType type) {
-    switch (type) {
-    case SampleType::U8:
-        return "uint8";
-    case SampleType::I8:
-        return "int8";
-    case SampleType::U16:
-        return "uint16";
-    case SampleType::I16:
-        return "int16";
-    case SampleType::U32:
-        return "uint32";
-    case SampleType::I32:
-        return "int32";
-    case SampleType::F32:
-        return "float";
-    case SampleType::F64:
-        return "double";
-    }
-    PELLUCID_CHECK(false);
+    constexpr const char* kTypes[] = {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float", "double"};
+    return kTypes[static_cast<std::size_t>(type)];
 }
 
 std::string headerText(const Geometry& g, SampleType type) {
@@ -50,7 +33,7 @@ std::string headerText(const Geometry& g, SampleType type) {
     const Mat3 axes = g.worldFromIndex();
     std::string text =
         "NRRD0004\ntype: " + std::string(nrrdType(type)) + "\ndimension: 3\n" +
-        (g.frame == Frame::Patient ? "space: left-posterior-superior" : "space dimension: 3") +
+        (g.worldAxes == WorldAxes::Patient ? "space: left-posterior-superior" : "space dimension: 3") +
         "\nsizes: " + std::to_string(g.dims.x) + " " + std::to_string(g.dims.y) + " " + std::to_string(g.dims.z) +
         "\nspace directions: " + vector(axes[0]) + " " + vector(axes[1]) + " " + vector(axes[2]) +
         "\nkinds: domain domain domain\nendian: " + (std::endian::native == std::endian::big ? "big" : "little") +

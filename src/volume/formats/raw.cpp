@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
-#include "volume/formats/samples.h"
 #include "volume/spacing.h"
 
 namespace pellucid {
@@ -12,25 +10,9 @@ namespace pellucid {
 namespace {
 
 ValueType valueType(SampleType type) {
-    switch (type) {
-    case SampleType::U8:
-        return ValueType::U8;
-    case SampleType::I8:
-        return ValueType::I8;
-    case SampleType::U16:
-        return ValueType::U16;
-    case SampleType::I16:
-        return ValueType::I16;
-    case SampleType::U32:
-        return ValueType::U32;
-    case SampleType::I32:
-        return ValueType::I32;
-    case SampleType::F32:
-        return ValueType::F32;
-    case SampleType::F64:
-        return ValueType::F64;
-    }
-    PELLUCID_CHECK(false);
+    constexpr ValueType kTypes[] = {ValueType::U8,  ValueType::I8,  ValueType::U16, ValueType::I16,
+                                    ValueType::U32, ValueType::I32, ValueType::F32, ValueType::F64};
+    return kTypes[static_cast<std::size_t>(type)];
 }
 
 /// Bytes of one step, by a layout that makes sense. Throws UsageError, FileError.
@@ -64,11 +46,9 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     if (source.component != 0)
         throw UsageError("headerless data has one component, number 0", path, "ask for none", Remedy::NoComponent);
     const std::uint64_t fileBytes = readableFileBytes(path);
-    const std::int64_t sizes[] = {layout.dims.x, layout.dims.y, layout.dims.z};
     const int steps = rawSteps(source);
     if (steps == 1 && (layout.skipBytes > fileBytes || fileBytes - layout.skipBytes != bytes)) {
-        std::string claim = std::to_string(sizes[0]) + " x " + std::to_string(sizes[1]) + " x " +
-                            std::to_string(sizes[2]) + " of " + name(layout.type) + " are " + std::to_string(bytes);
+        std::string claim = dimsText(layout.dims) + " of " + name(layout.type) + " are " + std::to_string(bytes);
         if (layout.skipBytes > 0) claim += " after " + std::to_string(layout.skipBytes) + " skipped";
         throw FileError("the file has " + std::to_string(fileBytes) + " bytes, but " + claim, path,
                         "correct its layout", Remedy::CorrectRawLayout);
@@ -78,8 +58,7 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     file.start = layout.skipBytes;
     file.type = valueType(layout.type);
     file.bigEndian = layout.bigEndian;
-    for (const std::int64_t size : sizes) file.axes.push_back({size});
-    if (steps > 1) file.axes.push_back({steps});
+    file.axes = {{layout.dims.x}, {layout.dims.y}, {layout.dims.z}, {steps}};
     file.spacing = layout.spacing;
     return readSamples(source, file, job);
 }

@@ -1,39 +1,45 @@
-// One file format behind one small interface; loader.cpp chooses among them by suffix.
+// The file formats, each in a file of its own; loader.cpp chooses among them by suffix.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "volume/file_contents.h"
-#include "volume/loader.h"
+#include "volume/formats/samples.h"
 
 namespace pellucid {
 
-/// A reader has no state. It checks what the header claims against the file's own size and the memory that is free
-/// before it allocates anything, and tells every fault of the file by a FileError.
-class VolumeReader {
-public:
-    virtual ~VolumeReader() = default;
-    /// "NRRD", "MetaImage", …: Volume::format.
-    virtual const char* name() const = 0;
-    /// Lower case, with the dot: ".nrrd".
-    virtual const std::vector<std::string>& suffixes() const = 0;
-    /// The files that hold the samples: `path`, or those that its header names. Throws FileError.
-    virtual std::vector<std::string> dataFiles(const std::string& path) const { return {path}; }
+/// One file format. Its functions have no state. They check what the header claims against the file's own size and the
+/// memory that is free before they allocate anything, and tell every fault of the file by a FileError.
+struct VolumeFormat {
+    const char* name;                  ///< "NRRD", "MetaImage", …: Volume::format
+    std::vector<std::string> suffixes; ///< lower case, with the dot: ".nrrd"
     /// What source.path holds, by its header alone. Throws FileError.
-    virtual FileContents describe(const VolumeSource& source, const JobControl& job) const = 0;
+    FileContents (*describe)(const VolumeSource& source, const JobControl& job);
     /// Reads source.path (an existing file that is not empty): samples of source.step and source.array, geometry,
     /// source.missing and source.component. The window, title and format are left to the caller. Of a file with several
     /// steps, nothing behind the one that is read need be there, unless it is compressed: the checksum stands at the
     /// end.
-    virtual Volume read(const VolumeSource& source, const JobControl& job) const = 0;
+    Volume (*read)(const VolumeSource& source, const JobControl& job);
+    /// The files that hold the samples, where the header names others. Throws FileError. Null: they are in the file.
+    std::vector<std::string> (*dataFiles)(const std::string& path) = nullptr;
 };
 
-const VolumeReader& nrrdReader();
-const VolumeReader& metaImageReader();
-const VolumeReader& niftiReader();
-const VolumeReader& vtiReader(); ///< vtk_image.cpp
-const VolumeReader& pvdReader();
+/// The `describe` and `read` of a format whose header becomes a layout: layoutOf(source, step, job), where `step` is
+/// the one to be read, for which everything is checked; empty: nothing but the header is looked at.
+template <auto layoutOf>
+FileContents describeLayout(const VolumeSource& source, const JobControl& job) {
+    return contentsOf(layoutOf(source, std::nullopt, job));
+}
+template <auto layoutOf>
+Volume readLayout(const VolumeSource& source, const JobControl& job) {
+    return readSamples(source, layoutOf(source, source.step, job), job);
+}
+
+VolumeFormat nrrdFormat();
+VolumeFormat metaImageFormat();
+VolumeFormat niftiFormat();
+VolumeFormat vtiFormat(); ///< vtk_image.cpp
+VolumeFormat pvdFormat();
 
 /// Time steps of source.path as *source.raw says, see contentsOf(). Throws FileError.
 int rawSteps(const VolumeSource& source);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -27,29 +28,12 @@ namespace {
 /// Calls use(T{}) with the type that a value has in the file.
 template <class Use>
 auto withType(ValueType type, const Use& use) {
-    switch (type) {
-    case ValueType::U8:
-        return use(std::uint8_t{});
-    case ValueType::I8:
-        return use(std::int8_t{});
-    case ValueType::U16:
-        return use(std::uint16_t{});
-    case ValueType::I16:
-        return use(std::int16_t{});
-    case ValueType::U32:
-        return use(std::uint32_t{});
-    case ValueType::I32:
-        return use(std::int32_t{});
-    case ValueType::U64:
-        return use(std::uint64_t{});
-    case ValueType::I64:
-        return use(std::int64_t{});
-    case ValueType::F32:
-        return use(float{});
-    case ValueType::F64:
-        return use(double{});
-    }
-    PELLUCID_CHECK(false);
+    using Value = std::variant<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t, std::int32_t,
+                               std::uint64_t, std::int64_t, float, double>;
+    static constexpr Value kZeros[] = {std::uint8_t{},  std::int8_t{},  std::uint16_t{}, std::int16_t{},
+                                       std::uint32_t{}, std::int32_t{}, std::uint64_t{}, std::int64_t{},
+                                       float{},         double{}};
+    return std::visit(use, kZeros[static_cast<std::size_t>(type)]);
 }
 
 /// 64-bit integers have no sample type of their own.
@@ -429,13 +413,21 @@ std::uint64_t valuesUpTo(const FileLayout& layout, int step) {
            std::min<std::uint64_t>(static_cast<std::uint64_t>(std::max(step, 0)) + 1, selection.steps);
 }
 
-void requireInflated(FileLayout& layout, std::uint64_t wanted, const JobControl& job) {
-    if (selectionOf(layout, 0, 0).steps == 1) {
-        requireInflates(layout.dataPath, layout.start, layout.zlib, wanted, job);
-        return;
+void requireData(FileLayout& layout, std::uint64_t stored, std::uint64_t wanted, const char* toDo,
+                 const JobControl& job) {
+    const std::uint64_t bytesPer = bytesPerValue(layout.type), bytes = layout.skip + wanted * bytesPer;
+    const std::uint64_t all = valuesIn(layout, layout.dataPath) * bytesPer;
+    requireStored(layout.dataPath, layout.encoding, wanted, bytesPer, stored, toDo);
+    if (layout.encoding == Encoding::Text) {
+        requireNumbers(layout.dataPath, layout.start, wanted, job);
+    } else if (layout.encoding == Encoding::Deflate && selectionOf(layout, 0, 0).steps == 1) {
+        requireInflates(layout.dataPath, layout.start, layout.zlib, bytes, job);
+    } else if (layout.encoding == Encoding::Deflate) {
+        layout.index = InflateIndex::of(layout.dataPath, layout.start, layout.zlib);
+        layout.index->require(bytes, job);
+    } else if (layout.encoding == Encoding::Raw && stored > all) {
+        layout.notices.push_back("the data has " + std::to_string(stored - all) + " bytes more than the header says");
     }
-    layout.index = InflateIndex::of(layout.dataPath, layout.start, layout.zlib);
-    layout.index->require(wanted, job);
 }
 
 FileContents contentsOf(const FileLayout& layout) {
@@ -449,6 +441,7 @@ FileContents contentsOf(const FileLayout& layout) {
     });
     contents.components = static_cast<int>(std::min(selection.components, kMost));
     contents.steps = static_cast<int>(std::min(selection.steps, kMost));
+    contents.arrays = layout.arrays;
     if (!layout.times) return contents;
     contents.timeUnit = layout.times->unit;
     constexpr int kMostTimes = 1'000'000; // a damaged header may claim any number
@@ -472,7 +465,7 @@ Vec3 cleanDirection(const Vec3& direction) {
 Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job) {
     const std::string& path = source.path;
     const Selection selection = selectionOf(layout, source.component, source.step);
-    const Geometry geometry{selection.dims, layout.spacing, layout.origin, layout.directions, layout.frame};
+    const Geometry geometry{selection.dims, layout.spacing, layout.origin, layout.directions, layout.worldAxes};
     if (const std::string wrong = geometryProblem(geometry.spacing, geometry.origin); !wrong.empty())
         throw FileError(wrong, path, "correct the header, or write it in another unit");
     if (!(std::abs(glm::determinant(geometry.directions)) > 1e-6))

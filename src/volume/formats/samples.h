@@ -52,13 +52,14 @@ struct FileLayout {
     std::vector<int> componentOrder; ///< component n is entry componentOrder[n] of its axis; empty: entry n
     Vec3 spacing{1, 1, 1}, origin{0, 0, 0};
     Mat3 directions{1}; ///< unit columns: where the axes of the grid point
-    Frame frame = Frame::File;
+    WorldAxes worldAxes = WorldAxes::File;
     std::optional<ValueScaling> scaling;
     std::optional<StepTimes> times; ///< of steps along one axis
     /// Where given: the bytes of the values, in place of `encoding`, `start` and `skip` (raw to those who ask).
     std::function<std::unique_ptr<ByteSource>(const JobControl&)> open;
     std::shared_ptr<InflateIndex> index; ///< of Deflate with several steps: where to read on
     std::string array;                   ///< name of the array that this is, where the file names its arrays
+    std::vector<std::string> arrays;     ///< of these, all names
     std::vector<std::string> notices;
 };
 
@@ -73,9 +74,11 @@ std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
 /// lie one behind the other, otherwise all.
 std::uint64_t valuesUpTo(const FileLayout& layout, int step);
 
-/// requireInflates() of the layout's stream. Where the file has several steps, layout.index is made, and no byte is
-/// checked twice as long as the file stays the same.
-void requireInflated(FileLayout& layout, std::uint64_t wanted, const JobControl& job);
+/// Throws FileError unless the data file holds `wanted` values, `stored` bytes of it beginning at layout.start. Unpacks
+/// or reads them without keeping them; where compressed data have several steps, layout.index is made, and no byte is
+/// checked twice as long as the file stays the same. Bytes left over become a notice. `toDo` advises what to check.
+void requireData(FileLayout& layout, std::uint64_t stored, std::uint64_t wanted, const char* toDo,
+                 const JobControl& job);
 
 /// What the layout says that can be chosen of.
 FileContents contentsOf(const FileLayout& layout);

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 
-#include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
-#include "volume/formats/samples.h"
+#include "volume/formats/text_header.h"
 #include "volume/formats/vtk_bytes.h"
 #include "volume/formats/xml_tags.h"
 
@@ -35,7 +35,9 @@ struct VtkImage {
     std::string path;
     bool bigEndian = false, compressed = false;
     int headerBytes = 4;
-    std::string wholeExtent, spacing, origin, direction, activeScalars;
+    std::optional<std::string> wholeExtent,
+        pieceExtent; ///< of the elements ImageData and Piece, which have to be there
+    std::string spacing, origin, direction, activeScalars;
     std::vector<VtkArray> arrays; ///< of the points
     std::size_t cellArrays = 0;
     std::optional<VtkArray> time; ///< FieldData's TimeValue
@@ -56,18 +58,15 @@ std::int64_t wholeNumber(const XmlTag& tag, const std::string& attribute, std::i
     return value;
 }
 
-/// As many finite numbers as `count`; `otherwise` where the text is empty.
-std::vector<double> numbersIn(const std::string& text, const char* what, std::vector<double> otherwise,
+/// As many finite numbers as `otherwise` has, which are taken where the text is empty.
+std::vector<double> numbersIn(const std::string& text, const std::string& what, const std::vector<double>& otherwise,
                               const std::string& path) {
-    const std::vector<std::string> words = splitWords(text);
-    if (words.empty()) return otherwise;
-    if (words.size() != otherwise.size())
-        failAt(path, std::string(what) + " has " + std::to_string(words.size()) + " numbers, not " +
-                         std::to_string(otherwise.size()));
-    for (std::size_t i = 0; i < words.size(); ++i)
-        if (!parseNumber(words[i], otherwise[i]) || !std::isfinite(otherwise[i]))
-            failAt(path, "there is " + inQuotes(words[i]) + " among the numbers of " + what);
-    return otherwise;
+    const std::vector<double> numbers = finiteNumbers(text, what, path);
+    if (numbers.empty()) return otherwise;
+    if (numbers.size() != otherwise.size())
+        failAt(path,
+               what + " has " + std::to_string(numbers.size()) + " numbers, not " + std::to_string(otherwise.size()));
+    return numbers;
 }
 
 /// The root of the file, which has to be a VTKFile of `type`.
@@ -111,6 +110,52 @@ VtkArray arrayOf(const XmlTag& tag, const std::string& path) {
     return array;
 }
 
+/// The root: how all data of the file are stored.
+void readRoot(VtkImage& image, const XmlTag& tag) {
+    checkRoot(tag, "ImageData", image.path);
+    const std::string order = tag.get("byte_order"), header = tag.get("header_type"),
+                      compressor = tag.get("compressor");
+    if (!order.empty() && order != "LittleEndian" && order != "BigEndian")
+        failAt(image.path, "the byte order " + inQuotes(order) + " is not known");
+    if (!header.empty() && header != "UInt32" && header != "UInt64")
+        failAt(image.path, "the header type " + inQuotes(header) + " is not known");
+    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+        failAt(image.path, "the compressor " + inQuotes(compressor) + " is not supported",
+               "write it with ZLib compression, or none");
+    image.bigEndian = order == "BigEndian";
+    image.headerBytes = header == "UInt64" ? 8 : 4;
+    image.compressed = !compressor.empty();
+}
+
+/// What an element within `parent` says of the image; most say nothing.
+void readElement(VtkImage& image, const XmlTag& tag, const std::string& parent, const JobControl& job) {
+    const std::string& path = image.path;
+    if (tag.name == "ImageData" && parent == "VTKFile") {
+        image.wholeExtent = tag.get("WholeExtent");
+        image.spacing = tag.get("Spacing");
+        image.origin = tag.get("Origin");
+        image.direction = tag.get("Direction");
+    } else if (tag.name == "Piece" && parent == "ImageData") {
+        if (image.pieceExtent) failAt(path, "the image is in several pieces", "write it in one piece");
+        image.pieceExtent = tag.get("Extent");
+    } else if (tag.name == "PointData" && parent == "Piece") {
+        image.activeScalars = tag.get("Scalars");
+    } else if (tag.name == "DataArray" && parent == "PointData") {
+        if (image.arrays.size() >= kMostArrays) failAt(path, "there are too many arrays");
+        image.arrays.push_back(arrayOf(tag, path));
+    } else if (tag.name == "DataArray" && parent == "CellData") {
+        ++image.cellArrays;
+    } else if (tag.name == "DataArray" && parent == "FieldData" && tag.get("Name") == "TimeValue") {
+        image.time = arrayOf(tag, path);
+    } else if (tag.name == "AppendedData" && parent == "VTKFile") {
+        const std::string encoding = lowerCase(tag.get("encoding"));
+        if (encoding != "raw" && encoding != "base64")
+            failAt(path, "the encoding " + inQuotes(encoding) + " of the appended data is not known");
+        image.appendedBase64 = encoding == "base64";
+        image.appendedStart = appendedStart(path, tag.end, job);
+    }
+}
+
 VtkImage readHeader(const std::string& path, const JobControl& job) {
     checkIsXml(path);
     VtkImage image;
@@ -118,66 +163,29 @@ VtkImage readHeader(const std::string& path, const JobControl& job) {
     XmlTags tags(path, job);
     XmlTag tag;
     std::vector<std::string> inside; // names of the elements that are open
-    std::string pieceExtent;
-    std::size_t pieces = 0, elements = 0;
-    bool hasImage = false;
-    while (tags.next(tag)) {
-        if (++elements > 100 * kMostArrays) failAt(path, "there are too many elements");
-        if (!tag.opens) {
+    bool ended = false;
+    for (std::size_t elements = 0; !ended && tags.next(tag); ++elements) {
+        if (elements >= 100 * kMostArrays) failAt(path, "there are too many elements");
+        if (tag.opens) {
+            if (inside.empty())
+                readRoot(image, tag);
+            else
+                readElement(image, tag, inside.back(), job);
+            if (!tag.closes) inside.push_back(tag.name);
+            if (inside.size() > 100) failAt(path, "the elements are nested too deeply");
+            ended = image.appendedStart.has_value(); // no XML from here on
+        } else {
             if (inside.empty() || inside.back() != tag.name)
                 failAt(path, "this is not valid XML: </" + tag.name + "> ends what has not begun");
             inside.pop_back();
-            if (inside.empty()) break;
-            continue;
+            ended = inside.empty();
         }
-        const std::string parent = inside.empty() ? "" : inside.back();
-        if (inside.empty()) {
-            checkRoot(tag, "ImageData", path);
-            const std::string order = tag.get("byte_order"), header = tag.get("header_type"),
-                              compressor = tag.get("compressor");
-            if (!order.empty() && order != "LittleEndian" && order != "BigEndian")
-                failAt(path, "the byte order " + inQuotes(order) + " is not known");
-            if (!header.empty() && header != "UInt32" && header != "UInt64")
-                failAt(path, "the header type " + inQuotes(header) + " is not known");
-            if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-                failAt(path, "the compressor " + inQuotes(compressor) + " is not supported",
-                       "write it with ZLib compression, or none");
-            image.bigEndian = order == "BigEndian";
-            image.headerBytes = header == "UInt64" ? 8 : 4;
-            image.compressed = !compressor.empty();
-        } else if (tag.name == "ImageData" && parent == "VTKFile") {
-            hasImage = true;
-            image.wholeExtent = tag.get("WholeExtent");
-            image.spacing = tag.get("Spacing");
-            image.origin = tag.get("Origin");
-            image.direction = tag.get("Direction");
-        } else if (tag.name == "Piece" && parent == "ImageData") {
-            if (++pieces > 1) failAt(path, "the image is in several pieces", "write it in one piece");
-            pieceExtent = tag.get("Extent");
-        } else if (tag.name == "PointData" && parent == "Piece") {
-            image.activeScalars = tag.get("Scalars");
-        } else if (tag.name == "DataArray" && parent == "PointData") {
-            if (image.arrays.size() >= kMostArrays) failAt(path, "there are too many arrays");
-            image.arrays.push_back(arrayOf(tag, path));
-        } else if (tag.name == "DataArray" && parent == "CellData") {
-            ++image.cellArrays;
-        } else if (tag.name == "DataArray" && parent == "FieldData" && tag.get("Name") == "TimeValue") {
-            image.time = arrayOf(tag, path);
-        } else if (tag.name == "AppendedData" && parent == "VTKFile") {
-            const std::string encoding = lowerCase(tag.get("encoding"));
-            if (encoding != "raw" && encoding != "base64")
-                failAt(path, "the encoding " + inQuotes(encoding) + " of the appended data is not known");
-            image.appendedBase64 = encoding == "base64";
-            image.appendedStart = appendedStart(path, tag.end, job);
-            inside.clear();
-            break; // no XML from here on
-        }
-        if (!tag.closes) inside.push_back(tag.name);
-        if (inside.size() > 100) failAt(path, "the elements are nested too deeply");
     }
-    if (!inside.empty()) failAt(path, "the file ends within its element " + inQuotes(inside.back()), "copy it again");
-    if (!hasImage) failAt(path, "there is no ImageData in it");
-    if (!pieceExtent.empty() && splitWords(pieceExtent) != splitWords(image.wholeExtent))
+    if (!ended && !inside.empty())
+        failAt(path, "the file ends within its element " + inQuotes(inside.back()), "copy it again");
+    if (!image.wholeExtent) failAt(path, "there is no ImageData in it");
+    if (image.pieceExtent && !image.pieceExtent->empty() &&
+        splitWords(*image.pieceExtent) != splitWords(*image.wholeExtent))
         failAt(path, "its piece is not the whole image", "write the whole image in one piece");
     return image;
 }
@@ -205,9 +213,8 @@ void placeData(FileLayout& layout, const VtkImage& image, const VtkArray& array,
         layout.start = array.contentStart;
         if (!whole) return;
         const std::uint64_t file = readableFileBytes(path);
-        requireStored(path, Encoding::Text, values, 1, file - std::min(file, layout.start),
-                      "check the extent and the type of the array, or copy the file again");
-        requireNumbers(path, layout.start, values, job);
+        requireData(layout, file - std::min(file, layout.start), values,
+                    "check the extent and the type of the array, or copy the file again", job);
         return;
     }
     VtkData data{path, array.contentStart, true, image.compressed, image.bigEndian, image.headerBytes};
@@ -238,27 +245,26 @@ const VtkArray& chosenArray(const VtkImage& image, const std::string& name) {
     };
     if (!name.empty()) {
         if (const auto found = named(name); found != image.arrays.end()) return *found;
-        std::string list;
-        for (const VtkArray& array : image.arrays)
-            if (list.size() < 200) list += (list.empty() ? "" : ", ") + array.name;
-        throw UsageError("there is no array " + inQuotes(name), image.path, "it has " + list);
+        const auto shown = std::span(image.arrays).first(std::min<std::size_t>(image.arrays.size(), 20));
+        const auto quoted = [](const VtkArray& array) { return inQuotes(array.name); };
+        throw UsageError("there is no array " + inQuotes(name), image.path, "it has " + joined(shown, ", ", quoted));
     }
     const auto active = named(image.activeScalars);
     return image.activeScalars.empty() || active == image.arrays.end() ? image.arrays.front() : *active;
 }
 
-FileLayout layoutOf(const VtkImage& image, const std::string& name, bool whole, const JobControl& job) {
+FileLayout layoutOfArray(const VtkImage& image, const std::string& name, bool whole, const JobControl& job) {
     const std::string& path = image.path;
     const VtkArray& array = chosenArray(image, name);
     FileLayout layout;
     layout.array = array.name;
     if (array.components != 1) layout.axes.push_back({array.components, true});
     std::array<std::int64_t, 6> extent{};
-    const std::vector<std::string> words = splitWords(image.wholeExtent);
+    const std::vector<std::string> words = splitWords(*image.wholeExtent);
     for (std::size_t i = 0; i < extent.size(); ++i)
         if (words.size() != extent.size() || !parseNumber(words[i], extent[i]) ||
             std::abs(extent[i]) > (std::int64_t{1} << 31))
-            failAt(path, "the extent " + inQuotes(image.wholeExtent) + " is not six whole numbers");
+            failAt(path, "the extent " + inQuotes(*image.wholeExtent) + " is not six whole numbers");
     const auto spacing = numbersIn(image.spacing, "Spacing", {1, 1, 1}, path);
     const auto origin = numbersIn(image.origin, "Origin", {0, 0, 0}, path);
     const auto direction = numbersIn(image.direction, "Direction", {1, 0, 0, 0, 1, 0, 0, 0, 1}, path);
@@ -296,24 +302,14 @@ std::optional<double> timeOf(const VtkImage& image, const JobControl& job) {
     }
 }
 
-class VtiReader final : public VolumeReader {
-public:
-    const char* name() const override { return "VTK image data"; }
-    const std::vector<std::string>& suffixes() const override {
-        static const std::vector<std::string> kSuffixes{".vti"};
-        return kSuffixes;
-    }
-    FileContents describe(const VolumeSource& source, const JobControl& job) const override {
-        const VtkImage image = readHeader(source.path, job);
-        FileContents contents = contentsOf(layoutOf(image, source.array, false, job));
-        for (const VtkArray& array : image.arrays) contents.arrays.push_back(array.name);
-        if (const auto time = timeOf(image, job)) contents.times = {*time};
-        return contents;
-    }
-    Volume read(const VolumeSource& source, const JobControl& job) const override {
-        return readSamples(source, layoutOf(readHeader(source.path, job), source.array, true, job), job);
-    }
-};
+FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const JobControl& job) {
+    const VtkImage image = readHeader(source.path, job);
+    FileLayout layout = layoutOfArray(image, source.array, step.has_value(), job);
+    if (step) return layout;
+    for (const VtkArray& array : image.arrays) layout.arrays.push_back(array.name);
+    if (const auto time = timeOf(image, job)) layout.times = StepTimes{*time, 1, ""};
+    return layout;
+}
 
 /// A file of a collection.
 struct CollectionEntry {
@@ -337,7 +333,7 @@ std::vector<CollectionEntry> readCollection(const std::string& path, const JobCo
         if (file.empty()) failAt(path, "a data set of the collection names no file");
         if (file.size() > 1000) failAt(path, "the name of a file is too long");
         if (lowerCase(file).ends_with(".pvd")) failAt(path, "the collection names another collection");
-        CollectionEntry entry{fs::path(file).is_absolute() ? file : (fs::path(path).parent_path() / file).string(), {}};
+        CollectionEntry entry{(fs::path(path).parent_path() / file).string(), {}};
         const std::string text = trimmed(tag.get("timestep"));
         double time = 0;
         if (!text.empty() && (!parseNumber(text, time) || !std::isfinite(time)))
@@ -356,65 +352,56 @@ std::vector<CollectionEntry> readCollection(const std::string& path, const JobCo
     return entries;
 }
 
-class PvdReader final : public VolumeReader {
-public:
-    const char* name() const override { return "VTK collection"; }
-    const std::vector<std::string>& suffixes() const override {
-        static const std::vector<std::string> kSuffixes{".pvd"};
-        return kSuffixes;
-    }
-    std::vector<std::string> dataFiles(const std::string& path) const override {
-        std::vector<std::string> files;
-        for (const CollectionEntry& entry : readCollection(path, {})) files.push_back(entry.path);
-        return files;
-    }
-    FileContents describe(const VolumeSource& source, const JobControl& job) const override {
-        const std::vector<CollectionEntry> entries = readCollection(source.path, job);
-        FileContents contents;
-        for (const CollectionEntry& entry : entries) { // the first that can be read: one may be missing
-            VolumeSource file = source;
-            file.path = entry.path;
-            file.frames.reset();
-            try {
-                contents = pellucid::contentsOf(file, job);
-                break;
-            } catch (const FileError&) {
-                if (&entry == &entries.back()) throw;
-            }
-        }
-        contents.steps = static_cast<int>(entries.size());
-        contents.times.clear();
-        contents.timeUnit.clear();
-        for (const CollectionEntry& entry : entries)
-            if (entry.time) contents.times.push_back(*entry.time);
-        if (contents.times.size() != entries.size()) contents.times.clear();
-        contents.stepFiles.clear();
-        for (const CollectionEntry& entry : entries) contents.stepFiles.push_back(entry.path);
-        return contents;
-    }
-    Volume read(const VolumeSource& source, const JobControl& job) const override {
-        const std::vector<CollectionEntry> entries = readCollection(source.path, job);
-        if (source.step < 0 || static_cast<std::size_t>(source.step) >= entries.size())
-            throw UsageError("there is no time step " + std::to_string(source.step), source.path,
-                             "give 0 to " + std::to_string(entries.size() - 1));
+std::vector<std::string> filesOfCollection(const std::string& path) {
+    std::vector<std::string> files;
+    for (const CollectionEntry& entry : readCollection(path, {})) files.push_back(entry.path);
+    return files;
+}
+
+FileContents describeCollection(const VolumeSource& source, const JobControl& job) {
+    const std::vector<CollectionEntry> entries = readCollection(source.path, job);
+    FileContents contents;
+    for (const CollectionEntry& entry : entries) { // the first that can be read: one may be missing
         VolumeSource file = source;
-        file.path = entries[static_cast<std::size_t>(source.step)].path;
-        file.step = 0;
-        file.range.reset();
-        return loadVolume(file, job);
+        file.path = entry.path;
+        file.frames.reset();
+        try {
+            contents = contentsOf(file, job);
+            break;
+        } catch (const FileError&) {
+            if (&entry == &entries.back()) throw;
+        }
     }
-};
+    contents.steps = static_cast<int>(entries.size());
+    contents.times.clear();
+    contents.timeUnit.clear();
+    contents.stepFiles.clear();
+    for (const CollectionEntry& entry : entries) {
+        contents.stepFiles.push_back(entry.path);
+        if (entry.time) contents.times.push_back(*entry.time);
+    }
+    if (contents.times.size() != entries.size()) contents.times.clear();
+    return contents;
+}
+
+Volume readFromCollection(const VolumeSource& source, const JobControl& job) {
+    const std::vector<CollectionEntry> entries = readCollection(source.path, job);
+    if (source.step < 0 || static_cast<std::size_t>(source.step) >= entries.size())
+        throw UsageError("there is no time step " + std::to_string(source.step), source.path,
+                         "give 0 to " + std::to_string(entries.size() - 1));
+    VolumeSource file = source;
+    file.path = entries[static_cast<std::size_t>(source.step)].path;
+    file.step = 0;
+    file.range.reset();
+    return loadVolume(file, job);
+}
 
 } // namespace
 
-const VolumeReader& vtiReader() {
-    static const VtiReader reader;
-    return reader;
-}
+VolumeFormat vtiFormat() { return {"VTK image data", {".vti"}, describeLayout<layoutOf>, readLayout<layoutOf>}; }
 
-const VolumeReader& pvdReader() {
-    static const PvdReader reader;
-    return reader;
+VolumeFormat pvdFormat() {
+    return {"VTK collection", {".pvd"}, describeCollection, readFromCollection, filesOfCollection};
 }
 
 } // namespace pellucid

@@ -67,7 +67,7 @@ Grid<float> cubicZoom(const Grid<float>& coarse, const Int3& dims, bool periodic
         }
     });
     Grid<float> fine(dims);
-    const std::size_t plane = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
+    const std::size_t plane = layerSize(dims);
     parallelFor(static_cast<std::size_t>(dims.z), [&](std::size_t k) {
         job.throwIfStopped();
         const Tap& t = tz[k];

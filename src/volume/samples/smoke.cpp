@@ -37,11 +37,7 @@ public:
 private:
     using Cell = std::array<int, 3>;
 
-    static std::size_t indexOf(int i, int j, int k) {
-        return static_cast<std::size_t>(i) +
-               static_cast<std::size_t>(kCells.x) *
-                   (static_cast<std::size_t>(j) + static_cast<std::size_t>(kCells.y) * static_cast<std::size_t>(k));
-    }
+    static std::size_t indexOf(int i, int j, int k) { return voxelIndex(kCells, i, j, k); }
 
     /// Calls body(i, j, k, index) for every cell; slices on any thread, so that it writes to its own cell alone.
     template <class Body>

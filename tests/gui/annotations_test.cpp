@@ -1,4 +1,4 @@
-// The frame of reference in the window: switches, undo, saved pictures, views that speak anatomy.
+// Annotations in the window: switches, undo, saved pictures, views that speak anatomy.
 #include "gui_support.h"
 
 #include <QAction>
@@ -40,10 +40,10 @@ QString writePatient(const QTemporaryDir& folder) {
 
 } // namespace
 
-TEST_CASE("the parts of the frame of reference can be switched, and undone", "[frame]") {
+TEST_CASE("the annotations can be switched, and undone", "[frame]") {
     OpenWindow w(24, ViewRenderer::Cpu);
     SessionStore& store = w.services().store();
-    CHECK(*store.session().reference == FrameOfReference{}); // cube, letters, scale
+    CHECK(*store.session().reference == AnnotationChoice{}); // cube, letters, scale
     const QImage shown = w.picture();
     w.child<QAction>("frameAction").trigger();
     CHECK_FALSE(store.session().reference->on);
@@ -56,11 +56,11 @@ TEST_CASE("the parts of the frame of reference can be switched, and undone", "[f
     store.undo();
     CHECK(w.picture() == shown);
 
-    for (const FramePartInfo& part : kFrameParts) {
+    for (const AnnotationPartInfo& part : kAnnotationParts) {
         const QString id = QStringLiteral("frame%1%2Action").arg(QChar(part.name[0]).toUpper()).arg(part.name + 1);
         INFO(id.toStdString());
         auto& action = w.child<QAction>(id.toLatin1().constData());
-        const FrameOfReference before = *store.session().reference;
+        const AnnotationChoice before = *store.session().reference;
         CHECK(action.isChecked() == before.*part.shown);
         action.trigger();
         CHECK((*store.session().reference).*part.shown != before.*part.shown);
@@ -82,7 +82,7 @@ TEST_CASE("the parts of the frame of reference can be switched, and undone", "[f
     CHECK(store.session().reference->title);
 }
 
-TEST_CASE("no figure and no picture is computed anew for the frame of reference", "[frame]") {
+TEST_CASE("no figure and no picture is computed anew for annotations", "[frame]") {
     OpenWindow w(24, ViewRenderer::Cpu);
     w.child<QAction>("frameLegendAction").trigger();
     CHECK(w.document().measuresAreCurrent());
@@ -115,7 +115,7 @@ TEST_CASE("a saved picture has the marks where it is asked for them", "[frame]")
     CHECK(save("off.png", true).rgba == plain.rgba);
 }
 
-TEST_CASE("the dialog offers the frame of reference where there is one", "[frame]") {
+TEST_CASE("the dialog offers annotations where there are any", "[frame]") {
     for (const bool shown : {true, false}) {
         SaveImageDialog dialog("a.png", {400, 300}, shown);
         CHECK(dialog.options().reference == shown);
