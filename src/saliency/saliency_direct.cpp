@@ -45,11 +45,7 @@ void sweepTile(const BallPair& balls, const std::array<std::vector<std::vector<f
             const int blocks = (width + kBlockVoxels - 1) / kBlockVoxels;
             ballSumsKernel().packRowDirect(first, counts, scaler.at(y, z), 2 * kHaloVoxels,
                                            2 * (kHaloVoxels + blocks * kBlockVoxels), packed.get());
-            const std::size_t voxel =
-                static_cast<std::size_t>(tile.x0) +
-                static_cast<std::size_t>(dims.x) *
-                    (static_cast<std::size_t>(y) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(z));
-            fields.store(voxel, packed.get() + kHaloVoxels, static_cast<std::size_t>(width));
+            fields.store(voxelIndex(dims, tile.x0, y, z), packed.get() + kHaloVoxels, static_cast<std::size_t>(width));
         }
     }
 }

@@ -78,10 +78,7 @@ private:
     }
 
     void makeRow(int y, int z) {
-        const std::size_t first =
-            static_cast<std::size_t>(m_tile.x0) +
-            static_cast<std::size_t>(m_dims.x) *
-                (static_cast<std::size_t>(y) + static_cast<std::size_t>(m_dims.y) * static_cast<std::size_t>(z));
+        const std::size_t first = voxelIndex(m_dims, m_tile.x0, y, z);
         if (m_constantWeight > 0) fillRow(y, z, first);
         if (m_constantWeight == 0 && m_used) m_fields.clear(first, static_cast<std::size_t>(m_tile.x1 - m_tile.x0));
         const std::uint64_t blocks = busy(y);

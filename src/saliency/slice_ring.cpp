@@ -94,15 +94,13 @@ SliceRing::Agreement SliceRing::agreementOf(const Pair* row, const Pair* above, 
 }
 
 void SliceRing::load(int z) {
-    const std::size_t nx = static_cast<std::size_t>(m_dims.x), ny = static_cast<std::size_t>(m_dims.y);
     const int count = m_voxels.end - m_voxels.first;
-    const auto x = static_cast<std::size_t>(m_tile.x0 + m_voxels.first - kHaloVoxels);
+    const int x = m_tile.x0 + m_voxels.first - kHaloVoxels;
     if (m_firstSlice < 0) m_firstSlice = z;
     for (int y = m_firstRow; y < m_endRow; ++y) {
         Pair* row = m_pairs.get() + rowIndex(y, z) * m_rowVoxels;
         std::fill_n(row, m_voxels.first, 0);
-        m_reader.readRow(x + nx * (static_cast<std::size_t>(y) + ny * static_cast<std::size_t>(z)), count,
-                         row + m_voxels.first);
+        m_reader.readRow(voxelIndex(m_dims, x, y, z), count, row + m_voxels.first);
         std::fill(row + m_voxels.end, row + m_rowVoxels, 0);
         m_agreements[rowIndex(y, z)] =
             agreementOf(row, y > m_firstRow ? pairs(y - 1, z) : nullptr, z > m_firstSlice ? pairs(y, z - 1) : nullptr);

@@ -26,13 +26,11 @@ std::vector<int> rangeOfVoxels(const VoxelSurvey& survey, const ValueRange& wind
 /// Distance in d0 along the axes to the nearest cell of no range or to the outside, in two passes.
 std::vector<float> depthOfCells(const VoxelSurvey& survey, const std::vector<int>& of) {
     const Int3 d = survey.dims;
-    const std::size_t strides[3] = {1, static_cast<std::size_t>(d.x),
-                                    static_cast<std::size_t>(d.x) * static_cast<std::size_t>(d.y)};
+    const std::size_t strides[3] = {1, static_cast<std::size_t>(d.x), layerSize(d)};
     std::vector<float> depth(of.size());
     for (std::size_t i = 0; i < of.size(); ++i) depth[i] = of[i] >= 0 ? kUnknown : 0;
     const auto relax = [&](const Int3& c, int towards) {
-        const std::size_t i = static_cast<std::size_t>(c.x) + strides[1] * static_cast<std::size_t>(c.y) +
-                              strides[2] * static_cast<std::size_t>(c.z);
+        const std::size_t i = voxelIndex(d, c.x, c.y, c.z);
         if (of[i] < 0) return;
         for (int a = 0; a < 3; ++a) {
             if (d[a] == 1) continue; // no way out along this axis
@@ -66,8 +64,7 @@ std::vector<FeatureExtent> extentsOf(const VoxelSurvey& survey, const ValueRange
         depths[static_cast<std::size_t>(of[i])] += depth[i] < kUnknown ? depth[i] : 0;
     }
     const Int3 d = survey.dims;
-    const std::size_t strides[3] = {1, static_cast<std::size_t>(d.x),
-                                    static_cast<std::size_t>(d.x) * static_cast<std::size_t>(d.y)};
+    const std::size_t strides[3] = {1, static_cast<std::size_t>(d.x), layerSize(d)};
     std::vector<double> met(count);
     for (int a = 0; a < 3; ++a) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;

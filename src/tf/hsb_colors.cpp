@@ -102,7 +102,7 @@ TransferFunction opacityRamp(double top) {
 
 double rampOpacity(const Volume& volume) {
     std::vector<double> sums(static_cast<std::size_t>(volume.dims().z), 0.0);
-    const std::size_t plane = static_cast<std::size_t>(volume.dims().x) * static_cast<std::size_t>(volume.dims().y);
+    const std::size_t plane = layerSize(volume.dims());
     parallelFor(sums.size(), [&](std::size_t k) {
         for (std::size_t i = k * plane; i < (k + 1) * plane; ++i)
             if (const double s = volume.intensity(i); s > 0) sums[k] += s; // NaN is not
