@@ -92,7 +92,7 @@ double rowHeight(const MarkMaker& make) { return 1.9 * make.capHeight; }
 
 /// A dot, as a line too short to be seen: painters give it round ends.
 Mark dot(const MarkMaker& make, const Vec2& at, double diameter, const Rgb& color) {
-    Mark mark = make.lineMark(FramePart::Legend, {at, at + Vec2(0.01, 0)}, diameter);
+    Mark mark = make.lineMark(AnnotationPart::Legend, {at, at + Vec2(0.01, 0)}, diameter);
     mark.color = color;
     return mark;
 }
@@ -104,14 +104,14 @@ Mark ring(const MarkMaker& make, const Vec2& at, double diameter, double width, 
         const double angle = 2 * std::numbers::pi * i / kSides;
         points.push_back(at + Vec2(std::cos(angle), std::sin(angle)) * (diameter / 2));
     }
-    Mark mark = make.lineMark(FramePart::Legend, std::move(points), width);
+    Mark mark = make.lineMark(AnnotationPart::Legend, std::move(points), width);
     mark.color = color;
     return mark;
 }
 
 Mark square(const MarkMaker& make, const Vec2& at) {
     const double r = 0.6 * make.capHeight;
-    return make.lineMark(FramePart::Legend,
+    return make.lineMark(AnnotationPart::Legend,
                          {at + Vec2(-r, -r), at + Vec2(r, -r), at + Vec2(r, r), at + Vec2(-r, r), at + Vec2(-r, -r)},
                          0.22 * make.capHeight);
 }
@@ -119,7 +119,7 @@ Mark square(const MarkMaker& make, const Vec2& at) {
 void addCross(std::vector<Mark>& marks, const MarkMaker& make, const Vec2& at) {
     const double reach = 0.6 * make.capHeight;
     for (const Vec2& way : {Vec2(reach, reach), Vec2(reach, -reach)})
-        marks.push_back(make.lineMark(FramePart::Legend, {at - way, at + way}, 0.26 * make.capHeight));
+        marks.push_back(make.lineMark(AnnotationPart::Legend, {at - way, at + way}, 0.26 * make.capHeight));
 }
 
 void addRows(std::vector<Mark>& marks, const ParameterSpace& space, const SpaceView& view) {
@@ -131,7 +131,7 @@ void addRows(std::vector<Mark>& marks, const ParameterSpace& space, const SpaceV
         const Vec2 from{make.margin, y}, to{make.margin + sign, y};
         switch (row.sign) {
         case Row::Sign::Path: {
-            Mark line = make.lineMark(FramePart::Legend, {from, to}, 0.3 * cap);
+            Mark line = make.lineMark(AnnotationPart::Legend, {from, to}, 0.3 * cap);
             line.color = row.color;
             marks.push_back(line);
             break;
@@ -143,13 +143,13 @@ void addRows(std::vector<Mark>& marks, const ParameterSpace& space, const SpaceV
             marks.push_back(square(make, (from + to) * 0.5));
             break;
         case Row::Sign::Contour:
-            marks.push_back(make.lineMark(FramePart::Legend, {from, to}, 0.2 * cap));
+            marks.push_back(make.lineMark(AnnotationPart::Legend, {from, to}, 0.2 * cap));
             break;
         case Row::Sign::None:
             break;
         }
         const std::string text = shortenedText(row.text, (view.width - make.margin - x) / cap);
-        marks.push_back(make.textMark(FramePart::Legend, text, {x, y}, Align::Start, Align::Middle, cap));
+        marks.push_back(make.textMark(AnnotationPart::Legend, text, {x, y}, Align::Start, Align::Middle, cap));
         y += rowHeight(make);
     }
 }
@@ -179,7 +179,7 @@ void addPaths(std::vector<Mark>& marks, const ParameterSpace& space, const Space
             }
             const double near = nearness(position), unit = near * make.capHeight;
             if (before && glm::length(*at - *before) > 1e-6) {
-                Mark line = make.lineMark(FramePart::Legend, {*before, *at}, 0.3 * unit);
+                Mark line = make.lineMark(AnnotationPart::Legend, {*before, *at}, 0.3 * unit);
                 line.color = path.color;
                 lines.push_back({near, line});
             }
@@ -275,21 +275,21 @@ void addMapAxes(std::vector<Mark>& marks, const ParameterSpace& space, const Spa
     const double side = map.right - map.left;
     const auto frame = [&](const PixelBox& b) {
         Mark mark = make.lineMark(
-            FramePart::Axes,
+            AnnotationPart::Axes,
             {{b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}, {b.left, b.top}}, line);
         mark.halo = 0;
         marks.push_back(mark);
     };
     const auto text = [&](const std::string& words, const Vec2& at, Align horizontal, Align vertical) {
-        marks.push_back(make.textMark(FramePart::Axes, words, at, horizontal, vertical, cap));
+        marks.push_back(make.textMark(AnnotationPart::Axes, words, at, horizontal, vertical, cap));
     };
     frame(map);
     frame(bar);
     const auto ticks = space.axes.ticks(5);
     for (const auto& [position, words] : ticks) {
         const double x = map.left + position * side, y = map.bottom - position * side;
-        marks.push_back(make.lineMark(FramePart::Axes, {{x, map.bottom}, {x, map.bottom + tick}}, line));
-        marks.push_back(make.lineMark(FramePart::Axes, {{map.left - tick, y}, {map.left, y}}, line));
+        marks.push_back(make.lineMark(AnnotationPart::Axes, {{x, map.bottom}, {x, map.bottom + tick}}, line));
+        marks.push_back(make.lineMark(AnnotationPart::Axes, {{map.left - tick, y}, {map.left, y}}, line));
         text(words, {x, map.bottom + 2 * tick}, Align::Middle, Align::Start);
         text(words, {map.left - 2 * tick, y}, Align::End, Align::Middle);
     }
@@ -297,7 +297,7 @@ void addMapAxes(std::vector<Mark>& marks, const ParameterSpace& space, const Spa
         return shortenedText("opacity of " + view.names.at(space.axes.features[axis]), side / cap);
     };
     text(caption(0), {(map.left + map.right) / 2, map.bottom + 2 * tick + 1.8 * cap}, Align::Middle, Align::Start);
-    Mark upright = make.textMark(FramePart::Axes, caption(1), {0, 0}, Align::Start, Align::Start, cap);
+    Mark upright = make.textMark(AnnotationPart::Axes, caption(1), {0, 0}, Align::Start, Align::Start, cap);
     upright.across = {0, -cap};
     upright.up = {-cap, 0};
     upright.points = {{map.left - 2 * tick - cap * (widestTick(ticks) + 0.7),
@@ -307,7 +307,7 @@ void addMapAxes(std::vector<Mark>& marks, const ParameterSpace& space, const Spa
     const ValueRange range = shownRange(space, view.shown);
     for (const double value : axisTicks(range.lo, range.hi, 5)) {
         const double y = map.bottom - (value - range.lo) / (range.hi - range.lo) * side;
-        marks.push_back(make.lineMark(FramePart::Axes, {{bar.right, y}, {bar.right + tick, y}}, line));
+        marks.push_back(make.lineMark(AnnotationPart::Axes, {{bar.right, y}, {bar.right + tick, y}}, line));
         text(numberText(value, range.hi - range.lo), {bar.right + 2 * tick, y}, Align::Start, Align::Middle);
     }
 }
@@ -317,7 +317,7 @@ void addContour(std::vector<Mark>& marks, const ParameterSpace& space, const Spa
     const auto lines = contour(space, view.tolerance);
     for (const bool rim : {true, false})
         for (const auto& [a, b] : lines) {
-            Mark mark = make.lineMark(FramePart::Axes, {*pixelOf(space, view, a), *pixelOf(space, view, b)},
+            Mark mark = make.lineMark(AnnotationPart::Axes, {*pixelOf(space, view, a), *pixelOf(space, view, b)},
                                       (rim ? 0.5 : 0.2) * make.capHeight);
             if (rim) mark.color = mark.haloColor;
             mark.halo = 0;
@@ -508,7 +508,7 @@ std::vector<Mark> spaceMarks(const ParameterSpace& space, const SpaceView& view)
         addMapAxes(marks, space, view);
         if (hasContour(space, view)) addContour(marks, space, view);
     } else {
-        FrameOfReference show = FrameOfReference::none();
+        AnnotationChoice show = AnnotationChoice::none();
         show.axes = show.legend = true;
         marks = annotationMarks({show, view.camera, space.geometry(), spaceTf(space, view),
                                  shownRange(space, view.shown), "", spaceRenderSettings(space, view), view.density},

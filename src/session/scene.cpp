@@ -218,7 +218,7 @@ Camera cameraOf(const SceneInputs& inputs, const Geometry& geometry) {
     Camera camera;
     std::string where = "the camera of the session";
     std::optional<ViewAngles> view = inputs.view;
-    if (inputs.namedView) view = anglesOf(*inputs.namedView, geometry.frame);
+    if (inputs.namedView) view = anglesOf(*inputs.namedView, geometry.worldAxes);
     if (inputs.camera && !inputs.namedView) {
         camera = *inputs.camera;
         where = inputs.cameraName;
@@ -437,7 +437,7 @@ PictureInput fieldPictureInput(const Scene& scene, const Field& field, int width
 }
 
 AnnotationInput fieldAnnotationInput(const PictureInput& picture, const Scene& scene, const Field& field,
-                                     FrameOfReference show, double density) {
+                                     AnnotationChoice show, double density) {
     show.legend = show.title = true;
     AnnotationInput input = annotationInput(picture, show, density);
     const FieldView& view = *scene.session.field;
@@ -455,7 +455,7 @@ PictureInput plainPictureInput(const Scene& scene, int width, int height) {
     return input;
 }
 
-AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density) {
+AnnotationInput annotationInput(const PictureInput& picture, const AnnotationChoice& show, double density) {
     const Volume& volume = *picture.volume;
     TransferFunction tf = picture.tf;
     if (picture.settings.colors) { // the legend tells opacities alone: a value has no colour

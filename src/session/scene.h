@@ -165,9 +165,9 @@ PictureInput plainPictureInput(const Scene& scene, int width, int height);
 
 /// Everything that what stands around a picture depends on; the picture has a volume. `density`: pixels of the picture
 /// in which lengths of the screen are one.
-AnnotationInput annotationInput(const PictureInput& picture, const FrameOfReference& show, double density = 1);
+AnnotationInput annotationInput(const PictureInput& picture, const AnnotationChoice& show, double density = 1);
 /// Of a picture of a field: its name and a legend of its colours too, unless `show` switches everything off.
 AnnotationInput fieldAnnotationInput(const PictureInput& picture, const Scene& scene, const Field& field,
-                                     FrameOfReference show, double density = 1);
+                                     AnnotationChoice show, double density = 1);
 
 } // namespace pellucid

@@ -274,7 +274,7 @@ struct Session {
     std::optional<Camera> camera;  ///< empty: the home view of the volume
     Part<Clipping> clipping;       ///< what is cut away, of pictures and of figures
     Part<DisplaySettings> display;
-    Part<FrameOfReference> reference; ///< what stands around the picture
+    Part<AnnotationChoice> reference; ///< what stands around the picture
     Part<MeasureSettings> measure;
     Part<OptimizeOptions> optimize;
     Part<RefineSettings> refine;

@@ -502,17 +502,17 @@ DisplaySettings toDisplay(const JsonValue& j) {
     return d;
 }
 
-json fromReference(const FrameOfReference& r) {
+json fromReference(const AnnotationChoice& r) {
     json j{{"on", r.on}};
-    for (const FramePartInfo& part : kFrameParts) j[part.name] = r.*part.shown;
+    for (const AnnotationPartInfo& part : kAnnotationParts) j[part.name] = r.*part.shown;
     return j;
 }
 
-FrameOfReference toReference(const JsonValue& j) {
+AnnotationChoice toReference(const JsonValue& j) {
     j.requireObject();
-    FrameOfReference r;
+    AnnotationChoice r;
     if (j.has("on")) r.on = j["on"].boolean();
-    for (const FramePartInfo& part : kFrameParts)
+    for (const AnnotationPartInfo& part : kAnnotationParts)
         if (j.has(part.name)) r.*part.shown = j[part.name].boolean();
     return r;
 }
