@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <set>
@@ -11,37 +12,30 @@
 #include <glm/matrix.hpp>
 
 #include "base/check.h"
+#include "base/enum_names.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
+template <>
+inline constexpr auto kNamesOf<Derivation::Kind> = enumNames("derivation", "gradient", "volatility", "difference");
+
 std::string Derivation::text() const {
-    switch (kind) {
-    case Kind::Gradient:
-        return "gradient:" + of;
-    case Kind::Volatility:
-        return "volatility:" + of + ":" + std::to_string(frames);
-    case Kind::Difference:
-        return "difference:" + of + ":" + std::to_string(reference);
-    }
-    return of;
+    const std::string named = std::string(name(kind)) + ":" + of;
+    if (kind == Kind::Gradient) return named;
+    return named + ":" + std::to_string(kind == Kind::Volatility ? frames : reference);
 }
 
 std::optional<Derivation> parseDerivation(const std::string& text) {
     const std::size_t colon = text.find(':');
     if (colon == std::string::npos) return {};
-    const std::string kind = text.substr(0, colon);
+    const auto kind = findNamed<Derivation::Kind>(text.substr(0, colon));
+    if (!kind) return {};
     Derivation d;
-    if (kind == "gradient")
-        d.kind = Derivation::Kind::Gradient;
-    else if (kind == "volatility")
-        d.kind = Derivation::Kind::Volatility;
-    else if (kind == "difference")
-        d.kind = Derivation::Kind::Difference;
-    else
-        return {};
+    d.kind = *kind;
     const auto fail = [&](const std::string& what) {
         return UsageError(what, "variable " + text,
                           "give gradient:NAME, volatility:NAME:FRAMES or difference:NAME:FRAME");
@@ -82,21 +76,15 @@ constexpr float kInvalid = std::numeric_limits<float>::quiet_NaN();
 template <class ValueOf>
 std::vector<float> mapped(const Volume& volume, const JobControl& job, const ValueOf& valueOf) {
     std::vector<float> out(volume.size());
-    const std::size_t plane = layerSize(volume.dims());
     const bool allValid = volume.invalidCount() == 0;
-    std::visit(
-        [&](const auto& values) {
-            parallelFor(static_cast<std::size_t>(volume.dims().z), [&](std::size_t k) {
-                job.throwIfStopped();
-                for (std::size_t i = k * plane; i < (k + 1) * plane; ++i)
-                    out[i] = allValid || volume.isValid(i) ? static_cast<float>(valueOf(values, i)) : kInvalid;
-            });
-        },
-        volume.samples());
+    forEachVoxel(volume, job, [&](const auto& values, std::size_t i) {
+        out[i] = allValid || volume.isValid(i) ? static_cast<float>(valueOf(values, i)) : kInvalid;
+    });
     return out;
 }
 
-Volume named(Volume volume, const std::string& title) {
+Volume derivedVolume(const Geometry& geometry, std::vector<float> values, const std::string& title) {
+    Volume volume(geometry, SampleArray<float>(std::move(values)));
     volume.title = title;
     volume.format = "derived";
     return volume;
@@ -104,14 +92,14 @@ Volume named(Volume volume, const std::string& title) {
 
 // ---- gradient magnitude
 
-Volume gradientOf(const Volume& volume, const ValueRange& range, const JobControl& job) {
+std::vector<float> gradientOf(const Volume& volume, const ValueRange& range, const JobControl& job) {
     const Geometry& g = volume.geometry();
     const Int3 n = g.dims;
     const Mat3 toWorld = glm::transpose(g.indexFromWorld()); // ∂/∂world of ∂/∂index
     const double scale = Normaliser(range).scale() * g.d0();
     const std::array<std::size_t, 3> step{1, static_cast<std::size_t>(n.x), layerSize(n)};
     const bool allValid = volume.invalidCount() == 0;
-    std::vector<float> out = mapped(volume, job, [&](const auto& values, std::size_t i) {
+    return mapped(volume, job, [&](const auto& values, std::size_t i) {
         const std::array<std::size_t, 3> at{i % step[1], i / step[1] % static_cast<std::size_t>(n.y), i / step[2]};
         Vec3 slope(0);
         for (int a = 0; a < 3; ++a) {
@@ -129,7 +117,15 @@ Volume gradientOf(const Volume& volume, const ValueRange& range, const JobContro
         }
         return glm::length(toWorld * slope) * scale;
     });
-    return Volume(g, SampleArray<float>(std::move(out)));
+}
+
+// ---- difference
+
+std::vector<float> differenceOf(const Volume& from, const Volume& to, const JobControl& job) {
+    return mapped(to, job, [&](const auto& values, std::size_t i) {
+        const double difference = static_cast<double>(values[i]) - from.value(i);
+        return from.isValid(i) ? difference : static_cast<double>(kInvalid);
+    });
 }
 
 // ---- volatility
@@ -141,26 +137,26 @@ public:
     VolatilitySums(std::shared_ptr<TimeSeries> base, int frames)
         : m_base(std::move(base)), m_frames(frames), m_units(frames <= 128 ? 1 << 24 : 1 << 20) {}
 
-    Volume at(int frame, const JobControl& job) {
+    /// `present`: the frame itself.
+    std::vector<float> at(const Volume& present, int frame, const JobControl& job) {
         const std::lock_guard lock(m_mutex);
-        const std::shared_ptr<const Volume> present = m_base->load(frame, job); // that one has to be there
         const ValueRange range = m_base->range(job);
-        if (!(range == m_range) || m_sums.size() != present->size()) reset(range, present->size());
+        if (!(range == m_range) || m_sums.size() != present.size()) reset(range, present.size());
         const int first = std::max(0, frame - m_frames + 1);
         int kept = 0;
         for (const int f : m_in) kept += f >= first && f <= frame ? 1 : 0;
         const int leaving = static_cast<int>(m_in.size()) - kept, wanted = frame - first + 1;
-        if (leaving + wanted - kept >= wanted) reset(range, present->size());
+        if (leaving + wanted - kept >= wanted) reset(range, present.size());
         try {
             for (const int f : std::set<int>(m_in))
                 if (f < first || f > frame) change(f, -1, job);
             for (int f = first; f <= frame; ++f)
                 if (!m_in.contains(f)) change(f, +1, job);
         } catch (const Cancelled&) {
-            reset(range, present->size()); // half of a frame may be in
+            reset(range, present.size()); // half of a frame may be in
             throw;
         }
-        return Volume(present->geometry(), SampleArray<float>(deviations(present->dims())));
+        return deviations(present.dims());
     }
 
 private:
@@ -186,23 +182,21 @@ private:
         const bool allValid = volume->invalidCount() == 0;
         if (!allValid && m_invalid.empty()) m_invalid.assign(volume->size(), 0);
         constexpr std::size_t kPiece = 1 << 16;
-        std::visit(
-            [&](const auto& values) {
-                parallelFor((values.size() + kPiece - 1) / kPiece, [&](std::size_t piece) {
-                    const std::size_t end = std::min(values.size(), (piece + 1) * kPiece);
-                    for (std::size_t i = piece * kPiece; i < end; ++i) {
-                        if (!allValid && !volume->isValid(i)) {
-                            m_invalid[i] = static_cast<std::uint16_t>(m_invalid[i] + sign);
-                            continue;
-                        }
-                        const auto q =
-                            static_cast<std::int64_t>(normalised(static_cast<double>(values[i])) * m_units + 0.5);
-                        m_sums[i].sum += sign * q;
-                        m_sums[i].squares += sign * q * q;
+        withSamples(*volume, [&](const auto& values) {
+            parallelFor((values.size() + kPiece - 1) / kPiece, [&](std::size_t piece) {
+                const std::size_t end = std::min(values.size(), (piece + 1) * kPiece);
+                for (std::size_t i = piece * kPiece; i < end; ++i) {
+                    if (!allValid && !volume->isValid(i)) {
+                        m_invalid[i] = static_cast<std::uint16_t>(m_invalid[i] + sign);
+                        continue;
                     }
-                });
-            },
-            volume->samples());
+                    const auto q =
+                        static_cast<std::int64_t>(normalised(static_cast<double>(values[i])) * m_units + 0.5);
+                    m_sums[i].sum += sign * q;
+                    m_sums[i].squares += sign * q * q;
+                }
+            });
+        });
         if (sign > 0)
             m_in.insert(frame);
         else
@@ -248,46 +242,41 @@ std::shared_ptr<TimeSeries> derive(std::shared_ptr<TimeSeries> base, const Deriv
     listing.title = title;
     listing.declaredRange.reset();
     listing.notices.clear();
+    std::function<std::vector<float>(const Volume& present, int frame, const JobControl&)> valuesOf;
     switch (derivation.kind) {
     case Derivation::Kind::Gradient:
-        return std::make_shared<TimeSeries>(std::move(listing), [base, title](int frame, const JobControl& loading) {
-            return named(gradientOf(*base->load(frame, loading), base->range(loading), loading), title);
-        });
-    case Derivation::Kind::Volatility: {
+        valuesOf = [base](const Volume& present, int, const JobControl& loading) {
+            return gradientOf(present, base->range(loading), loading);
+        };
+        break;
+    case Derivation::Kind::Volatility:
         if (derivation.frames < 1 || derivation.frames > kMostFrames)
             throw UsageError("volatility of " + std::to_string(derivation.frames) + " frames", "variable " + title,
                              "give 1 to " + std::to_string(kMostFrames) + " frames");
         listing.declaredRange = ValueRange{0, 0.5}; // no values of [0,1] deviate more
-        auto sums = std::make_shared<VolatilitySums>(base, derivation.frames);
-        return std::make_shared<TimeSeries>(std::move(listing), [sums, title](int frame, const JobControl& loading) {
-            return named(sums->at(frame, loading), title);
-        });
-    }
-    case Derivation::Kind::Difference: {
-        const int reference = derivation.reference;
-        if (reference >= base->size())
-            throw UsageError("the series has no frame " + std::to_string(reference), "variable " + title,
+        valuesOf = [sums = std::make_shared<VolatilitySums>(base, derivation.frames)](const Volume& present, int frame,
+                                                                                      const JobControl& loading) {
+            return sums->at(present, frame, loading);
+        };
+        break;
+    case Derivation::Kind::Difference:
+        if (derivation.reference >= base->size())
+            throw UsageError("the series has no frame " + std::to_string(derivation.reference), "variable " + title,
                              "give 0 to " + std::to_string(base->size() - 1));
         if (base->varies()) { // zero in the middle
             const ValueRange range = base->range({job.stop, {}});
             listing.declaredRange = ValueRange{range.lo - range.hi, range.hi - range.lo};
         }
-        return std::make_shared<TimeSeries>(std::move(listing), [base, title, reference](int frame,
-                                                                                         const JobControl& loading) {
-            const auto from = base->load(reference, loading);
-            const auto to = base->load(frame, loading);
-            return named(Volume(to->geometry(),
-                                SampleArray<float>(mapped(*to, loading,
-                                                          [&](const auto& values, std::size_t i) {
-                                                              return from->isValid(i) ? static_cast<double>(values[i]) -
-                                                                                            from->value(i)
-                                                                                      : static_cast<double>(kInvalid);
-                                                          }))),
-                         title);
+        valuesOf = [base, reference = derivation.reference](const Volume& present, int, const JobControl& loading) {
+            return differenceOf(*base->load(reference, loading), present, loading);
+        };
+        break;
+    }
+    return std::make_shared<TimeSeries>(
+        std::move(listing), [base, title, valuesOf](int frame, const JobControl& loading) {
+            const std::shared_ptr<const Volume> present = base->load(frame, loading);
+            return derivedVolume(present->geometry(), valuesOf(*present, frame, loading), title);
         });
-    }
-    }
-    PELLUCID_CHECK(false);
 }
 
 // ---- grids
@@ -307,38 +296,30 @@ Volume resampledTo(const Volume& volume, const Geometry& grid, const JobControl&
     const Vec3 lo = from.voxelBoxMin(), hi = from.voxelBoxMax();
     std::vector<float> out(voxelCount(grid.dims), kInvalid);
     const bool allValid = volume.invalidCount() == 0;
-    std::visit(
-        [&](const auto& values) {
-            parallelFor(static_cast<std::size_t>(grid.dims.z), [&](std::size_t k) {
-                job.throwIfStopped();
-                std::size_t index = k * layerSize(grid.dims);
-                for (int j = 0; j < grid.dims.y; ++j)
-                    for (int i = 0; i < grid.dims.x; ++i, ++index) {
-                        const Vec3 at = from.voxelFromWorld(grid.worldFromVoxel({i, j, static_cast<int>(k)}));
-                        if (at.x < lo.x || at.y < lo.y || at.z < lo.z || at.x > hi.x || at.y > hi.y || at.z > hi.z)
-                            continue;
-                        double sum = 0, weight = 0;
-                        for (unsigned corner = 0; corner < 8; ++corner) {
-                            double w = 1;
-                            std::size_t voxel = 0, stride = 1;
-                            for (int a = 0; a < 3; ++a) {
-                                const double p = std::clamp(at[a], 0.0, n[a] - 1.0);
-                                const int base = std::min(static_cast<int>(p), std::max(0, n[a] - 2));
-                                const bool upper = (corner >> a) & 1u;
-                                w *= upper ? p - base : 1 - (p - base);
-                                voxel += stride * static_cast<std::size_t>(std::min(base + (upper ? 1 : 0), n[a] - 1));
-                                stride *= static_cast<std::size_t>(n[a]);
-                            }
-                            if (w == 0 || (!allValid && !volume.isValid(voxel))) continue;
-                            sum += w * static_cast<double>(values[voxel]);
-                            weight += w;
-                        }
-                        if (weight > 0) out[index] = static_cast<float>(sum / weight);
-                    }
-            });
-        },
-        volume.samples());
-    return named(Volume(grid, SampleArray<float>(std::move(out))), volume.title);
+    withSamples(volume, [&](const auto& values) {
+        forEachPlace(grid.dims, job, [&](const Int3& place, std::size_t index) {
+            const Vec3 at = from.voxelFromWorld(grid.worldFromVoxel(place));
+            if (at.x < lo.x || at.y < lo.y || at.z < lo.z || at.x > hi.x || at.y > hi.y || at.z > hi.z) return;
+            double sum = 0, weight = 0;
+            for (unsigned corner = 0; corner < 8; ++corner) {
+                double w = 1;
+                std::size_t voxel = 0, stride = 1;
+                for (int a = 0; a < 3; ++a) {
+                    const double p = std::clamp(at[a], 0.0, n[a] - 1.0);
+                    const int base = std::min(static_cast<int>(p), std::max(0, n[a] - 2));
+                    const bool upper = (corner >> a) & 1u;
+                    w *= upper ? p - base : 1 - (p - base);
+                    voxel += stride * static_cast<std::size_t>(std::min(base + (upper ? 1 : 0), n[a] - 1));
+                    stride *= static_cast<std::size_t>(n[a]);
+                }
+                if (w == 0 || (!allValid && !volume.isValid(voxel))) continue;
+                sum += w * static_cast<double>(values[voxel]);
+                weight += w;
+            }
+            if (weight > 0) out[index] = static_cast<float>(sum / weight);
+        });
+    });
+    return derivedVolume(grid, std::move(out), volume.title);
 }
 
 } // namespace pellucid

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "volume/loader.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -166,25 +167,23 @@ template class LayerMeans<double>;
 
 Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job) {
     const Int3 full = whole.dims(), first = plan.region.lo, size = plan.region.hi - first;
-    Samples samples = std::visit(
-        [&](const auto& values) -> Samples {
-            using T = typename std::decay_t<decltype(values)>::value_type;
-            std::vector<T> kept(voxelCount(plan.dims));
-            const std::size_t layer = layerSize(plan.dims);
-            parallelFor(static_cast<std::size_t>(plan.dims.z), [&](std::size_t k) {
-                job.throwIfStopped();
-                LayerMeans<T> means({size.x, size.y}, plan.factors, whole.missing());
-                const int z0 = static_cast<int>(k) * plan.factors.z, z1 = std::min(z0 + plan.factors.z, size.z);
-                for (int z = z0; z < z1; ++z)
-                    for (int y = 0; y < size.y; ++y) {
-                        const Int3 at = first + Int3(0, y, z);
-                        means.add(values.data() + voxelIndex(full, at.x, at.y, at.z), y);
-                    }
-                means.takeTo(kept.data() + k * layer);
-            });
-            return kept;
-        },
-        whole.samples());
+    Samples samples = withSamples(whole, [&](const auto& values) -> Samples {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        std::vector<T> kept(voxelCount(plan.dims));
+        const std::size_t layer = layerSize(plan.dims);
+        parallelFor(static_cast<std::size_t>(plan.dims.z), [&](std::size_t k) {
+            job.throwIfStopped();
+            LayerMeans<T> means({size.x, size.y}, plan.factors, whole.missing());
+            const int z0 = static_cast<int>(k) * plan.factors.z, z1 = std::min(z0 + plan.factors.z, size.z);
+            for (int z = z0; z < z1; ++z)
+                for (int y = 0; y < size.y; ++y) {
+                    const Int3 at = first + Int3(0, y, z);
+                    means.add(values.data() + voxelIndex(full, at.x, at.y, at.z), y);
+                }
+            means.takeTo(kept.data() + k * layer);
+        });
+        return kept;
+    });
     Volume volume(plan.geometryOf(whole.geometry()), std::move(samples), whole.missing());
     volume.title = whole.title;
     volume.format = whole.format;

@@ -219,12 +219,10 @@ std::optional<NumberedNames> numberedNames(const std::vector<std::string>& paths
     NumberedNames names{name, {}};
     for (const std::string& path : paths) {
         std::int64_t number = 0;
-        if (path.size() <= name.before.size() + name.after.size() || !path.starts_with(name.before) ||
-            !path.ends_with(name.after) || digitsOf(path) > kMostDigits ||
+        if (path.size() <= begin + name.after.size() || digitsOf(path) > kMostDigits ||
             digitsEnd(path, begin) != begin + digitsOf(path) ||
-            !parseNumber(path.substr(begin, digitsOf(path)), number))
-            return {};
-        if (names.name.with(number) != path) return {}; // zeros here and none there
+            !parseNumber(path.substr(begin, digitsOf(path)), number) || name.with(number) != path)
+            return {}; // another name, or zeros here and none there
         names.numbers.push_back(number);
     }
     return names;

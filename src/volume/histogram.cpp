@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "volume/intensity_grid.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -19,22 +20,20 @@ Histogram makeHistogram(const Volume& volume, int bins) {
     const std::size_t codes = static_cast<std::size_t>(coder.maxCode()) + 1;
     std::vector<std::vector<std::uint64_t>> partial(pieces);
     std::vector<std::vector<std::uint8_t>> occurs(pieces); // by code
-    std::visit(
-        [&](const auto& values) {
-            parallelFor(pieces, [&](std::size_t p) {
-                auto& counts = partial[p];
-                counts.assign(static_cast<std::size_t>(bins), 0);
-                occurs[p].assign(codes, 0);
-                const std::size_t end = plane * (slices * (p + 1) / pieces);
-                for (std::size_t i = plane * (slices * p / pieces); i < end; ++i) {
-                    const double s = volume.intensityOfValue(static_cast<double>(values[i]));
-                    if (std::isnan(s)) continue;
-                    ++counts[static_cast<std::size_t>(histogramBin(s, bins))];
-                    occurs[p][coder.code(s)] = 1;
-                }
-            });
-        },
-        volume.samples());
+    withSamples(volume, [&](const auto& values) {
+        parallelFor(pieces, [&](std::size_t p) {
+            auto& counts = partial[p];
+            counts.assign(static_cast<std::size_t>(bins), 0);
+            occurs[p].assign(codes, 0);
+            const std::size_t end = plane * (slices * (p + 1) / pieces);
+            for (std::size_t i = plane * (slices * p / pieces); i < end; ++i) {
+                const double s = volume.intensityOfValue(static_cast<double>(values[i]));
+                if (std::isnan(s)) continue;
+                ++counts[static_cast<std::size_t>(histogramBin(s, bins))];
+                occurs[p][coder.code(s)] = 1;
+            }
+        });
+    });
     Histogram histogram;
     histogram.counts.assign(static_cast<std::size_t>(bins), 0);
     for (const auto& counts : partial)

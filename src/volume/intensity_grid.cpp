@@ -3,16 +3,15 @@
 #include <cmath>
 #include <type_traits>
 
-#include "base/parallel.h"
 #include "volume/memory_use.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
 IntensityCoder::IntensityCoder(const Volume& volume) {
     const ValueRange r = volume.range();
     const bool integers =
-        std::visit([](const auto& v) { return std::is_integral_v<typename std::decay_t<decltype(v)>::value_type>; },
-                   volume.samples());
+        withSamples(volume, [](const auto& v) { return std::is_integral_v<std::decay_t<decltype(v[0])>>; });
     const double span = r.hi - r.lo;
     const bool wholeEnds = r.lo == std::floor(r.lo) && r.hi == std::floor(r.hi);
     m_exact = integers && wholeEnds && span >= 1 && span <= 65535;
@@ -22,43 +21,35 @@ IntensityCoder::IntensityCoder(const Volume& volume) {
     }
 }
 
+namespace {
+
+/// Hands `codes` over to `owner`; returns where they begin.
+template <class Codes>
+auto* held(Codes codes, std::shared_ptr<const void>& owner) {
+    auto all = std::make_shared<const Codes>(std::move(codes));
+    owner = all;
+    return all->data();
+}
+
+} // namespace
+
 CodeGrid::CodeGrid(const Int3& dims, ZeroedVector<std::uint16_t> wide) : m_dims(dims) {
     PELLUCID_CHECK(wide.size() == size() + kPadding);
-    auto held = std::make_shared<const ZeroedVector<std::uint16_t>>(std::move(wide));
-    m_wide = held->data();
-    m_owner = std::move(held);
+    m_wide = held(std::move(wide), m_owner);
 }
 
 CodeGrid::CodeGrid(const Int3& dims, ZeroedVector<std::uint8_t> narrow) : m_dims(dims) {
     PELLUCID_CHECK(narrow.size() == size() + kPadding);
-    auto held = std::make_shared<const ZeroedVector<std::uint8_t>>(std::move(narrow));
-    m_narrow = held->data();
-    m_owner = std::move(held);
+    m_narrow = held(std::move(narrow), m_owner);
 }
 
 CodeGrid::CodeGrid(const Int3& dims, SampleArray<std::uint8_t> narrow) : m_dims(dims) {
     static_assert(kPadding <= MappedFile::kPadding);
     PELLUCID_CHECK(narrow.size() == size() && narrow.isMapped());
-    auto held = std::make_shared<const SampleArray<std::uint8_t>>(std::move(narrow));
-    m_narrow = held->data();
-    m_owner = std::move(held);
+    m_narrow = held(std::move(narrow), m_owner);
 }
 
 namespace {
-
-/// Calls make(i, value) for every voxel, on threads.
-template <class Make>
-void forEachVoxel(const Volume& volume, const Make& make) {
-    std::visit(
-        [&](const auto& values) {
-            const std::size_t slices = static_cast<std::size_t>(volume.dims().z);
-            const std::size_t plane = volume.size() / slices;
-            parallelFor(slices, [&](std::size_t k) {
-                for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) make(i, values[i]);
-            });
-        },
-        volume.samples());
-}
 
 /// 8-bit samples of a window from 0 up to their largest value or beyond it are their own codes.
 const SampleArray<std::uint8_t>* asCodes(const Volume& volume) {
@@ -82,8 +73,8 @@ IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width) {
             grid.codes = CodeGrid(volume.dims(), *samples);
         } else {
             ZeroedVector<std::uint8_t> codes(volume.size() + CodeGrid::kPadding);
-            forEachVoxel(volume, [&](std::size_t i, auto value) {
-                const double s = volume.intensityOfValue(static_cast<double>(value));
+            forEachVoxel(volume, {}, [&](const auto& values, std::size_t i) {
+                const double s = volume.intensityOfValue(static_cast<double>(values[i]));
                 codes[i] = static_cast<std::uint8_t>(coder.code(s) / grid.codeStep);
             });
             grid.codes = CodeGrid(volume.dims(), std::move(codes));
@@ -93,8 +84,8 @@ IntensityGrid makeIntensityGrid(const Volume& volume, CodeWidth width) {
     }
     ZeroedVector<std::uint16_t> codes(volume.size() + CodeGrid::kPadding);
     if (volume.invalidCount() > 0) grid.valid.assign(volume.size(), 1);
-    forEachVoxel(volume, [&](std::size_t i, auto value) {
-        const double s = volume.intensityOfValue(static_cast<double>(value));
+    forEachVoxel(volume, {}, [&](const auto& values, std::size_t i) {
+        const double s = volume.intensityOfValue(static_cast<double>(values[i]));
         if (std::isnan(s))
             grid.valid[i] = 0;
         else

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "volume/histogram.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -113,8 +114,7 @@ JointHistogram count(const Volume& volume, const T& samples, int bins, int gradi
 } // namespace
 
 JointHistogram makeJointHistogram(const Volume& volume, int bins, int gradientBins, const JobControl& job) {
-    return std::visit([&](const auto& samples) { return count(volume, samples, bins, gradientBins, job); },
-                      volume.samples());
+    return withSamples(volume, [&](const auto& samples) { return count(volume, samples, bins, gradientBins, job); });
 }
 
 } // namespace pellucid

@@ -1,13 +1,11 @@
 #include "volume/loader.h"
 
-#include <algorithm>
-#include <array>
-#include <charconv>
 #include <filesystem>
+#include <ranges>
 
 #include "volume/excerpt.h"
-#include "volume/formats/file_check.h"
 #include "volume/formats/reader.h"
+#include "volume/formats/text_header.h"
 #include "volume/procedural.h"
 #include "volume/series.h"
 
@@ -76,13 +74,6 @@ Volume sample(const VolumeSource& source, const JobControl& job) {
     return plan.isWhole() ? volume : excerptOf(volume, plan);
 }
 
-/// "7", "-0.5": a value as people write it.
-std::string plainNumber(double value) {
-    char text[40];
-    const auto result = std::to_chars(text, text + sizeof text, value);
-    return {text, result.ptr};
-}
-
 } // namespace
 
 RawLayout parseRawLayout(const std::string& text) {
@@ -90,13 +81,8 @@ RawLayout parseRawLayout(const std::string& text) {
         return UsageError(why, "raw layout " + text,
                           "give NX,NY,NZ,TYPE[,little|big], TYPE one of u8 i8 u16 i16 u32 i32 f32 f64");
     };
-    std::vector<std::string> parts(1);
-    for (const char c : text) {
-        if (c == ',')
-            parts.emplace_back();
-        else
-            parts.back() += c;
-    }
+    std::vector<std::string> parts;
+    for (const auto part : std::views::split(text, ',')) parts.emplace_back(part.begin(), part.end());
     if (parts.size() < 4 || parts.size() > 5) throw fail("the layout has " + std::to_string(parts.size()) + " parts");
     RawLayout layout;
     for (int a = 0; a < 3; ++a) {
@@ -125,7 +111,7 @@ Volume loadVolume(const VolumeSource& source, const JobControl& job) {
     else if (volume.isConstant())
         volume.notices.push_back(
             (volume.invalidCount() > 0 ? "all valid voxels have the value " : "all voxels have the value ") +
-            plainNumber(volume.dataRange().lo));
+            wordOf(volume.dataRange().lo));
     if (source.range) volume = volume.withRange(*source.range);
     job.report(1.0);
     return volume;

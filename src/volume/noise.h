@@ -1,6 +1,7 @@
-// Noise that depends on its place and a seed alone: the same bits on any number of threads.
+// What built-in volumes are made of: smooth steps, and noise that depends on its place and a seed alone.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -27,6 +28,12 @@ inline double whiteNoise(int i, int j, int k, std::uint32_t seed) {
     constexpr double kMean = 2.0 * 65535.0;
     constexpr double kDeviation = 0.57735026918962576 * 65536.0; // sqrt(4 / 12)
     return (sum - kMean) / kDeviation;
+}
+
+/// 0 below a, 1 above b, smooth between.
+inline double smoothStep(double a, double b, double x) {
+    const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
 }
 
 /// Value noise: random numbers in [−1, 1] on the integer lattice, joined smoothly (first derivative continuous).

@@ -36,12 +36,6 @@ T rounded(double value, double lo, double hi) {
     return static_cast<T>(std::lround(std::clamp(value, lo, hi)));
 }
 
-/// 0 below a, 1 above b, smooth between.
-double smoothStep(double a, double b, double x) {
-    const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
 // ---------------------------------------------------------------- disks
 
 /// Three solid disks one behind the other along x (fig. 4.1), hard edges: no voxel between two intensities, so that
@@ -210,38 +204,29 @@ Volume makeKnee(const Geometry& geometry, const SampleOrder& order, const JobCon
 
 struct Sample {
     SampleInfo info;
-    Vec3 defaultSpacing;
     Volume (*make)(const Geometry&, const SampleOrder&, const JobControl&);
+    Vec3 defaultSpacing{1, 1, 1};
 };
 
 const std::vector<Sample>& table() {
+    constexpr Int3 kMap{160, 160, 32}; // of the hurricane
     static const std::vector<Sample> kTable{
         {{"disks", "three solid disks one behind the other along x, intensities 1/6, 1/2, 5/6 of 0..252", {64, 64, 64}},
-         {1, 1, 1},
          makeDisks},
-        {{"shells", "a lobed, noisy core inside two shells, u8", {96, 96, 96}}, {1, 1, 1}, makeShells},
+        {{"shells", "a lobed, noisy core inside two shells, u8", {96, 96, 96}}, makeShells},
         {{"knee", "a CT-like phantom of a knee in Hounsfield units and mm, i16", {379, 229, 305}},
-         {0.5, 0.5, 0.7},
-         makeKnee},
+         makeKnee,
+         {0.5, 0.5, 0.7}},
         {{"vortex", "the vorticity of a turbulent flow, 100 frames, u8", {128, 128, 128}, kVortexFrames, kVortexRange},
-         {1, 1, 1},
          makeVortex},
-        {{"smoke", "rising smoke, 120 frames, f32", {72, 72, 144}, kSmokeFrames, kSmokeRange}, {1, 1, 1}, makeSmoke},
-        {{"hurricane",
-          "cloud water of a hurricane that reaches land, 48 frames, f32",
-          {160, 160, 32},
-          kHurricaneFrames,
+        {{"smoke", "rising smoke, 120 frames, f32", {72, 72, 144}, kSmokeFrames, kSmokeRange}, makeSmoke},
+        {{"hurricane", "cloud water of a hurricane that reaches land, 48 frames, f32", kMap, kHurricaneFrames,
           kCloudRange},
-         {1, 1, 1},
          makeCloud},
-        {{"hurricane/precipitation", "its rain and snow", {160, 160, 32}, kHurricaneFrames, kPrecipitationRange},
-         {1, 1, 1},
+        {{"hurricane/precipitation", "its rain and snow", kMap, kHurricaneFrames, kPrecipitationRange},
          makePrecipitation},
-        {{"hurricane/wind", "its wind speed in m/s", {160, 160, 32}, kHurricaneFrames, kWindRange},
-         {1, 1, 1},
-         makeWind},
-        {{"hurricane/ground", "heights of the land under it in m, one layer", {160, 160, 1}},
-         {1, 1, 1},
+        {{"hurricane/wind", "its wind speed in m/s", kMap, kHurricaneFrames, kWindRange}, makeWind},
+        {{"hurricane/ground", "heights of the land under it in m, one layer", {kMap.x, kMap.y, 1}},
          makeHurricaneGround}};
     return kTable;
 }
@@ -272,12 +257,10 @@ const std::vector<SampleInfo>& samples() {
 namespace {
 
 const Sample& sampleNamed(const std::string& name) {
-    const auto found =
-        std::find_if(table().begin(), table().end(), [&](const Sample& s) { return s.info.name == name; });
-    if (found != table().end()) return *found;
-    std::string known;
-    for (const SampleInfo& info : samples()) known += (known.empty() ? "" : ", ") + info.name;
-    throw UsageError("there is no sample of this name", "sample:" + name, "the samples are " + known);
+    for (const Sample& sample : table())
+        if (sample.info.name == name) return sample;
+    throw UsageError("there is no sample of this name", "sample:" + name,
+                     "the samples are " + joined(samples(), ", ", &SampleInfo::name));
 }
 
 } // namespace
@@ -288,9 +271,7 @@ Volume makeSample(const std::string& name, int size, std::uint32_t seed, const J
                   int step) {
     constexpr int kLeast = 8, kMost = 8192;
     const Sample& sample = sampleNamed(name);
-    if (step < 0 || step >= sample.info.frames)
-        throw UsageError("there is no step " + std::to_string(step), "sample:" + name,
-                         "give 0 to " + std::to_string(sample.info.frames - 1));
+    requireIndex("step", step, static_cast<std::uint64_t>(sample.info.frames), "sample:" + name);
     if (size != 0 && (size < kLeast || size > kMost))
         throw UsageError("the size " + std::to_string(size) + " is not possible", "sample:" + name,
                          "give " + std::to_string(kLeast) + " to " + std::to_string(kMost) + " voxels");

@@ -17,15 +17,19 @@ double quantile(const std::vector<double>& sorted, double q) {
     return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5)];
 }
 
+Run longestRun(const std::vector<double>& sorted) {
+    Run longest;
+    for (std::size_t i = 0, j = 0; i < sorted.size(); i = j) {
+        while (j < sorted.size() && sorted[j] == sorted[i]) ++j;
+        if (j - i > longest.length) longest = {i, j - i};
+    }
+    return longest;
+}
+
 RobustRange robustRange(std::vector<double> values, const ValueRange& data) {
     if (values.empty() || !(data.lo < data.hi)) return {data, {}};
     std::sort(values.begin(), values.end());
-    // The longest run of one value.
-    std::size_t begin = 0, length = 0;
-    for (std::size_t i = 0, j = 0; i < values.size(); i = j) {
-        while (j < values.size() && values[j] == values[i]) ++j;
-        if (j - i > length) begin = i, length = j - i;
-    }
+    const auto [begin, length] = longestRun(values);
     const double common = values[begin];
     const bool manyAlike = static_cast<double>(length) >= kCommon * static_cast<double>(values.size());
     if (manyAlike)

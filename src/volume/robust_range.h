@@ -11,6 +11,13 @@ namespace pellucid {
 /// The q-th quantile, q in [0,1], of values that ascend and are not none: the one at the nearest place.
 double quantile(const std::vector<double>& sorted, double q);
 
+/// Equal values that follow each other.
+struct Run {
+    std::size_t begin = 0, length = 0;
+};
+/// The longest run of values that ascend; of equal ones the first.
+Run longestRun(const std::vector<double>& sorted);
+
 struct RobustRange {
     ValueRange range; ///< lo < hi where the values differ
     /// A value that many voxels share, far from all others: a filler that the file does not declare as missing. It lies

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <span>
 
 #include "base/round_numbers.h"
 #include "base/text.h"
@@ -21,14 +22,13 @@ namespace fs = std::filesystem;
 
 constexpr int kMostFrames = 100'000; ///< a few hundred bytes each
 
+std::string fileName(const std::string& path) { return fs::path(path).filename().string(); }
+
 /// "a, b, c and 4 more".
 std::string someOf(const std::vector<std::string>& names) {
     constexpr std::size_t kShown = 4;
-    std::string text;
-    for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
-        text += (i == 0 ? "" : ", ") + fs::path(names[i]).filename().string();
-    if (names.size() > kShown) text += " and " + std::to_string(names.size() - kShown) + " more";
-    return text;
+    const std::string text = joined(std::span(names).first(std::min(names.size(), kShown)), ", ", fileName);
+    return names.size() <= kShown ? text : text + " and " + std::to_string(names.size() - kShown) + " more";
 }
 
 std::string filesText(std::size_t count) { return std::to_string(count) + (count == 1 ? " file" : " files"); }
@@ -131,7 +131,7 @@ void fillGaps(FileList& list, const std::optional<NumberedName>& pattern) {
 FileList listFiles(const VolumeSource& source) {
     FileList list;
     const std::string& path = source.path;
-    list.title = fs::path(path).filename().string();
+    list.title = fileName(path);
     if (!source.more.empty()) {
         list.paths = {path};
         list.paths.insert(list.paths.end(), source.more.begin(), source.more.end());
@@ -154,22 +154,18 @@ FileList listFiles(const VolumeSource& source) {
         list.paths = pattern ? filesNumbered(*pattern) : filesMatching(path);
     }
     const std::vector<std::string> all = list.paths;
-    const bool found = !all.empty();
     if (!pattern) list.paths = ofOneSuffix(std::move(list.paths), source.raw.has_value(), list.notices);
     if (list.paths.empty()) {
         for (const std::string& file : all)
             if (const auto unread = unreadFormat(file)) throw *unread;
-        if (isFolder)
-            throw FileError(found ? "there is no file of a known volume format in this folder"
-                                  : "there is no file in this folder",
-                            path, "name another folder, or a file", found ? Remedy::GiveRawLayout : Remedy::AsSaid);
-        throw FileError(found ? "no file of this name pattern has the suffix of a known volume format"
-                              : "there is no file of this name pattern",
-                        path, "check folder and name", found ? Remedy::GiveRawLayout : Remedy::AsSaid);
+        throw FileError(std::string("there is no file ") + (all.empty() ? "" : "of a known volume format ") +
+                            (isFolder ? "in this folder" : "with a name of this pattern"),
+                        path, isFolder ? "name another folder, or a file" : "check folder and name",
+                        all.empty() ? Remedy::AsSaid : Remedy::GiveRawLayout);
     }
     std::sort(list.paths.begin(), list.paths.end(), countsBefore);
     if (list.paths.size() == 1)
-        list.title = fs::path(list.paths.front()).filename().string();
+        list.title = fileName(list.paths.front());
     else
         fillGaps(list, pattern);
     return list;
@@ -198,12 +194,11 @@ void addFile(SeriesListing& listing, const VolumeSource& given, const std::strin
     frame.source.frames.reset();
     // Of one file with many steps, no more are listed than are asked for.
     const std::vector<int> chosen = selected(steps, alone ? given.frames : std::nullopt, listing.title);
-    std::string stem = fs::path(path).filename().string();
+    std::string stem = fileName(path);
     if (const std::string suffix = volumeSuffix(path); suffix.size() < stem.size())
         stem.resize(stem.size() - suffix.size());
-    const bool isTimed =
-        contents && contents->times.size() == static_cast<std::size_t>(steps) &&
-        std::all_of(contents->times.begin(), contents->times.end(), [](double t) { return std::isfinite(t); });
+    const bool isTimed = contents && contents->times.size() == static_cast<std::size_t>(steps) &&
+                         std::ranges::all_of(contents->times, [](double t) { return std::isfinite(t); });
     listing.hasTimes = listing.hasTimes && isTimed;
     for (const int step : chosen) {
         frame.source.step = step;
@@ -232,7 +227,7 @@ std::string SeriesListing::fileOf(int frame) const {
         return other < frames.size() && frames[other].source.path == source.path;
     };
     const bool several = (f > 0 && holds(f - 1)) || holds(f + 1);
-    return (source.isSample() ? source.path : fs::path(source.path).filename().string()) +
+    return (source.isSample() ? source.path : fileName(source.path)) +
            (several ? ", step " + std::to_string(source.step) : "");
 }
 

@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 #include "volume/derived.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -35,16 +36,20 @@ std::vector<std::uint32_t> valueCounts(const Volume& volume) {
     const ValueRange& range = volume.dataRange();
     const double scale = range.lo < range.hi ? FrameSummary::kBins / (range.hi - range.lo) : 0;
     const bool allValid = volume.invalidCount() == 0;
-    std::visit(
-        [&](const auto& values) {
-            for (std::size_t i = 0; i < values.size(); ++i) {
-                if (!allValid && !volume.isValid(i)) continue;
-                const int bin = static_cast<int>((static_cast<double>(values[i]) - range.lo) * scale);
-                ++counts[static_cast<std::size_t>(std::min(bin, FrameSummary::kBins - 1))];
-            }
-        },
-        volume.samples());
+    withSamples(volume, [&](const auto& values) {
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (!allValid && !volume.isValid(i)) continue;
+            const int bin = static_cast<int>((static_cast<double>(values[i]) - range.lo) * scale);
+            ++counts[static_cast<std::size_t>(std::min(bin, FrameSummary::kBins - 1))];
+        }
+    });
     return counts;
+}
+
+/// Why a frame cannot be read. The frame has its own name: another file that is to blame is named, too.
+std::string problemOf(const Error& error, const std::string& path) {
+    const bool isOwn = error.where().empty() || error.where() == path;
+    return isOwn ? error.problem() : error.problem() + ", " + error.where();
 }
 
 /// Of the frame's data, and of its codes of 16 bits with a byte for validity, where not all voxels are valid.
@@ -123,14 +128,12 @@ void TimeSeries::note(int frame, const Volume& volume) {
 
 void TimeSeries::noteProblem(int frame, const std::string& problem) {
     const std::lock_guard lock(m_mutex);
-    FrameSummary& summary = m_summaries[static_cast<std::size_t>(frame)];
-    summary = {};
-    summary.isKnown = true;
-    summary.problem = problem;
+    m_summaries[static_cast<std::size_t>(frame)] = {true, problem, {}, 0, {}};
 }
 
 std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job) {
     PELLUCID_CHECK(frame >= 0 && frame < size());
+    const std::string& path = m_listing.frames[static_cast<std::size_t>(frame)].source.path;
     {
         std::unique_lock lock(m_mutex);
         while (true) { // one reads, the others wait for it
@@ -176,16 +179,13 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
         if (!onSameGrid(*grid, volume->geometry()))
             throw FileError("its grid (" + dimsText(volume->dims()) + ") is not that of the series (" +
                                 dimsText(grid->dims) + ")",
-                            m_listing.frames[static_cast<std::size_t>(frame)].source.path, "leave it out");
+                            path, "leave it out");
         if (varies()) volume->title = m_listing.title;
         if (!known) note(frame, *volume);
         finish(volume);
         return volume;
     } catch (const Error& error) {
-        // Frames are spoken of by their own name: where another file is to blame, by that.
-        const bool own =
-            error.where().empty() || error.where() == m_listing.frames[static_cast<std::size_t>(frame)].source.path;
-        noteProblem(frame, own ? error.problem() : error.problem() + ", " + error.where());
+        noteProblem(frame, problemOf(error, path));
         finish(nullptr);
         throw;
     } catch (...) {
@@ -246,7 +246,7 @@ std::optional<ValueRange> TimeSeries::knownRange() const {
 
 bool TimeSeries::isSurveyed() const {
     const std::lock_guard lock(m_mutex);
-    return std::all_of(m_summaries.begin(), m_summaries.end(), [](const FrameSummary& s) { return s.isKnown; });
+    return std::ranges::all_of(m_summaries, &FrameSummary::isKnown);
 }
 
 void TimeSeries::survey(const JobControl& job) {

@@ -112,11 +112,7 @@ Volume::Volume(const Geometry& geometry, Samples samples, std::optional<double> 
     if (m_missing && sampleType() == SampleType::F32) m_missing = static_cast<double>(static_cast<float>(*m_missing));
     const Statistics s = statisticsOf(*m_samples, m_missing);
     m_invalidCount = s.invalid;
-    if (s.invalid < count)
-        m_dataRange = {s.lo, s.hi};
-    else
-        m_dataRange = {0, 0};
-    m_range = m_dataRange;
+    m_range = m_dataRange = s.invalid < count ? ValueRange{s.lo, s.hi} : ValueRange{0, 0};
 }
 
 Volume Volume::withRange(const ValueRange& range) const {

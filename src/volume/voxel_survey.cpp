@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/parallel.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -19,12 +20,6 @@ std::uint32_t hashOf(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     h = (h ^ (h >> 15)) * 0x2c1b3c6du;
     h = (h ^ (h >> 12)) * 0x297a2d39u;
     return h ^ (h >> 15);
-}
-
-/// The voxel of an index.
-Int3 voxelAt(const Int3& dims, std::size_t index) {
-    const auto nx = static_cast<std::size_t>(dims.x), layer = layerSize(dims);
-    return {static_cast<int>(index % nx), static_cast<int>(index % layer / nx), static_cast<int>(index / layer)};
 }
 
 /// Values of voxels: NaN where invalid or outside.
@@ -114,27 +109,18 @@ VoxelSurvey surveyVoxels(const Volume& volume, const JobControl& job) {
         const auto end = static_cast<int>(static_cast<std::int64_t>(cell + 1) * full[a] / n);
         return begin + static_cast<int>(random % static_cast<std::uint32_t>(end - begin));
     };
-    std::visit(
-        [&](const auto& samples) {
-            const Reader read(volume, samples.data());
-            parallelFor(static_cast<std::size_t>(survey.dims.z), [&](std::size_t k) {
-                job.throwIfStopped();
-                std::size_t at = k * layerSize(survey.dims);
-                for (int j = 0; j < survey.dims.y; ++j)
-                    for (int i = 0; i < survey.dims.x; ++i, ++at) {
-                        const auto z = static_cast<int>(k);
-                        const std::uint32_t h = hashOf(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j),
-                                                       static_cast<std::uint32_t>(z));
-                        const Int3 v(pick(0, i, h), pick(1, j, h >> 10), pick(2, z, h >> 20));
-                        const double value = read.at(v);
-                        survey.indices[at] = read.index(v);
-                        survey.values[at] = value;
-                        survey.gradients[at] =
-                            std::isnan(value) ? kNaN : glm::length(differences(read, v, value) * perD0);
-                    }
-            });
-        },
-        volume.samples());
+    withSamples(volume, [&](const auto& samples) {
+        const Reader read(volume, samples.data());
+        forEachPlace(survey.dims, job, [&](const Int3& cell, std::size_t at) {
+            const std::uint32_t h = hashOf(static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y),
+                                           static_cast<std::uint32_t>(cell.z));
+            const Int3 v(pick(0, cell.x, h), pick(1, cell.y, h >> 10), pick(2, cell.z, h >> 20));
+            const double value = read.at(v);
+            survey.indices[at] = read.index(v);
+            survey.values[at] = value;
+            survey.gradients[at] = std::isnan(value) ? kNaN : glm::length(differences(read, v, value) * perD0);
+        });
+    });
     return survey;
 }
 
@@ -148,32 +134,30 @@ std::vector<BoundaryEnds> boundaryEnds(const Volume& volume, const VoxelSurvey& 
     const Vec3 perD0 = Vec3(volume.geometry().d0()) / volume.geometry().spacing;
     constexpr std::size_t kPiece = 1024;
     constexpr int kMostSteps = 8;
-    std::visit(
-        [&](const auto& samples) {
-            const Reader read(volume, samples.data());
-            parallelFor((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
-                job.throwIfStopped();
-                for (std::size_t n = piece * kPiece; n < std::min(count, (piece + 1) * kPiece); ++n) {
-                    const Int3 v = voxelAt(volume.dims(), steep[n * steep.size() / count]);
-                    const double value = read.at(v);
-                    const Vec3 gradient = differences(read, v, value) * perD0;
-                    const Vec3 step = gradient / glm::length(gradient) * perD0; // one d0, in voxels
-                    const auto walk = [&](double sign) {
-                        double last = value;
-                        for (int s = 1; s <= kMostSteps; ++s) {
-                            const double next = read.at(Vec3(v) + sign * s * step);
-                            if (std::isnan(next) || sign * (next - last) <= 0) break;
-                            const double change = sign * (next - last);
-                            last = next;
-                            if (change < flat) break;
-                        }
-                        return last;
-                    };
-                    ends[n] = {walk(-1), walk(1)};
-                }
-            });
-        },
-        volume.samples());
+    withSamples(volume, [&](const auto& samples) {
+        const Reader read(volume, samples.data());
+        parallelFor((count + kPiece - 1) / kPiece, [&](std::size_t piece) {
+            job.throwIfStopped();
+            for (std::size_t n = piece * kPiece; n < std::min(count, (piece + 1) * kPiece); ++n) {
+                const Int3 v = voxelAt(volume.dims(), steep[n * steep.size() / count]);
+                const double value = read.at(v);
+                const Vec3 gradient = differences(read, v, value) * perD0;
+                const Vec3 step = gradient / glm::length(gradient) * perD0; // one d0, in voxels
+                const auto walk = [&](double sign) {
+                    double last = value;
+                    for (int s = 1; s <= kMostSteps; ++s) {
+                        const double next = read.at(Vec3(v) + sign * s * step);
+                        if (std::isnan(next) || sign * (next - last) <= 0) break;
+                        const double change = sign * (next - last);
+                        last = next;
+                        if (change < flat) break;
+                    }
+                    return last;
+                };
+                ends[n] = {walk(-1), walk(1)};
+            }
+        });
+    });
     return ends;
 }
 

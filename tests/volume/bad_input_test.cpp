@@ -435,7 +435,7 @@ TEST_CASE("headers that leave something out or contradict themselves are refused
     CHECK_THAT(errorOf(folder.write("a.nii", nifti.header() + std::string(24, 'x'))), Contains("data type 1"));
     nifti = Nifti{};
     nifti.voxOffset = -5;
-    CHECK_THAT(errorOf(folder.write("b.nii", nifti.header() + std::string(24, 'x'))), Contains("place of the data"));
+    CHECK_THAT(errorOf(folder.write("b.nii", nifti.header() + std::string(24, 'x'))), Contains("vox_offset"));
     nifti = Nifti{};
     nifti.size = 540;
     CHECK_THAT(errorOf(folder.write("c.nii", nifti.header() + std::string(240, 'x'))), Contains("NIfTI-2"));
@@ -484,7 +484,7 @@ TEST_CASE("NIfTI numbers that are not finite are refused wherever they would be 
         CHECK_THAT(errorWith(nifti), Contains("scl_inter"));
         nifti = Nifti{};
         nifti.voxOffset = bad;
-        CHECK_THAT(errorWith(nifti), Contains("place of the data"));
+        CHECK_THAT(errorWith(nifti), Contains("vox_offset"));
     }
     Nifti skewed;
     skewed.sformCode = 1;

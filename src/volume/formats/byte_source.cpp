@@ -13,21 +13,13 @@ namespace {
 
 constexpr std::size_t kPiece = 1u << 18;
 
-/// The next piece of `from` in `piece`, `at` its beginning; false at the end.
-bool refill(ByteSource& from, std::string& piece, std::size_t& at) {
-    piece.resize(kPiece);
-    piece.resize(from.read(piece.data(), piece.size()));
-    at = 0;
-    return !piece.empty();
-}
-
 /// Whether inflate() failed at a sum or length behind data that it could unpack; zlib tells by its message alone.
 bool failsItsSum(const z_stream& stream) {
     const std::string_view message = stream.msg == nullptr ? "" : stream.msg;
     return message == "incorrect data check" || message == "incorrect length check";
 }
 
-int hexDigit(char c) {
+int hexDigit(int c) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
     if (c >= 'A' && c <= 'F') return c - 'A' + 10;
@@ -144,17 +136,29 @@ std::size_t InflatedBytes::read(char* to, std::size_t count) {
     return done;
 }
 
-HexBytes::HexBytes(const std::string& path, std::uint64_t start, const JobControl& job) : m_digits(path, start, job) {}
+bool FileCharacters::refill() {
+    m_before += m_piece.size();
+    m_piece.resize(kPiece);
+    m_piece.resize(m_bytes.read(m_piece.data(), m_piece.size()));
+    m_at = 0;
+    return !m_piece.empty();
+}
+
+bool FileCharacters::goTo(char character) {
+    while (peek() >= 0) {
+        m_at = std::min(m_piece.find(character, m_at), m_piece.size());
+        if (m_at < m_piece.size()) return true;
+    }
+    return false;
+}
 
 std::size_t HexBytes::read(char* to, std::size_t count) {
     for (std::size_t done = 0; done < count; ++done) {
         int byte = 0;
         for (int digits = 0; digits < 2;) {
-            if (m_at == m_piece.size() && !refill(m_digits, m_piece, m_at)) return done;
-            const char c = m_piece[m_at];
-            const int digit = hexDigit(c);
-            if (digit < 0 && std::isspace(static_cast<unsigned char>(c)) == 0) return done;
-            ++m_at;
+            const int c = m_digits.peek(), digit = hexDigit(c);
+            if (digit < 0 && std::isspace(c) == 0) return done;
+            m_digits.pass();
             if (digit < 0) continue;
             byte = byte * 16 + digit;
             ++digits;
@@ -164,18 +168,14 @@ std::size_t HexBytes::read(char* to, std::size_t count) {
     return count;
 }
 
-TextWords::TextWords(const std::string& path, std::uint64_t start, const JobControl& job) : m_text(path, start, job) {}
-
 bool TextWords::next(std::string& word) {
     constexpr std::size_t kMostCharacters = 400;
     word.clear();
-    while (m_at < m_piece.size() || refill(m_text, m_piece, m_at)) {
-        const char c = m_piece[m_at];
-        if (c == '<') break; // it stays: so does the end
-        ++m_at;
-        const bool separates = c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0;
+    for (int c = m_text.peek(); c >= 0 && c != '<'; c = m_text.peek()) { // "<" remains: so does the end
+        m_text.pass();
+        const bool separates = c == ',' || std::isspace(c) != 0;
         if (separates && !word.empty()) return true;
-        if (!separates && word.size() <= kMostCharacters) word += c;
+        if (!separates && word.size() <= kMostCharacters) word += static_cast<char>(c);
     }
     return !word.empty();
 }

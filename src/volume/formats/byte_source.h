@@ -83,29 +83,46 @@ private:
     End m_end = End::None;
 };
 
+/// The characters of a file one by one, from byte `start` on.
+class FileCharacters {
+public:
+    FileCharacters(const std::string& path, std::uint64_t start, const JobControl& job) : m_bytes(path, start, job) {}
+
+    /// The next character, which remains the next one; −1 at the end.
+    int peek() { return m_at < m_piece.size() || refill() ? static_cast<unsigned char>(m_piece[m_at]) : -1; }
+    /// Goes past the character that peek() told.
+    void pass() { ++m_at; }
+    /// Goes to the next `character`; false where there is none.
+    bool goTo(char character);
+    std::uint64_t passed() const { return m_before + m_at; } ///< characters, from `start` on
+
+private:
+    bool refill();
+    FileBytes m_bytes;
+    std::string m_piece;
+    std::size_t m_at = 0;
+    std::uint64_t m_before = 0; // characters before m_piece
+};
+
 /// The bytes that hexadecimal digits stand for, blanks and line ends left out. Anything else ends the data.
 class HexBytes final : public ByteSource {
 public:
-    HexBytes(const std::string& path, std::uint64_t start, const JobControl& job);
+    HexBytes(const std::string& path, std::uint64_t start, const JobControl& job) : m_digits(path, start, job) {}
     std::size_t read(char* to, std::size_t count) override;
 
 private:
-    FileBytes m_digits;
-    std::string m_piece;
-    std::size_t m_at = 0;
+    FileCharacters m_digits;
 };
 
 /// The words of a text, between blanks, line ends or commas, up to its end or a "<": there markup begins.
 class TextWords {
 public:
-    TextWords(const std::string& path, std::uint64_t start, const JobControl& job);
+    TextWords(const std::string& path, std::uint64_t start, const JobControl& job) : m_text(path, start, job) {}
     /// False at the end of the file. A word longer than any number is cut.
     bool next(std::string& word);
 
 private:
-    FileBytes m_text;
-    std::string m_piece;
-    std::size_t m_at = 0;
+    FileCharacters m_text;
 };
 
 } // namespace pellucid

@@ -41,6 +41,12 @@ std::uint64_t dataFileBytes(const std::string& data, const std::string& header) 
                     "put the data file there, or correct the header");
 }
 
+void requireIndex(const std::string& what, int index, std::uint64_t count, const std::string& path) {
+    if (index < 0 || static_cast<std::uint64_t>(index) >= count)
+        throw UsageError("there is no " + what + " " + std::to_string(index), path,
+                         count == 1 ? "there is one, number 0" : "give 0 to " + std::to_string(count - 1));
+}
+
 std::string fileHead(const std::string& path, std::size_t limit) {
     const std::uint64_t bytes = std::min<std::uint64_t>(readableFileBytes(path), limit);
     std::string head(static_cast<std::size_t>(bytes), '\0');
@@ -166,31 +172,17 @@ void requireStored(const std::string& where, Encoding encoding, std::uint64_t va
     // Deflate turns at most 1032 bytes into one (a match of 258 bytes costs at least two bits); a text needs a digit
     // and a separator per value.
     constexpr std::uint64_t kMostDeflate = 1040;
-    const std::uint64_t bytes = values * bytesPerValue;
-    switch (encoding) {
-    case Encoding::Raw:
-        if (stored < bytes)
-            throw FileError("the data has " + std::to_string(stored) + " of " + std::to_string(bytes) + " bytes", where,
-                            toDo);
-        break;
-    case Encoding::Deflate:
-        if (stored < bytes / kMostDeflate)
-            throw FileError("the header claims " + describeBytes(bytes) + ", which " + describeBytes(stored) +
-                                " of compressed data cannot hold",
-                            where, toDo);
-        break;
-    case Encoding::Hex:
-        if (stored / 2 < bytes)
-            throw FileError("the data has " + std::to_string(stored / 2) + " of " + std::to_string(bytes) + " bytes",
-                            where, toDo);
-        break;
-    case Encoding::Text:
-        if (stored / 2 + 1 < values)
-            throw FileError("the header claims " + std::to_string(values) + " values, which " + describeBytes(stored) +
-                                " of text cannot hold",
-                            where, toDo);
-        break;
-    }
+    const std::uint64_t bytes = values * bytesPerValue, there = encoding == Encoding::Hex ? stored / 2 : stored;
+    std::string problem;
+    if (encoding == Encoding::Deflate && stored < bytes / kMostDeflate)
+        problem = "the header claims " + describeBytes(bytes) + ", which " + describeBytes(stored) +
+                  " of compressed data cannot hold";
+    if (encoding == Encoding::Text && stored / 2 + 1 < values)
+        problem = "the header claims " + std::to_string(values) + " values, which " + describeBytes(stored) +
+                  " of text cannot hold";
+    if ((encoding == Encoding::Raw || encoding == Encoding::Hex) && there < bytes)
+        problem = "the data has " + std::to_string(there) + " of " + std::to_string(bytes) + " bytes";
+    if (!problem.empty()) throw FileError(problem, where, toDo);
 }
 
 namespace {

@@ -24,6 +24,9 @@ std::string fileHead(const std::string& path, std::size_t limit);
 /// as readableFileBytes(), and one that names both where `data` is missing.
 std::uint64_t dataFileBytes(const std::string& data, const std::string& header);
 
+/// Throws UsageError unless `index` is that of one of the `count` things called `what` ("time step") in a file.
+void requireIndex(const std::string& what, int index, std::uint64_t count, const std::string& path);
+
 /// What a file seems to be, for error messages: "a PNG image", "text", "binary data", …
 std::string describeContent(std::string_view head);
 

@@ -97,8 +97,7 @@ void InflateIndex::require(std::uint64_t wanted, const JobControl& job) {
 
 std::unique_ptr<InflatedBytes> InflateIndex::from(std::uint64_t decoded, const JobControl& job) const {
     const std::lock_guard lock(m_mutex);
-    const auto after = std::upper_bound(m_places.begin(), m_places.end(), decoded,
-                                        [](std::uint64_t at, const auto& place) { return at < place.decoded; });
+    const auto after = std::ranges::upper_bound(m_places, decoded, {}, &InflatedBytes::Place::decoded);
     if (after == m_places.begin()) return std::make_unique<InflatedBytes>(m_path, m_start, m_zlib, job);
     return std::make_unique<InflatedBytes>(m_path, *(after - 1), job);
 }

@@ -35,28 +35,32 @@ std::vector<unsigned char> headerBytes(const std::string& path) {
 /// Fields of the header at their offsets, in either byte order.
 class NiftiHeader {
 public:
-    explicit NiftiHeader(const std::string& path) : m_bytes(headerBytes(path)) {
+    explicit NiftiHeader(const std::string& path) : m_path(path), m_bytes(headerBytes(path)) {
         if (m_bytes.size() < kHeaderBytes) {
             const std::string head = fileHead(path, 1024);
-            if (head.rfind("\x1f\x8b", 0) == 0)
-                throw FileError("the compressed file holds " + std::to_string(m_bytes.size()) +
-                                    " readable bytes, fewer than a NIfTI header",
-                                path, "copy the file again");
+            if (head.starts_with("\x1f\x8b"))
+                fail("the compressed file holds " + std::to_string(m_bytes.size()) +
+                         " readable bytes, fewer than a NIfTI header",
+                     "copy the file again");
             throw notOfFormat("a NIfTI file", path, head);
         }
         const auto size = at<std::int32_t>(0);
         m_swapped = size != 348 && size != 540;
         const auto sizeSwapped = at<std::int32_t>(0);
-        if (sizeSwapped == 540)
-            throw FileError("NIfTI-2 is not supported", path, "convert it to NIfTI-1, MetaImage or NRRD");
+        if (sizeSwapped == 540) fail("NIfTI-2 is not supported", "convert it to NIfTI-1, MetaImage or NRRD");
         if (sizeSwapped != 348)
             throw notOfFormat("a NIfTI file", path, {reinterpret_cast<const char*>(m_bytes.data()), m_bytes.size()});
         if (std::memcmp(m_bytes.data() + 344, "ni1", 4) == 0)
-            throw FileError("this is the header of a .hdr/.img pair", path, "convert it to one .nii file");
+            fail("this is the header of a .hdr/.img pair", "convert it to one .nii file");
         if (std::memcmp(m_bytes.data() + 344, "n+1", 4) != 0)
-            throw FileError("the header lacks the mark of NIfTI-1", path, "convert an Analyze file to NIfTI first");
+            fail("the header lacks the mark of NIfTI-1", "convert an Analyze file to NIfTI first");
     }
 
+    [[noreturn]] void fail(const std::string& what, const std::string& toDo) const {
+        throw FileError(what, m_path, toDo);
+    }
+
+    const std::string& path() const { return m_path; }
     int dim(int i) const { return at<std::int16_t>(40 + 2 * static_cast<std::size_t>(i)); }
     int datatype() const { return at<std::int16_t>(70); }
     float pixdim(int i) const { return at<float>(76 + 4 * static_cast<std::size_t>(i)); }
@@ -86,6 +90,7 @@ private:
         return value;
     }
 
+    std::string m_path;
     std::vector<unsigned char> m_bytes;
     bool m_swapped = false;
 };
@@ -96,17 +101,16 @@ struct NiftiType {
     bool isColour = false;
 };
 
-NiftiType typeOf(int code, const std::string& path) {
+NiftiType typeIn(const NiftiHeader& header) {
     static const std::map<int, NiftiType> kTypes{
         {2, {1, ValueType::U8}},         {4, {1, ValueType::I16}},        {8, {1, ValueType::I32}},
         {16, {1, ValueType::F32}},       {32, {2, ValueType::F32}},       {64, {1, ValueType::F64}},
         {128, {3, ValueType::U8, true}}, {256, {1, ValueType::I8}},       {512, {1, ValueType::U16}},
         {768, {1, ValueType::U32}},      {1024, {1, ValueType::I64}},     {1280, {1, ValueType::U64}},
         {1792, {2, ValueType::F64}},     {2304, {4, ValueType::U8, true}}};
-    const auto it = kTypes.find(code);
-    if (it != kTypes.end()) return it->second;
-    throw FileError("the NIfTI data type " + std::to_string(code) + " is not supported", path,
-                    "convert it to integers of 8 to 64 bits, float or double");
+    if (const auto it = kTypes.find(header.datatype()); it != kTypes.end()) return it->second;
+    header.fail("the NIfTI data type " + std::to_string(header.datatype()) + " is not supported",
+                "convert it to integers of 8 to 64 bits, float or double");
 }
 
 /// What lies along the fifth axis is no series but the components of each voxel: a matrix, a vector, a colour.
@@ -115,13 +119,13 @@ bool fifthAxisHasComponents(int intent) {
     return (intent >= kMatrix && intent <= kVector) || intent == kRgb || intent == kRgba;
 }
 
-std::vector<FileAxis> axesIn(const NiftiHeader& header, const NiftiType& type, const std::string& path) {
+std::vector<FileAxis> axesIn(const NiftiHeader& header, const NiftiType& type) {
     const int count = header.dim(0);
     if (count < 1 || count > 7)
-        throw FileError("the header gives " + std::to_string(count) + " axes, not 1 to 7", path, "correct the header");
+        header.fail("the header gives " + std::to_string(count) + " axes, not 1 to 7", "correct the header");
     const bool vector = count >= 5 && header.dim(5) > 1 && fifthAxisHasComponents(header.intent());
     if (vector && type.components > 1)
-        throw FileError("a vector of colours or complex numbers is not supported", path, "write one file for each");
+        header.fail("a vector of colours or complex numbers is not supported", "write one file for each");
     std::vector<FileAxis> axes;
     if (type.components > 1) axes.push_back({type.components, true});
     for (int a = 1; a <= count; ++a) axes.push_back({header.dim(a), vector && a == 5});
@@ -129,12 +133,12 @@ std::vector<FileAxis> axesIn(const NiftiHeader& header, const NiftiType& type, c
 }
 
 /// The scaling that the header asks for; none where the slope is 0 or no number, as NIfTI has it, and none for colours.
-std::optional<ValueScaling> scalingIn(const NiftiHeader& header, const NiftiType& type, const std::string& path) {
+std::optional<ValueScaling> scalingIn(const NiftiHeader& header, const NiftiType& type) {
     const double slope = header.slope(), intercept = header.intercept();
     if (type.isColour || slope == 0 || !std::isfinite(slope)) return {};
     if (!std::isfinite(intercept))
-        throw FileError("the header scales by " + std::to_string(slope) + " and adds " + std::to_string(intercept),
-                        path, "correct scl_slope and scl_inter in the header");
+        header.fail("the header scales by " + std::to_string(slope) + " and adds " + std::to_string(intercept),
+                    "correct scl_slope and scl_inter in the header");
     if (slope == 1 && intercept == 0) return {};
     return ValueScaling{slope, intercept};
 }
@@ -195,24 +199,20 @@ bool agree(const Placement& one, const Placement& other) {
 }
 
 /// sform where the header has one, else qform. Empty where it has neither: then the grid's own axes are the world's.
-std::optional<Placement> placementIn(const NiftiHeader& header, const Vec3& spacing, const std::string& path,
+std::optional<Placement> placementIn(const NiftiHeader& header, const Vec3& spacing,
                                      std::vector<std::string>& notices) {
     const bool hasQform = header.qformCode() > 0, hasSform = header.sformCode() > 0;
     bool finite = true;
     for (int i = 0; i < 6; ++i) finite = finite && (!hasQform || std::isfinite(header.qform(i)));
     for (int i = 0; i < 12; ++i) finite = finite && (!hasSform || std::isfinite(header.sform(i / 4, i % 4)));
-    if (!finite)
-        throw FileError("the place of the volume has numbers that are not finite", path,
-                        "correct qform and sform in the header");
+    if (!finite) header.fail("the header's qform or sform has a number that is not finite", "correct it in the header");
     std::optional<Placement> qform, sform;
     if (hasQform) qform = fromQform(header, spacing);
     if (hasSform) sform = fromSform(header);
     if (hasSform && !sform) {
         if (!hasQform)
-            throw FileError("the axes that sform gives lie in one plane", path,
-                            "correct sform, or give qform in the header");
-        notices.emplace_back(
-            "the axes that the header's sform gives lie in one plane: qform says where the volume lies");
+            header.fail("the axes that sform gives lie in one plane", "correct sform, or give qform in the header");
+        notices.emplace_back("the axes of the header's sform lie in one plane: qform says where the volume lies");
     }
     if (sform && qform && !agree(*sform, *qform))
         notices.emplace_back("the header's sform and qform place the volume differently: it lies as sform says");
@@ -225,14 +225,15 @@ double millimetresIn(const NiftiHeader& header) {
     return header.spaceUnit() == kMetre ? 1e3 : header.spaceUnit() == kMicrometre ? 1e-3 : 1.0;
 }
 
-void placeGrid(FileLayout& layout, const NiftiHeader& header, const std::string& path) {
+void placeGrid(FileLayout& layout, const NiftiHeader& header) {
     const int axes = std::min(header.dim(0), 3);
     const double millimetres = millimetresIn(header);
     for (int a = 1; a <= axes; ++a) {
         layout.spacing[a - 1] = header.pixdim(a);
-        requireSpacing(layout.spacing[a - 1], static_cast<std::size_t>(a - 1), plainText(layout.spacing[a - 1]), path);
+        requireSpacing(layout.spacing[a - 1], static_cast<std::size_t>(a - 1), plainText(layout.spacing[a - 1]),
+                       header.path());
     }
-    if (const std::optional<Placement> placement = placementIn(header, layout.spacing, path, layout.notices)) {
+    if (const std::optional<Placement> placement = placementIn(header, layout.spacing, layout.notices)) {
         layout.worldAxes = WorldAxes::Patient;
         const Vec3 flip{-1, -1, 1}; // our x goes to the left, our y to the back
         for (int a = 0; a < 3; ++a) {
@@ -261,22 +262,22 @@ FileLayout layoutOf(const VolumeSource& source, std::optional<int> step, const J
     const std::string& path = source.path;
     const std::uint64_t fileBytes = readableFileBytes(path);
     const NiftiHeader header(path);
-    const NiftiType type = typeOf(header.datatype(), path);
+    const NiftiType type = typeIn(header);
     FileLayout layout;
     layout.dataPath = path;
     layout.type = type.type;
     layout.bigEndian = header.isBigEndian();
-    layout.axes = axesIn(header, type, path);
+    layout.axes = axesIn(header, type);
     constexpr int kSymmetricMatrix = 1005;
     if (header.intent() == kSymmetricMatrix && layout.axes.size() >= 5 && layout.axes[4].components &&
         header.dim(5) == 6)                         // the file has xx xy yy xz yz zz
         layout.componentOrder = {0, 1, 3, 2, 4, 5}; // as NRRD: xx xy xz yy yz zz
-    layout.scaling = scalingIn(header, type, path);
+    layout.scaling = scalingIn(header, type);
     valuesIn(layout, path); // throws where they are too many to count
-    placeGrid(layout, header, path);
+    placeGrid(layout, header);
     const float offset = header.voxOffset();
     if (!(offset >= 0) || offset > 1e9f)
-        throw FileError("the header gives a wrong place of the data", path, "correct vox_offset in the header");
+        header.fail("the header's vox_offset cannot be where the data begin", "correct vox_offset in the header");
     layout.times = timesIn(header);
     if (!step) return layout;
     const std::uint64_t start = std::max<std::uint64_t>(static_cast<std::uint64_t>(offset), kHeaderBytes);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -87,14 +88,12 @@ std::vector<std::string> splitVectors(const std::string& text) {
 /// The numbers of "(x,y,z)". Throws FileError where they cannot be read or are not finite.
 std::vector<double> vectorIn(const std::string& text, const TextHeader& header) {
     std::vector<double> numbers;
-    bool good = text.size() > 2 && text.front() == '(' && text.back() == ')';
-    for (std::size_t begin = 1; good && begin < text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size() - 1);
-        numbers.push_back(numberIn(text.substr(begin, end - begin)));
-        good = std::isfinite(numbers.back());
-        begin = end + 1;
-    }
-    if (!good) header.fail(inQuotes(text) + " is not a vector of numbers");
+    const std::string inside = text.substr(0, text.size() - 1).erase(0, 1);
+    for (const auto word : std::views::split(inside, ','))
+        numbers.push_back(numberIn(std::string(word.begin(), word.end())));
+    const bool areFinite = std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+    if (!text.starts_with('(') || !text.ends_with(')') || numbers.empty() || !areFinite)
+        header.fail(inQuotes(text) + " is not a vector of numbers");
     return numbers;
 }
 
@@ -285,14 +284,9 @@ void placeGrid(FileLayout& layout, const TextHeader& header) {
 
 /// The n-th of the texts in quotes of a field.
 std::string quotedWord(const std::string& text, std::size_t n) {
-    std::size_t begin = text.find('"');
-    for (; n > 0 && begin != std::string::npos; --n) {
-        begin = text.find('"', begin + 1);
-        if (begin != std::string::npos) begin = text.find('"', begin + 1);
-    }
-    if (begin == std::string::npos) return {};
-    const std::size_t end = text.find('"', begin + 1);
-    return end == std::string::npos ? std::string() : trimmed(text.substr(begin + 1, end - begin - 1)).substr(0, 40);
+    std::vector<std::string> parts; // outside and inside quotes, in turn
+    for (const auto part : std::views::split(text, '"')) parts.emplace_back(part.begin(), part.end());
+    return 2 * n + 2 < parts.size() ? trimmed(parts[2 * n + 1]).substr(0, 40) : std::string();
 }
 
 /// When the steps are, where they lie along one axis whose width the header gives.

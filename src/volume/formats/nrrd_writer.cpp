@@ -1,24 +1,17 @@
 // Writes NRRD0004, gzip-compressed, in the volume's own type.
 #include <bit>
-#include <charconv>
 
 #include <zlib.h>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "volume/formats/text_header.h"
 #include "volume/loader.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
 namespace {
-
-/// The shortest text that reads back as the same number, in any locale.
-std::string exactText(double value) {
-    char text[40];
-    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-    PELLUCID_CHECK(error == std::errc{});
-    return {text, end};
-}
 
 const char* nrrdType(SampleType type) {
     constexpr const char* kTypes[] = {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float", "double"};
@@ -26,9 +19,7 @@ const char* nrrdType(SampleType type) {
 }
 
 std::string headerText(const Geometry& g, SampleType type) {
-    const auto vector = [](const Vec3& v) {
-        return exactText(v.x).insert(0, 1, '(') + ',' + exactText(v.y) + ',' + exactText(v.z) + ')';
-    };
+    const auto vector = [](const Vec3& v) { return "(" + wordOf(v.x) + "," + wordOf(v.y) + "," + wordOf(v.z) + ")"; };
     // Without a patient the world has a dimension and no name.
     const Mat3 axes = g.worldFromIndex();
     std::string text =
@@ -79,8 +70,8 @@ void writeFile(const std::string& path, const Geometry& geometry, SampleType typ
 } // namespace
 
 void writeNrrd(const Volume& volume, const std::string& path) {
-    std::visit([&](const auto& values) { writeFile(path, volume.geometry(), volume.sampleType(), values.data()); },
-               volume.samples());
+    withSamples(volume,
+                [&](const auto& values) { writeFile(path, volume.geometry(), volume.sampleType(), values.data()); });
 }
 
 void writeNrrd(const Geometry& geometry, const Grid<float>& values, const std::string& path) {

@@ -470,15 +470,8 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
         throw FileError(wrong, path, "correct the header, or write it in another unit");
     if (!(std::abs(glm::determinant(geometry.directions)) > 1e-6))
         throw FileError("the directions of the axes lie in one plane", path, "correct the header");
-    if (source.component < 0 || static_cast<std::uint64_t>(source.component) >= selection.components)
-        throw UsageError("there is no component " + std::to_string(source.component), path,
-                         selection.components == 1 ? "the file has one component, number 0"
-                                                   : "give 0 to " + std::to_string(selection.components - 1));
-
-    if (source.step < 0 || static_cast<std::uint64_t>(source.step) >= selection.steps)
-        throw UsageError("there is no time step " + std::to_string(source.step), path,
-                         selection.steps == 1 ? "the file has one"
-                                              : "give 0 to " + std::to_string(selection.steps - 1));
+    requireIndex("component", source.component, selection.components, path);
+    requireIndex("time step", source.step, selection.steps, path);
     if (!source.array.empty() && layout.array != source.array)
         throw UsageError("there is no array " + inQuotes(source.array), path, "the file's data has no name: give none");
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kPiece = 1u << 18;
 
-int base64Digit(char c) {
+int base64Digit(int c) {
     if (c >= 'A' && c <= 'Z') return c - 'A';
     if (c >= 'a' && c <= 'z') return c - 'a' + 26;
     if (c >= '0' && c <= '9') return c - '0' + 52;
@@ -76,30 +76,21 @@ std::uint64_t storedFrom(const VtkData& data) {
 
 } // namespace
 
-Base64Bytes::Base64Bytes(const std::string& path, std::uint64_t start, const JobControl& job)
-    : m_digits(path, start, job) {}
-
 bool Base64Bytes::decodeFour() {
     std::uint32_t bits = 0;
     int digits = 0, padding = 0;
     while (digits + padding < 4) {
-        if (m_at == m_piece.size()) {
-            m_piece.resize(kPiece);
-            m_piece.resize(m_digits.read(m_piece.data(), m_piece.size()));
-            m_at = 0;
-            if (m_piece.empty()) return false;
-        }
-        const char c = m_piece[m_at];
+        const int c = m_digits.peek();
         if (const int digit = base64Digit(c); digit >= 0 && padding == 0) {
             bits = bits << 6 | static_cast<std::uint32_t>(digit);
             ++digits;
         } else if (c == '=' && digits >= 2) {
             bits <<= 6;
             ++padding;
-        } else if (std::isspace(static_cast<unsigned char>(c)) == 0) {
-            return false;
+        } else if (std::isspace(c) == 0) {
+            return false; // at the end, too
         }
-        ++m_at;
+        m_digits.pass();
     }
     for (int i = 0; i < 3 - padding; ++i) m_ready += static_cast<char>(bits >> (16 - 8 * i) & 0xff);
     return true;
@@ -125,11 +116,7 @@ std::size_t Base64Bytes::read(char* to, std::size_t count) {
 ZlibBlocks::ZlibBlocks(std::unique_ptr<ByteSource> from, std::vector<Block> blocks)
     : m_from(std::move(from)), m_blocks(std::move(blocks)), m_packed(kPiece) {
     PELLUCID_CHECK(inflateInit(&m_stream) == Z_OK);
-    if (!m_blocks.empty()) {
-        m_packedLeft = m_blocks[0].packed;
-        m_unpackedLeft = m_blocks[0].unpacked;
-        m_streamEnded = false;
-    }
+    beginBlock();
 }
 
 ZlibBlocks::~ZlibBlocks() { inflateEnd(&m_stream); }
@@ -144,6 +131,16 @@ bool ZlibBlocks::fill() {
     return read > 0;
 }
 
+/// False where there is none.
+bool ZlibBlocks::beginBlock() {
+    if (m_block == m_blocks.size()) return false;
+    m_packedLeft = m_blocks[m_block].packed;
+    m_unpackedLeft = m_blocks[m_block].unpacked;
+    m_stream.avail_in = 0;
+    m_streamEnded = false;
+    return inflateReset(&m_stream) == Z_OK;
+}
+
 /// All of the block has come out: what is left of it is its checksum, which has to be right. Begins the next one.
 bool ZlibBlocks::endBlock() {
     while (!m_streamEnded) {
@@ -155,12 +152,9 @@ bool ZlibBlocks::endBlock() {
         if ((status != Z_OK && status != Z_STREAM_END) || m_stream.avail_out == 0) return false;
         m_streamEnded = status == Z_STREAM_END;
     }
-    if (!m_from->skip(m_packedLeft) || ++m_block == m_blocks.size()) return false;
-    m_packedLeft = m_blocks[m_block].packed;
-    m_unpackedLeft = m_blocks[m_block].unpacked;
-    m_stream.avail_in = 0;
-    m_streamEnded = false;
-    return inflateReset(&m_stream) == Z_OK;
+    if (!m_from->skip(m_packedLeft)) return false;
+    ++m_block;
+    return beginBlock();
 }
 
 std::size_t ZlibBlocks::read(char* to, std::size_t count) {

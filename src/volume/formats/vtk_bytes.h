@@ -15,14 +15,14 @@ namespace pellucid {
 /// ends the data.
 class Base64Bytes final : public ByteSource {
 public:
-    Base64Bytes(const std::string& path, std::uint64_t start, const JobControl& job);
+    Base64Bytes(const std::string& path, std::uint64_t start, const JobControl& job) : m_digits(path, start, job) {}
     std::size_t read(char* to, std::size_t count) override;
 
 private:
     bool decodeFour();
-    FileBytes m_digits;
-    std::string m_piece, m_ready;
-    std::size_t m_at = 0, m_readyAt = 0;
+    FileCharacters m_digits;
+    std::string m_ready;
+    std::size_t m_readyAt = 0;
 };
 
 /// Zlib streams one after the other, each of a known size packed and unpacked.
@@ -39,6 +39,7 @@ public:
     std::size_t read(char* to, std::size_t count) override;
 
 private:
+    bool beginBlock();
     bool endBlock();
     bool fill();
     std::unique_ptr<ByteSource> m_from;

@@ -239,18 +239,14 @@ const VtkArray& chosenArray(const VtkImage& image, const std::string& name) {
             failAt(image.path, "its values are of cells, not of points", "convert its cell data to point data");
         failAt(image.path, "there are no values of points in it");
     }
-    const auto named = [&](const std::string& wanted) {
-        return std::find_if(image.arrays.begin(), image.arrays.end(),
-                            [&](const VtkArray& array) { return array.name == wanted; });
-    };
-    if (!name.empty()) {
-        if (const auto found = named(name); found != image.arrays.end()) return *found;
+    const auto found = std::ranges::find(image.arrays, name.empty() ? image.activeScalars : name, &VtkArray::name);
+    if (!name.empty() && found == image.arrays.end()) {
         const auto shown = std::span(image.arrays).first(std::min<std::size_t>(image.arrays.size(), 20));
-        const auto quoted = [](const VtkArray& array) { return inQuotes(array.name); };
-        throw UsageError("there is no array " + inQuotes(name), image.path, "it has " + joined(shown, ", ", quoted));
+        const auto nameOf = [](const VtkArray& array) { return array.name.substr(0, 40); };
+        throw UsageError("there is no array " + inQuotes(name), image.path, "it has " + joined(shown, ", ", nameOf));
     }
-    const auto active = named(image.activeScalars);
-    return image.activeScalars.empty() || active == image.arrays.end() ? image.arrays.front() : *active;
+    const bool isNamed = !name.empty() || !image.activeScalars.empty();
+    return isNamed && found != image.arrays.end() ? *found : image.arrays.front();
 }
 
 FileLayout layoutOfArray(const VtkImage& image, const std::string& name, bool whole, const JobControl& job) {
@@ -343,12 +339,10 @@ std::vector<CollectionEntry> readCollection(const std::string& path, const JobCo
     }
     if (entries.empty()) failAt(path, "the collection names no files");
     if (!ended) failAt(path, "the file ends within its element \"VTKFile\"", "copy it again");
-    const bool timed = std::all_of(entries.begin(), entries.end(), [](const auto& e) { return e.time.has_value(); });
-    if (!timed) return entries;
-    std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return *a.time < *b.time; });
-    for (std::size_t i = 1; i < entries.size(); ++i)
-        if (entries[i].time == entries[i - 1].time)
-            failAt(path, "two files of the collection are of one time step", "write each step in one piece");
+    if (!std::ranges::all_of(entries, [](const CollectionEntry& e) { return e.time.has_value(); })) return entries;
+    std::ranges::stable_sort(entries, {}, &CollectionEntry::time);
+    if (std::ranges::adjacent_find(entries, {}, &CollectionEntry::time) != entries.end())
+        failAt(path, "two files of the collection are of one time step", "write each step in one piece");
     return entries;
 }
 
@@ -386,9 +380,7 @@ FileContents describeCollection(const VolumeSource& source, const JobControl& jo
 
 Volume readFromCollection(const VolumeSource& source, const JobControl& job) {
     const std::vector<CollectionEntry> entries = readCollection(source.path, job);
-    if (source.step < 0 || static_cast<std::size_t>(source.step) >= entries.size())
-        throw UsageError("there is no time step " + std::to_string(source.step), source.path,
-                         "give 0 to " + std::to_string(entries.size() - 1));
+    requireIndex("time step", source.step, entries.size(), source.path);
     VolumeSource file = source;
     file.path = entries[static_cast<std::size_t>(source.step)].path;
     file.step = 0;

@@ -16,7 +16,6 @@ constexpr std::size_t kMostTagBytes = 1u << 16;
 
 bool isBlank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
-/// &amp; and the like; what is no entity stays as it is.
 /// UTF-8 of "#252" or "#xfc"; empty where that is no character.
 std::string ofNumber(const std::string& entity) {
     if (entity.size() < 2 || entity[0] != '#') return {};
@@ -33,24 +32,18 @@ std::string ofNumber(const std::string& entity) {
     return {static_cast<char>(0xf0 | code >> 18), tail(12), tail(6), tail(0)};
 }
 
+/// Replaces &amp; and the like; what is no entity stays as it is.
 std::string withoutEntities(const std::string& text) {
-    static const std::map<std::string, char> kNamed{
-        {"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
+    static const std::map<std::string, std::string> kNamed{
+        {"amp", "&"}, {"lt", "<"}, {"gt", ">"}, {"quot", "\""}, {"apos", "'"}};
     std::string plain;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const std::size_t end = text[i] == '&' ? text.find(';', i) : std::string::npos;
         const std::string entity = end == std::string::npos ? "" : text.substr(i + 1, end - i - 1);
-        if (const auto named = kNamed.find(entity); named != kNamed.end()) {
-            plain += named->second;
-            i = end;
-            continue;
-        }
-        if (const std::string character = ofNumber(entity); !character.empty()) {
-            plain += character;
-            i = end;
-            continue;
-        }
-        plain += text[i];
+        const auto named = kNamed.find(entity);
+        const std::string character = named != kNamed.end() ? named->second : ofNumber(entity);
+        plain += character.empty() ? std::string(1, text[i]) : character;
+        if (!character.empty()) i = end;
     }
     return plain;
 }
@@ -62,27 +55,16 @@ std::string XmlTag::get(const std::string& attribute) const {
     return it == attributes.end() ? std::string() : it->second;
 }
 
-XmlTags::XmlTags(const std::string& path, const JobControl& job) : m_path(path), m_bytes(path, 0, job) {}
-
 void XmlTags::fail(const std::string& what) const {
-    throw FileError("this is not valid XML: " + what + " near byte " + std::to_string(m_before + m_at), m_path,
+    throw FileError("this is not valid XML: " + what + " near byte " + std::to_string(m_text.passed()), m_path,
                     "copy or write the file again");
 }
 
-int XmlTags::character() {
-    if (m_at == m_piece.size()) {
-        m_before += m_piece.size();
-        m_piece.resize(kPiece);
-        m_piece.resize(m_bytes.read(m_piece.data(), m_piece.size()));
-        m_at = 0;
-        if (m_piece.empty()) return -1;
-    }
-    return static_cast<unsigned char>(m_piece[m_at++]);
-}
-
+/// Goes past the next `end`; false where there is none.
 bool XmlTags::passOver(const std::string& end) {
     std::string last;
-    for (int c = character(); c >= 0; c = character()) {
+    for (int c = m_text.peek(); c >= 0; c = m_text.peek()) {
+        m_text.pass();
         last += static_cast<char>(c);
         if (last.size() > end.size()) last.erase(0, 1);
         if (last == end) return true;
@@ -90,44 +72,41 @@ bool XmlTags::passOver(const std::string& end) {
     return false;
 }
 
+/// What stands between the "<" that was passed and its ">"; empty where it is no tag, and was passed over.
+std::optional<std::string> XmlTags::tagText() {
+    static const std::map<std::string, std::string> kEnds{{"!--", "-->"}, {"![CDATA[", "]]>"}, {"?", "?>"}};
+    std::string text;
+    char quote = 0;
+    for (int c = m_text.peek(); c != '>' || quote != 0; c = m_text.peek()) {
+        if (c < 0) fail("a tag does not end");
+        m_text.pass();
+        const char letter = static_cast<char>(c);
+        if (quote == 0 && letter == '<') fail("a tag begins within another");
+        if (letter == quote)
+            quote = 0;
+        else if (quote == 0 && (letter == '"' || letter == '\''))
+            quote = letter;
+        text += letter;
+        if (text.size() > kMostTagBytes) fail("a tag is too long");
+        const auto end = kEnds.find(text);
+        if (end == kEnds.end()) continue;
+        if (!passOver(end->second)) fail("a comment does not end");
+        return {};
+    }
+    m_text.pass();
+    return text.starts_with('!') ? std::nullopt : std::optional(text);
+}
+
 bool XmlTags::next(XmlTag& tag) {
-    while (true) {
-        while (true) { // to the next "<"
-            const void* found =
-                m_at < m_piece.size() ? std::memchr(m_piece.data() + m_at, '<', m_piece.size() - m_at) : nullptr;
-            if (found != nullptr) {
-                m_at = static_cast<std::size_t>(static_cast<const char*>(found) - m_piece.data()) + 1;
-                break;
-            }
-            m_at = m_piece.size();
-            if (character() < 0) return false;
-            --m_at;
-        }
-        std::string text;
-        char quote = 0;
-        bool passed = false;
-        for (int c = character();; c = character()) {
-            if (c < 0) fail("a tag does not end");
-            const char letter = static_cast<char>(c);
-            if (quote == 0 && letter == '>') break;
-            if (quote == 0 && letter == '<') fail("a tag begins within another");
-            if (letter == quote)
-                quote = 0;
-            else if (quote == 0 && (letter == '"' || letter == '\''))
-                quote = letter;
-            text += letter;
-            if (text.size() > kMostTagBytes) fail("a tag is too long");
-            const bool comment = text == "!--", data = text == "![CDATA[", instruction = text == "?";
-            if (!comment && !data && !instruction) continue;
-            if (!passOver(comment ? "-->" : data ? "]]>" : "?>")) fail("a comment does not end");
-            passed = true;
-            break;
-        }
-        if (passed || text.starts_with('!')) continue;
-        tag = parsed(text);
-        tag.end = m_before + m_at;
+    while (m_text.goTo('<')) {
+        m_text.pass();
+        const std::optional<std::string> text = tagText();
+        if (!text) continue;
+        tag = parsed(*text);
+        tag.end = m_text.passed();
         return true;
     }
+    return false;
 }
 
 XmlTag XmlTags::parsed(const std::string& text) const {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "volume/formats/byte_source.h"
@@ -24,21 +25,18 @@ struct XmlTag {
 /// Comments, instructions and what stands between tags are passed over. A tag is shorter than 64 KiB.
 class XmlTags {
 public:
-    XmlTags(const std::string& path, const JobControl& job);
+    XmlTags(const std::string& path, const JobControl& job) : m_path(path), m_text(path, 0, job) {}
     /// The next tag; false at the end of the file. Throws FileError where a tag cannot be read.
     bool next(XmlTag& tag);
 
 private:
-    int character(); // the next one, −1 at the end
     bool passOver(const std::string& end);
     [[noreturn]] void fail(const std::string& what) const;
+    std::optional<std::string> tagText();
     XmlTag parsed(const std::string& text) const;
 
     std::string m_path;
-    FileBytes m_bytes;
-    std::string m_piece;
-    std::size_t m_at = 0;
-    std::uint64_t m_before = 0; // bytes of the file before m_piece
+    FileCharacters m_text;
 };
 
 } // namespace pellucid

@@ -10,12 +10,8 @@ namespace pellucid {
 
 namespace {
 
-constexpr double kTop = 20000; ///< of the box, m
-
-double smooth(double a, double b, double x) {
-    const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
+constexpr double kTop = 20000;          ///< of the box, m
+constexpr std::uint32_t kLandSeed = 10; ///< added to that of the storm
 
 /// Height of the land at (u, v) ∈ [0,1]² of the map, m; the coast runs from the south west to the north east.
 double landHeight(double u, double v, std::uint32_t seed) {
@@ -24,7 +20,7 @@ double landHeight(double u, double v, std::uint32_t seed) {
     const double ridge = 1 - std::abs(smoothNoise({5 * (u + v), 9 * (v - u), 2.5}, seed + 1));
     const double hills = 0.55 * ridge * ridge + 0.25 * (1 + smoothNoise({16 * u, 16 * v, 3.5}, seed + 2)) / 2 +
                          0.2 * (1 + smoothNoise({40 * u, 40 * v, 4.5}, seed + 3)) / 2;
-    return 1800 * smooth(0.0, 0.28, coast) * hills;
+    return 1800 * smoothStep(0.0, 0.28, coast) * hills;
 }
 
 /// What the storm is like at a place of the map, seen from its eye.
@@ -40,7 +36,7 @@ public:
         // From the open sea in the south east to the land in the north west, in a curve.
         m_u = 0.80 - 0.52 * m_t + 0.05 * std::sin(4 * m_t);
         m_v = 0.18 + 0.50 * m_t * (0.6 + 0.4 * m_t);
-        const double over = landHeight(m_u, m_v, m_seed + 10) / 1800;
+        const double over = landHeight(m_u, m_v, m_seed + kLandSeed) / 1800;
         m_strength = 0.75 + 0.25 * std::sin(std::numbers::pi * std::min(1.0, 1.4 * m_t)) - 0.5 * over;
     }
 
@@ -52,7 +48,7 @@ public:
         const double fromWall = (r - 0.045) / 0.020;
         p.wall = std::exp(-fromWall * fromWall);
         const double spiral = std::cos(2 * (turned + 5.5 * std::log(0.06 + r)));
-        p.bands = smooth(-0.1, 0.95, spiral) * std::exp(-r / 0.20) * smooth(0.03, 0.08, r);
+        p.bands = smoothStep(-0.1, 0.95, spiral) * std::exp(-r / 0.20) * smoothStep(0.03, 0.08, r);
         // Grain that turns with the storm.
         const double x = r * std::cos(turned), y = r * std::sin(turned);
         p.noise = 0.6 * smoothNoise({22 * x, 22 * y, 3 * m_t}, m_seed) +
@@ -64,22 +60,23 @@ public:
 
     double cloud(const Place& p, double w) const {
         // Towers in wall and bands, and a shield high above that flows out of them.
-        const double tower = smooth(0.05, 0.2, w) * (1 - smooth(0.68, 0.82, w));
+        const double tower = smoothStep(0.05, 0.2, w) * (1 - smoothStep(0.68, 0.82, w));
         const double shield =
-            std::exp(-std::pow((w - 0.66) / 0.09, 2)) * std::exp(-p.r / 0.26) * smooth(0.02, 0.06, p.r);
+            std::exp(-std::pow((w - 0.66) / 0.09, 2)) * std::exp(-p.r / 0.26) * smoothStep(0.02, 0.06, p.r);
         const double water =
             (0.95 * p.wall + 0.75 * p.bands) * tower * (0.75 + 0.45 * p.noise) + 0.38 * shield * (0.8 + 0.6 * p.noise);
         return kCloudRange.hi * std::clamp(m_strength * water, 0.0, 1.0);
     }
 
     double precipitation(const Place& p, double w) const {
-        const double column = 1 - smooth(0.30, 0.50, w);
+        const double column = 1 - smoothStep(0.30, 0.50, w);
         const double rain = (1.05 * p.wall + 0.95 * p.bands * p.bands) * column * (0.7 + 0.55 * p.noise);
         return kPrecipitationRange.hi * std::clamp(m_strength * rain - 0.03, 0.0, 1.0);
     }
 
     double wind(const Place& p, double w) const {
-        return std::clamp(p.wind * (1 - 0.75 * smooth(0.05, 0.9, w)) * smooth(-0.2, 0.04, w), 0.0, kWindRange.hi);
+        return std::clamp(p.wind * (1 - 0.75 * smoothStep(0.05, 0.9, w)) * smoothStep(-0.2, 0.04, w), 0.0,
+                          kWindRange.hi);
     }
 
 private:
@@ -87,25 +84,28 @@ private:
     double m_t, m_u = 0, m_v = 0, m_strength = 1;
 };
 
-template <class ValueAt>
-Volume fillStorm(const Geometry& geometry, const SampleOrder& order, const ValueRange& range, const JobControl& job,
-                 const ValueAt& valueAt) {
-    const Int3 n = geometry.dims;
-    const Storm storm(order);
-    std::vector<float> values(voxelCount(n));
-    const auto nx = static_cast<std::size_t>(n.x), plane = nx * static_cast<std::size_t>(n.y);
-    parallelFor(static_cast<std::size_t>(n.y), [&](std::size_t j) {
+/// Calls body(i, j, u, v) for the columns of a grid, rows on any thread; (u, v) ∈ [0,1]² is where they lie on the map.
+template <class Body>
+void forEachColumn(const Int3& dims, const JobControl& job, const Body& body) {
+    parallelFor(static_cast<std::size_t>(dims.y), [&](std::size_t row) {
         job.throwIfStopped();
-        for (std::size_t i = 0; i < nx; ++i) {
-            const double u = (static_cast<double>(i) + 0.5) / n.x, v = (static_cast<double>(j) + 0.5) / n.y;
-            const Place place = storm.at(u, v);
-            const double land = landHeight(u, v, order.seed + 10);
-            for (int k = 0; k < n.z; ++k) {
-                const double w = (k + 0.5) / n.z;
-                values[static_cast<std::size_t>(k) * plane + j * nx + i] =
-                    w * kTop < land ? std::numeric_limits<float>::quiet_NaN()
-                                    : static_cast<float>(valueAt(storm, place, w));
-            }
+        const int j = static_cast<int>(row);
+        for (int i = 0; i < dims.x; ++i) body(i, j, (i + 0.5) / dims.x, (j + 0.5) / dims.y);
+    });
+}
+
+Volume fillStorm(const Geometry& geometry, const SampleOrder& order, const ValueRange& range, const JobControl& job,
+                 double (Storm::*valueAt)(const Place&, double) const) {
+    const Storm storm(order);
+    std::vector<float> values(voxelCount(geometry.dims));
+    forEachColumn(geometry.dims, job, [&](int i, int j, double u, double v) {
+        const Place place = storm.at(u, v);
+        const double land = landHeight(u, v, order.seed + kLandSeed);
+        for (int k = 0; k < geometry.dims.z; ++k) {
+            const double w = (k + 0.5) / geometry.dims.z;
+            values[voxelIndex(geometry.dims, i, j, k)] = w * kTop < land
+                                                             ? std::numeric_limits<float>::quiet_NaN()
+                                                             : static_cast<float>((storm.*valueAt)(place, w));
         }
     });
     return Volume(geometry, SampleArray<float>(std::move(values))).withRange(range);
@@ -114,30 +114,23 @@ Volume fillStorm(const Geometry& geometry, const SampleOrder& order, const Value
 } // namespace
 
 Volume makeCloud(const Geometry& geometry, const SampleOrder& order, const JobControl& job) {
-    return fillStorm(geometry, order, kCloudRange, job,
-                     [](const Storm& storm, const Place& p, double w) { return storm.cloud(p, w); });
+    return fillStorm(geometry, order, kCloudRange, job, &Storm::cloud);
 }
 
 Volume makePrecipitation(const Geometry& geometry, const SampleOrder& order, const JobControl& job) {
-    return fillStorm(geometry, order, kPrecipitationRange, job,
-                     [](const Storm& storm, const Place& p, double w) { return storm.precipitation(p, w); });
+    return fillStorm(geometry, order, kPrecipitationRange, job, &Storm::precipitation);
 }
 
 Volume makeWind(const Geometry& geometry, const SampleOrder& order, const JobControl& job) {
-    return fillStorm(geometry, order, kWindRange, job,
-                     [](const Storm& storm, const Place& p, double w) { return storm.wind(p, w); });
+    return fillStorm(geometry, order, kWindRange, job, &Storm::wind);
 }
 
 Volume makeHurricaneGround(const Geometry& geometry, const SampleOrder& order, const JobControl& job) {
     Geometry g = geometry;
     g.dims.z = 1; // whatever size it has
     std::vector<float> values(voxelCount(g.dims));
-    const auto nx = static_cast<std::size_t>(g.dims.x);
-    parallelFor(static_cast<std::size_t>(g.dims.y), [&](std::size_t j) {
-        job.throwIfStopped();
-        for (std::size_t i = 0; i < nx; ++i)
-            values[j * nx + i] = static_cast<float>(landHeight(
-                (static_cast<double>(i) + 0.5) / g.dims.x, (static_cast<double>(j) + 0.5) / g.dims.y, order.seed + 10));
+    forEachColumn(g.dims, job, [&](int i, int j, double u, double v) {
+        values[voxelIndex(g.dims, i, j, 0)] = static_cast<float>(landHeight(u, v, order.seed + kLandSeed));
     });
     return Volume(g, SampleArray<float>(std::move(values))).withRange(kGroundRange);
 }

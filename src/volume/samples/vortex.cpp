@@ -5,10 +5,10 @@
 
 #include <glm/geometric.hpp>
 
-#include "base/parallel.h"
 #include "volume/noise.h"
 #include "volume/samples/cubic_zoom.h"
 #include "volume/samples/time_samples.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -38,7 +38,7 @@ private:
 
 /// One wave of vorticity: amplitude · sin(2π(k·p + phase)), p in the unit box; k ⟂ amplitude, so that none flows out.
 struct Wave {
-    std::array<float, 3> k{}, amplitude{};
+    glm::vec3 k, amplitude;
     float phase = 0;
 };
 
@@ -72,20 +72,13 @@ std::vector<Wave> wavesAt(double t, std::uint32_t seed) {
         // Large waves carry most; small ones turn over faster and fade first; each swells and ebbs a little.
         const double strength = std::pow(length, -0.9) * std::exp(-0.012 * length * length * t) *
                                 (1 + 0.35 * std::sin(kTurn * (0.8 * t + swell)));
-        const Vec3 a = glm::normalize(across) * strength;
-        Wave wave;
-        for (int axis = 0; axis < 3; ++axis) {
-            wave.k[static_cast<std::size_t>(axis)] = static_cast<float>(k[axis]);
-            wave.amplitude[static_cast<std::size_t>(axis)] = static_cast<float>(a[axis]);
-        }
-        wave.phase = static_cast<float>(phase + 0.32 * drift * std::pow(length, 2.0 / 3) * t);
-        waves.push_back(wave);
+        waves.push_back({glm::vec3(k), glm::vec3(glm::normalize(across) * strength),
+                         static_cast<float>(phase + 0.32 * drift * std::pow(length, 2.0 / 3) * t)});
         energy += strength * strength;
     }
     // What drives the flow keeps its energy.
     const auto scale = static_cast<float>(1 / std::sqrt(energy));
-    for (Wave& wave : waves)
-        for (float& a : wave.amplitude) a *= scale;
+    for (Wave& wave : waves) wave.amplitude *= scale;
     return waves;
 }
 
@@ -96,38 +89,26 @@ Volume makeVortex(const Geometry& geometry, const SampleOrder& order, const JobC
     const double t = static_cast<double>(order.step) / (kVortexFrames - 1);
     const std::vector<Wave> waves = wavesAt(t, order.seed);
     Grid<float> coarse(Int3(kCoarse, kCoarse, kCoarse));
-    parallelFor(kCoarse, [&](std::size_t slice) {
-        job.throwIfStopped();
-        const int k = static_cast<int>(slice);
-        const auto turns = [](double v) { return static_cast<float>(v); };
-        for (int j = 0; j < kCoarse; ++j)
-            for (int i = 0; i < kCoarse; ++i) {
-                const auto unit = [](int n) { return static_cast<float>((n + 0.5) / kCoarse); };
-                const float x = unit(i), y = unit(j), z = unit(k), time = turns(t);
-                // A larger flow carries everything along and draws it out into tubes.
-                constexpr float kReach = 0.075f;
-                const float px = x + kReach * (s_sine(y + 0.4f * time) + s_sine(2 * z - 0.3f * time)) + 0.15f * time;
-                const float py = y + kReach * (s_sine(z + 0.25f + 0.3f * time) + s_sine(2 * x + 0.2f * time));
-                const float pz = z + kReach * (s_sine(x + 0.6f - 0.35f * time) + s_sine(2 * y + 0.1f)) - 0.1f * time;
-                std::array<float, 3> sum{};
-                for (const Wave& w : waves) {
-                    const float s = s_sine(w.k[0] * px + w.k[1] * py + w.k[2] * pz + w.phase);
-                    for (std::size_t a = 0; a < 3; ++a) sum[a] += w.amplitude[a] * s;
-                }
-                coarse[coarse.index(i, j, k)] = sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2];
-            }
+    forEachPlace(coarse.dims(), job, [&](const Int3& place, std::size_t index) {
+        const auto unit = [](int n) { return static_cast<float>((n + 0.5) / kCoarse); };
+        const float x = unit(place.x), y = unit(place.y), z = unit(place.z), time = static_cast<float>(t);
+        // A larger flow carries everything along and draws it out into tubes.
+        constexpr float kReach = 0.075f;
+        const float px = x + kReach * (s_sine(y + 0.4f * time) + s_sine(2 * z - 0.3f * time)) + 0.15f * time;
+        const float py = y + kReach * (s_sine(z + 0.25f + 0.3f * time) + s_sine(2 * x + 0.2f * time));
+        const float pz = z + kReach * (s_sine(x + 0.6f - 0.35f * time) + s_sine(2 * y + 0.1f)) - 0.1f * time;
+        glm::vec3 sum(0);
+        for (const Wave& w : waves) sum += w.amplitude * s_sine(glm::dot(w.k, {px, py, pz}) + w.phase);
+        coarse[index] = glm::dot(sum, sum);
     });
     // Its magnitude, drawn out so that strong vortices stand apart.
     const Grid<float> fine = cubicZoom(coarse, geometry.dims, true, job);
     std::vector<std::uint8_t> values(fine.size());
     constexpr float kScale = 90.0f;
-    const std::size_t plane = values.size() / static_cast<std::size_t>(geometry.dims.z);
-    parallelFor(static_cast<std::size_t>(geometry.dims.z), [&](std::size_t k) {
-        for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
-            const float squared = std::max(0.0f, fine[i]);
-            values[i] = static_cast<std::uint8_t>(
-                std::min(255.0f, kScale * std::sqrt(squared) * std::sqrt(std::sqrt(squared)) + 0.5f));
-        }
+    forEachPlace(geometry.dims, job, [&](const Int3&, std::size_t i) {
+        const float squared = std::max(0.0f, fine[i]);
+        values[i] = static_cast<std::uint8_t>(
+            std::min(255.0f, kScale * std::sqrt(squared) * std::sqrt(std::sqrt(squared)) + 0.5f));
     });
     return Volume(geometry, SampleArray<std::uint8_t>(std::move(values))).withRange(kVortexRange);
 }
