@@ -1,7 +1,7 @@
 // pellucid: the window.
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -10,11 +10,11 @@
 
 #include "controllers/controllers.h"
 #include "controllers/menu_actions.h"
-#include "window/main_window.h"
 #include "tf/formats/tf_file.h"
 #include "version.h"
 #include "widgets/input_habits.h"
 #include "widgets/theme.h"
+#include "window/main_window.h"
 
 namespace {
 
@@ -38,15 +38,6 @@ bool displayMissing() {
 #endif
 }
 
-bool has(int argc, char** argv, std::initializer_list<const char*> options) {
-    for (int i = 1; i < argc; ++i) {
-        for (const char* option : options) {
-            if (std::strcmp(argv[i], option) == 0) return true;
-        }
-    }
-    return false;
-}
-
 void describe(QCommandLineParser& parser) {
     parser.setApplicationDescription(
         "Shows volumes, measures what catches the eye in them, and finds transfer functions.\n"
@@ -61,7 +52,7 @@ void describe(QCommandLineParser& parser) {
                       "tents:N[:PEAK], "
                       "ramp:N or preset:NAME.",
                       "SPEC"});
-    parser.addOption({"session", "Go on with a saved session, a *.pellucid.json file.", "FILE"});
+    parser.addOption({"session", "Continue with a saved session, a *.pellucid.json file.", "FILE"});
     parser.addOption({"windows", "Each FILE in a window of its own, not as frames of one series."});
     parser.addOption({"renderer", "What draws the picture: auto, gl or cpu.", "NAME", "auto"});
     parser.addOption({"theme", "Colours of the window: dark, light or system; without it, as chosen last.", "NAME"});
@@ -86,6 +77,107 @@ QList<QStringList> documentsOf(const QStringList& names, bool windowEach) {
     return documents;
 }
 
+struct Options {
+    Theme theme = Theme::Dark;
+    ViewRenderer renderer = ViewRenderer::Auto;
+    QSize size; ///< of a window; empty: as the last one was
+    QString screenshot, tf;
+    QList<QStringList> documents;
+    bool onSample = false; ///< nobody has named anything to open
+};
+
+/// Throws UsageError.
+Options optionsOf(QCommandLineParser& parser) {
+    if (!parser.parse(QApplication::arguments()))
+        throw UsageError("wrong option", parser.errorText().chopped(1).toStdString(), "see pellucid --help");
+    const auto wrong = [&](const char* kind, const QString& option, const char* whatToDo) {
+        return UsageError(std::string(kind) + " \"" + parser.value(option).toStdString() + "\"",
+                          "--" + option.toStdString(), whatToDo);
+    };
+    Options o;
+    o.screenshot = parser.value("screenshot");
+    if (o.screenshot.isEmpty()) o.theme = keptTheme(); // a picture is the same on every machine
+    if (parser.isSet("theme")) {
+        const auto theme = findNamed<Theme>(parser.value("theme").toStdString());
+        if (!theme) throw wrong("no theme", "theme", "use dark, light or system");
+        o.theme = *theme;
+    }
+    const auto renderer = QStringList{"auto", "gl", "cpu"}.indexOf(parser.value("renderer")); // as ViewRenderer
+    if (renderer < 0) throw wrong("no renderer", "renderer", "use auto, gl or cpu");
+    o.renderer = static_cast<ViewRenderer>(renderer);
+    if (parser.isSet("size")) {
+        const QStringList parts = parser.value("size").split('x');
+        if (parts.size() == 2) o.size = {parts[0].toInt(), parts[1].toInt()};
+        if (o.size.width() < 1 || o.size.height() < 1) throw wrong("bad size", "size", "write it as 1280x800");
+    }
+    o.tf = parser.value("tf");
+    QStringList volumes;
+    for (const QString& file : parser.positionalArguments()) {
+        const bool isTf = hasTfSuffix(file.toStdString());
+        if (isTf && !o.tf.isEmpty())
+            throw UsageError("more than one transfer function", file.toStdString(), "give one");
+        if (isTf)
+            o.tf = file;
+        else
+            volumes << file;
+    }
+    if (parser.isSet("session")) volumes.prepend(parser.value("session"));
+    o.onSample = volumes.isEmpty();
+    if (o.onSample) volumes << "sample:knee";
+    o.documents = documentsOf(volumes, parser.isSet("windows"));
+    if (!o.screenshot.isEmpty() && o.documents.size() > 1)
+        throw UsageError("--screenshot takes one window", volumes.join(" ").toStdString(), "give one FILE");
+    return o;
+}
+
+/// Once picture and figures are complete: saves the window and ends the program.
+void photograph(MainWindow& window, const QString& file) {
+    const auto save = [&window, file] {
+        if (!window.isSettled()) return;
+        // Texts have come that nothing has made room for yet.
+        QApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
+        QCoreApplication::exit(
+            window.grab().save(file, "PNG")
+                ? 0
+                : complain("cannot write the picture, " + file + ", choose a folder you can write to", kFailed));
+    };
+    const auto fail = [](const Error& error) { QCoreApplication::exit(complain(error.what(), kFailed)); };
+    QObject::connect(&window, &MainWindow::settledChanged, &window, save, Qt::QueuedConnection);
+    for (const auto failed : {&OpenController::failed, &OpenController::tfFailed})
+        QObject::connect(&window.controllers().opening, failed, &window, fail, Qt::QueuedConnection);
+}
+
+int showWindows(const Options& o) {
+    std::vector<std::unique_ptr<MainWindow>> windows;
+    for (const QStringList& files : o.documents) {
+        windows.push_back(std::make_unique<MainWindow>(o.renderer));
+        MainWindow& window = *windows.back();
+        if (o.screenshot.isEmpty()) window.restoreLayout();
+        if (!o.size.isEmpty()) window.resize(o.size);
+        window.show();
+        if (o.screenshot.isEmpty()) {
+            window.controllers().recovery.start();
+            if (o.onSample) window.welcome();
+            if (windows.size() == 1) window.controllers().recovery.offerWhenOpen();
+        } else {
+            photograph(window, o.screenshot);
+        }
+        window.controllers().opening.openAtStart(files, o.tf);
+    }
+    return QApplication::exec();
+}
+
+/// Qt takes "--session ID" for itself, but not "--session=FILE".
+std::vector<std::string> withJoinedSession(int argc, char** argv) {
+    std::vector<std::string> words;
+    for (int i = 0; i < argc; ++i) {
+        words.emplace_back(argv[i]);
+        if ((words.back() == "--session" || words.back() == "-session") && i + 1 < argc)
+            words.back() = std::string("--session=") + argv[++i];
+    }
+    return words;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -95,7 +187,8 @@ int main(int argc, char** argv) {
     QCoreApplication::setApplicationVersion(kVersion);
     QCommandLineParser parser;
     describe(parser);
-    if (has(argc, argv, {"--help", "-h", "--help-all", "--version", "-v"})) { // must work without a display
+    const QStringList asking{"--help", "-h", "--help-all", "--version", "-v"}; // must work without a display
+    if (std::any_of(argv, argv + argc, [&](const char* word) { return asking.contains(QLatin1String(word)); })) {
         const QCoreApplication application(argc, argv);
         parser.process(application);
         return 0;
@@ -103,14 +196,7 @@ int main(int argc, char** argv) {
     if (displayMissing())
         return complain("no display, DISPLAY and WAYLAND_DISPLAY are not set, use pellucid-cli, or xvfb-run pellucid",
                         kFailed);
-
-    // Qt takes "--session ID" for itself, but not "--session=FILE".
-    std::vector<std::string> words;
-    for (int i = 0; i < argc; ++i) {
-        words.emplace_back(argv[i]);
-        if ((words.back() == "--session" || words.back() == "-session") && i + 1 < argc)
-            words.back() = std::string("--session=") + argv[++i];
-    }
+    std::vector<std::string> words = withJoinedSession(argc, argv);
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     int count = static_cast<int>(arguments.size());
@@ -118,91 +204,16 @@ int main(int argc, char** argv) {
     QApplication application(count, arguments.data());
     InputHabits habits;
     application.installEventFilter(&habits);
-    if (!parser.parse(QApplication::arguments()))
-        return complain("wrong option, " + parser.errorText().chopped(1) + ", see pellucid --help", kUsage);
-
-    const QString screenshot = parser.value("screenshot");
-    // A picture is the same on every machine.
-    Theme theme = screenshot.isEmpty() ? keptTheme() : Theme::Dark;
-    if (parser.isSet("theme")) {
-        const auto named = findNamed<Theme>(parser.value("theme").toStdString());
-        if (!named)
-            return complain("no theme \"" + parser.value("theme") + "\", --theme, use dark, light or system", kUsage);
-        theme = *named;
-    }
-    applyTheme(application, theme);
-
-    const QString rendererName = parser.value("renderer");
-    ViewRenderer renderer = ViewRenderer::Auto;
-    if (rendererName == "gl") {
-        renderer = ViewRenderer::Gl;
-    } else if (rendererName == "cpu") {
-        renderer = ViewRenderer::Cpu;
-    } else if (rendererName != "auto") {
-        return complain("no renderer \"" + rendererName + "\", --renderer, use auto, gl or cpu", kUsage);
-    }
-    QSize size;
-    if (parser.isSet("size")) {
-        const QStringList parts = parser.value("size").split('x');
-        if (parts.size() == 2) size = {parts[0].toInt(), parts[1].toInt()};
-        if (size.width() < 1 || size.height() < 1)
-            return complain("bad size \"" + parser.value("size") + "\", --size, write it as 1280x800", kUsage);
-    }
-
-    QString tf = parser.value("tf");
-    QStringList volumes;
-    for (const QString& file : parser.positionalArguments()) {
-        if (hasTfSuffix(file.toStdString())) {
-            if (!tf.isEmpty()) return complain("more than one transfer function, " + file + ", give one", kUsage);
-            tf = file;
-        } else {
-            volumes << file;
-        }
-    }
-    if (parser.isSet("session")) volumes.prepend(parser.value("session"));
-    const bool onSample = volumes.isEmpty();
-    if (onSample) volumes << "sample:knee";
-    const QList<QStringList> documents = documentsOf(volumes, parser.isSet("windows"));
-    if (!screenshot.isEmpty() && documents.size() > 1)
-        return complain("--screenshot takes one window, " + volumes.join(" ") + ", give one FILE", kUsage);
-
+    Options options;
     try {
-        std::vector<std::unique_ptr<MainWindow>> windows;
-        for (const QStringList& files : documents) {
-            windows.push_back(std::make_unique<MainWindow>(renderer));
-            MainWindow& window = *windows.back();
-            if (screenshot.isEmpty()) window.restoreLayout();
-            if (!size.isEmpty()) window.resize(size);
-            window.show();
-            OpenController& opening = window.controllers().opening;
-            if (screenshot.isEmpty()) {
-                window.controllers().recovery.start();
-                if (onSample) window.welcome();
-                if (windows.size() == 1) window.controllers().recovery.offerWhenOpen();
-            } else {
-                QObject::connect(
-                    &window, &MainWindow::settledChanged, &window,
-                    [&window, screenshot] {
-                        if (!window.isSettled()) return;
-                        // Texts have come that nothing has made room for yet.
-                        QApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
-                        if (!window.grab().save(screenshot, "PNG"))
-                            return QCoreApplication::exit(complain("cannot write the picture, " + screenshot +
-                                                                       ", choose a folder you can write to",
-                                                                   kFailed));
-                        QCoreApplication::exit(0);
-                    },
-                    Qt::QueuedConnection);
-                const auto fail = [](const Error& error) {
-                    QCoreApplication::exit(complain(QString::fromUtf8(error.what()), kFailed));
-                };
-                QObject::connect(&opening, &OpenController::failed, &window, fail, Qt::QueuedConnection);
-                QObject::connect(&opening, &OpenController::tfFailed, &window, fail, Qt::QueuedConnection);
-            }
-            opening.openAtStart(files, tf);
-        }
-        return QApplication::exec();
+        options = optionsOf(parser);
+    } catch (const UsageError& error) {
+        return complain(error.what(), kUsage);
+    }
+    applyTheme(application, options.theme);
+    try {
+        return showWindows(options);
     } catch (const Error& error) {
-        return complain(QString::fromUtf8(error.what()), kFailed);
+        return complain(error.what(), kFailed);
     }
 }

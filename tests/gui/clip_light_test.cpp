@@ -228,7 +228,7 @@ TEST_CASE("at rest the picture becomes the one that is saved", "[display]") {
     OpenWindow w(24, ViewRenderer::Cpu);
     w.settle();
     // ½ d0 halved three times: 1/16, unless the panel says otherwise.
-    CHECK(w.view().frame().stepInD0 == 1.0 / 16);
+    CHECK(w.view().picture().stepInD0 == 1.0 / 16);
     w.window.findChild<QAction*>("displayAction")->trigger();
     auto& finest = w.child<QComboBox>("finestStepCombo");
     CHECK(finest.currentText() == "1/16 d0");
@@ -237,7 +237,7 @@ TEST_CASE("at rest the picture becomes the one that is saved", "[display]") {
     Q_EMIT finest.activated(0);
     CHECK(w.services().store().session().display->finestStep == 0.5);
     const QImage plain = w.picture();
-    CHECK(w.view().frame().stepInD0 == 0.5);
+    CHECK(w.view().picture().stepInD0 == 0.5);
     CHECK(plain != refined);
     w.document().undo();
     CHECK(finest.currentText() == "1/16 d0");
@@ -265,13 +265,13 @@ TEST_CASE("a change interrupts refining, and nothing is drawn afterwards", "[dis
     const Camera home = w.document().camera();
     // The full picture is there, the finished one is not yet.
     w.document().setCamera(rotated(home, w.document().volume()->geometry(), 40, 0));
-    REQUIRE(waitFor([&] { return w.view().frame().resolutionScale == 1 && !w.view().isComplete(); }));
+    REQUIRE(waitFor([&] { return w.view().picture().resolutionScale == 1 && !w.view().isComplete(); }));
     w.document().setCamera(home);
     w.settle();
     PictureInput input = pictureInput(w.services().scene(), 1, 1);
     CHECK(input.camera == home);
-    CHECK(w.view().frame().stepInD0 == 1.0 / 16);
-    QSignalSpy shown(&w.view(), &VolumeView::frameShown);
+    CHECK(w.view().picture().stepInD0 == 1.0 / 16);
+    QSignalSpy shown(&w.view(), &VolumeView::pictureShown);
     QTest::qWait(600); // several times as long as it rests before it goes on
     CHECK(shown.count() == 0);
 }
@@ -307,6 +307,6 @@ TEST_CASE("the faster renderer draws, and the status line says why", "[window]")
     OpenWindow w;
     CHECK_FALSE(w.view().rendererReason().isEmpty());
     OpenWindow cpu(16, ViewRenderer::Cpu);
-    CHECK(cpu.view().rendererReason() == "As it was asked for.");
-    CHECK(cpu.child<QLabel>("rendererLabel").toolTip().contains("As it was asked for."));
+    CHECK(cpu.view().rendererReason() == "Because it was asked for.");
+    CHECK(cpu.child<QLabel>("rendererLabel").toolTip().contains("Because it was asked for."));
 }

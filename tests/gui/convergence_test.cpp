@@ -61,8 +61,8 @@ std::set<QRgb> colorsOf(QWidget& widget) {
 
 QPointF dotOf(const PlotView& view, std::size_t series, std::size_t point) {
     const PlotPoint& p = view.plot().series.at(series).points.at(point);
-    const PlotBox frame = view.frame();
-    return {frame.xOf(p.x), frame.yOf(p.y)};
+    const PlotBox box = view.box();
+    return {box.xOf(p.x), box.yOf(p.y)};
 }
 
 QRgb rgbOf(const Rgb& color) { return colorFromRgb(color).rgb(); }

@@ -142,7 +142,7 @@ TEST_CASE("the table of features is a well-behaved model", "[model]") {
     document.undo();
     CHECK(model.rowCount() == 3);
     REQUIRE(waitFor([&] { return document.measuresAreCurrent(); }));
-    w.results.addVws(measureInput(w.store.scene()), {0.25, 0.625, 0.125});
+    w.results.addVws(measureInput(w.store.scene()), w.store.scene().tf, {0.25, 0.625, 0.125});
     CHECK(model.data(model.index(1, FeaturesModel::Vws), Qt::EditRole).toDouble() == 0.625);
     model.setReadOnly(true);
     CHECK_FALSE(model.setData(model.index(1, FeaturesModel::Opacity), 0.9));

@@ -37,7 +37,7 @@ TEST_CASE("frames of a rotation", "[.frames]") {
     };
     std::vector<qint64> frames;
     double leastScale = 1;
-    QSignalSpy shown(&view, &VolumeView::frameShown);
+    QSignalSpy shown(&view, &VolumeView::pictureShown);
     send(QEvent::MouseButtonPress, {600, 480}, Qt::LeftButton);
     for (int i = 1; i <= 80; ++i) {
         QElapsedTimer timer;
@@ -46,7 +46,7 @@ TEST_CASE("frames of a rotation", "[.frames]") {
         send(QEvent::MouseMove, {600.0 + 5 * i, 480.0 + i}, Qt::LeftButton);
         REQUIRE(waitFor([&] { return shown.count() > before; }));
         frames.push_back(timer.elapsed());
-        leastScale = std::min(leastScale, view.frame().resolutionScale);
+        leastScale = std::min(leastScale, view.picture().resolutionScale);
     }
     QElapsedTimer rest;
     rest.start();

@@ -328,7 +328,7 @@ TEST_CASE("bars and picture follow the hand while it moves", "[follow]") {
         if (last != m->visibilityHistogram) ++figures;
         last = m->visibilityHistogram;
     });
-    QObject::connect(&w.view(), &VolumeView::frameShown, &w.window, [&] { ++pictures; });
+    QObject::connect(&w.view(), &VolumeView::pictureShown, &w.window, [&] { ++pictures; });
     constexpr int kMoves = 30;
     const auto wait = [] { // as long as a hand takes from one event to the next
         const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(60);

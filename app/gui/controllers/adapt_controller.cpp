@@ -1,17 +1,29 @@
 #include "controllers/adapt_controller.h"
 
-#include <algorithm>
-
 #include "controllers/player_controller.h"
 #include "services/services.h"
 #include "session/track_keys.h"
+#include "store/edits.h"
 
 namespace pellucid::gui {
 namespace {
 
 using Mode = AdaptSettings::Mode;
 
-constexpr int kRest = 60; // milliseconds without a change before what is missing is looked for
+struct ModeText {
+    Mode mode;
+    const char *id, *text, *tip;
+};
+constexpr ModeText kModes[] = {
+    // in the order of Mode
+    {Mode::Static, "adaptStaticAction", QT_TR_NOOP("&Static transfer function"),
+     QT_TR_NOOP("Keys only, and what lies between them")},
+    {Mode::Refine, "adaptRefineAction", QT_TR_NOOP("&Refine from frame to frame"),
+     QT_TR_NOOP(
+         "Each frame's transfer function is that of the frame before, refined by the entropy of its own values")},
+    {Mode::Optimize, "adaptOptimizeAction", QT_TR_NOOP("&Optimize every frame"),
+     QT_TR_NOOP("Each frame's opacities bring VWS to the targets, starting from those of the frame before")},
+};
 
 } // namespace
 
@@ -23,9 +35,6 @@ AdaptController::AdaptController(Services& services, PlayerController& player)
               return Answer{before, m_maker.next(basis, {job.stop, {}}, &job)};
           },
           [this](const Scene& basis, Answer& answer) { finish(basis, answer); }, WhenBusy::StopOld, &m_lane) {
-    m_timer.setSingleShot(true);
-    m_timer.setInterval(kRest);
-    connect(&m_timer, &QTimer::timeout, this, &AdaptController::look);
     connect(&services.store(), &SessionStore::changed, this, &AdaptController::follow);
     connect(&services, &Services::readOnlyChanged, this, [this] {
         if (m_services.isReadOnly()) m_job.cancel();
@@ -38,69 +47,54 @@ AdaptController::AdaptController(Services& services, PlayerController& player)
     });
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_stopped = true;
-        m_services.notices().add(
-            {tr("Transfer functions of other frames are not made: %1").arg(QString::fromUtf8(error.what())), {}});
+        m_services.notices().add({tr("Transfer functions of other frames are not made: %1").arg(error.what())});
         Q_EMIT changed();
     });
 }
 
 void AdaptController::addActions() {
-    const QString menu = tr("T&ime");
-    Actions& actions = m_services.actions();
-    const auto open = [this] { return m_player.hasSeries() && !m_services.isReadOnly(); };
-    const auto mode = [&](const char* id, const QString& text, const QString& tip, Mode which, bool separator) {
-        actions.add(menu, id, text, {}, tip, [this, which] { setMode(which); }, open,
-                    {.checked = [this, which] { return m_services.store().session().adapt->mode == which; },
-                     .separatorBefore = separator});
-    };
-    mode("adaptStaticAction", tr("&Static transfer function"), tr("The keys alone, and what lies between them"),
-         Mode::Static, true);
-    mode("adaptRefineAction", tr("&Refine from frame to frame"),
-         tr("Each frame's transfer function is that of the frame before, refined by entropy of its own values"),
-         Mode::Refine, false);
-    mode("adaptOptimizeAction", tr("&Optimize every frame"),
-         tr("Each frame's opacities bring VWS to the targets, from those of the frame before"), Mode::Optimize, false);
-    m_keyActions << actions.add(
-        menu, "tfKeyAction", tr("Transfer function &key here"), "K",
-        tr("This frame's transfer function is made by hand; what is made for frames begins at keys"),
-        [this] { hasTfKey() ? removeTfKey() : setTfKey(); }, open,
-        {.checked = [this] { return hasTfKey(); }, .separatorBefore = true});
-    m_keyActions << actions.add(
-        menu, "targetKeyAction", tr("&Target key here"), "Shift+K",
-        tr("The targets are those of this frame; between keys they go from the one to the other"),
-        [this] { hasTargetKey() ? removeTargetKey() : setTargetKey(); }, open,
-        {.checked = [this] { return hasTargetKey(); }});
-    const auto go = [&](const char* id, const QString& text, const char* keys, int direction) {
-        m_keyActions << actions.add(
-            menu, id, text, keys, {}, [this, direction] { goToKey(direction); },
-            [this] { return m_player.hasSeries(); });
-    };
-    go("previousKeyAction", tr("Pre&vious key"), "Ctrl+,", -1);
-    go("nextKeyAction", tr("Ne&xt key"), "Ctrl+.", 1);
-    m_keyActions << actions.add(
-        menu, "fromHereAction", tr("From this frame o&n"), {},
-        tr("This frame's transfer function is where those of all frames after it begin: later keys go"),
-        [this] { fromHereOn(); }, open);
+    ActionMenu menu(m_services.actions(), tr("T&ime"),
+                    [this] { return m_player.hasSeries() && !m_services.isReadOnly(); });
+    menu.separate();
+    for (const ModeText& m : kModes)
+        menu.addCheck(
+            m.id, tr(m.text), {}, tr(m.tip),
+            [this, mode = m.mode] { return m_services.store().session().adapt->mode == mode; },
+            [this, mode = m.mode] { setMode(mode); });
+    menu.separate();
+    m_keyActions << menu.addCheck(
+        "tfKeyAction", tr("Transfer function &key here"), "K",
+        tr("This frame's transfer function is made by hand; what is made for the frames after it begins here"),
+        [this] { return hasTfKey(); }, [this] { hasTfKey() ? removeTfKey() : setTfKey(); });
+    m_keyActions << menu.addCheck(
+        "targetKeyAction", tr("&Target key here"), "Shift+K",
+        tr("The targets are those of this frame; between two keys they change evenly"),
+        [this] { return hasTargetKey(); }, [this] { hasTargetKey() ? removeTargetKey() : setTargetKey(); });
+    const ActionMore always{.enabled = [this] { return m_player.hasSeries(); }};
+    m_keyActions << menu.add(
+        "previousKeyAction", tr("Pre&vious key"), "Ctrl+,", {}, [this] { goToKey(-1); }, always);
+    m_keyActions << menu.add(
+        "nextKeyAction", tr("Ne&xt key"), "Ctrl+.", {}, [this] { goToKey(1); }, always);
+    m_keyActions << menu.add(
+        "fromHereAction", tr("From this frame o&n"), {},
+        tr("The transfer functions of all later frames begin with that of this frame: later keys are removed"),
+        [this] { fromHereOn(); });
 }
 
 // ---- edits
 
 void AdaptController::setMode(Mode mode) {
     m_stopped = false;
-    m_services.store().edit(mode == Mode::Static   ? tr("Static transfer function")
-                            : mode == Mode::Refine ? tr("Refine from frame to frame")
-                                                   : tr("Optimize every frame"),
-                            {}, [mode](Session& session) {
-                                session.adapt.edit([mode](AdaptSettings& a) { a.mode = mode; });
-                                if (mode != Mode::Static) session.holdTargets = false; // both set opacities
-                            });
+    m_services.store().edit(tr(kModes[static_cast<std::size_t>(mode)].text).remove('&'), {}, [mode](Session& session) {
+        session.adapt.edit([mode](AdaptSettings& a) { a.mode = mode; });
+        if (mode != Mode::Static) session.holdTargets = false; // both set opacities
+    });
 }
 
 void AdaptController::setCoherence(double coherence) {
     m_stopped = false;
-    m_services.store().edit(tr("Coherence"), "coherence", [coherence](Session& session) {
-        session.adapt.edit([coherence](AdaptSettings& a) { a.coherence = coherence; });
-    });
+    editPart(m_services.store(), &Session::adapt, tr("Coherence"), "coherence",
+             [coherence](AdaptSettings& a) { a.coherence = coherence; });
 }
 
 bool AdaptController::hasTfKey() const {
@@ -121,7 +115,7 @@ void AdaptController::setTfKey() {
 void AdaptController::removeTfKey() {
     if (!hasTfKey()) return;
     if (m_services.store().session().variable().track.keys.size() == 1) {
-        Q_EMIT m_services.message(tr("The only key stays: it is the transfer function of all frames."));
+        Q_EMIT m_services.message(tr("The only key cannot be removed: it is the transfer function of all frames."));
         return;
     }
     m_services.store().edit(tr("Remove key"), {}, [](Session& session) { pellucid::removeTfKey(session); });
@@ -196,10 +190,6 @@ void AdaptController::follow(const Scene& before, const Scene& after) {
         if (m_smoothing > 0 && before.session.frame == after.session.frame) m_job.cancel();
         m_timer.start();
     }
-    if (before.session.frame != after.session.frame || other || !before.session.adapt.isSame(after.session.adapt) ||
-        !before.session.targetKeys.isSame(after.session.targetKeys) ||
-        !before.session.variables.isSame(after.session.variables))
-        m_services.actions().refresh();
 }
 
 void AdaptController::look() {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <QObject>
-#include <QTimer>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "session/sequence.h"
 
 class QAction;
@@ -14,10 +14,10 @@ namespace pellucid::gui {
 class PlayerController;
 class Services;
 
-/// While the session's transfer functions adapt, those that are missing or of other inputs than the present ones are
-/// made one after the other on a thread of its own, beside what one looks at. Each is put in as it comes and is no step
-/// of the history; where coherence asks for it they are smoothed together in the end. Waits while an optimization runs,
-/// data are fetched, or a hand drags.
+/// While transfer functions adapt to the frames of a series, this makes those that are missing or out of date, one
+/// after the other, on a thread of its own. Each is put in place as soon as it is made, and is no step of the history;
+/// where coherence asks for it, all are smoothed together at the end. Nothing is made while an optimization runs, data
+/// are fetched, or the user drags something.
 class AdaptController : public QObject {
     Q_OBJECT
 public:
@@ -73,8 +73,8 @@ private:
     int m_firstStale = -1, m_staleKey = -1;
     double m_smoothing = 0;
     bool m_stopped = false;
-    QTimer m_timer;
-    SequenceMaker m_maker; ///< used in m_job alone, which does one thing at a time
+    RestTimer m_timer{60, [this] { look(); }}; ///< what is missing is looked for after so many milliseconds of rest
+    SequenceMaker m_maker;                     ///< used in m_job alone, which does one thing at a time
     Lane m_lane;
     Job<Scene, Answer> m_job; // last: it ends before the rest goes
 };

@@ -8,19 +8,19 @@ namespace {
 
 void addEditActions(Services& services) {
     const SessionStore& store = services.store();
-    const auto undoTip = [&store] {
-        return store.canUndo() ? QObject::tr("Undo: %1").arg(store.undoText()) : QObject::tr("Undo");
-    };
-    const auto redoTip = [&store] {
-        return store.canRedo() ? QObject::tr("Redo: %1").arg(store.redoText()) : QObject::tr("Redo");
-    };
-    services.actions().add(
-        QObject::tr("&Edit"), "undoAction", QObject::tr("&Undo"), "Ctrl+Z", {}, [&services] { services.undo(); },
-        [&services, &store] { return !services.isReadOnly() && store.canUndo(); }, {.say = undoTip, .inToolBar = true});
-    services.actions().add(
-        QObject::tr("&Edit"), "redoAction", QObject::tr("&Redo"), "Ctrl+Shift+Z; Ctrl+Y", {},
-        [&services] { services.redo(); }, [&services, &store] { return !services.isReadOnly() && store.canRedo(); },
-        {.say = redoTip, .inToolBar = true});
+    ActionMenu menu(services.actions(), QObject::tr("&Edit"));
+    menu.add(
+        "undoAction", QObject::tr("&Undo"), "Ctrl+Z", {}, [&services] { services.undo(); },
+        {.enabled = [&services, &store] { return !services.isReadOnly() && store.canUndo(); },
+         .say =
+             [&store] { return store.canUndo() ? QObject::tr("Undo: %1").arg(store.undoText()) : QObject::tr("Undo"); },
+         .inToolBar = true});
+    menu.add(
+        "redoAction", QObject::tr("&Redo"), "Ctrl+Shift+Z; Ctrl+Y", {}, [&services] { services.redo(); },
+        {.enabled = [&services, &store] { return !services.isReadOnly() && store.canRedo(); },
+         .say =
+             [&store] { return store.canRedo() ? QObject::tr("Redo: %1").arg(store.redoText()) : QObject::tr("Redo"); },
+         .inToolBar = true});
 }
 
 } // namespace
@@ -31,7 +31,6 @@ Controllers::Controllers(Services& all) : services(all) {
     saving.addActions();
     addEditActions(services);
     starting.addActions();
-    addTfActions(services);
     features.addActions();
     refining.addActions();
     targets.addActions();
@@ -50,13 +49,7 @@ Controllers::Controllers(Services& all) : services(all) {
     SessionStore& store = services.store();
     Actions& actions = services.actions();
     QObject::connect(&store, &SessionStore::historyChanged, &actions, &Actions::refresh);
-    QObject::connect(&store, &SessionStore::changed, &actions, [&actions](const Scene& before, const Scene& after) {
-        if (before.volume != after.volume || before.tf.features.empty() != after.tf.features.empty() ||
-            before.camera.projection != after.camera.projection ||
-            before.session.reference != after.session.reference ||
-            !before.session.slices.isSame(after.session.slices) || !before.session.field.isSame(after.session.field))
-            actions.refresh();
-    });
+    QObject::connect(&store, &SessionStore::changed, &actions, &Actions::refresh);
     services.setReadOnlyWhile([this] { return optimizing.isRunning(); });
     QObject::connect(&optimizing, &OptimizeController::runningChanged, &services, [this] {
         services.actions().refresh();

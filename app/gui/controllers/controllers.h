@@ -18,7 +18,7 @@
 
 namespace pellucid::gui {
 
-/// Each gets, besides the services, those that it calls; they come before it, and go after it.
+/// Each controller gets the services, and the controllers that it calls: these are made before it and go after it.
 struct Controllers {
     explicit Controllers(Services& services);
     ~Controllers();

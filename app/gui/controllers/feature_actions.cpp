@@ -66,11 +66,8 @@ void tryAdd(Services& services, const QString& text, const Change& change) {
 
 void addShape(Services& services, ShapeKind kind) {
     tryAdd(services, QObject::tr("Add %1").arg(QString::fromStdString(name(kind))), [&](const TransferFunction& tf) {
-        const int selected = services.selectedFeature();
-        const double near = selected < 0 ? 0.5
-                                         : (tf.features[static_cast<std::size_t>(selected)].a +
-                                            tf.features[static_cast<std::size_t>(selected)].b) /
-                                               2;
+        const Feature* const selected = services.selected();
+        const double near = selected == nullptr ? 0.5 : (selected->a + selected->b) / 2;
         const ValueRange room = roomFor(tf, kNewWidth, near);
         Shape shape;
         shape.kind = kind;
@@ -110,14 +107,53 @@ void merge(Services& services, int feature) {
            [&](const TransferFunction& now) { return withFeaturesMerged(now, lower); });
 }
 
+void duplicate(Services& services, int feature) {
+    tryAdd(services, QObject::tr("Duplicate feature"),
+           [&](const TransferFunction& tf) { return withFeatureDuplicated(tf, feature); });
+}
+
 void remove(Services& services, int feature) {
     tryEdit(services, QObject::tr("Remove feature"),
             [&](const TransferFunction& tf) { return withFeatureRemoved(tf, feature); });
     select(services, std::min(feature, static_cast<int>(services.scene().tf.features.size()) - 1));
 }
 
+void showOrHide(Services& services, int feature) {
+    const bool hidden = services.selected()->hidden;
+    tryEdit(services, hidden ? QObject::tr("Show feature") : QObject::tr("Hide feature"),
+            [&](const TransferFunction& tf) { return withFeatureHidden(tf, feature, !hidden); });
+}
+
+void changeKind(Services& services, int feature, ShapeKind kind) {
+    tryEdit(services, QObject::tr("Change shape"),
+            [&](const TransferFunction& tf) { return withFeatureKind(tf, feature, kind); });
+}
+
+void hideOthers(Services& services, int feature) {
+    tryEdit(services, QObject::tr("Hide other features"),
+            [&](const TransferFunction& tf) { return withOthersHidden(tf, feature); });
+}
+
+/// What is done to the selected feature.
+struct FeatureText {
+    const char *id, *text, *keys, *tip;
+    void (*act)(Services& services, int feature);
+};
+constexpr FeatureText kShaping[] = {
+    {"featureSplit", QT_TR_NOOP("&Split"), "Ctrl+Shift+X",
+     QT_TR_NOOP("Makes two features of the selected one: in the deepest valley of the histogram within it, else in\n"
+                "its middle; with the mouse over the curve, there. The picture stays but for the new one's colour"),
+     split},
+    {"featureMerge", QT_TR_NOOP("&Merge with the next"), "Ctrl+Shift+M",
+     QT_TR_NOOP("Makes one feature of the selected one and the next by value (of the last one and the one before)"),
+     merge},
+    {"featureDuplicate", QT_TR_NOOP("&Duplicate"), "Ctrl+Shift+D",
+     QT_TR_NOOP("Puts a copy in the nearest gap between features"), duplicate},
+    {"featureRemove", QT_TR_NOOP("R&emove"), "Ctrl+Delete",
+     QT_TR_NOOP("Removes the selected feature, and what it makes opaque"), remove},
+};
+
 QString featureMenu() { return QObject::tr("&Transfer function") + "/" + QObject::tr("Feat&ure"); }
-QString colorMenu() { return QObject::tr("&Transfer function") + "/" + QObject::tr("&Colours"); }
 
 /// The colours of a map from left to right.
 QPixmap colorStrip(const ColorMap& map, const QSize& size) {
@@ -136,147 +172,116 @@ void FeatureActions::toggleOnly(int feature) {
     if (feature < 0 || static_cast<std::size_t>(feature) >= features.size()) return;
     const FeatureId id = store.scene().onlyFeature() == feature ? 0 : features[static_cast<std::size_t>(feature)].id;
     store.commit();
-    store.edit(id == 0 ? QObject::tr("Draw all features") : QObject::tr("Draw only this feature"), {},
-               [&](Session& session) { session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; }); });
+    editPart(store, &Session::display,
+             id == 0 ? QObject::tr("Draw all features") : QObject::tr("Draw only this feature"), {},
+             [&](DisplaySettings& d) { d.onlyFeature = id; });
+}
+
+void FeatureActions::addPresets() {
+    Services& services = m_services;
+    const auto editable = [&services] { return services.isEditable(); };
+    ActionMenu menu(services.actions(), QObject::tr("&Transfer function"), editable),
+        presets(services.actions(), QObject::tr("&Transfer function") + "/" + QObject::tr("&Presets"), editable);
+    for (const char* spec : {"tents:1", "tents:2", "tents:3", "tents:4", "tents:6", "tents:8", "ramp:6", "ramp:12"}) {
+        const QString name = QString::fromLatin1(spec), number = name.section(':', 1);
+        const QString text = name.startsWith("ramp") ? QObject::tr("Ramp of %1 points, one feature").arg(number)
+                             : number == "1"         ? QObject::tr("One tent, one feature")
+                                                     : QObject::tr("%1 tents, one feature each").arg(number);
+        presets.add(name, text, {}, {},
+                    [&services, name] { editTf(services.store(), *tfFromSpec(name.toStdString()), name); });
+    }
+    menu.separate();
+    menu.add("deriveFeaturesAction", QObject::tr("&Features from the curve"), {},
+             QObject::tr("One feature for each interval of the curve between two points of opacity 0"), [&services] {
+                 TransferFunction tf = services.scene().tf;
+                 tf.features = deriveFeatures(tf);
+                 editTf(services.store(), tf, QObject::tr("Features from the curve"));
+             });
 }
 
 void FeatureActions::addColorActions() {
     Services& services = m_services;
-    Actions& actions = services.actions();
-    const auto editable = [&services] { return services.isEditable(); };
+    ActionMenu menu(services.actions(), QObject::tr("&Transfer function") + "/" + QObject::tr("&Colours"),
+                    [&services] { return services.isEditable(); });
     const auto overFeatures = std::make_shared<bool>(false); // how the next map is applied; no part of any state
     for (const ColorMap& map : colorMaps()) {
-        const ColorMap* const which = &map;
-        QAction* const action = actions.add(
-            colorMenu(), QStringLiteral("colorMap-") + QString::fromStdString(map.name),
-            QString::fromStdString(map.title), {},
-            map.visionSafe ? QObject::tr("Colours by value; told apart by colour-blind eyes too. Opacities stay")
+        const auto apply = [&services, &map, overFeatures] {
+            tryEdit(services, QObject::tr("Colours: %1").arg(QString::fromStdString(map.name)),
+                    [&](const TransferFunction& tf) {
+                        ColorMapOptions options;
+                        options.overFeatures = *overFeatures;
+                        return withColorMap(tf, map, options);
+                    });
+        };
+        QAction* const action = menu.add(
+            "colorMap-" + QString::fromStdString(map.name), QString::fromStdString(map.title), {},
+            map.visionSafe ? QObject::tr("Colours by value; colour-blind eyes can tell them apart too. Opacities stay")
                            : QObject::tr("Colours by value; opacities stay"),
-            [&services, which, overFeatures] {
-                tryEdit(services, QObject::tr("Colours: %1").arg(QString::fromStdString(which->name)),
-                        [&](const TransferFunction& tf) {
-                            ColorMapOptions options;
-                            options.overFeatures = *overFeatures;
-                            return withColorMap(tf, *which, options);
-                        });
-            },
-            editable);
+            apply);
         action->setIcon(colorStrip(map, kSwatch));
         action->setIconVisibleInMenu(true);
         m_maps << action;
     }
-    m_colors << actions.add(colorMenu(), "colorsOverFeatures", QObject::tr("&One colour per feature"), {},
-                            QObject::tr("The next map gives each feature one colour, in the order of their values,\n"
-                                        "instead of a colour to every value"),
-                            [overFeatures] { *overFeatures = !*overFeatures; }, editable,
-                            {.checked = [overFeatures] { return *overFeatures; }, .separatorBefore = true});
-    m_colors << actions.add(colorMenu(), "colorsReverse", QObject::tr("&Reverse"), {},
-                            QObject::tr("The colours end to end: those of high values to low ones. Opacities stay"),
-                            [&services] { tryEdit(services, QObject::tr("Reverse colours"), withColorsReversed); },
-                            editable, {.separatorBefore = true});
-    m_colors << actions.add(
-        colorMenu(), "colorsInvert", QObject::tr("&Invert"), {},
-        QObject::tr("Light colours become dark and dark ones light, of the same hue. Opacities stay"),
-        [&services] { tryEdit(services, QObject::tr("Invert colours"), withColorsInverted); }, editable);
+    menu.separate();
+    m_colors << menu.addCheck(
+        "colorsOverFeatures", QObject::tr("&One colour per feature"), {},
+        QObject::tr("The next map gives each feature one colour, in the order of their values,\n"
+                    "instead of a colour to every value"),
+        [overFeatures] { return *overFeatures; }, [overFeatures] { *overFeatures = !*overFeatures; });
+    menu.separate();
+    m_colors << menu.add("colorsReverse", QObject::tr("&Reverse"), {},
+                         QObject::tr("Gives low values the colours of high ones, and the reverse. Opacities stay"),
+                         [&services] { tryEdit(services, QObject::tr("Reverse colours"), withColorsReversed); });
+    m_colors << menu.add("colorsInvert", QObject::tr("&Invert"), {},
+                         QObject::tr("Makes light colours dark and dark ones light, of the same hue. Opacities stay"),
+                         [&services] { tryEdit(services, QObject::tr("Invert colours"), withColorsInverted); });
 }
 
 void FeatureActions::addActions() {
     Services& services = m_services;
     Actions& actions = services.actions();
     const auto editable = [&services] { return services.isEditable(); };
-    const auto selected = [&services, editable] { return editable() && services.selectedFeature() >= 0; };
-
+    const auto selected = [&services, editable] { return editable() && services.selected() != nullptr; };
+    addPresets();
+    ActionMenu add(actions, featureMenu() + "/" + QObject::tr("&Add"), editable),
+        menu(actions, featureMenu(), selected),
+        changeTo(actions, featureMenu() + "/" + QObject::tr("&Change to"), selected);
     for (const ShapeText& shape : kShapes)
-        m_shapes << actions.add(
-            featureMenu() + "/" + QObject::tr("&Add"), shape.id, QObject::tr(shape.text), {}, QObject::tr(shape.tip),
-            [&services, kind = shape.kind] { addShape(services, kind); }, editable);
-    const auto add = [&](const QString& id, const QString& text, const QString& key, const QString& tip, bool separator,
-                         std::function<void(int)> trigger) {
-        return actions.add(featureMenu(), id, text, key, tip,
-                           [&services, trigger = std::move(trigger)] {
-                               if (const int f = services.selectedFeature(); f >= 0) trigger(f);
-                           },
-                           selected, {.separatorBefore = separator});
-    };
-    m_shaping << add(
-        "featureSplit", QObject::tr("&Split"), "Ctrl+Shift+X",
-        QObject::tr("Two features of the selected one: in the deepest valley of the histogram within it, else in its\n"
-                    "middle; with the mouse over the curve, there. The picture stays but for the new one's colour"),
-        true, [&services](int f) { split(services, f); });
-    m_shaping << add(
-        "featureMerge", QObject::tr("&Merge with the next"), "Ctrl+Shift+M",
-        QObject::tr("One feature of the selected one and the next by value (of the last one: the one before)"), false,
-        [&services](int f) { merge(services, f); });
-    m_shaping << add("featureDuplicate", QObject::tr("&Duplicate"), "Ctrl+Shift+D",
-                     QObject::tr("A copy in the nearest gap between features"), false, [&services](int f) {
-                         tryAdd(services, QObject::tr("Duplicate feature"),
-                                [&](const TransferFunction& tf) { return withFeatureDuplicated(tf, f); });
-                     });
-    m_shaping << add("featureRemove", QObject::tr("R&emove"), "Ctrl+Delete",
-                     QObject::tr("Remove the selected feature, and what it makes opaque"), false,
-                     [&services](int f) { remove(services, f); });
+        m_shapes << add.add(shape.id, QObject::tr(shape.text), {}, QObject::tr(shape.tip),
+                            [&services, kind = shape.kind] { addShape(services, kind); });
+    menu.separate();
+    for (const FeatureText& entry : kShaping)
+        m_shaping << menu.add(entry.id, QObject::tr(entry.text), entry.keys, QObject::tr(entry.tip),
+                              toSelected(services, entry.act));
     for (const ShapeText& shape : kShapes)
-        m_kinds << actions.add(
-            featureMenu() + "/" + QObject::tr("&Change to"),
-            QStringLiteral("featureAs-") + QString::fromStdString(name(shape.kind)), QObject::tr(shape.text), {},
+        m_kinds << changeTo.add(
+            "featureAs-" + QString::fromStdString(name(shape.kind)), QObject::tr(shape.text), {},
             QObject::tr("The same values, peak and colour in another shape"),
-            [&services, kind = shape.kind] {
-                const int f = services.selectedFeature();
-                if (f >= 0)
-                    tryEdit(services, QObject::tr("Change shape"),
-                            [&](const TransferFunction& tf) { return withFeatureKind(tf, f, kind); });
-            },
-            selected);
-    m_showing << actions.add(featureMenu(), "featureShow", QObject::tr("S&hown"), "H",
-                             QObject::tr("The eye of the selected feature: hidden, it is neither drawn nor measured"),
-                             [&services] {
-                                 const int f = services.selectedFeature();
-                                 if (f < 0) return;
-                                 const bool hidden = services.scene().tf.features[static_cast<std::size_t>(f)].hidden;
-                                 tryEdit(services, hidden ? QObject::tr("Show feature") : QObject::tr("Hide feature"),
-                                         [&](const TransferFunction& tf) { return withFeatureHidden(tf, f, !hidden); });
-                             },
-                             selected,
-                             {.checked =
-                                  [&services] {
-                                      const int f = services.selectedFeature();
-                                      return f < 0 || !services.scene().tf.features[static_cast<std::size_t>(f)].hidden;
-                                  },
-                              .separatorBefore = true});
-    m_showing << actions.add(featureMenu(), "featureOnly", QObject::tr("&Draw only this"), "Shift+H",
-                             QObject::tr("The picture shows the selected feature alone; figures stay those of all"),
-                             [this] { toggleOnly(m_services.selectedFeature()); }, selected, {.checked = [&services] {
-                                 const int f = services.selectedFeature();
-                                 return f >= 0 && services.scene().onlyFeature() == f;
-                             }});
-    m_showing << add("featureHideOthers", QObject::tr("Hide &others"), {},
-                     QObject::tr("Close the eyes of all other features: picture and figures are of this one"), false,
-                     [&services](int f) {
-                         tryEdit(services, QObject::tr("Hide other features"),
-                                 [&](const TransferFunction& tf) { return withOthersHidden(tf, f); });
-                     });
-    m_showing << actions.add(
-        featureMenu(), "featureShowAll", QObject::tr("Show &all"), {}, QObject::tr("Open the eyes of all features"),
-        [&services] { tryEdit(services, QObject::tr("Show all features"), withAllShown); },
-        [&services, editable] {
-            const auto& features = services.scene().tf.features;
-            return editable() &&
-                   std::any_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; });
-        });
+            toSelected(services, [kind = shape.kind](Services& s, int f) { changeKind(s, f, kind); }));
+    menu.separate();
+    m_showing << menu.addCheck(
+        "featureShow", QObject::tr("S&hown"), "H",
+        QObject::tr("The eye of the selected feature: a hidden one is neither drawn nor measured"),
+        [&services] { return services.selected() == nullptr || !services.selected()->hidden; },
+        toSelected(services, showOrHide));
+    m_showing << menu.addCheck(
+        "featureOnly", QObject::tr("&Draw only this"), "Shift+H",
+        QObject::tr("The picture shows the selected feature alone; figures stay those of all"),
+        [&services] { return services.selected() && services.scene().onlyFeature() == services.selectedFeature(); },
+        [this] { toggleOnly(m_services.selectedFeature()); });
+    m_showing << menu.add("featureHideOthers", QObject::tr("Hide &others"), {},
+                          QObject::tr("Close the eyes of all other features: picture and figures are of this one"),
+                          toSelected(services, hideOthers));
+    m_showing << menu.add("featureShowAll", QObject::tr("Show &all"), {}, QObject::tr("Open the eyes of all features"),
+                          [&services] { tryEdit(services, QObject::tr("Show all features"), withAllShown); },
+                          {.enabled = [&services, editable] {
+                              const auto& features = services.scene().tf.features;
+                              return editable() && std::any_of(features.begin(), features.end(),
+                                                               [](const Feature& f) { return f.hidden; });
+                          }});
     addColorActions();
 
     QObject::connect(&services.selection(), &Selection::featureChanged, &actions, &Actions::refresh);
-    QObject::connect(&services.store(), &SessionStore::changed, &actions,
-                     [&actions](const Scene& before, const Scene& after) {
-                         const auto eyesAndIds = [](const TransferFunction& p, const TransferFunction& q) {
-                             return std::equal(p.features.begin(), p.features.end(), q.features.begin(),
-                                               q.features.end(), [](const Feature& f, const Feature& g) {
-                                                   return f.id == g.id && f.hidden == g.hidden;
-                                               });
-                         };
-                         if (!eyesAndIds(before.tf, after.tf) || before.onlyFeature() != after.onlyFeature())
-                             actions.refresh();
-                     });
 }
 
 void FeatureActions::fillMenu(QMenu& menu) const {

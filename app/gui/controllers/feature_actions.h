@@ -1,4 +1,4 @@
-// What is done to features as objects: the menu Transfer function → Feature, and that of the colours.
+// The submenus Presets, Feature and Colours of the menu Transfer function.
 #pragma once
 
 #include <QList>
@@ -28,6 +28,7 @@ public:
     void toggleOnly(int feature);
 
 private:
+    void addPresets();
     void addColorActions();
 
     Services& m_services;

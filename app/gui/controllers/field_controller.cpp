@@ -1,18 +1,11 @@
 #include "controllers/field_controller.h"
 
-#include <QFileDialog>
-#include <QFileInfo>
-#include <QSettings>
-
+#include "dialogs/ask_file.h"
 #include "services/services.h"
+#include "store/edits.h"
 #include "volume/loader.h"
 
 namespace pellucid::gui {
-namespace {
-
-constexpr int kRest = 150; ///< milliseconds without a change before a field is computed
-
-} // namespace
 
 FieldController::FieldController(Services& services)
     : m_services(services), m_computing(
@@ -39,9 +32,6 @@ FieldController::FieldController(Services& services)
               Q_EMIT saved(path);
           },
           WhenBusy::Queue) {
-    m_rest.setSingleShot(true);
-    m_rest.setInterval(kRest);
-    connect(&m_rest, &QTimer::timeout, this, &FieldController::begin);
     connect(&services.store(), &SessionStore::changed, this, &FieldController::follow);
     connect(&m_computing, &JobBase::progress, this, [this](double fraction) {
         m_progress = fraction;
@@ -52,8 +42,7 @@ FieldController::FieldController(Services& services)
         setState(State::Failed);
     });
     connect(&m_saving, &JobBase::busyChanged, this, &FieldController::busyChanged);
-    connect(&m_saving, &JobBase::failed, this,
-            [this](const Error& error) { m_services.showError(tr("Cannot save the field"), error); });
+    services.showFailuresOf(m_saving, tr("Cannot save the field"));
 }
 
 FieldController::Request FieldController::requestOf(const Scene& scene) {
@@ -68,19 +57,16 @@ void FieldController::setState(State state) {
 }
 
 void FieldController::follow(const Scene& before, const Scene& after) {
-    if (before.volume != after.volume) { // nothing of it may be seen any more
+    const bool off = !after.volume || !after.session.field->kind;
+    if (before.volume != after.volume || (off && m_state != State::Off)) { // nothing of it may be seen any more
         m_computing.cancel();
         m_field.reset();
         m_codes.reset();
         m_wanted = m_shown = {};
     }
-    if (!after.volume || !after.session.field->kind) {
+    if (off) {
         m_rest.stop();
         if (m_state == State::Off) return;
-        m_computing.cancel();
-        m_field.reset();
-        m_codes.reset();
-        m_wanted = m_shown = {};
         m_failure.reset();
         return setState(State::Off);
     }
@@ -105,8 +91,6 @@ void FieldController::compute() {
     setState(State::Computing);
 }
 
-void FieldController::begin() { m_computing.start(m_wanted, QString::fromStdString(m_wanted.input.volume->title)); }
-
 void FieldController::cancel() {
     if (m_state != State::Computing) return;
     m_rest.stop();
@@ -120,13 +104,13 @@ PictureInput FieldController::picture(int width, int height, bool transparent) c
                    : pictureInput(scene, width, height, transparent);
 }
 
-AnnotationInput FieldController::annotation(const PictureInput& picture, const FrameOfReference& show,
+AnnotationInput FieldController::annotation(const PictureInput& picture, const AnnotationChoice& show,
                                             double density) const {
     const Scene& scene = m_services.scene();
     if (m_state == State::Off) return annotationInput(picture, show, density);
     AnnotationInput input = field() ? fieldAnnotationInput(picture, scene, *m_field, show, density)
                                     : annotationInput(picture, show, density);
-    if (!show.on) input.show = FrameOfReference::none();
+    if (!show.on) input.show = AnnotationChoice::none();
     input.show.on = input.show.title = true;
     input.show.legend = input.show.legend || field() != nullptr;
     if (m_state == State::Current) {
@@ -134,21 +118,17 @@ AnnotationInput FieldController::annotation(const PictureInput& picture, const F
             input.title += tr(" of another view").toStdString();
         return input;
     }
-    const std::string why = (m_state == State::Computing ? tr("being computed")
-                             : m_state == State::Failed  ? tr("cannot be computed")
-                                                         : tr("stopped"))
-                                .toStdString();
-    const std::string present = title(m_wanted.kind);
-    input.title =
-        field() ? input.title + " " +
-                      tr("of an earlier state; the present one: %1").arg(QString::fromStdString(why)).toStdString()
-                : present + ": " + why;
+    const QString why = m_state == State::Computing ? tr("being computed")
+                        : m_state == State::Failed  ? tr("cannot be computed")
+                                                    : tr("stopped");
+    input.title = field() ? input.title + " " + tr("of an earlier state; the present one: %1").arg(why).toStdString()
+                          : std::string(title(m_wanted.kind)) + ": " + why.toStdString();
     return input;
 }
 
 void FieldController::show(std::optional<FieldKind> kind) {
-    m_services.store().edit(kind ? tr("Field: %1").arg(QString::fromLatin1(title(*kind))) : tr("No field"), {},
-                            [&](Session& session) { session.field.edit([&](FieldView& f) { f.kind = kind; }); });
+    const QString text = kind ? tr("Field: %1").arg(QString::fromLatin1(title(*kind))) : tr("No field");
+    editPart(m_services.store(), &Session::field, text, {}, [&](FieldView& f) { f.kind = kind; });
 }
 
 void FieldController::save(const QString& path) {
@@ -159,35 +139,28 @@ void FieldController::save(const QString& path) {
 
 void FieldController::chooseFile() {
     if (m_state != State::Current) return;
-    const QString folder = QSettings().value("fieldFolder").toString();
-    const QString offered = QString::fromStdString(fileStem(m_shown.kind)) + ".nrrd";
-    QString path = QFileDialog::getSaveFileName(m_services.window(), tr("Save field"), QDir(folder).filePath(offered),
-                                                tr("NRRD volumes (*.nrrd)"));
-    if (path.isEmpty()) return;
-    if (!path.endsWith(".nrrd", Qt::CaseInsensitive)) path += ".nrrd";
-    QSettings().setValue("fieldFolder", QFileInfo(path).absolutePath());
-    save(path);
+    const QString path = askSavePath(m_services.window(), tr("Save field"), "fieldFolder",
+                                     QString::fromStdString(fileStem(m_shown.kind)) + ".nrrd",
+                                     tr("NRRD volumes (*.nrrd)"), ".nrrd", ".nrrd");
+    if (!path.isEmpty()) save(path);
 }
 
 void FieldController::addActions() {
-    Actions& actions = m_services.actions();
     SessionStore& store = m_services.store();
-    const auto open = [this, &store] { return m_services.isEditable(); };
-    const QString menu = tr("&View") + "/" + tr("F&ield");
-    actions.add(menu, "fieldAction", tr("&Show a field"), "V",
-                tr("What each voxel contributes in the place of the data, and back"),
-                [this, &store] { show(store.session().field->kind ? std::nullopt : std::optional(m_lastKind)); }, open,
-                {.checked = [&store] { return store.session().field->kind.has_value(); }});
-    bool first = true;
+    ActionMenu menu(m_services.actions(), tr("&View") + "/" + tr("F&ield"), [this] { return m_services.isEditable(); });
+    menu.addCheck(
+        "fieldAction", tr("&Show a field"), "V", tr("Shows what each voxel contributes in place of the data, and back"),
+        [&store] { return store.session().field->kind.has_value(); },
+        [this, &store] { show(store.session().field->kind ? std::nullopt : std::optional(m_lastKind)); });
+    menu.separate();
     for (const FieldKind kind : allOf<FieldKind>())
-        actions.add(menu, QStringLiteral("field_%1").arg(QString::fromStdString(fileStem(kind))),
-                    QString::fromLatin1(title(kind)), {}, {}, [this, kind] { show(kind); }, open,
-                    {.checked = [&store, kind] { return store.session().field->kind == kind; },
-                     .separatorBefore = std::exchange(first, false)});
-    actions.add(
-        menu, "saveFieldAction", tr("Save &field…"), {},
-        tr("The values of the field that is shown, as NRRD file on the grid of the data"), [this] { chooseFile(); },
-        [this] { return m_state == State::Current; }, {.separatorBefore = true});
+        menu.addCheck(
+            "field_" + QString::fromStdString(fileStem(kind)), QString::fromLatin1(title(kind)), {}, {},
+            [&store, kind] { return store.session().field->kind == kind; }, [this, kind] { show(kind); });
+    menu.separate();
+    menu.add("saveFieldAction", tr("Save &field…"), {},
+             tr("The values of the field that is shown, as an NRRD file on the grid of the data"),
+             [this] { chooseFile(); }, {.enabled = [this] { return m_state == State::Current; }});
 }
 
 } // namespace pellucid::gui

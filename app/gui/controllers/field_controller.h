@@ -4,18 +4,18 @@
 #include <optional>
 
 #include <QObject>
-#include <QTimer>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "session/workspace.h"
 
 namespace pellucid::gui {
 
 class Services;
 
-/// Computes the field that the session wants to see as soon as the scene rests, and tells everybody what is to be
-/// drawn: the one place where data and field change places. A field belongs to the state that it was computed of. While
-/// that is not the present one, it is drawn as what it is, under a title that says so.
+/// Computes the field that the session asks for as soon as the scene rests, and decides whether the data or the field
+/// is drawn. A field belongs to the state that it was computed from; when that is no longer the present state, the
+/// field is still drawn, under a title that says so.
 class FieldController : public QObject {
     Q_OBJECT
 public:
@@ -41,7 +41,7 @@ public:
     /// What the view shows, in this size; the store has a volume.
     PictureInput picture(int width, int height, bool transparent = false) const;
     /// What stands around such a picture. A field always has its title and legend.
-    AnnotationInput annotation(const PictureInput& picture, const FrameOfReference& show, double density = 1) const;
+    AnnotationInput annotation(const PictureInput& picture, const AnnotationChoice& show, double density = 1) const;
 
     void show(std::optional<FieldKind> kind); ///< an edit
     void compute();                           ///< after it was stopped or has failed
@@ -71,7 +71,6 @@ private:
     };
     static Request requestOf(const Scene& scene);
     void follow(const Scene& before, const Scene& after);
-    void begin();
     void setState(State state);
 
     Services& m_services;
@@ -82,7 +81,9 @@ private:
     FieldKind m_lastKind = FieldKind::Vws;
     std::optional<Error> m_failure;
     double m_progress = 0;
-    QTimer m_rest;
+    /// Milliseconds without a change before a field is computed.
+    RestTimer m_rest{150,
+                     [this] { m_computing.start(m_wanted, QString::fromStdString(m_wanted.input.volume->title)); }};
     Job<Request, Made> m_computing;
     Job<File, QString> m_saving;
 };

@@ -11,7 +11,6 @@
 namespace pellucid::gui {
 namespace {
 
-constexpr int kRest = 150;             // milliseconds without a change before the last moves are made
 constexpr double kLeastOpacity = 1e-5; // what is scaled to 0 has lost its shape
 
 } // namespace
@@ -26,14 +25,6 @@ LiveController::LiveController(Services& services, OptimizeController& optimizin
           },
           [this](const Task& task, LiveUpdate& update) { finish(task, update); }, WhenBusy::StopOld,
           &services.compute()) {
-    m_rest.setSingleShot(true);
-    m_rest.setInterval(kRest);
-    connect(&m_rest, &QTimer::timeout, this, [this] {
-        if (m_job.isRunning())
-            m_rest.start();
-        else
-            begin(true);
-    });
     connect(&services.store(), &SessionStore::changed, this, &LiveController::follow);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_settled = present().held; // not again and again
@@ -45,18 +36,18 @@ LiveController::LiveController(Services& services, OptimizeController& optimizin
 }
 
 void LiveController::addActions() {
+    const auto toggle = [this] {
+        const bool on = !isOn();
+        m_services.store().edit(on ? tr("Live targets") : tr("Live targets off"), {}, [on](Session& session) {
+            session.holdTargets = on;
+            if (!on) return;
+            session.refine.edit([](RefineSettings& r) { r.live = false; }); // all of them set opacities
+            session.adapt.edit([](AdaptSettings& a) { a.mode = AdaptSettings::Mode::Static; });
+        });
+    };
     m_action = m_services.actions().add(
         tr("&Transfer function"), "liveTargetsAction", tr("Hold targets &live"), "Ctrl+Shift+L",
-        tr("Opacities follow while the view turns or a colour changes, so that VWS stays on the targets"),
-        [this] {
-            const bool on = !isOn();
-            m_services.store().edit(on ? tr("Live targets") : tr("Live targets off"), {}, [on](Session& session) {
-                session.holdTargets = on;
-                if (!on) return;
-                session.refine.edit([](RefineSettings& r) { r.live = false; }); // all of them set opacities
-                session.adapt.edit([](AdaptSettings& a) { a.mode = AdaptSettings::Mode::Static; });
-            });
-        },
+        tr("Opacities follow while the view turns or a colour changes, so that VWS stays on the targets"), toggle,
         [this] { return m_services.isEditable(); }, {.checked = [this] { return isOn(); }});
     connect(&m_optimizing, &OptimizeController::runningChanged, this, [this] {
         if (m_optimizing.isRunning())
@@ -145,9 +136,8 @@ void LiveController::finish(const Task& task, const LiveUpdate& update) {
             if (featureOpacities(tf) != featureOpacities(*session.tf())) session.setTf(tf);
         });
     }
-    HeldTargets now = task.held;
-    now.input.tf = shownTf(withShownOpacities(task.tf, update.opacity));
-    if (!update.approximate) m_services.results().addVws(now.input, update.vws); // bars show figures of the volume
+    if (!update.approximate) // bars show figures of the volume
+        m_services.results().addVws(task.held.input, withShownOpacities(task.tf, update.opacity), update.vws);
     Q_EMIT updated(update.objective);
     if (m_dirty) return begin(false);
     if (!task.settles) return; // the rest does the last moves

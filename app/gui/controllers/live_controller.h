@@ -6,9 +6,9 @@
 #include <set>
 
 #include <QObject>
-#include <QTimer>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "session/live_targets.h"
 
 class QAction;
@@ -18,9 +18,10 @@ namespace pellucid::gui {
 class OptimizeController;
 class Services;
 
-/// While Session::holdTargets is set and anything changes that VWS or targets depend on, updates follow it, the latest
-/// state first, each a move or two; when all rests, one goes as far as it gets. What they do to the opacities belongs
-/// to the step before (SessionStore::amend()). An opacity that somebody sets stays, and the others follow.
+/// While Session::holdTargets is set, every change that VWS or the targets depend on is followed by updates of a move
+/// or two each, always of the latest state; when everything rests, a last one goes as far as it can. The opacities that
+/// they set become part of the step before (SessionStore::amend()). An opacity that the user sets stays, and the others
+/// follow.
 class LiveController : public QObject {
     Q_OBJECT
 public:
@@ -60,7 +61,8 @@ private:
     bool m_settling = false;              ///< the update under way is that at rest
     bool m_dirty = false;                 ///< something has changed since the update under way began
     std::optional<HeldTargets> m_settled;
-    QTimer m_rest;
+    /// Milliseconds without a change before the last moves are made.
+    RestTimer m_rest{150, [this] { m_job.isRunning() ? m_rest.start() : begin(true); }};
     Job<Task, LiveUpdate> m_job;
 };
 

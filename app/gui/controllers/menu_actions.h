@@ -9,9 +9,8 @@ namespace pellucid::gui {
 
 class Services;
 
-void addAnnotationActions(Services& services); ///< the switches of the frame of reference
+void addAnnotationActions(Services& services); ///< switches of the annotations
 void addSliceActions(Services& services);      ///< layouts, the crosshair, the window of grey
-void addTfActions(Services& services);         ///< presets, and features from the curve
 void addThemeActions(Services& services);      ///< a dark or a light window
 void addViewActions(Services& services);       ///< standard views, projection, the camera's history
 /// Whether the handles of what is cut away are shown.

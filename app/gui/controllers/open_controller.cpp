@@ -1,13 +1,11 @@
 #include "controllers/open_controller.h"
 
-#include <QFileDialog>
-#include <QFileInfo>
 #include <QMenu>
-#include <QSettings>
 
 #include <nlohmann/json.hpp>
 
 #include "controllers/save_controller.h"
+#include "dialogs/ask_file.h"
 #include "dialogs/raw_dialog.h"
 #include "dialogs/series_dialog.h"
 #include "dialogs/series_files.h"
@@ -15,6 +13,7 @@
 #include "services/services.h"
 #include "session/scene_data.h"
 #include "session/variable_edits.h"
+#include "store/edits.h"
 #include "tf/formats/tf_file.h"
 #include "tf/presets.h"
 #include "volume/excerpt.h"
@@ -26,7 +25,7 @@ namespace pellucid::gui {
 namespace {
 
 constexpr int kRecentFiles = 8;
-constexpr auto kRecentKey = "recentFiles";
+constexpr auto kRecentKey = "recentFiles", kFolder = "volumeFolder";
 
 QString recentMenuName() { return QObject::tr("&File") + "/" + QObject::tr("Open &recent"); }
 
@@ -38,6 +37,12 @@ QString tfPatterns() {
 }
 bool isSession(const QString& path) { return path.endsWith(".pellucid.json", Qt::CaseInsensitive); }
 
+VolumeSource sourceAt(const QString& path) {
+    VolumeSource source;
+    source.path = path.toStdString();
+    return source;
+}
+
 // Recent files that need more than a name to be opened again are kept as a session of nothing but their source.
 QString recentEntry(const VolumeSource& source) {
     const auto absolutePath = [](const std::string& path) {
@@ -46,18 +51,13 @@ QString recentEntry(const VolumeSource& source) {
     VolumeSource absolute = source;
     absolute.path = absolutePath(source.path);
     for (std::string& path : absolute.more) path = absolutePath(path);
-    VolumeSource plain;
-    plain.path = absolute.path;
-    if (absolute == plain) return QString::fromStdString(plain.path);
+    const QString path = QString::fromStdString(absolute.path);
+    if (absolute == sourceAt(path)) return path;
     return QString::fromStdString(jsonFromSession(sessionOf(absolute), "", DataPaths::Absolute).dump());
 }
 
 VolumeSource recentSource(const QString& entry) {
-    if (!entry.startsWith('{')) {
-        VolumeSource source;
-        source.path = entry.toStdString();
-        return source;
-    }
+    if (!entry.startsWith('{')) return sourceAt(entry);
     const nlohmann::json document = nlohmann::json::parse(entry.toStdString(), nullptr, false);
     return sessionFromJson({document, "recent files"}, "").session.variable().source;
 }
@@ -89,63 +89,56 @@ OpenController::OpenController(Services& services, SaveController& saving)
               return scene;
           },
           [this](const DataChange& change, Scene& scene) { showChanged(change, scene); }) {
-    for (JobBase* job : {static_cast<JobBase*>(&m_open), static_cast<JobBase*>(&m_data)}) {
+    for (JobBase* job : std::initializer_list<JobBase*>{&m_open, &m_data}) {
         connect(job, &JobBase::busyChanged, this, &OpenController::busyChanged);
         connect(job, &JobBase::progress, this, &OpenController::progress);
         connect(job, &JobBase::cancelled, this, &OpenController::cancelled);
     }
-    connect(&m_open, &JobBase::failed, this, [this](const Error& error) {
-        m_services.showError(tr("Cannot open the file"), error);
-        Q_EMIT failed(error);
-    });
-    connect(&m_data, &JobBase::failed, this, [this](const Error& error) {
-        m_services.showError(tr("Cannot change the data"), error);
-        nextChange();
-    });
+    services.showFailuresOf(m_open, tr("Cannot open the file"));
+    services.showFailuresOf(m_data, tr("Cannot change the data"));
+    connect(&m_open, &JobBase::failed, this, &OpenController::failed);
+    connect(&m_data, &JobBase::failed, this, &OpenController::nextChange);
 }
 
 void OpenController::addActions() {
     Actions& actions = m_services.actions();
-    const QString menu = tr("&File");
-    actions.add(menu, "openAction", tr("&Open…"), "Ctrl+O", tr("Open a volume, a session or a transfer function"),
-                [this] { chooseVolume(); }, {}, {.inToolBar = true});
-    actions.add(menu, "openSeriesAction", tr("Open s&eries…"), "Ctrl+Alt+O",
-                tr("Time steps: a folder, files by a pattern, or some of them"), [this] { chooseSeries(); });
-    actions.add(menu, "openRawAction", tr("Open ra&w data…"), {},
-                tr("A file without a header: you say how its bytes lie"), [this] { chooseRaw(); });
-    m_clearRecent = actions.add(recentMenuName(), "clearRecentAction", tr("&Clear this list"), {}, {}, [this] {
+    ActionMenu file(actions, tr("&File")), recent(actions, recentMenuName()),
+        sampleMenu(actions, tr("&File") + "/" + tr("&Samples"));
+    file.add("openAction", tr("&Open…"), "Ctrl+O", tr("Open a volume, a session or a transfer function"),
+             [this] { chooseVolume(); }, {.inToolBar = true});
+    file.add("openSeriesAction", tr("Open s&eries…"), "Ctrl+Alt+O",
+             tr("Time steps: a folder, files that match a pattern, or files that you choose"),
+             [this] { chooseSeries(); });
+    file.add("openRawAction", tr("Open ra&w data…"), {},
+             tr("A file without a header: you say how its bytes are laid out"), [this] { chooseRaw(); });
+    m_clearRecent = recent.add("clearRecentAction", tr("&Clear this list"), {}, {}, [this] {
         QSettings().remove(kRecentKey);
         updateRecentFiles();
     });
     for (const SampleInfo& sample : samples()) {
         const QString name = QString::fromStdString(sample.name);
-        actions.add(menu + "/" + tr("&Samples"), "sample_" + name,
-                    QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description)) +
-                        (sample.frames > 1 ? tr(", %L1 frames").arg(sample.frames) : QString()),
-                    {}, {}, [this, name] {
-                        VolumeSource source;
-                        source.path = "sample:" + name.toStdString();
-                        if (m_saving.maybeSave()) openVolume(source);
-                    });
+        QString text = QStringLiteral("%1 – %2").arg(name, QString::fromStdString(sample.description));
+        if (sample.frames > 1) text += tr(", %L1 frames").arg(sample.frames);
+        sampleMenu.add("sample_" + name, text, {}, {}, [this, name] {
+            if (m_saving.maybeSave()) openVolume(sourceAt("sample:" + name));
+        });
     }
-    actions.add(
-        menu, "openTfAction", tr("Open &transfer function…"), "Ctrl+Shift+O", {}, [this] { chooseTf(); },
-        [this] { return m_services.isEditable(); }, {.separatorBefore = true});
-    actions.add(
-        menu, "regionAction", tr("Re&gion at full resolution"), {},
-        tr("What the clipping box leaves of a volume that was too large for memory, in all its voxels"),
-        [this] { openRegion(); },
-        [this] {
-            if (!m_services.isEditable()) return false;
-            const Clipping& clipping = *m_services.scene().session.clipping;
-            const auto& excerpt = m_services.scene().volume->excerpt;
-            return excerpt && excerpt->factor > 1 && (clipping.lo != Vec3(0) || clipping.hi != Vec3(1));
-        },
-        {.separatorBefore = true});
-    actions.add(
-        menu, "wholeVolumeAction", tr("W&hole volume"), {}, tr("All of the data, as fine as memory allows"),
-        [this] { openWhole(); },
-        [this] { return m_services.isEditable() && m_services.scene().session.variable().source.region.has_value(); });
+    file.separate();
+    file.add("openTfAction", tr("Open &transfer function…"), "Ctrl+Shift+O", {}, [this] { chooseTf(); },
+             {.enabled = [this] { return m_services.isEditable(); }});
+    file.separate();
+    file.add("regionAction", tr("Re&gion at full resolution"), {},
+             tr("Of a volume that was too large for memory: the part inside the clipping box, with all its voxels"),
+             [this] { openRegion(); }, {.enabled = [this] {
+                 if (!m_services.isEditable()) return false;
+                 const Clipping& clipping = *m_services.scene().session.clipping;
+                 const auto& excerpt = m_services.scene().volume->excerpt;
+                 return excerpt && excerpt->factor > 1 && (clipping.lo != Vec3(0) || clipping.hi != Vec3(1));
+             }});
+    file.add("wholeVolumeAction", tr("W&hole volume"), {}, tr("All the data, as fine as memory allows"),
+             [this] { openWhole(); }, {.enabled = [this] {
+                 return m_services.isEditable() && m_services.scene().session.variable().source.region;
+             }});
 }
 
 // ---- opening
@@ -153,8 +146,7 @@ void OpenController::addActions() {
 void OpenController::openVolume(const VolumeSource& source, const QString& tfSpec) {
     Request request;
     request.inputs.session = sessionOf(source);
-    request.inputs.session.variables.edit(
-        [&](std::vector<Variable>& all) { all.front().name = freeVariableName({}, nameOfSource(source)); });
+    editVariable(request.inputs.session, [&](Variable& v) { v.name = freeVariableName({}, nameOfSource(source)); });
     request.inputs.session.display.edit([](DisplaySettings& d) { d.light.on = true; }); // shapes at the first look
     request.inputs.range = source.range;
     if (!tfSpec.isEmpty()) {
@@ -167,7 +159,7 @@ void OpenController::openVolume(const VolumeSource& source, const QString& tfSpe
 }
 
 void OpenController::openSession(const QString& path) {
-    try {
+    attempt(tr("Cannot open the session"), [&] {
         SessionFile file = readSession(path.toStdString());
         Request request;
         request.inputs.session = std::move(file.session);
@@ -175,8 +167,14 @@ void OpenController::openSession(const QString& path) {
         request.sessionPath = path;
         m_busyText = tr("Opening %1…").arg(QFileInfo(path).fileName());
         m_open.start(std::move(request), path);
+    });
+}
+
+void OpenController::attempt(const QString& title, const std::function<void()>& work) {
+    try {
+        work();
     } catch (const Error& error) {
-        m_services.showError(tr("Cannot open the session"), error);
+        m_services.showError(title, error);
         Q_EMIT failed(error);
     }
 }
@@ -223,7 +221,7 @@ void OpenController::show(const Request& request, Opened& opened) {
     if (!request.sessionPath.isEmpty()) {
         addRecent(QFileInfo(request.sessionPath).absoluteFilePath());
     } else if (!source.isSample() && !request.unsaved) {
-        addRecent(source);
+        addRecent(recentEntry(source));
     }
     if (tfFromFile) noteWindow(*m_services.store().session().tf());
     Q_EMIT this->opened();
@@ -235,7 +233,7 @@ void OpenController::show(const Request& request, Opened& opened) {
 
 void OpenController::showNotices(const std::vector<std::string>& notices) {
     m_services.notices().clear();
-    for (const std::string& notice : notices) m_services.notices().add({QString::fromStdString(notice), {}});
+    for (const std::string& notice : notices) m_services.notices().add({QString::fromStdString(notice)});
 }
 
 // ---- parts of large volumes
@@ -243,22 +241,17 @@ void OpenController::showNotices(const std::vector<std::string>& notices) {
 void OpenController::openRegion() {
     const Scene& scene = m_services.store().scene();
     const Clipping& clipping = *scene.session.clipping;
-    const VoxelRegion region = regionBetween(*scene.volume, clipping.lo, clipping.hi);
-    editData(tr("Region at full resolution"), [region, window = scene.volume->range()](Session& session) {
-        session.variables.edit([&](std::vector<Variable>& all) {
-            all.front().source.region = region;
-            all.front().source.downsample = 0;
-            if (!all.front().window && window.lo < window.hi) all.front().window = window; // not that of the region
-        });
-        session.clipping.edit([](Clipping& c) { c.lo = Vec3(0), c.hi = Vec3(1); });
-    });
+    openPart(tr("Region at full resolution"), regionBetween(*scene.volume, clipping.lo, clipping.hi));
 }
 
-void OpenController::openWhole() {
-    editData(tr("Whole volume"), [](Session& session) {
-        session.variables.edit([](std::vector<Variable>& all) {
-            all.front().source.region.reset();
-            all.front().source.downsample = 0;
+void OpenController::openWhole() { openPart(tr("Whole volume"), {}); }
+
+void OpenController::openPart(const QString& text, const std::optional<VoxelRegion>& region) {
+    editData(text, [region, window = m_services.scene().volume->range()](Session& session) {
+        editVariable(session, [&](Variable& v) {
+            v.source.region = region;
+            v.source.downsample = 0;
+            if (region && !v.window && window.lo < window.hi) v.window = window; // not that of the region
         });
         session.clipping.edit([](Clipping& c) { c.lo = Vec3(0), c.hi = Vec3(1); });
     });
@@ -268,15 +261,13 @@ void OpenController::openTf(const QString& specOrPath) {
     SessionStore& store = m_services.store();
     if (!m_services.isEditable()) return;
     if (specOrPath == kAutomaticTf) return automaticStartWanted();
-    try {
+    m_services.attempt(tr("Cannot open the transfer function"), [&] {
         const TransferFunction tf = loadTf(specOrPath.toStdString());
         const bool isFile = isTfFile(specOrPath);
         const auto change = [tf, data = store.scene().data](Session& session) {
             TransferFunction placed = tf;
             placeAsPublished(session, *data, placed);
-            session.variables.edit([&](std::vector<Variable>& all) {
-                if (placed.range) all.front().window = placed.range; // what it was made for
-            });
+            if (placed.range) editVariable(session, [&](Variable& v) { v.window = placed.range; }); // made for it
             session.setTf(std::move(placed));
         };
         editData(tr("Open transfer function"), change, [this, tf, isFile, specOrPath] {
@@ -286,9 +277,7 @@ void OpenController::openTf(const QString& specOrPath) {
             }
             noteWindow(tf);
         });
-    } catch (const Error& error) {
-        m_services.showError(tr("Cannot open the transfer function"), error);
-    }
+    });
 }
 
 void OpenController::editData(const QString& text, const SessionStore::Change& change,
@@ -341,9 +330,9 @@ void OpenController::showChanged(const DataChange& change, Scene& scene) {
         change.change(session);
         const Variable& made = scene.session.variable();
         if (!session.isEmpty() && session.variable().name == made.name && session.tf() == nullptr)
-            session.variables.edit([&](std::vector<Variable>& all) {
-                all.front().track = made.track;
-                all.front().window = made.window;
+            editVariable(session, [&](Variable& v) {
+                v.track = made.track;
+                v.window = made.window;
             });
     };
     // Other edits may have come meanwhile: the change is made of what is there now, and anew where that is other data.
@@ -353,7 +342,7 @@ void OpenController::showChanged(const DataChange& change, Scene& scene) {
     const bool otherVoxels = scene.data != change.basis.data;
     const std::vector<std::string> notices = scene.volume->notices;
     const auto then = m_edit.then;
-    store.edit(change.text, {}, andStart, scene);
+    store.edit(change.text, {}, andStart, &scene);
     if (otherVoxels) showNotices(notices);
     if (then) then();
     if (!m_data.isRunning()) nextChange();
@@ -365,14 +354,13 @@ void OpenController::openPath(const QString& path) {
         if (m_saving.maybeSave()) openSession(path);
         return;
     }
-    VolumeSource source;
-    source.path = path.toStdString();
+    VolumeSource source = sourceAt(path);
     if (askRawLayout(source) && m_saving.maybeSave()) openVolume(source);
 }
 
 void OpenController::openPaths(QStringList paths) {
     if (paths.size() == 1) return openPath(paths.front());
-    try {
+    attempt(tr("Cannot open the files"), [&] {
         QString tf;
         QStringList volumes;
         for (const QString& path : paths) {
@@ -382,9 +370,7 @@ void OpenController::openPaths(QStringList paths) {
                     throw UsageError("this is a second transfer function", path.toStdString(), "choose one of them");
                 tf = path;
             } else if (QFileInfo(path).isDir()) {
-                VolumeSource folder;
-                folder.path = path.toStdString();
-                volumes << filesOfFrames(folder);
+                volumes << filesOfFrames(sourceAt(path));
             } else {
                 volumes << path;
             }
@@ -392,10 +378,7 @@ void OpenController::openPaths(QStringList paths) {
         if (volumes.isEmpty()) throw UsageError("there are no volumes here", paths.front().toStdString(), "");
         VolumeSource source = sourceOf(volumes);
         if (askRawLayout(source) && m_saving.maybeSave()) openVolume(source, tf);
-    } catch (const Error& error) {
-        m_services.showError(tr("Cannot open the files"), error);
-        Q_EMIT failed(error);
-    }
+    });
 }
 
 void OpenController::openAtStart(const QStringList& paths, const QString& tfSpec) {
@@ -436,15 +419,15 @@ void OpenController::noteWindow(const TransferFunction& tf) {
         tr("This transfer function was made for values %1; the volume has %2. Its points stay at their "
            "values.")
             .arg(rangeText(scene.volume->range()), rangeText(scene.data->range()));
-    m_services.notices().add(
-        {text, {{tr("Stretch to this volume instead"), [this] {
-                     editData(tr("Stretch transfer function"), [data = m_services.scene().data](Session& s) {
-                         TransferFunction stretched = *s.tf();
-                         stretched.range = data->range();
-                         s.variables.edit([](std::vector<Variable>& all) { all.front().window.reset(); });
-                         s.setTf(std::move(stretched));
-                     });
-                 }}}});
+    m_services.notices().add({text, {{tr("Stretch to this volume instead"), [this] {
+                                          editData(tr("Stretch transfer function"),
+                                                   [data = m_services.scene().data](Session& s) {
+                                                       TransferFunction stretched = *s.tf();
+                                                       stretched.range = data->range();
+                                                       editVariable(s, [](Variable& v) { v.window.reset(); });
+                                                       s.setTf(std::move(stretched));
+                                                   });
+                                      }}}});
 }
 
 // ---- dialogs
@@ -452,17 +435,12 @@ void OpenController::noteWindow(const TransferFunction& tf) {
 QStringList OpenController::askFiles(const QString& title, const QString& others) {
     QStringList patterns;
     for (const std::string& pattern : volumeFilePatterns()) patterns << QString::fromStdString(pattern);
-    for (const char* raw : {"*.raw", "*.dat", "*.bin", "*.vol"}) {
+    for (const char* raw : {"*.raw", "*.dat", "*.bin", "*.vol"})
         if (!patterns.contains(raw)) patterns << raw;
-    }
     const QString all = patterns.join(' ');
     const QString filter = others.isEmpty() ? tr("Volumes (%1)").arg(all)
                                             : tr("Volumes, sessions, transfer functions (%1 %2)").arg(all, others);
-    const QStringList paths =
-        QFileDialog::getOpenFileNames(m_services.window(), title, QSettings().value("volumeFolder").toString(),
-                                      filter + QStringLiteral(";;") + tr("All files (*)"));
-    if (!paths.isEmpty()) QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
-    return paths;
+    return askOpenPaths(m_services.window(), title, kFolder, filter + QStringLiteral(";;") + tr("All files (*)"));
 }
 
 void OpenController::chooseVolume() {
@@ -471,10 +449,10 @@ void OpenController::chooseVolume() {
 }
 
 std::optional<VolumeSource> OpenController::askSeries() {
-    SeriesDialog dialog(QSettings().value("volumeFolder").toString(), m_services.window());
+    SeriesDialog dialog(keptFolder(kFolder), m_services.window());
     if (dialog.exec() != QDialog::Accepted) return {};
     VolumeSource source = dialog.source();
-    QSettings().setValue("volumeFolder", QFileInfo(QString::fromStdString(source.path)).absolutePath());
+    keepFolderOf(kFolder, QString::fromStdString(source.path));
     if (!askRawLayout(source)) return {};
     return source;
 }
@@ -484,26 +462,22 @@ void OpenController::chooseSeries() {
 }
 
 void OpenController::chooseRaw() {
-    const QStringList paths = QFileDialog::getOpenFileNames(
-        m_services.window(), tr("Open raw data"), QSettings().value("volumeFolder").toString(), tr("All files (*)"));
+    const QStringList paths = askOpenPaths(m_services.window(), tr("Open raw data"), kFolder, tr("All files (*)"));
     if (paths.isEmpty()) return;
-    QSettings().setValue("volumeFolder", QFileInfo(paths.front()).absolutePath());
     VolumeSource source = sourceOf(paths);
     if (askLayout(source, filesOfFrames(source)) && m_saving.maybeSave()) openVolume(source);
 }
 
 void OpenController::chooseTf() {
-    const QString path = QFileDialog::getOpenFileName(
-        m_services.window(), tr("Open transfer function"), QSettings().value("tfFolder").toString(),
-        tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
+    const QString path =
+        QFileDialog::getOpenFileName(m_services.window(), tr("Open transfer function"), keptFolder("tfFolder"),
+                                     tr("Transfer functions (%1 *.json);;All files (*)").arg(tfPatterns()));
     if (path.isEmpty()) return;
-    QSettings().setValue("tfFolder", QFileInfo(path).absolutePath());
+    keepFolderOf("tfFolder", path);
     openTf(path);
 }
 
 // ---- recent files
-
-void OpenController::addRecent(const VolumeSource& source) { addRecent(recentEntry(source)); }
 
 void OpenController::addRecent(const QString& entry) {
     QSettings settings;
@@ -518,9 +492,8 @@ void OpenController::addRecent(const QString& entry) {
 void OpenController::updateRecentFiles() {
     QMenu* menu = m_services.actions().menu(recentMenuName());
     if (menu == nullptr) return;
-    for (QAction* action : menu->actions()) {
+    for (QAction* action : menu->actions())
         if (action != m_clearRecent) delete action;
-    }
     menu->removeAction(m_clearRecent);
     const QStringList files = QSettings().value(kRecentKey).toStringList();
     for (const QString& entry : files) {
@@ -542,12 +515,10 @@ void OpenController::updateRecentFiles() {
 
 void OpenController::openRecent(const QString& entry) {
     if (!entry.startsWith('{')) return openPath(entry);
-    try {
+    m_services.attempt(tr("Cannot open the file"), [&] {
         const VolumeSource source = recentSource(entry);
         if (m_saving.maybeSave()) openVolume(source);
-    } catch (const Error& error) {
-        m_services.showError(tr("Cannot open the file"), error);
-    }
+    });
 }
 
 // ---- state

@@ -86,7 +86,6 @@ private:
         SessionStore::Change change;
         Scene basis;
     };
-
     struct Edit {
         QString text;
         SessionStore::Change change;
@@ -98,19 +97,21 @@ private:
     void showChanged(const DataChange& change, Scene& scene);
     static Opened load(const Request& request, const JobControl& job);
     void show(const Request& request, Opened& opened);
+    /// Does something that may throw Error, which is shown then, and told by failed().
+    void attempt(const QString& title, const std::function<void()>& work);
     void showNotices(const std::vector<std::string>& notices);
     /// What the clipping box leaves of the data, at full resolution; and back.
     void openRegion();
     void openWhole();
-    bool askRawLayout(VolumeSource& source);                        ///< false: the user gave up
-    bool askLayout(VolumeSource& source, const QStringList& files); ///< likewise
+    void openPart(const QString& text, const std::optional<VoxelRegion>& region); ///< empty: all
+    bool askRawLayout(VolumeSource& source);                                      ///< false: the user gave up
+    bool askLayout(VolumeSource& source, const QStringList& files);               ///< likewise
     void chooseVolume();
     void chooseSeries();
     QStringList askFiles(const QString& title, const QString& others);
     void chooseRaw();
     void chooseTf();
     void noteWindow(const TransferFunction& tf);
-    void addRecent(const VolumeSource& source);
     void addRecent(const QString& entry);
     void openRecent(const QString& entry);
 

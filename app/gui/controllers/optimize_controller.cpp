@@ -11,10 +11,6 @@
 namespace pellucid::gui {
 namespace {
 
-QString counted(int n, const QString& one, const QString& many) {
-    return QStringLiteral("%1 %2").arg(n).arg(n == 1 ? one : many);
-}
-
 QString fixed4(double value) { return QString::number(value, 'f', 4); }
 
 constexpr double kLeastStart = 1e-4; ///< opacity of a restart: from 0 there is no way for what scales
@@ -23,26 +19,22 @@ constexpr double kLeastStart = 1e-4; ///< opacity of a restart: from 0 there is 
 
 QString sayOf(const OptimizeResult& result, int restarts) {
     const OptimizeState& best = result.history[result.best];
-    QString figures = QObject::tr("F = %1, from %2, in %3")
-                          .arg(fixed4(best.objective), fixed4(result.history.front().objective),
-                               counted(result.iterations(), QObject::tr("move"), QObject::tr("moves")));
+    QString figures = (result.iterations() == 1 ? QObject::tr("F = %1, from %2, in %3 move")
+                                                : QObject::tr("F = %1, from %2, in %3 moves"))
+                          .arg(fixed4(best.objective), fixed4(result.history.front().objective))
+                          .arg(result.iterations());
     if (restarts > 0) figures += QObject::tr("; restarted from the new view");
     const std::string kept = keptText(result), faint = faintText(result);
-    if (!kept.empty())
-        return QStringLiteral("%1 (%2)").arg(QString::fromStdString(faint.empty() ? kept : kept + " " + faint),
-                                             figures);
+    if (!kept.empty()) return QString::fromStdString(faint.empty() ? kept : kept + " " + faint) + " (" + figures + ")";
     if (!faint.empty()) // not without what makes it visible
         return QObject::tr("%1: %2 (%3)")
             .arg(result.converged() ? QObject::tr("On target, but faint") : QObject::tr("Faint"),
                  QString::fromStdString(faint), figures);
-    switch (result.reason) {
-    case StopReason::Converged:
-        return QObject::tr("On target: %1.").arg(figures);
-    case StopReason::NoProgress:
-        return QObject::tr("Not on target: nothing came nearer; %1. Looking for the reason…").arg(figures);
-    default:
-        return QObject::tr("Stopped at the most moves allowed: %1.").arg(figures);
-    }
+    return (result.reason == StopReason::Converged ? QObject::tr("On target: %1.")
+            : result.reason == StopReason::NoProgress
+                ? QObject::tr("Not on target: no move came nearer; %1. Looking for the reason…")
+                : QObject::tr("Stopped after as many moves as are allowed: %1."))
+        .arg(figures);
 }
 
 OptimizeController::OptimizeController(Services& services)
@@ -97,8 +89,9 @@ OptimizeController::OptimizeController(Services& services)
     });
     connect(&services.results(), &Results::changed, this, &OptimizeController::askWhy);
     connect(&m_explaining, &JobBase::busyChanged, this, &OptimizeController::messageChanged);
-    connect(&m_explaining, &JobBase::failed, this,
-            [this](const Error& error) { say(tr("Not on target; why is not known: %1.").arg(QString(error.what()))); });
+    connect(&m_explaining, &JobBase::failed, this, [this](const Error& error) {
+        say(tr("Not on target; the reason could not be found: %1.").arg(QString(error.what())));
+    });
 }
 
 OptimizeController::~OptimizeController() { ++m_number; }
@@ -106,7 +99,8 @@ OptimizeController::~OptimizeController() { ++m_number; }
 void OptimizeController::addActions() {
     m_services.actions().add(
         tr("&Transfer function"), "optimizeAction", tr("&Optimize to the targets"), "Ctrl+Return",
-        tr("Opacities until the features' saliency (VWS) meets the targets, from this camera"), [this] { start(); },
+        tr("Looks for opacities with which the features' saliency (VWS) meets the targets, from this camera"),
+        [this] { start(); },
         [this] { return m_services.store().hasVolume() && !isRunning() && !m_services.scene().tf.features.empty(); });
 }
 
@@ -133,11 +127,11 @@ void OptimizeController::start() {
     m_question.reset();
     m_explaining.cancel();
     const About about = present();
-    begin({about.input, m_services.scene().tf, about.targets, limitsOf(m_services.scene().tf, *store.session().goals),
-           *store.session().optimize,
-           isAimed(about.targets)
-               ? knownAnswers(*store.session().runs, normalizedTargets(about.targets, about.targets.size()))
-               : std::vector<std::vector<double>>{}});
+    Task task{about.input, m_services.scene().tf, about.targets,
+              limitsOf(m_services.scene().tf, *store.session().goals), *store.session().optimize};
+    if (isAimed(task.targets))
+        task.known = knownAnswers(*store.session().runs, normalizedTargets(task.targets, task.targets.size()));
+    begin(std::move(task));
 }
 
 void OptimizeController::takeExact() {
@@ -176,8 +170,6 @@ void OptimizeController::restart(const View& view) {
     begin(std::move(task));
 }
 
-void OptimizeController::cancel() { m_job.cancel(); }
-
 void OptimizeController::showMove(const Task& task, int move, const OptimizeState& state) {
     if (task.number != m_number || !isRunning()) return;
     m_move = move;
@@ -188,10 +180,8 @@ void OptimizeController::showMove(const Task& task, int move, const OptimizeStat
     m_run.after = state.objective;
     const TransferFunction tf = withShownOpacities(task.tf, state.opacity);
     m_services.store().preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
-    if (!isRunning()) return;        // whoever saw it has stopped it
-    MeasureInput input = task.input; // of the camera that it began with, wherever the eye is now
-    input.tf = shownTf(tf);
-    m_services.results().addVws(input, state.vws);
+    if (!isRunning()) return;                               // whoever saw it has stopped it
+    m_services.results().addVws(task.input, tf, state.vws); // of the camera that it began with, wherever the eye is now
     Q_EMIT moved();
 }
 
@@ -209,12 +199,10 @@ void OptimizeController::finish(const Task& task, const OptimizeResult& result) 
     store.preview(tr("Optimize"), [&](Session& session) { session.setTf(tf); });
     store.commit();
     m_answering = false;
-    MeasureInput input = task.input;
-    input.tf = shownTf(tf);
-    m_services.results().addVws(input, best.vws);
+    const MeasureInput input = m_services.results().addVws(task.input, tf, best.vws);
     // It is true of what it was computed from.
     if (!(present() == About{input, task.targets}))
-        return say(tr("Something has changed since it began; nothing is known of what is there now."));
+        return say(tr("Something has changed since the optimization began; nothing is known about the present state."));
     say(sayOf(result, m_restarts),
         result.seen && result.seen->exact ? result.seen->exact->opacity : std::vector<double>{});
     if (best.objective < task.options.tolerance || result.reason == StopReason::Visible) return;

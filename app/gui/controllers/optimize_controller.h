@@ -11,13 +11,13 @@ namespace pellucid::gui {
 
 class Services;
 
-/// What came of an optimization, in a sentence or some: nothing but what is true of the view that it was made for.
-/// `restarts`: how often it has begun anew because the view had turned.
+/// The outcome of an optimization in a sentence or two, which is true only of the view that it was made for.
+/// `restarts`: how often it began anew because the view had turned.
 QString sayOf(const OptimizeResult& result, int restarts = 0);
 
-/// While an optimization runs, its moves are previewed; it ends as one undo step, or without a trace. Where the view
-/// turns meanwhile it begins anew, from the opacities that it has come to. What it found is true of the camera and
-/// targets that it ended with, and is said for as long as they are the present ones.
+/// While an optimization runs, its moves are previewed; it ends as one undo step, or without a trace. When the view
+/// turns meanwhile, it begins anew from the opacities that it has reached. What it found is true of the camera and the
+/// targets that it ended with, and is shown for as long as these are the present ones.
 class OptimizeController : public QObject {
     Q_OBJECT
 public:
@@ -27,7 +27,7 @@ public:
     void addActions();
 
     void start();
-    void cancel();
+    void cancel() { m_job.cancel(); }
     bool isRunning() const { return m_job.isRunning(); }
     /// What it has found is being put in place: nothing shall follow of that by itself.
     bool isAnswering() const { return m_answering; }
@@ -71,7 +71,7 @@ private:
         std::vector<double> targets;
         std::vector<OpacityLimits> limits;
         OptimizeOptions options;
-        std::vector<std::vector<double>> known; ///< answers of earlier runs for the same targets
+        std::vector<std::vector<double>> known = {}; ///< answers of earlier runs for the same targets
         int number = 0;
         RunStart start() const { return {tf, input.view.camera, input.view.clipping, input.settings, options, limits}; }
     };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "controllers/open_controller.h"
+#include "jobs/rest_timer.h"
 #include "render/memory_needs.h"
 #include "services/services.h"
 #include "session/scene_data.h"
@@ -16,6 +17,9 @@ constexpr int kAheadAtRest = 2;         // frames that are read ahead while noth
 constexpr qint64 kRateOver = 2000;      // milliseconds over which the rate is told
 constexpr qint64 kPatience = 1000;      // milliseconds that a frame waits for the picture of the one before
 constexpr std::size_t kMostNotices = 3; // of frames that cannot be read, each with a notice of its own
+
+/// In [0, count): after the last frame comes the first, and the reverse.
+int wrapped(int frame, int count) { return (frame % count + count) % count; }
 
 } // namespace
 
@@ -31,35 +35,32 @@ PlayerController::PlayerController(Services& services, OpenController& opening)
         pause();
         m_wanted.reset();
         m_surveyStopped = true;
-        m_services.notices().add({tr("Frames cannot be read ahead: %1").arg(QString::fromUtf8(error.what())), {}});
+        m_services.notices().add({tr("Frames cannot be read ahead: %1").arg(error.what())});
         Q_EMIT changed();
     });
     m_sinceStart.start();
 }
 
 void PlayerController::addActions() {
-    const QString menu = tr("T&ime");
     Actions& actions = m_services.actions();
-    const auto series = [this] { return hasSeries(); };
-    m_actions.play =
-        actions.add(menu, "playAction", tr("&Play"), "Space", tr("Play the frames of the series, or pause"),
-                    [this] { m_playing ? pause() : play(); }, series,
-                    {.caption = [this] { return m_playing ? tr("&Pause") : tr("&Play"); }});
-    m_actions.next = actions.add(
-        menu, "nextFrameAction", tr("&Next frame"), ".", tr("One frame forward"), [this] { step(1); }, series);
-    m_actions.previous = actions.add(
-        menu, "previousFrameAction", tr("P&revious frame"), ",", tr("One frame back"), [this] { step(-1); }, series);
-    m_actions.first = actions.add(
-        menu, "firstFrameAction", tr("&First frame"), "Ctrl+Home", {}, [this] { goTo(goodFrame(0, 1)); }, series);
-    m_actions.last = actions.add(
-        menu, "lastFrameAction", tr("&Last frame"), "Ctrl+End", {}, [this] { goTo(goodFrame(frameCount() - 1, -1)); },
-        series);
-    m_actions.loops = actions.add(menu, "loopAction", tr("L&oop"), {},
-                                  tr("After the last frame the first one plays again"), [this] { setLoops(!m_loops); },
-                                  series, {.checked = [this] { return m_loops; }, .separatorBefore = true});
-    m_actions.backward =
-        actions.add(menu, "backwardAction", tr("Play &backward"), {}, {}, [this] { setBackward(!m_backward); }, series,
-                    {.checked = [this] { return m_backward; }});
+    ActionMenu menu(actions, tr("T&ime"), [this] { return hasSeries(); });
+    m_actions.play = menu.add("playAction", tr("&Play"), "Space", tr("Play the frames of the series, or pause"),
+                              [this] { m_playing ? pause() : play(); },
+                              {.caption = [this] { return m_playing ? tr("&Pause") : tr("&Play"); }});
+    m_actions.next = menu.add("nextFrameAction", tr("&Next frame"), ".", tr("One frame forward"), [this] { step(1); });
+    m_actions.previous =
+        menu.add("previousFrameAction", tr("P&revious frame"), ",", tr("One frame back"), [this] { step(-1); });
+    m_actions.first =
+        menu.add("firstFrameAction", tr("&First frame"), "Ctrl+Home", {}, [this] { goTo(goodFrame(0, 1)); });
+    m_actions.last = menu.add("lastFrameAction", tr("&Last frame"), "Ctrl+End", {},
+                              [this] { goTo(goodFrame(frameCount() - 1, -1)); });
+    menu.separate();
+    m_actions.loops = menu.addCheck(
+        "loopAction", tr("L&oop"), {}, tr("After the last frame the first one plays again"), [this] { return m_loops; },
+        [this] { setLoops(!m_loops); });
+    m_actions.backward = menu.addCheck(
+        "backwardAction", tr("Play &backward"), {}, {}, [this] { return m_backward; },
+        [this] { setBackward(!m_backward); });
     connect(this, &PlayerController::changed, &actions, [this, was = false]() mutable {
         if (std::exchange(was, m_playing) != m_playing) m_services.actions().refresh();
     });
@@ -116,7 +117,7 @@ void PlayerController::play() {
         m_wantedBy = m_backward ? -1 : 1;
     }
     restartClock();
-    m_timer.start(static_cast<int>(std::clamp(500 / m_speed, 4.0, 100.0)));
+    startTimer();
     next();
     Q_EMIT changed();
 }
@@ -133,10 +134,8 @@ void PlayerController::pause() {
 void PlayerController::goTo(int frame) {
     if (!hasSeries()) return;
     frame = std::clamp(frame, 0, frameCount() - 1);
-    if (const auto broken = m_broken.find(frame); broken != m_broken.end()) {
-        Q_EMIT m_services.message(tr("%1 cannot be shown: %2").arg(label(frame), broken->second.what));
-        return;
-    }
+    if (const QString problem = problemOf(frame); !problem.isEmpty())
+        return Q_EMIT m_services.message(tr("%1 cannot be shown: %2").arg(label(frame), problem));
     m_wanted.reset();
     m_wantedBy = 0;
     if (frame != this->frame()) m_wanted = frame;
@@ -187,10 +186,13 @@ void PlayerController::setSpeed(double framesPerSecond) {
     m_speed = speed;
     if (m_playing) {
         restartClock();
-        m_timer.start(static_cast<int>(std::clamp(500 / m_speed, 4.0, 100.0)));
+        startTimer();
     }
     Q_EMIT changed();
 }
+
+/// To look twice as often as frames are due.
+void PlayerController::startTimer() { m_timer.start(static_cast<int>(std::clamp(500 / m_speed, 4.0, 100.0))); }
 
 void PlayerController::restartClock() {
     m_clockFrom = m_wanted.value_or(frame());
@@ -223,13 +225,13 @@ void PlayerController::tick() {
     // Where the clock is on the way from the frame that it began with.
     int due = m_clockFrom + direction * passed;
     const bool ended = due < 0 || due >= count;
-    if (ended) due = m_loops ? ((due % count) + count) % count : std::clamp(due, 0, count - 1);
+    if (ended) due = m_loops ? wrapped(due, count) : std::clamp(due, 0, count - 1);
     const int now = frame();
     int skipped = 0;
     if (due != now) {
-        const int way = m_loops ? ((direction * (due - now)) % count + count) % count : direction * (due - now);
+        const int way = m_loops ? wrapped(direction * (due - now), count) : direction * (due - now);
         for (int f = 1; f < way; ++f) // broken ones are not late
-            if (!m_broken.contains(((now + direction * f) % count + count) % count)) ++skipped;
+            if (!m_broken.contains(wrapped(now + direction * f, count))) ++skipped;
         const int good = goodFrame(due, direction);
         due = m_broken.contains(good) ? (m_loops ? goodFrame(m_backward ? count - 1 : 0, direction) : now) : good;
     }
@@ -247,7 +249,7 @@ void PlayerController::tick() {
 void PlayerController::pictureShown(const Volume* volume) {
     if (volume != m_services.scene().volume.get()) return;
     m_pictureSeen = true;
-    if (m_playing) QMetaObject::invokeMethod(this, &PlayerController::tick, Qt::QueuedConnection);
+    if (m_playing) later(this, [this] { tick(); });
 }
 
 // ---- reading
@@ -285,7 +287,7 @@ std::vector<int> PlayerController::ahead() const {
         int f = frame() + direction * i;
         if (f < 0 || f >= count) {
             if (!m_loops) break;
-            f = (f % count + count) % count;
+            f = wrapped(f, count);
         }
         if (!m_broken.contains(f)) frames.push_back(f);
     }
@@ -304,10 +306,9 @@ void PlayerController::next() {
     }
     const std::vector<int> frames = ahead();
     const std::size_t ready = std::min<std::size_t>(kMostReady, frames.size());
+    const std::set<int> soon(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(ready));
     std::erase_if(m_ready, [&](const auto& entry) {
-        return std::find(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(ready), entry.first) ==
-                   frames.begin() + static_cast<std::ptrdiff_t>(ready) ||
-               !m_services.store().isShownBy(entry.second);
+        return !soon.contains(entry.first) || !m_services.store().isShownBy(entry.second);
     });
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const int f = frames[i];
@@ -332,11 +333,8 @@ void PlayerController::deliver(const Ask& ask, Got& got) {
         m_broken[ask.frame] = {QString::fromStdString(got.error->problem()),
                                QString::fromStdString(got.error->where())};
         if (m_wanted == ask.frame) {
-            const int other = m_wantedBy == 0 ? ask.frame : goodFrame(ask.frame, m_wantedBy);
-            if (m_broken.contains(other))
-                m_wanted.reset(); // there is none: what is shown stays
-            else
-                m_wanted = other;
+            m_wanted = goodFrame(ask.frame, m_wantedBy);
+            if (m_broken.contains(*m_wanted)) m_wanted.reset(); // there is none: what is shown stays
         }
         reportProblems();
     }
@@ -397,11 +395,10 @@ void PlayerController::follow(const Scene& before, const Scene& after) {
         }
         if (hasSeries())
             for (const std::string& notice : after.series->listing().notices)
-                m_services.notices().add({QString::fromStdString(notice), {}});
+                m_services.notices().add({QString::fromStdString(notice)});
         reportProblems();
         Q_EMIT changed();
         Q_EMIT surveyed();
-        m_services.actions().refresh();
     }
     // Another mapping may do without the frame of another variable that could not be read.
     const bool others = !before.session.hsb->isKeptBy(*after.session.hsb) ||
@@ -411,7 +408,7 @@ void PlayerController::follow(const Scene& before, const Scene& after) {
         std::erase_if(m_broken,
                       [&](const auto& broken) { return after.series->summary(broken.first).problem.empty(); });
     // In a later turn: what has changed is being told to others.
-    QMetaObject::invokeMethod(this, &PlayerController::next, Qt::QueuedConnection);
+    later(this, [this] { next(); });
 }
 
 void PlayerController::reportProblems() {
@@ -427,12 +424,12 @@ void PlayerController::reportProblems() {
     for (const auto& [f, problem] : m_broken) {
         if (!m_reported.insert(f).second) continue;
         if (m_reported.size() <= kMostNotices) {
-            m_services.notices().add({tr("%1 is left out: %2 (%3).").arg(label(f), problem.what, problem.where), {}});
+            m_services.notices().add({tr("%1 is left out: %2 (%3).").arg(label(f), problem.what, problem.where)});
             continue;
         }
         if (!m_summary.isEmpty()) m_services.notices().remove(m_summary);
-        m_summary = tr("%L1 frames in all are left out, for they cannot be read.").arg(m_reported.size());
-        m_services.notices().add({m_summary, {}});
+        m_summary = tr("%L1 frames in all are left out because they cannot be read.").arg(m_reported.size());
+        m_services.notices().add({m_summary});
     }
 }
 

@@ -57,7 +57,6 @@ public:
 
     bool loops() const { return m_loops; }
     void setLoops(bool loops);
-    bool isBackward() const { return m_backward; }
     void setBackward(bool backward);
     double speed() const { return m_speed; } ///< frames a second
     void setSpeed(double framesPerSecond);
@@ -103,6 +102,7 @@ private:
     void next();
     bool show(int frame);
     void tick();
+    void startTimer();
     void restartClock();
     int goodFrame(int from, int direction) const;
     std::vector<int> ahead() const;

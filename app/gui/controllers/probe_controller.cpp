@@ -30,15 +30,14 @@ ProbeController::ProbeController(Services& services) : m_services(services) {
 }
 
 void ProbeController::addActions() {
-    const auto add = [this](const char* id, const QString& text, const char* keys, const QString& tip, bool more) {
-        m_services.actions().add(
-            tr("&Transfer function"), id, text, keys, tip, [this, more] { emphasize(more); },
-            [this] { return canEmphasize(); }, {.separatorBefore = more});
-    };
-    add("moreOfThisAction", tr("&More of this"), "Ctrl+]",
-        tr("Raises the opacity of the feature under the probe and lowers that of what hides it there"), true);
-    add("lessOfThisAction", tr("&Less of this"), "Ctrl+[",
-        tr("Lowers the opacity of the feature under the probe and raises that of what hides it there"), false);
+    ActionMenu menu(m_services.actions(), tr("&Transfer function"), [this] { return canEmphasize(); });
+    menu.separate();
+    menu.add("moreOfThisAction", tr("&More of this"), "Ctrl+]",
+             tr("Raises the opacity of the feature under the probe and lowers that of what hides it there"),
+             [this] { emphasize(true); });
+    menu.add("lessOfThisAction", tr("&Less of this"), "Ctrl+[",
+             tr("Lowers the opacity of the feature under the probe and raises that of what hides it there"),
+             [this] { emphasize(false); });
     m_services.actions().addGestures({{tr("Volume"), tr("Click"), tr("probe: what the ray meets there")},
                                       {tr("Volume"), tr("Click beside the volume, Esc"), tr("end the probe")}});
 }
@@ -76,15 +75,10 @@ std::optional<double> ProbeController::valueAtPlace() const {
 }
 
 int ProbeController::feature() const {
-    const FeatureId selected = m_services.selection().feature();
-    const auto& features = m_services.scene().tf.features;
-    const auto isMet = [&](int f) {
-        return std::any_of(m_ray->runs.begin(), m_ray->runs.end(),
-                           [f](const ProbeRun& run) { return run.feature == f; });
-    };
-    for (std::size_t f = 0; selected != 0 && f < features.size(); ++f)
-        if (features[f].id == selected && isMet(static_cast<int>(f))) return static_cast<int>(f);
-    return m_ray->feature;
+    const int selected = m_services.selectedFeature();
+    const bool isMet = selected >= 0 && std::any_of(m_ray->runs.begin(), m_ray->runs.end(),
+                                                    [&](const ProbeRun& run) { return run.feature == selected; });
+    return isMet ? selected : m_ray->feature;
 }
 
 bool ProbeController::canEmphasize() const { return isActive() && !m_services.isReadOnly() && feature() >= 0; }
@@ -99,10 +93,7 @@ void ProbeController::emphasize(bool more) {
     for (double& depth : inFront)
         if (depth < kHides) depth = 0;
     std::vector<bool> held;
-    for (const Feature& feature : scene.tf.features) {
-        const auto goal = scene.session.goals->find(feature.id);
-        held.push_back(goal != scene.session.goals->end() && goal->second.locked);
-    }
+    for (const Feature& feature : scene.tf.features) held.push_back(goalOf(scene.session, feature.id).locked);
     const double share = m_ray->shares[f], wanted = std::min(kClearly, 0.25 * (more ? 1 - share : share));
     Emphasis emphasis;
     double change = 0;
@@ -113,15 +104,11 @@ void ProbeController::emphasize(bool more) {
         if (!ray) break;
         change = (more ? 1 : -1) * (ray->shares[f] - share);
     }
-    if (emphasis.changes.empty()) {
-        Q_EMIT m_services.message(tr("%1 stays: it is locked, or its points are fixed").arg(name));
-        return;
-    }
-    if (!(change > 0)) {
-        Q_EMIT m_services.message(more ? tr("There is no more of %1 to show here").arg(name)
-                                       : tr("There is no less of %1 to show here").arg(name));
-        return;
-    }
+    if (emphasis.changes.empty())
+        return Q_EMIT m_services.message(tr("%1 stays: it is locked, or its points are fixed").arg(name));
+    if (!(change > 0))
+        return Q_EMIT m_services.message(
+            (more ? tr("There is no more of %1 to show here") : tr("There is no less of %1 to show here")).arg(name));
     editTf(m_services.store(), emphasis.tf, more ? tr("More of %1").arg(name) : tr("Less of %1").arg(name));
     Q_EMIT m_services.message(QString::fromStdString(emphasisText(emphasis)));
 }

@@ -14,8 +14,8 @@ namespace pellucid::gui {
 
 class Services;
 
-/// Holds a place of the volume; the ray is that of the present camera through it, so that it is the picture's where the
-/// place appears, whatever is edited or turned. Gone with the data.
+/// Keeps a point of the volume, and follows the ray of the present camera through it, so that it always describes the
+/// pixel in which the point appears, whatever is edited or turned. Ends when other data are opened.
 class ProbeController : public QObject {
     Q_OBJECT
 public:

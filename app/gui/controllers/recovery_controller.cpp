@@ -8,37 +8,27 @@
 #include "services/services.h"
 
 namespace pellucid::gui {
-namespace {
-
-constexpr int kDelay = 800; // milliseconds from the first change to the file: with the writing well below two seconds
-
-}
 
 RecoveryController::RecoveryController(Services& services, OpenController& opening, SaveController& saving)
     : m_services(services), m_opening(opening), m_saving(saving),
       m_writing(
           [this](const Work& work, const JobControl&) {
-              if (work.session) {
-                  m_file->write(*work.session, work.title.toStdString());
-              } else {
-                  m_file->remove();
-              }
+              work.session ? m_file->write(*work.session, work.title.toStdString()) : m_file->remove();
               return true;
           },
           [this](const Work&, bool&) {
               for (const std::string& path : std::exchange(m_restored, {})) discardRecovered(path);
           },
           WhenBusy::FinishOld) {
-    m_timer.setSingleShot(true);
-    m_timer.setInterval(kDelay);
-    connect(&m_timer, &QTimer::timeout, this, &RecoveryController::save);
-    connect(&m_writing, &JobBase::failed, this, [this](const Error& error) {
-        m_services.notices().add({tr("Unsaved work cannot be kept: %1").arg(QString::fromUtf8(error.what())), {}});
-    });
+    connect(&m_writing, &JobBase::failed, this, &RecoveryController::sayUnkept);
 }
 
 QString RecoveryController::folder() {
     return QDir(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)).filePath("recovery");
+}
+
+void RecoveryController::sayUnkept(const Error& error) {
+    m_services.notices().add({tr("Unsaved work cannot be kept: %1").arg(error.what())});
 }
 
 void RecoveryController::start() {
@@ -46,8 +36,7 @@ void RecoveryController::start() {
     try {
         m_file = std::make_shared<RecoveryFile>(folder().toStdString());
     } catch (const Error& error) {
-        m_services.notices().add({tr("Unsaved work cannot be kept: %1").arg(QString::fromUtf8(error.what())), {}});
-        return;
+        return sayUnkept(error);
     }
     // Not begun anew by each change: the first one that is not written yet decides.
     const auto changed = [this] {
@@ -77,25 +66,23 @@ void RecoveryController::offerWhenOpen() {
 
 void RecoveryController::offer() {
     for (const Recovered& left : recoverableSessions(folder().toStdString())) {
-        const QString title = QString::fromStdString(left.title);
         m_services.notices().add({tr("Pellucid closed before your work on %1 was saved. It was last kept at %2.")
-                                      .arg(title, QString::fromStdString(left.when)),
-                                  {{tr("Restore it"),
-                                    [this, path = left.path] {
-                                        try {
-                                            const SessionFile file = readSession(path);
-                                            if (!m_saving.maybeSave()) return offer();
-                                            m_opening.openRecovered(file);
-                                            // Once it is there again and written, this window keeps it.
-                                            connect(
-                                                &m_opening, &OpenController::opened, this,
-                                                [this, path] { m_restored.push_back(path); }, Qt::SingleShotConnection);
-                                        } catch (const Error& error) {
-                                            m_services.showError(tr("Cannot restore the work"), error);
-                                        }
-                                    }},
+                                      .arg(QString::fromStdString(left.title), QString::fromStdString(left.when)),
+                                  {{tr("Restore it"), [this, path = left.path] { restore(path); }},
                                    {tr("Discard it"), [path = left.path] { discardRecovered(path); }}}});
     }
+}
+
+void RecoveryController::restore(const std::string& path) {
+    m_services.attempt(tr("Cannot restore the work"), [&] {
+        const SessionFile file = readSession(path);
+        if (!m_saving.maybeSave()) return offer();
+        m_opening.openRecovered(file);
+        // Once it is there again and written, this window keeps it.
+        connect(
+            &m_opening, &OpenController::opened, this, [this, path] { m_restored.push_back(path); },
+            Qt::SingleShotConnection);
+    });
 }
 
 } // namespace pellucid::gui

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include <QObject>
-#include <QTimer>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "session/recovery.h"
 
 namespace pellucid::gui {
@@ -38,12 +38,15 @@ private:
         QString title;
     };
     void save();
+    void sayUnkept(const Error& error);
+    void restore(const std::string& path);
 
     Services& m_services;
     OpenController& m_opening;
     SaveController& m_saving;
     std::shared_ptr<RecoveryFile> m_file; // shared with the thread that writes it
-    QTimer m_timer;
+    /// Milliseconds from the first change to the file: with the writing well below two seconds.
+    RestTimer m_timer{800, [this] { save(); }};
     std::vector<std::string> m_restored; ///< files of others whose work is here now, until it is written
     Job<Work, bool> m_writing;
 };

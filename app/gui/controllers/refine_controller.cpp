@@ -6,6 +6,7 @@
 #include <QScopedValueRollback>
 
 #include "controllers/optimize_controller.h"
+#include "jobs/rest_timer.h"
 #include "optimize/coverage.h"
 #include "optimize/refine/drawn_colors.h"
 #include "optimize/refine/refine_features.h"
@@ -13,6 +14,7 @@
 #include "optimize/refine/refine_words.h"
 #include "optimize/refine/region_colors.h"
 #include "services/services.h"
+#include "store/edits.h"
 
 namespace pellucid::gui {
 namespace {
@@ -106,29 +108,30 @@ RefineController::RefineController(Services& services, OptimizeController& optim
 RefineController::~RefineController() { m_services.store().setConsequence({}); }
 
 void RefineController::addActions() {
-    const QString menu = tr("&Transfer function");
     Actions& actions = m_services.actions();
-    const auto ready = [this] { return m_services.isEditable(); };
+    ActionMenu menu(actions, tr("&Transfer function"), [this] { return m_services.isEditable(); });
     const auto settings = [this]() -> const RefineSettings& { return *m_services.store().session().refine; };
+    menu.separate();
     m_actions.refine =
-        actions.add(menu, "refineAction", tr("&Refine by entropy"), "Ctrl+R",
-                    tr("Opacities by entropy: values that are common get less, rare ones more; with a priority, "
-                       "what is like it gets more"),
-                    [this] { refine(); }, ready, {.separatorBefore = true});
-    m_actions.live =
-        actions.add(menu, "liveRefineAction", tr("Refine &live"), {},
-                    tr("Refine after every edit; what you move stays where you put it, the other points give way"),
-                    [this] {
-                        m_services.store().edit(tr("Live refinement"), {}, [](Session& session) {
-                            session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
-                            if (session.refine->live) session.holdTargets = false; // both set opacities
-                        });
-                    },
-                    ready, {.checked = [settings] { return settings().live; }});
+        menu.add("refineAction", tr("&Refine by entropy"), "Ctrl+R",
+                 tr("Sets opacities by entropy: common values get less, rare ones more; with a priority, "
+                    "what is like it gets more"),
+                 [this] { refine(); });
+    const auto toggleLive = [this] {
+        m_services.store().edit(tr("Live refinement"), {}, [](Session& session) {
+            session.refine.edit([](RefineSettings& r) { r.live = !r.live; });
+            if (session.refine->live) session.holdTargets = false; // both set opacities
+        });
+    };
+    m_actions.live = menu.addCheck(
+        "liveRefineAction", tr("Refine &live"), {},
+        tr("Refine after every edit; what you move stays where you put it, the other points "
+           "give way"),
+        [settings] { return settings().live; }, toggleLive);
     const auto select = [&](const char* id, const QString& text, const char* keys, const QString& tip, Selecting what) {
-        return actions.add(menu, id, text, keys, tip,
-                           [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); }, ready,
-                           {.checked = [this, what] { return m_selecting == what; }, .inToolBar = true});
+        return menu.addCheck(
+            id, text, keys, tip, [this, what] { return m_selecting == what; },
+            [this, what] { setSelecting(m_selecting == what ? Selecting::Nothing : what); }, true);
     };
     m_actions.rectangle =
         select("rectangleAction", tr("Select re&ctangle"), "Shift+R",
@@ -138,18 +141,18 @@ void RefineController::addActions() {
         select("lassoAction", tr("Select with la&sso"), "Shift+L",
                tr("Draw round a part of the picture: what has its colours becomes more opaque, everything else less"),
                Selecting::Lasso);
-    m_actions.nothing = actions.add(
-        menu, "prioritizeNothingAction", tr("Prioritize &nothing"), {},
-        tr("Forget the intensity or region that refinement brings out; opacities stay"),
-        [this] { prioritizeNothing(); },
-        [this, settings] { return m_services.isEditable() && (settings().intensity || settings().region); });
-    m_actions.ghost = actions.add(menu, "ghostAction", tr("Show the &curve before the refinement"), {},
-                                  tr("Behind the curve: what it was before the latest refinement"),
+    m_actions.nothing = menu.add("prioritizeNothingAction", tr("Prioritize &nothing"), {},
+                                 tr("Forget the intensity or region that refinement brings out; opacities stay"),
+                                 [this] { prioritizeNothing(); }, {.enabled = [this, settings] {
+                                     return m_services.isEditable() && (settings().intensity || settings().region);
+                                 }});
+    m_actions.ghost = actions.add(tr("&Transfer function"), "ghostAction", tr("Show the &curve before the refinement"),
+                                  {}, tr("Behind the curve: what it was before the latest refinement"),
                                   [this] { setGhostShown(!m_ghost); }, {}, {.checked = [this] { return m_ghost; }});
-    m_actions.pair = actions.add(
-        menu, "sideBySideAction", tr("Before and after, side by &side…"), {},
-        tr("The picture before and after the latest refinement, from the present camera"),
-        [this] { Q_EMIT pairWanted(); }, [this] { return m_services.store().hasVolume() && latest() != nullptr; });
+    m_actions.pair = menu.add("sideBySideAction", tr("Before and after, side by &side…"), {},
+                              tr("The picture before and after the latest refinement, from the present camera"),
+                              [this] { Q_EMIT pairWanted(); },
+                              {.enabled = [this] { return m_services.store().hasVolume() && latest() != nullptr; }});
     connect(this, &RefineController::refined, &actions, &Actions::refresh);
     connect(this, &RefineController::selectingChanged, &actions, &Actions::refresh);
     const QString volume = tr("Volume");
@@ -248,31 +251,19 @@ void RefineController::examine() {
 void RefineController::takeHelp() {
     const Refinement* now = current();
     if (!m_services.isEditable() || now == nullptr || !now->dark || now->dark->help == Darkening::Help::None) return;
-    const bool exact = now->dark->help == Darkening::Help::Exact;
-    const int iterations = now->dark->iterations;
+    const auto change = [exact = now->dark->help == Darkening::Help::Exact,
+                         iterations = now->dark->iterations](auto& settings) {
+        if (exact)
+            settings.method = RefineMethod::Exact;
+        else
+            settings.maxIterations = iterations;
+    };
     RefineOptions by = now->options;
-    if (exact)
-        by.method = RefineMethod::Exact;
-    else
-        by.maxIterations = iterations;
-    try {
-        Refinement r = refineFrom(now->before, now->start, m_services.scene(), by);
-        const QScopedValueRollback quiet(m_quiet, true);
-        keep(r);
-        m_services.store().edit(tr("Refine, keeping the picture visible"), {}, [&](Session& session) {
-            session.refine.edit([&](RefineSettings& s) {
-                if (exact)
-                    s.method = RefineMethod::Exact;
-                else
-                    s.maxIterations = iterations;
-            });
-            session.setTf(r.after);
-            session.addRun(runOf(r));
-        });
-        sayRefined(r);
-    } catch (const Error& error) {
-        m_services.showError(tr("Refinement failed"), error);
-    }
+    change(by);
+    m_services.attempt(tr("Refinement failed"), [&] {
+        const Refinement r = refineFrom(now->before, now->start, m_services.scene(), by);
+        apply(r, tr("Refine, keeping the picture visible"), change);
+    });
 }
 
 void RefineController::refine() {
@@ -281,19 +272,24 @@ void RefineController::refine() {
     store.commit();
     const RefineSettings& settings = *store.session().refine;
     if (!priorityOf(settings)) return look(*settings.region, tr("Refine"));
-    try {
-        Refinement r = refineFrom(store.scene().tf, store.scene().tf, store.scene(), options());
-        if (r.after == r.before) return sayRefined(r);
-        const QScopedValueRollback quiet(m_quiet, true);
-        keep(r);
-        store.edit(tr("Refine"), {}, [&](Session& session) {
-            session.setTf(r.after);
-            session.addRun(runOf(r));
-        });
-        sayRefined(r);
-    } catch (const Error& error) {
-        m_services.showError(tr("Refinement failed"), error);
-    }
+    m_services.attempt(tr("Refinement failed"), [&] {
+        const Refinement r = refineFrom(store.scene().tf, store.scene().tf, store.scene(), options());
+        r.after == r.before ? sayRefined(r) : apply(r, tr("Refine"), {});
+    });
+}
+
+void RefineController::apply(const Refinement& r, const QString& text,
+                             const std::function<void(RefineSettings&)>& change) {
+    const QScopedValueRollback quiet(m_quiet, true);
+    keep(r);
+    m_services.store().edit(text, {}, [&](Session& session) { put(r, change, session); });
+    sayRefined(r);
+}
+
+void RefineController::put(const Refinement& r, const std::function<void(RefineSettings&)>& change, Session& session) {
+    if (change) session.refine.edit(change);
+    session.setTf(r.after);
+    session.addRun(runOf(r));
 }
 
 void RefineController::prioritize(double x, const QString& mergeKey) {
@@ -311,26 +307,21 @@ void RefineController::dragPriority(double x) {
         store.commit();
         m_dragStart = startOfPriority();
     }
-    try {
+    const bool good = m_services.attempt(tr("Refinement failed"), [&] {
         RefineOptions by = options();
         by.priority = {};
         by.priority.intensity = std::clamp(x, 0.0, 1.0);
-        Refinement r = refineFrom(*m_dragStart, *m_dragStart, store.scene(), by);
+        const Refinement r = refineFrom(*m_dragStart, *m_dragStart, store.scene(), by);
+        const auto change = [&](RefineSettings& s) {
+            s.intensity = by.priority.intensity;
+            s.region.reset();
+        };
         const QScopedValueRollback quiet(m_quiet, true);
-        store.preview(tr("Refine for an intensity"), [&](Session& session) {
-            session.refine.edit([&](RefineSettings& s) {
-                s.intensity = by.priority.intensity;
-                s.region.reset();
-            });
-            session.setTf(r.after);
-            session.addRun(runOf(r));
-        });
-        keep(std::move(r));
+        store.preview(tr("Refine for an intensity"), [&](Session& session) { put(r, change, session); });
+        keep(r);
         Q_EMIT refined();
-    } catch (const Error& error) {
-        cancelDrag();
-        m_services.showError(tr("Refinement failed"), error);
-    }
+    });
+    if (!good) cancelDrag();
 }
 
 void RefineController::endDrag() {
@@ -372,37 +363,25 @@ void RefineController::refineForRegion(const Look& look) {
     SessionStore& store = m_services.store();
     if (!m_services.isEditable() || !store.scene().histogram) return;
     store.commit();
-    try {
+    m_services.attempt(tr("Refinement failed"), [&] {
         RefineOptions by = options();
         by.priority = {};
         by.priority.region = *colorsOf(look.region);
         const TransferFunction start = startOfPriority();
-        Refinement r = refineFrom(start, start, store.scene(), by);
-        const QScopedValueRollback quiet(m_quiet, true);
-        keep(r);
-        store.edit(look.text, {}, [&](Session& session) {
-            session.refine.edit([&](RefineSettings& s) {
-                s.region = look.region;
-                s.intensity.reset();
-            });
-            session.setTf(r.after);
-            session.addRun(runOf(r));
+        apply(refineFrom(start, start, store.scene(), by), look.text, [&](RefineSettings& s) {
+            s.region = look.region;
+            s.intensity.reset();
         });
-        sayRefined(r);
         Q_EMIT refined();
-    } catch (const Error& error) {
-        m_services.showError(tr("Refinement failed"), error);
-    }
+    });
 }
 
 void RefineController::prioritizeNothing() {
     if (!m_services.isEditable()) return;
     m_look.cancel();
-    m_services.store().edit(tr("Clear the priority"), {}, [](Session& session) {
-        session.refine.edit([](RefineSettings& r) {
-            r.intensity.reset();
-            r.region.reset();
-        });
+    editPart(m_services.store(), &Session::refine, tr("Clear the priority"), {}, [](RefineSettings& r) {
+        r.intensity.reset();
+        r.region.reset();
     });
     Q_EMIT refined();
 }
@@ -411,8 +390,8 @@ void RefineController::setSelecting(Selecting what) {
     if (what == m_selecting) return;
     m_selecting = what;
     if (what == Selecting::Rectangle)
-        Q_EMIT m_services.message(tr("Drag a rectangle over what shall stand out; Esc: no"));
-    if (what == Selecting::Lasso) Q_EMIT m_services.message(tr("Draw round what shall stand out; Esc: no"));
+        Q_EMIT m_services.message(tr("Drag a rectangle over what should stand out; Esc gives up"));
+    if (what == Selecting::Lasso) Q_EMIT m_services.message(tr("Draw round what should stand out; Esc gives up"));
     Q_EMIT selectingChanged();
 }
 
@@ -436,8 +415,7 @@ QString RefineController::follow(const Scene& before, const Scene& after, Sessio
     if (!edited && before.session.refine == after.session.refine) return {};
     const auto priority = priorityOf(settings);
     if (!priority) {
-        QMetaObject::invokeMethod(
-            this, [this] { refine(); }, Qt::QueuedConnection);
+        later(this, [this] { refine(); });
         return {};
     }
     try {

@@ -113,6 +113,9 @@ private:
     Refinement refineFrom(const TransferFunction& before, const TransferFunction& start, const Scene& scene,
                           RefineOptions options) const;
     void keep(Refinement refinement);
+    /// One step of the history, in which `change` (may be empty) changes the settings too.
+    void apply(const Refinement& refinement, const QString& text, const std::function<void(RefineSettings&)>& change);
+    static void put(const Refinement& refinement, const std::function<void(RefineSettings&)>& change, Session& session);
     void look(const ImageRegion& region, const QString& text);
     void refineForRegion(const Look& look);
     void sayRefined(const Refinement& refinement);

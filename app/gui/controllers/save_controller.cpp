@@ -1,11 +1,9 @@
 #include "controllers/save_controller.h"
 
-#include <QFileDialog>
-#include <QFileInfo>
 #include <QMessageBox>
-#include <QSettings>
 
 #include "controllers/field_controller.h"
+#include "dialogs/ask_file.h"
 #include "engines/engines.h"
 #include "image_io/image_file.h"
 #include "render/annotation_raster.h"
@@ -36,7 +34,7 @@ SaveController::SaveController(Services& services, FieldController& fields)
               return picture.path;
           },
           [this](const Picture&, const QString& path) {
-              Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
+              saySaved(path);
               Q_EMIT imageSaved(path);
           },
           WhenBusy::Queue),
@@ -51,7 +49,6 @@ SaveController::SaveController(Services& services, FieldController& fields)
           },
           [this](const ReportTask&, const QString& folder) {
               Q_EMIT m_services.message(tr("Saved the report in %1").arg(QFileInfo(folder).fileName()));
-              Q_EMIT reportSaved(folder);
           },
           WhenBusy::Queue, &services.compute()) {
     for (JobBase* job : std::initializer_list<JobBase*>{&m_images, &m_reports}) {
@@ -59,39 +56,27 @@ SaveController::SaveController(Services& services, FieldController& fields)
         connect(job, &JobBase::progress, this, &SaveController::progress);
         connect(job, &JobBase::cancelled, this, &SaveController::cancelled);
     }
-    connect(&m_reports, &JobBase::failed, this,
-            [this](const Error& error) { m_services.showError(tr("Cannot save the report"), error); });
-    connect(&m_images, &JobBase::failed, this,
-            [this](const Error& error) { m_services.showError(tr("Cannot save the image"), error); });
+    services.showFailuresOf(m_reports, tr("Cannot save the report"));
+    services.showFailuresOf(m_images, tr("Cannot save the image"));
 }
 
 void SaveController::addActions() {
-    const QString menu = tr("&File");
-    const auto open = [this] { return m_services.store().hasVolume(); };
-    const auto add = [&](const QString& id, const QString& text, const QString& keys, const QString& tip,
-                         bool separator, bool toolBar, std::function<void()> trigger) {
-        m_services.actions().add(menu, id, text, keys, tip, std::move(trigger), open,
-                                 {.separatorBefore = separator, .inToolBar = toolBar});
-    };
-    add("saveSessionAction", tr("&Save session"), "Ctrl+S",
-        tr("Everything that you have set, with the name of the data, to go on from later"), true, false,
-        [this] { chooseSession(false); });
-    add("saveSessionAsAction", tr("Save session &as…"), "Ctrl+Shift+S", {}, false, false,
-        [this] { chooseSession(true); });
-    add("saveTfAction", tr("Sa&ve transfer function"), "Ctrl+T", {}, true, false, [this] { chooseTf(false); });
-    add("saveTfAsAction", tr("Save transfer f&unction as…"), "Ctrl+Shift+T", {}, false, false,
-        [this] { chooseTf(true); });
-    add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture"), true, true, [this] { chooseImage(); });
-    m_services.actions().add(
-        menu, "saveReportAction", tr("Save &report of the last run…"), {},
-        tr("One page about the latest optimization: pictures, bars, curves, settings"),
-        [this] {
-            if (const Run* run = latestRun()) chooseReport(*run);
-        },
-        [this] { return latestRun() != nullptr && !m_services.isReadOnly(); });
-    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (!before.session.runs.isSame(after.session.runs)) m_services.actions().refresh();
-    });
+    ActionMenu menu(m_services.actions(), tr("&File"), [this] { return m_services.store().hasVolume(); });
+    menu.separate();
+    menu.add("saveSessionAction", tr("&Save session"), "Ctrl+S",
+             tr("All your settings and the name of the data, so that you can continue later"),
+             [this] { chooseSession(false); });
+    menu.add("saveSessionAsAction", tr("Save session &as…"), "Ctrl+Shift+S", {}, [this] { chooseSession(true); });
+    menu.separate();
+    menu.add("saveTfAction", tr("Sa&ve transfer function"), "Ctrl+T", {}, [this] { chooseTf(false); });
+    menu.add("saveTfAsAction", tr("Save transfer f&unction as…"), "Ctrl+Shift+T", {}, [this] { chooseTf(true); });
+    menu.separate();
+    menu.add("saveImageAction", tr("Save &image…"), "Ctrl+E", tr("Save the picture"), [this] { chooseImage(); },
+             {.inToolBar = true});
+    menu.add("saveReportAction", tr("Save &report of the last run…"), {},
+             tr("One page about the latest optimization: pictures, bars, curves, settings"),
+             [this] { chooseReport(*latestRun()); },
+             {.enabled = [this] { return latestRun() != nullptr && !m_services.isReadOnly(); }});
 }
 
 void SaveController::setSessionPath(const QString& path) {
@@ -100,48 +85,40 @@ void SaveController::setSessionPath(const QString& path) {
 }
 
 bool SaveController::saveSession(const QString& path) {
-    if (!m_services.store().hasVolume()) return false;
-    try {
+    return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the session"), [&] {
         writeSession(m_services.store().committed().session, path.toStdString());
         setSessionPath(path);
         m_services.store().setClean();
-        Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
-        Q_EMIT sessionSaved();
-        return true;
-    } catch (const Error& error) {
-        m_services.showError(tr("Cannot save the session"), error);
-        return false;
-    }
+        saySaved(path);
+    });
 }
 
 bool SaveController::saveTf(const QString& path) {
-    if (!m_services.store().hasVolume()) return false;
-    try {
+    return m_services.store().hasVolume() && m_services.attempt(tr("Cannot save the transfer function"), [&] {
         writeTf(*m_services.store().committed().session.tf(), path.toStdString());
         setTfPath(path);
         m_services.store().setTfSaved();
-        Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
-        return true;
-    } catch (const Error& error) {
-        m_services.showError(tr("Cannot save the transfer function"), error);
-        return false;
-    }
+        saySaved(path);
+    });
+}
+
+void SaveController::saySaved(const QString& path) {
+    Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
 }
 
 void SaveController::saveImage(const SaveImageOptions& options) {
     if (!m_services.store().hasVolume()) return;
     Picture picture{
         m_fields.picture(options.size.width(), options.size.height(), options.transparent), {}, options.path};
-    if (options.reference)
+    if (options.annotated)
         picture.around = m_fields.annotation(picture.input, *m_services.scene().session.reference);
     else
-        picture.around.show = FrameOfReference::none();
-    try {
+        picture.around.show = AnnotationChoice::none();
+    const bool good = m_services.attempt(tr("Cannot save the image"), [&] {
         picture.input.settings.validate();
         checkImageSuffix(options.path.toStdString());
-    } catch (const Error& error) {
-        return m_services.showError(tr("Cannot save the image"), error);
-    }
+    });
+    if (!good) return;
     m_busyText = tr("Saving %1…").arg(QFileInfo(options.path).fileName());
     m_images.start(picture, options.path);
     Q_EMIT busyChanged();
@@ -166,45 +143,34 @@ void SaveController::chooseReport(const Run& run) {
         QFileDialog::getExistingDirectory(m_services.window(), tr("Folder for the report"),
                                           QSettings().value("reportFolder", QDir::homePath()).toString());
     if (folder.isEmpty()) return;
-    if (QFileInfo::exists(QDir(folder).filePath(kReportFile)) &&
-        QMessageBox::question(m_services.window(), tr("Save report"),
-                              tr("There is a report in %1. Replace it?").arg(QFileInfo(folder).fileName())) !=
-            QMessageBox::Yes)
-        return;
+    const QString question = tr("There is a report in %1. Replace it?").arg(QFileInfo(folder).fileName());
+    if (!mayReplace(QDir(folder).filePath(kReportFile), tr("Save report"), question)) return;
     QSettings().setValue("reportFolder", folder);
     saveReport(kept, folder);
 }
 
+bool SaveController::mayReplace(const QString& file, const QString& title, const QString& question) {
+    return !QFileInfo::exists(file) || QMessageBox::question(m_services.window(), title, question) == QMessageBox::Yes;
+}
+
 bool SaveController::chooseSession(bool askForName) {
     if (!m_services.store().hasVolume()) return false;
-    QString path = m_sessionPath;
-    if (askForName || path.isEmpty()) {
-        const QString folder = QSettings().value("sessionFolder").toString();
-        const QString offered =
-            path.isEmpty() ? QDir(folder).filePath(baseName(m_services.scene()) + ".pellucid.json") : path;
-        path = QFileDialog::getSaveFileName(m_services.window(), tr("Save session"), offered,
-                                            tr("Sessions (*.pellucid.json)"));
-        if (path.isEmpty()) return false;
-        if (!path.endsWith(".pellucid.json", Qt::CaseInsensitive)) path += ".pellucid.json";
-        QSettings().setValue("sessionFolder", QFileInfo(path).absolutePath());
-    }
-    return saveSession(path);
+    const QString offered = m_sessionPath.isEmpty() ? baseName(m_services.scene()) + ".pellucid.json" : m_sessionPath;
+    const QString path = askForName || m_sessionPath.isEmpty()
+                             ? askSavePath(m_services.window(), tr("Save session"), "sessionFolder", offered,
+                                           tr("Sessions (*.pellucid.json)"), ".pellucid.json", ".pellucid.json")
+                             : m_sessionPath;
+    return !path.isEmpty() && saveSession(path);
 }
 
 bool SaveController::chooseTf(bool askForName) {
     if (!m_services.store().hasVolume()) return false;
-    QString path = m_tfPath;
-    if (askForName || path.isEmpty()) {
-        const QString folder = QSettings().value("tfFolder").toString();
-        const QString offered =
-            path.isEmpty() ? QDir(folder).filePath(baseName(m_services.scene()) + ".tf.json") : path;
-        path = QFileDialog::getSaveFileName(m_services.window(), tr("Save transfer function"), offered,
-                                            tr("Transfer functions (*.tf.json)"));
-        if (path.isEmpty()) return false;
-        if (!path.endsWith(".json", Qt::CaseInsensitive)) path += ".tf.json";
-        QSettings().setValue("tfFolder", QFileInfo(path).absolutePath());
-    }
-    return saveTf(path);
+    const QString offered = m_tfPath.isEmpty() ? baseName(m_services.scene()) + ".tf.json" : m_tfPath;
+    const QString path = askForName || m_tfPath.isEmpty()
+                             ? askSavePath(m_services.window(), tr("Save transfer function"), "tfFolder", offered,
+                                           tr("Transfer functions (*.tf.json)"), ".json", ".tf.json")
+                             : m_tfPath;
+    return !path.isEmpty() && saveTf(path);
 }
 
 void SaveController::chooseImage() {
@@ -216,12 +182,9 @@ void SaveController::chooseImage() {
     while (dialog.exec() == QDialog::Accepted) {
         const SaveImageOptions options = dialog.options();
         if (options.path.isEmpty()) continue;
-        if (QFileInfo::exists(options.path) &&
-            QMessageBox::question(m_services.window(), tr("Save image"),
-                                  tr("%1 exists. Replace it?").arg(QFileInfo(options.path).fileName())) !=
-                QMessageBox::Yes)
-            continue;
-        QSettings().setValue("imageFolder", QFileInfo(options.path).absolutePath());
+        const QString question = tr("%1 exists. Replace it?").arg(QFileInfo(options.path).fileName());
+        if (!mayReplace(options.path, tr("Save image"), question)) continue;
+        keepFolderOf("imageFolder", options.path);
         return saveImage(options);
     }
 }

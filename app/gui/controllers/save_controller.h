@@ -48,8 +48,6 @@ Q_SIGNALS:
     void busyChanged();
     void progress(double fraction);
     void imageSaved(const QString& path);
-    void reportSaved(const QString& folder);
-    void sessionSaved();
     void cancelled();
     void sessionPathChanged();
 
@@ -65,6 +63,8 @@ private:
         QString folder;
     };
     const Run* latestRun() const; ///< that a report can be made of; null: none
+    void saySaved(const QString& path);
+    bool mayReplace(const QString& file, const QString& title, const QString& question); ///< asks where it is there
     bool chooseSession(bool askForName);
     bool chooseTf(bool askForName);
     void chooseImage();

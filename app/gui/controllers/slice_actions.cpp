@@ -21,28 +21,23 @@ QIcon iconOf(Layout layout) {
         pixmap.fill(Qt::transparent);
         QPainter painter(&pixmap);
         painter.setPen(QPen(QColor(0x84, 0x88, 0x8e), 1.2)); // is seen on dark and on light
-        const QRectF frame(2.5, 3.5, 15, 13);
-        painter.drawRect(frame);
+        const QRectF all(2.5, 3.5, 15, 13);
+        painter.drawRect(all);
         painter.setBrush(QColor(0x84, 0x88, 0x8e, 150)); // where the volume is
-        const QPointF middle = frame.center();
-        switch (layout) {
-        case Layout::Volume:
-            painter.drawRect(frame);
-            break;
-        case Layout::Four:
-            painter.drawLine(QPointF(frame.left(), middle.y()), QPointF(frame.right(), middle.y()));
-            painter.drawRect(QRectF(QPointF(middle.x(), frame.top()), QPointF(frame.right(), middle.y())));
-            painter.drawLine(QPointF(middle.x(), frame.top()), QPointF(middle.x(), frame.bottom()));
-            break;
-        case Layout::VolumeLarge: {
-            const double x = frame.left() + 0.65 * frame.width();
-            painter.drawRect(QRectF(frame.topLeft(), QPointF(x, frame.bottom())));
+        const QPointF middle = all.center();
+        if (layout == Layout::Volume) {
+            painter.drawRect(all);
+        } else if (layout == Layout::Four) {
+            painter.drawLine(QPointF(all.left(), middle.y()), QPointF(all.right(), middle.y()));
+            painter.drawRect(QRectF(QPointF(middle.x(), all.top()), QPointF(all.right(), middle.y())));
+            painter.drawLine(QPointF(middle.x(), all.top()), QPointF(middle.x(), all.bottom()));
+        } else {
+            const double x = all.left() + 0.65 * all.width();
+            painter.drawRect(QRectF(all.topLeft(), QPointF(x, all.bottom())));
             for (const double share : {1 / 3.0, 2 / 3.0}) {
-                const double y = frame.top() + share * frame.height();
-                painter.drawLine(QPointF(x, y), QPointF(frame.right(), y));
+                const double y = all.top() + share * all.height();
+                painter.drawLine(QPointF(x, y), QPointF(all.right(), y));
             }
-            break;
-        }
         }
         painter.end();
         icon.addPixmap(pixmap);
@@ -55,37 +50,32 @@ QIcon iconOf(Layout layout) {
 void addSliceActions(Services& services) {
     SessionStore& store = services.store();
     Actions& actions = services.actions();
-    const QString menu = QObject::tr("&View") + "/" + QObject::tr("La&yout");
-    const auto editable = [&services] { return services.isEditable(); };
-    struct Texts {
-        Layout layout;
-        QString id, text, tip;
-    };
-    const Texts layouts[] = {
-        {Layout::Volume, "layoutVolumeAction", QObject::tr("&Volume"), QObject::tr("The volume alone")},
-        {Layout::Four, "layoutFourAction", QObject::tr("&Four views"),
-         QObject::tr("The volume and three slices through it, of a size")},
-        {Layout::VolumeLarge, "layoutVolumeLargeAction", QObject::tr("Volume and &slices"),
-         QObject::tr("The volume large, three slices small beside it")}};
+    ActionMenu menu(actions, QObject::tr("&View") + "/" + QObject::tr("La&yout"),
+                    [&services] { return services.isEditable(); });
     int key = 1;
-    for (const Texts& t : layouts)
-        actions
-            .add(menu, t.id, t.text, QStringLiteral("Ctrl+Shift+%1").arg(key++), t.tip,
-                 [&store, layout = t.layout] { setLayout(store, layout); }, editable,
-                 {.checked = [&store, layout = t.layout] { return store.session().slices->layout == layout; },
-                  .inToolBar = true})
-            ->setIcon(iconOf(t.layout));
-    actions.add(
-        menu, "centreCrosshairAction", QObject::tr("&Crosshair to the middle"), {},
-        QObject::tr("The slices through the middle of the volume"),
-        [&store] { moveCrosshair(store, Vec3(store.scene().volume->dims() / 2)); },
-        [&store] { return store.hasVolume(); }, {.separatorBefore = true});
-    actions.add(
-        menu, "resetGreyWindowAction", QObject::tr("&Reset the window of grey"), {},
-        QObject::tr("Black and white of the slices at the ends of the range of values, as the transfer "
-                    "function has it"),
-        [&store] { resetGreyWindow(store); },
-        [&store, editable] { return editable() && store.session().slices->window.has_value(); });
+    const auto addLayout = [&](Layout layout, const char* id, const QString& text, const QString& tip) {
+        menu.addCheck(
+                id, text, QStringLiteral("Ctrl+Shift+%1").arg(key++), tip,
+                [&store, layout] { return store.session().slices->layout == layout; },
+                [&store, layout] { setLayout(store, layout); }, true)
+            ->setIcon(iconOf(layout));
+    };
+    addLayout(Layout::Volume, "layoutVolumeAction", QObject::tr("&Volume"), QObject::tr("The volume alone"));
+    addLayout(Layout::Four, "layoutFourAction", QObject::tr("&Four views"),
+              QObject::tr("The volume and three slices through it, all of one size"));
+    addLayout(Layout::VolumeLarge, "layoutVolumeLargeAction", QObject::tr("Volume and &slices"),
+              QObject::tr("The volume large, three slices small beside it"));
+    menu.separate();
+    menu.add("centreCrosshairAction", QObject::tr("&Crosshair to the middle"), {},
+             QObject::tr("The slices through the middle of the volume"),
+             [&store] { moveCrosshair(store, Vec3(store.scene().volume->dims() / 2)); },
+             {.enabled = [&store] { return store.hasVolume(); }});
+    menu.add("resetGreyWindowAction", QObject::tr("&Reset the window of grey"), {},
+             QObject::tr("Black and white of the slices at the ends of the range of values that the transfer function "
+                         "covers"),
+             [&store] { resetGreyWindow(store); }, {.enabled = [&services] {
+                 return services.isEditable() && services.scene().session.slices->window.has_value();
+             }});
     const QString slices = QObject::tr("Slices");
     actions.addGestures(
         {{slices, QObject::tr("Left drag"), QObject::tr("move the crosshair")},

@@ -2,6 +2,7 @@
 
 #include "controllers/open_controller.h"
 #include "services/services.h"
+#include "store/edits.h"
 #include "widgets/number_text.h"
 
 namespace pellucid::gui {
@@ -23,21 +24,14 @@ QString percentText(double share) {
 } // namespace
 
 QString recognisedText(const Proposal& proposal) {
-    switch (proposal.kind) {
-    case DataKind::Ct:
-        return proposal.background ? QObject::tr("CT in Hounsfield units: air left out; %1.").arg(namesOf(proposal))
-                                   : QObject::tr("CT in Hounsfield units: %1.").arg(namesOf(proposal));
-    case DataKind::Signed:
-        return QObject::tr("Values of both signs: colours part at 0, and what lies about it is left out.");
-    case DataKind::Labels:
-        return QObject::tr("Labels: a feature for each.");
-    case DataKind::Constant: // the loader has said it
-    case DataKind::Empty:
-    case DataKind::Binary:
-    case DataKind::Continuous:
-        break;
-    }
-    return {};
+    if (proposal.kind == DataKind::Ct)
+        return (proposal.background ? QObject::tr("CT in Hounsfield units: air left out; %1.")
+                                    : QObject::tr("CT in Hounsfield units: %1."))
+            .arg(namesOf(proposal));
+    if (proposal.kind == DataKind::Signed)
+        return QObject::tr("Values of both signs: colours change at 0, and values near 0 are left out.");
+    if (proposal.kind == DataKind::Labels) return QObject::tr("Labels: a feature for each.");
+    return {}; // what is constant, the loader has said
 }
 
 QString beyondText(const Proposal& proposal, const ValueRange& data) {
@@ -61,7 +55,7 @@ StartController::StartController(Services& services, OpenController& opening)
               [this](const Request& request, AutomaticStart& start) {
                   if (request.scene.data != m_services.scene().data || m_services.isReadOnly()) return;
                   const auto change = [window = start.window, sight = start.sight](Session& session) {
-                      session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
+                      editVariable(session, [&](Variable& v) { v.window = window; });
                       setStart(session, sight);
                   };
                   m_opening.editData(tr("Automatic start"), change,
@@ -71,15 +65,14 @@ StartController::StartController(Services& services, OpenController& opening)
     connect(&opening, &OpenController::automaticStartWanted, this, &StartController::startAgain);
     connect(&m_tuning, &JobBase::busyChanged, this, &StartController::busyChanged);
     connect(&m_again, &JobBase::busyChanged, this, &StartController::busyChanged);
-    connect(&m_again, &JobBase::failed, this,
-            [this](const Error& error) { m_services.showError(tr("Automatic start failed"), error); });
+    services.showFailuresOf(m_again, tr("Automatic start failed"));
 }
 
 void StartController::addActions() {
     m_services.actions().add(
         tr("&Transfer function"), "automaticStartAction", tr("&Automatic start"), {},
-        tr("Window and features from the data, opacities for this view"), [this] { startAgain(); },
-        [this] { return m_services.isEditable(); });
+        tr("Takes the window and the features from the data, and finds opacities for this view"),
+        [this] { startAgain(); }, [this] { return m_services.isEditable(); });
 }
 
 void StartController::follow() {
@@ -104,15 +97,14 @@ void StartController::cancel() {
 }
 
 void StartController::say(const Proposal& proposal) {
-    if (const QString text = recognisedText(proposal); !text.isEmpty()) m_services.notices().add({text, {}});
+    if (const QString text = recognisedText(proposal); !text.isEmpty()) m_services.notices().add({text});
     const QString beyond = beyondText(proposal, m_services.scene().data->dataRange());
     if (beyond.isEmpty()) return;
-    m_services.notices().add({beyond, {{tr("Show full range"), [this] {
-                                            m_opening.editData(tr("Full range"), [](Session& session) {
-                                                session.variables.edit(
-                                                    [](std::vector<Variable>& all) { all.front().window.reset(); });
-                                            });
-                                        }}}});
+    const auto showAll = [this] {
+        m_opening.editData(tr("Full range"),
+                           [](Session& session) { editVariable(session, [](Variable& v) { v.window.reset(); }); });
+    };
+    m_services.notices().add({beyond, {{tr("Show full range"), showAll}}});
 }
 
 void StartController::showTuned(const Scene& scene, const FirstSight& start) {

@@ -11,8 +11,8 @@ namespace pellucid::gui {
 class OpenController;
 class Services;
 
-/// After a volume has been opened under a proposed transfer function its opacities are tuned beside the first picture,
-/// and come as one step, "Automatic opacities", unless the transfer function has been edited meanwhile.
+/// After a volume has been opened with a proposed transfer function, its opacities are tuned while the first picture is
+/// drawn. They come as one step, "Automatic opacities", unless the transfer function has been edited meanwhile.
 class StartController : public QObject {
     Q_OBJECT
 public:

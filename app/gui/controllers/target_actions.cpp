@@ -2,48 +2,69 @@
 
 #include <algorithm>
 
-#include <QDialog>
-#include <QDialogButtonBox>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 
+#include "dialogs/closing_buttons.h"
 #include "services/services.h"
 #include "session/target_presets.h"
 #include "store/edits.h"
+#include "widgets/named.h"
 
 namespace pellucid::gui {
 namespace {
-
-QString targetMenu() { return QObject::tr("&Transfer function") + "/" + QObject::tr("Tar&gets"); }
 
 void setTargets(Services& services, const QString& text, const std::vector<double>& targets) {
     services.store().commit();
     editTargets(services.store(), targets, text);
 }
 
-void setPreset(Services& services, const QString& text, TargetPreset preset) {
-    setTargets(services, text, presetTargets(preset, services.scene().wantedTf(), *services.scene().session.goals));
+void setTargetsAsNow(Services& services) {
+    const Scene& scene = services.scene();
+    std::vector<double> vws;
+    for (const FeatureMeasures& f : services.results().measures()->features) vws.push_back(f.vws);
+    setTargets(services, QObject::tr("Targets as now"), targetsByWeights(scene.wantedTf(), *scene.session.goals, vws));
 }
 
-/// Lowest and highest opacity of a feature.
+void setTargetOfOne(Services& services) {
+    const Scene& scene = services.scene();
+    setTargets(
+        services, QObject::tr("Target of one feature"),
+        targetsForOne(scene.wantedTf(), *scene.session.goals, static_cast<std::size_t>(services.selectedFeature())));
+}
+
+void unlockTargets(Services& services) {
+    services.store().commit();
+    services.store().edit(QObject::tr("Unlock targets"), {}, [tf = services.scene().wantedTf()](Session& session) {
+        for (std::size_t i = 0; i < tf.features.size(); ++i)
+            session.goals.set(withTargetLocked(*session.goals, tf, i, false));
+    });
+}
+
+void lockOpacity(Services& services, int feature) {
+    OpacityLimits limits = opacityLimits(services.store(), feature);
+    limits.locked = !limits.locked;
+    editOpacityLimits(services.store(), feature, limits,
+                      limits.locked ? QObject::tr("Lock opacity") : QObject::tr("Unlock opacity"));
+}
+
+/// Asks for the lowest and highest opacity of a feature.
 void askLimits(Services& services, int feature) {
     const OpacityLimits limits = opacityLimits(services.store(), feature);
     QDialog dialog(services.window());
     dialog.setObjectName("limitsDialog");
     dialog.setWindowTitle(QObject::tr("Limits of the opacity"));
     auto* form = new QFormLayout(&dialog);
-    const QString name =
-        QString::fromStdString(services.scene().tf.features.at(static_cast<std::size_t>(feature)).name);
+    const QString name = QString::fromStdString(services.selected()->name);
     form->addRow(new QLabel(QObject::tr("Optimize keeps the opacity of \"%1\" between").arg(name), &dialog));
     const auto box = [&](const char* id, double value, const QString& label) {
         auto* spin = new QDoubleSpinBox(&dialog);
-        spin->setObjectName(id);
+        named(spin, id, QObject::tr("Opacity of the feature's peak, of a path one voxel long (d0), 0 to 1"));
         spin->setRange(0, 1);
         spin->setDecimals(4);
         spin->setSingleStep(0.01);
         spin->setValue(value);
-        spin->setToolTip(QObject::tr("Opacity of the feature's peak, of a path one voxel long (d0), 0 to 1"));
         form->addRow(label, spin);
         return spin;
     };
@@ -53,10 +74,7 @@ void askLimits(Services& services, int feature) {
                      [highest](double value) { highest->setValue(std::max(value, highest->value())); });
     QObject::connect(highest, &QDoubleSpinBox::valueChanged, lowest,
                      [lowest](double value) { lowest->setValue(std::min(value, lowest->value())); });
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, &dialog);
-    form->addRow(buttons);
-    QObject::connect(buttons, &QDialogButtonBox::accepted, &dialog, &QDialog::accept);
-    QObject::connect(buttons, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
+    form->addRow(closingButtons(dialog, QDialogButtonBox::Ok | QDialogButtonBox::Cancel));
     if (dialog.exec() != QDialog::Accepted) return;
     editOpacityLimits(services.store(), feature, {lowest->value(), highest->value(), limits.locked},
                       QObject::tr("Limits of opacity"));
@@ -72,107 +90,57 @@ void TargetActions::addActions() {
         const int f = services.selectedFeature();
         return editable() && f >= 0 && !services.scene().wantedTf().features[static_cast<std::size_t>(f)].hidden;
     };
-    const auto add = [&](const char* id, const QString& text, const QString& tip, auto trigger, auto enabled) {
-        m_entries << actions.add(targetMenu(), id, text, {}, tip, trigger, enabled);
+    ActionMenu menu(actions, QObject::tr("&Transfer function") + "/" + QObject::tr("Tar&gets"), editable);
+    const auto addPreset = [&](const char* id, const QString& text, const QString& tip, const QString& step,
+                               TargetPreset preset) {
+        m_entries << menu.add(id, text, {}, tip, [&services, step, preset] {
+            const Scene& scene = services.scene();
+            setTargets(services, step, presetTargets(preset, scene.wantedTf(), *scene.session.goals));
+        });
     };
-    add(
-        "targetsEqual", QObject::tr("&Equal"), QObject::tr("The same share for each feature; locked targets stay"),
-        [&services] { setPreset(services, QObject::tr("Equal targets"), TargetPreset::Equal); }, editable);
-    add(
-        "targetsDiagonal", QObject::tr("&Diagonal"),
-        QObject::tr("In proportion to the value at each feature's peak; locked targets stay"),
-        [&services] { setPreset(services, QObject::tr("Diagonal targets"), TargetPreset::Diagonal); }, editable);
-    add(
-        "targetsAsNow", QObject::tr("&As now"),
-        QObject::tr("The VWS that each feature has now: what the picture shows is what is wanted"),
-        [&services] {
-            std::vector<double> vws;
-            for (const FeatureMeasures& f : services.results().measures()->features) vws.push_back(f.vws);
-            setTargets(services, QObject::tr("Targets as now"),
-                       targetsByWeights(services.scene().wantedTf(), *services.scene().session.goals, vws));
-        },
-        [&services, editable] { return editable() && services.results().vwsIsCurrent(); });
-    add(
-        "targetsOnlyThis", QObject::tr("&Only this one"),
-        QObject::tr("All for the selected feature, as far as locked targets leave it"),
-        [&services] {
-            setTargets(services, QObject::tr("Target of one feature"),
-                       targetsForOne(services.scene().wantedTf(), *services.scene().session.goals,
-                                     static_cast<std::size_t>(services.selectedFeature())));
-        },
-        selected);
-    add(
-        "targetsInsideOut", QObject::tr("&Inside out"),
-        QObject::tr("The targets in reverse order; where they are all equal, Diagonal in reverse order"),
-        [&services] { setPreset(services, QObject::tr("Targets inside out"), TargetPreset::InsideOut); }, editable);
-    const auto goalOf = [&services](int f) {
-        const FeatureGoals& goals = *services.store().session().goals;
-        const auto goal = goals.find(services.scene().tf.features[static_cast<std::size_t>(f)].id);
-        return goal == goals.end() ? FeatureGoal() : goal->second;
-    };
+    addPreset("targetsEqual", QObject::tr("&Equal"),
+              QObject::tr("The same share for each feature; locked targets stay"), QObject::tr("Equal targets"),
+              TargetPreset::Equal);
+    addPreset("targetsDiagonal", QObject::tr("&Diagonal"),
+              QObject::tr("In proportion to the value at each feature's peak; locked targets stay"),
+              QObject::tr("Diagonal targets"), TargetPreset::Diagonal);
+    m_entries << menu.add("targetsAsNow", QObject::tr("&As now"), {},
+                          QObject::tr("The VWS that each feature has now: the picture stays as it is"),
+                          [&services] { setTargetsAsNow(services); }, {.enabled = [&services, editable] {
+                              return editable() && services.results().vwsIsCurrent();
+                          }});
+    m_entries << menu.add("targetsOnlyThis", QObject::tr("&Only this one"), {},
+                          QObject::tr("All for the selected feature, as far as locked targets leave it"),
+                          [&services] { setTargetOfOne(services); }, {.enabled = selected});
+    addPreset("targetsInsideOut", QObject::tr("&Inside out"),
+              QObject::tr("The targets in reverse order; where they are all equal, Diagonal in reverse order"),
+              QObject::tr("Targets inside out"), TargetPreset::InsideOut);
     auto* const gap = new QAction(&actions);
     gap->setSeparator(true);
     m_entries << gap;
-    m_entries << actions.add(targetMenu(), "targetLock", QObject::tr("&Lock target"), {},
-                             QObject::tr("The selected feature's target stays where others are set (L in the bars)"),
-                             [&services, goalOf] {
-                                 const int f = services.selectedFeature();
-                                 if (f >= 0) setTargetLocked(services.store(), f, !goalOf(f).targetLocked);
-                             },
-                             selected,
-                             {.checked =
-                                  [&services, goalOf] {
-                                      const int f = services.selectedFeature();
-                                      return f >= 0 && goalOf(f).targetLocked;
-                                  },
-                              .separatorBefore = true});
-    add(
-        "targetsUnlock", QObject::tr("&Unlock all"), QObject::tr("No target is locked; shares stay as they are"),
-        [&services] {
-            services.store().commit();
-            services.store().edit(QObject::tr("Unlock targets"), {},
-                                  [tf = services.scene().wantedTf()](Session& session) {
-                                      for (std::size_t i = 0; i < tf.features.size(); ++i)
-                                          session.goals.set(withTargetLocked(*session.goals, tf, i, false));
-                                  });
-        },
-        editable);
-    const QString menu = QObject::tr("&Transfer function") + "/" + QObject::tr("Feat&ure");
-    m_limits << actions.add(menu, "opacityLock", QObject::tr("Loc&k opacity"), {},
-                            QObject::tr("Optimize leaves the opacity of the selected feature as it is"),
-                            [&services] {
-                                const int f = services.selectedFeature();
-                                if (f < 0) return;
-                                OpacityLimits limits = opacityLimits(services.store(), f);
-                                limits.locked = !limits.locked;
-                                editOpacityLimits(services.store(), f, limits,
-                                                  limits.locked ? QObject::tr("Lock opacity")
-                                                                : QObject::tr("Unlock opacity"));
-                            },
-                            selected,
-                            {.checked =
-                                 [&services, goalOf] {
-                                     const int f = services.selectedFeature();
-                                     return f >= 0 && goalOf(f).locked;
-                                 },
-                             .separatorBefore = true});
-    m_limits << actions.add(
-        menu, "opacityLimits", QObject::tr("L&imits of opacity…"), {},
-        QObject::tr("Between which opacities Optimize may move the selected feature"),
-        [&services] {
-            if (const int f = services.selectedFeature(); f >= 0) askLimits(services, f);
-        },
-        selected);
-    QObject::connect(&services.store(), &SessionStore::changed, &actions,
-                     [&actions](const Scene& before, const Scene& after) {
-                         if (!before.session.goals.isSame(after.session.goals) ||
-                             before.session.holdTargets != after.session.holdTargets)
-                             actions.refresh();
-                     });
-    QObject::connect(&services.results(), &Results::changed, &actions, [&actions, &services, was = false]() mutable {
-        if (was != services.results().vwsIsCurrent()) actions.refresh();
-        was = services.results().vwsIsCurrent();
-    });
+    menu.separate();
+    const auto goal = [&services] { // of the selected feature
+        const Feature* const feature = services.selected();
+        return feature == nullptr ? FeatureGoal() : goalOf(services.store().session(), feature->id);
+    };
+    m_entries << menu.add(
+        "targetLock", QObject::tr("&Lock target"), {},
+        QObject::tr("The selected feature's target stays where others are set (L in the bars)"),
+        toSelected(services, [goal](Services& s, int f) { setTargetLocked(s.store(), f, !goal().targetLocked); }),
+        {.enabled = selected, .checked = [goal] { return goal().targetLocked; }});
+    m_entries << menu.add("targetsUnlock", QObject::tr("&Unlock all"), {},
+                          QObject::tr("No target is locked; shares stay as they are"),
+                          [&services] { unlockTargets(services); });
+    ActionMenu limits(actions, QObject::tr("&Transfer function") + "/" + QObject::tr("Feat&ure"), selected);
+    limits.separate();
+    m_limits << limits.addCheck(
+        "opacityLock", QObject::tr("Loc&k opacity"), {},
+        QObject::tr("Optimize leaves the opacity of the selected feature as it is"), [goal] { return goal().locked; },
+        toSelected(services, lockOpacity));
+    m_limits << limits.add("opacityLimits", QObject::tr("L&imits of opacity…"), {},
+                           QObject::tr("Between which opacities Optimize may move the selected feature"),
+                           toSelected(services, askLimits));
+    QObject::connect(&services.results(), &Results::changed, &actions, &Actions::refresh);
 }
 
 } // namespace pellucid::gui

@@ -1,108 +1,160 @@
 #include "controllers/menu_actions.h"
+
+#include <QApplication>
+#include <QSettings>
+
 #include "services/services.h"
+#include "store/edits.h"
 #include "store/view_edits.h"
 
 namespace pellucid::gui {
 namespace {
 
-Frame frameOf(const SessionStore& store) {
-    return store.hasVolume() ? store.scene().volume->geometry().frame : Frame::File;
-}
+const QString kThemeKey = QStringLiteral("theme");
 
-QString captionOf(StandardView view, Frame frame) {
-    const bool patient = frame == Frame::Patient;
-    switch (view) {
-    case StandardView::Front:
-        return patient ? QObject::tr("Anterior") : QObject::tr("Front");
-    case StandardView::Back:
-        return patient ? QObject::tr("Posterior") : QObject::tr("Back");
-    case StandardView::Left:
-        return QObject::tr("Left");
-    case StandardView::Right:
-        return QObject::tr("Right");
-    case StandardView::Top:
-        return patient ? QObject::tr("Superior") : QObject::tr("Top");
-    case StandardView::Bottom:
-        return patient ? QObject::tr("Inferior") : QObject::tr("Bottom");
-    }
-    return {};
-}
+/// What a standard view is called, and what one sees from there: along the file's axes, and of a patient.
+struct ViewText {
+    StandardView view;
+    const char *file, *patient, *tip;
+};
+constexpr ViewText kViews[] = {
+    {StandardView::Front, QT_TR_NOOP("Front"), QT_TR_NOOP("Anterior"),
+     QT_TR_NOOP("From the front of the patient, whose left is at the right")},
+    {StandardView::Back, QT_TR_NOOP("Back"), QT_TR_NOOP("Posterior"),
+     QT_TR_NOOP("From behind the patient, whose left is at the left")},
+    {StandardView::Left, QT_TR_NOOP("Left"), QT_TR_NOOP("Left"),
+     QT_TR_NOOP("From the patient's left, with the front at the left")},
+    {StandardView::Right, QT_TR_NOOP("Right"), QT_TR_NOOP("Right"),
+     QT_TR_NOOP("From the patient's right, with the front at the right")},
+    {StandardView::Top, QT_TR_NOOP("Top"), QT_TR_NOOP("Superior"),
+     QT_TR_NOOP("From above the head, with the front up and the patient's left at the left")},
+    {StandardView::Bottom, QT_TR_NOOP("Bottom"), QT_TR_NOOP("Inferior"),
+     QT_TR_NOOP("From the feet, with the front up and the patient's left at the right, as radiologists look")},
+};
 
-QString tipOf(StandardView view, Frame frame) {
-    if (frame != Frame::Patient) return QObject::tr("Look from this side of the file's axes");
-    switch (view) {
-    case StandardView::Front:
-        return QObject::tr("From the front of the patient, whose left is at the right");
-    case StandardView::Back:
-        return QObject::tr("From behind the patient, whose left is at the left");
-    case StandardView::Left:
-        return QObject::tr("From the patient's left, with the front at the left");
-    case StandardView::Right:
-        return QObject::tr("From the patient's right, with the front at the right");
-    case StandardView::Top:
-        return QObject::tr("From above the head, with the front up and the patient's left at the left");
-    case StandardView::Bottom:
-        return QObject::tr(
-            "From the feet, with the front up and the patient's left at the right, as radiologists look");
-    }
-    return {};
+struct PartText {
+    const char *id, *text, *tip;
+};
+constexpr PartText kParts[] = {
+    // in the order of kAnnotationParts
+    {"frameCubeAction", QT_TR_NOOP("&Cube"),
+     QT_TR_NOOP("A cube that turns with the volume: left, right, anterior, posterior, superior, inferior, or the "
+                "file's axes")},
+    {"frameLettersAction", QT_TR_NOOP("&Letters at the edges"),
+     QT_TR_NOOP("L R A P S I: the direction that each edge of the picture lies in, where the file says how the patient "
+                "lies")},
+    {"frameAxesAction", QT_TR_NOOP("&Axes"), QT_TR_NOOP("The box around the volume, with coordinates")},
+    {"frameScaleAction", QT_TR_NOOP("&Scale bar"), QT_TR_NOOP("A length, at the depth that the view turns about")},
+    {"frameLegendAction", QT_TR_NOOP("Colour le&gend"),
+     QT_TR_NOOP("Colours and opacities over the values of the data")},
+    {"frameTitleAction", QT_TR_NOOP("&Title"), QT_TR_NOOP("The name of the volume")},
+};
+static_assert(std::size(kParts) == std::size(kAnnotationParts));
+
+bool isOfPatient(const SessionStore& store) {
+    return store.hasVolume() && store.scene().volume->geometry().worldAxes == WorldAxes::Patient;
 }
 
 } // namespace
 
 void addViewActions(Services& services) {
     SessionStore& store = services.store();
-    Actions& actions = services.actions();
-    const QString menu = QObject::tr("&View");
     const auto open = [&store] { return store.hasVolume(); };
-    const auto add = [&](const QString& id, const QString& text, const QString& keys, const QString& tip,
-                         std::function<void()> trigger, bool separator = false) {
-        actions.add(menu, id, text, keys, tip, std::move(trigger), open,
-                    {.separatorBefore = separator, .inToolBar = true});
-    };
-    add("fitAction", QObject::tr("&Fit"), "R; F",
+    const ActionMore inToolBar{.inToolBar = true};
+    ActionMenu menu(services.actions(), QObject::tr("&View"), open);
+    menu.add(
+        "fitAction", QObject::tr("&Fit"), "R; F",
         QObject::tr("The whole volume from the same direction; double-click does the same"),
-        [&store] { fitView(store); });
-    add("resetViewAction", QObject::tr("&Reset"), "Home", QObject::tr("The view that the volume opened with"),
-        [&store] { resetView(store); });
-    int key = 1;
-    for (const StandardView view : kStandardViews) {
-        const QString number = QString::number(key);
-        actions.add(menu, "view" + number, captionOf(view, Frame::File), number, {},
-                    [&store, view] { setStandardView(store, view); }, open,
-                    {.say = [&store, view] { return tipOf(view, frameOf(store)); },
-                     .caption = [&store, view] { return captionOf(view, frameOf(store)); },
-                     .separatorBefore = key == 1,
-                     .inToolBar = true});
-        ++key;
+        [&store] { fitView(store); }, inToolBar);
+    menu.add(
+        "resetViewAction", QObject::tr("&Reset"), "Home", QObject::tr("The view that the volume opened with"),
+        [&store] { resetView(store); }, inToolBar);
+    menu.separate();
+    for (const ViewText& v : kViews) {
+        const QString number = QString::number(&v - kViews + 1);
+        menu.add("view" + number, QObject::tr(v.file), number, {},
+                 [&store, view = v.view] { setStandardView(store, view); },
+                 {.say =
+                      [&store, &v] {
+                          return isOfPatient(store) ? QObject::tr(v.tip)
+                                                    : QObject::tr("Look from this side of the file's axes");
+                      },
+                  .caption = [&store, &v] { return QObject::tr(isOfPatient(store) ? v.patient : v.file); },
+                  .inToolBar = true});
     }
-    actions.add(menu, "perspectiveAction", QObject::tr("&Perspective"), "P",
-                QObject::tr("Perspective or parallel projection"),
-                [&store] {
-                    const bool perspective = store.scene().camera.projection == Projection::Perspective;
-                    setProjection(store, perspective ? Projection::Orthographic : Projection::Perspective);
-                },
-                open,
-                {.checked = [&store] { return store.scene().camera.projection == Projection::Perspective; },
-                 .separatorBefore = true,
-                 .inToolBar = true});
-    actions.add(
-        menu, "undoViewAction", QObject::tr("&Previous view"), "Alt+Left",
-        QObject::tr("Where the eye was before it moved last"), [&store] { store.undoCamera(); },
-        [&store] { return store.canUndoCamera(); }, {.separatorBefore = true});
-    actions.add(
-        menu, "redoViewAction", QObject::tr("&Next view"), "Alt+Right", {}, [&store] { store.redoCamera(); },
-        [&store] { return store.canRedoCamera(); });
+    menu.separate();
+    const auto isPerspective = [&store] { return store.scene().camera.projection == Projection::Perspective; };
+    menu.addCheck(
+        "perspectiveAction", QObject::tr("&Perspective"), "P", QObject::tr("Perspective or parallel projection"),
+        isPerspective,
+        [&store, isPerspective] {
+            setProjection(store, isPerspective() ? Projection::Orthographic : Projection::Perspective);
+        },
+        true);
+    menu.separate();
+    menu.add("undoViewAction", QObject::tr("&Previous view"), "Alt+Left",
+             QObject::tr("Where the camera was before its last move"), [&store] { store.undoCamera(); },
+             {.enabled = [&store] { return store.canUndoCamera(); }});
+    menu.add("redoViewAction", QObject::tr("&Next view"), "Alt+Right", {}, [&store] { store.redoCamera(); },
+             {.enabled = [&store] { return store.canRedoCamera(); }});
 }
 
 QAction& addClipHandlesAction(Services& services) {
     const auto shown = std::make_shared<bool>(false);
-    return *services.actions().add(
-        QObject::tr("&View"), "clipHandlesAction", QObject::tr("Clip &handles"), "C",
-        QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with "
-                    "Shift the opposite face goes along; Esc gives up"),
-        [shown] { *shown = !*shown; }, [&services] { return services.store().hasVolume(); },
-        {.checked = [shown] { return *shown; }, .separatorBefore = true, .inToolBar = true});
+    ActionMenu menu(services.actions(), QObject::tr("&View"), [&services] { return services.store().hasVolume(); });
+    menu.separate();
+    return *menu.addCheck(
+        "clipHandlesAction", QObject::tr("Clip &handles"), "C",
+        QObject::tr("Drag the faces of the box, or a plane, to cut the volume open; with Shift the "
+                    "opposite face goes along; Esc gives up"),
+        [shown] { return *shown; }, [shown] { *shown = !*shown; }, true);
+}
+
+void addAnnotationActions(Services& services) {
+    SessionStore& store = services.store();
+    ActionMenu menu(services.actions(), QObject::tr("&View") + "/" + QObject::tr("A&nnotations"),
+                    [&services] { return services.isEditable(); });
+    menu.addCheck(
+        "frameAction", QObject::tr("S&how annotations"), "A",
+        QObject::tr("All that stands around the picture, on and off"),
+        [&store] { return store.session().reference->on; },
+        [&store] {
+            editPart(store, &Session::reference, QObject::tr("Annotations"), {},
+                     [](AnnotationChoice& choice) { choice.on = !choice.on; });
+        });
+    menu.separate();
+    for (const PartText& part : kParts) {
+        const auto shown = kAnnotationParts[static_cast<std::size_t>(&part - kParts)].shown;
+        const QString text = QObject::tr(part.text);
+        menu.addCheck(
+            part.id, text, {}, QObject::tr(part.tip), [&store, shown] { return (*store.session().reference).*shown; },
+            [&store, shown, step = QString(text).remove('&')] {
+                editPart(store, &Session::reference, step, {}, [&](AnnotationChoice& choice) {
+                    choice.*shown = !(choice.on && choice.*shown);
+                    choice.on = true;
+                });
+            });
+    }
+}
+
+Theme keptTheme() {
+    return findNamed<Theme>(QSettings().value(kThemeKey).toString().toStdString()).value_or(Theme::Dark);
+}
+
+void addThemeActions(Services& services) {
+    ActionMenu menu(services.actions(), QObject::tr("&View") + "/" + QObject::tr("&Theme"));
+    const auto add = [&](const char* id, const QString& text, const QString& tip, Theme theme) {
+        menu.addCheck(
+            id, text, {}, tip, [theme] { return appliedTheme() == theme; },
+            [theme] {
+                QSettings().setValue(kThemeKey, name(theme));
+                applyTheme(*qApp, theme);
+            });
+    };
+    add("themeDarkAction", QObject::tr("&Dark"), QObject::tr("Dark panels around the picture"), Theme::Dark);
+    add("themeLightAction", QObject::tr("&Light"), QObject::tr("Light panels around the picture"), Theme::Light);
+    add("themeSystemAction", QObject::tr("As the &system"), QObject::tr("Dark or light, as the desktop is"),
+        Theme::System);
 }
 
 } // namespace pellucid::gui

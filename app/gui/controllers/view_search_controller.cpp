@@ -12,11 +12,6 @@
 #include "tf/shown_tf.h"
 
 namespace pellucid::gui {
-namespace {
-
-constexpr int kWait = 500; ///< milliseconds that everything must rest before a map is made by itself
-
-} // namespace
 
 bool ViewSearchController::Question::operator==(const Question& other) const {
     const Camera &a = input.view.camera, &b = other.input.view.camera;
@@ -66,13 +61,6 @@ ViewSearchController::ViewSearchController(Services& services, OptimizeControlle
               m_judging.start({std::move(input), std::move(search)}, tr("the best view"));
           },
           WhenBusy::StopOld, &m_lane) {
-    m_wait.setSingleShot(true);
-    m_wait.setInterval(kWait);
-    connect(&m_wait, &QTimer::timeout, this, [this] {
-        // Not while a hand or an optimization is at it.
-        if (m_services.store().isPreviewing() || m_services.isReadOnly()) return m_wait.start();
-        start();
-    });
     for (JobBase* job : std::initializer_list<JobBase*>{&m_search, &m_judging, &m_joint}) {
         connect(job, &JobBase::busyChanged, this, &ViewSearchController::changed);
         connect(job, &JobBase::failed, this, [this](const Error& error) {
@@ -94,12 +82,17 @@ void ViewSearchController::addActions() {
     const auto ready = [this] { return m_services.store().hasVolume() && !m_services.scene().tf.features.empty(); };
     m_services.actions().add(
         tr("&View"), "goToBestViewAction", tr("Go to the &best view"), "Shift+B",
-        tr("The view that the panel Best view has found; it looks for it where there is none"), [this] { goToBest(); },
-        ready);
+        tr("The view that the panel Best view has found; where it has found none, it is looked for first"),
+        [this] { goToBest(); }, ready);
     m_services.actions().add(
         tr("&Transfer function"), "optimizeViewAction", tr("Optimize &view and opacities"), "Ctrl+Shift+Return",
-        tr("The view and the opacities that together come nearest to the targets"), [this] { optimize(); },
+        tr("Finds the view and the opacities that together come nearest to the targets"), [this] { optimize(); },
         [this, ready] { return ready() && !m_services.isReadOnly() && !isOptimizing(); });
+}
+
+void ViewSearchController::startAtRest() {
+    // Not while a hand or an optimization is at it.
+    m_services.store().isPreviewing() || m_services.isReadOnly() ? m_wait.start() : start();
 }
 
 std::optional<ViewSearchController::Question> ViewSearchController::questionOf(FeatureId feature) const {
@@ -145,19 +138,13 @@ void ViewSearchController::follow() {
     }
     if (otherVolume) { // a map of it says nothing here, and its memory is wanted
         cancel();
-        m_asked.reset();
-        m_map = {};
-        m_best.reset();
-        m_whole = false;
+        ask({});
         m_lane.submit([this] { m_views.release(); });
     }
     if (!same) {
         m_stopped = false;
         // What is under way answers a question that nobody asks any more.
-        if (isRunning() && !(m_present && m_asked && *m_present == *m_asked)) {
-            m_search.cancel();
-            m_judging.cancel();
-        }
+        if (isRunning() && !(m_present && m_asked && *m_present == *m_asked)) cancelSearch();
     }
     if (m_wanted && m_present && !m_stopped && !isRunning() && !isCurrent()) m_wait.start();
     if (!same) Q_EMIT changed();
@@ -177,18 +164,26 @@ void ViewSearchController::start() {
     m_present = questionOf(m_feature);
     if (!m_present || isRunning() || (isCurrent() && m_best)) return;
     m_stopped = false;
-    m_asked = m_present;
-    m_map = {};
-    m_best.reset();
-    m_whole = false;
+    ask(m_present);
     m_progress = 0;
     m_search.start({*m_present, ++m_number}, tr("the best view"));
     Q_EMIT changed();
 }
 
+void ViewSearchController::ask(const std::optional<Question>& question) {
+    m_asked = question;
+    m_map = {};
+    m_best.reset();
+    m_whole = false;
+}
+
 void ViewSearchController::cancel() {
     m_wait.stop();
     m_stopped = true;
+    cancelSearch();
+}
+
+void ViewSearchController::cancelSearch() {
     m_search.cancel();
     m_judging.cancel();
 }
@@ -231,8 +226,7 @@ void ViewSearchController::optimize() {
     m_jointQuestion = questionOf(0);
     if (!m_jointQuestion) return;
     m_wait.stop();
-    m_search.cancel(); // it would only take time from this
-    m_judging.cancel();
+    cancelSearch(); // it would only take time from this
     m_progress = 0;
     const Scene& scene = m_services.scene();
     m_joint.start({*m_jointQuestion, measureInput(scene), scene.tf, limitsOf(scene.tf, *scene.session.goals),
@@ -257,9 +251,7 @@ void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities&
         session.addRun(run);
     });
     store.setCamera(found.input.view.camera);
-    MeasureInput input = found.input;
-    input.tf = shownTf(tf);
-    m_services.results().addVws(input, best.vws);
+    m_services.results().addVws(found.input, tf, best.vws);
     const ViewAngles angles = viewAngles(found.input.view.camera, task.input.volume->geometry());
     const auto degrees = [](double value) { return QString::number(value, 'f', 0); };
     const std::string kept = keptText(found.result);
@@ -270,7 +262,5 @@ void ViewSearchController::finish(const JointTask& task, const ViewAndOpacities&
                          .arg(degrees(angles.azimuth), degrees(angles.elevation),
                               QString::number(best.objective, 'f', 4), QString::number(start.objective, 'f', 4)));
 }
-
-void ViewSearchController::setGlimpse(const std::optional<Camera>& camera) { Q_EMIT glimpsed(camera); }
 
 } // namespace pellucid::gui

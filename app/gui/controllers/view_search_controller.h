@@ -5,9 +5,9 @@
 
 #include <QDateTime>
 #include <QObject>
-#include <QTimer>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "session/view_workspace.h"
 #include "tf/transfer_function.h"
 
@@ -16,9 +16,9 @@ namespace pellucid::gui {
 class OptimizeController;
 class Services;
 
-/// Looks from all over the sphere, off the window's thread, and keeps the map until what it depends on has changed:
-/// then it is of an older state, and while somebody wants it (the panel is open) it is made anew as soon as the hand
-/// rests. Turning the view changes no map; going nearer does. The camera goes nowhere without being told to.
+/// Judges views from all over the sphere, off the window's thread, and keeps the map until something that it depends on
+/// changes. While the panel is open, an outdated map is made anew as soon as the user rests. Turning the view does not
+/// change the map; moving nearer does. The camera never moves by itself.
 class ViewSearchController : public QObject {
     Q_OBJECT
 public:
@@ -54,7 +54,7 @@ public:
     void cancelOptimizing() { m_joint.cancel(); }
 
     /// A look from elsewhere, which ends as it came; the camera stays.
-    void setGlimpse(const std::optional<Camera>& camera);
+    void setGlimpse(const std::optional<Camera>& camera) { Q_EMIT glimpsed(camera); }
 
 Q_SIGNALS:
     void changed(); ///< the map, the best view, whether they are current, or what is under way
@@ -88,6 +88,9 @@ private:
     /// What is asked of the present scene; `feature` 0: about the targets. Empty where there is nothing to be asked.
     std::optional<Question> questionOf(FeatureId feature) const;
     void follow();
+    void startAtRest();
+    void ask(const std::optional<Question>& question); ///< the map is to answer it, and is empty so far
+    void cancelSearch();
     void finish(const JointTask& task, const ViewAndOpacities& found);
     void grow(int number, const ViewMap& map);
 
@@ -102,7 +105,8 @@ private:
     std::optional<BestView> m_best;
     double m_progress = 0;
     int m_number = 0; ///< of the latest search
-    QTimer m_wait;
+    /// Milliseconds that everything must rest before a map is made by itself.
+    RestTimer m_wait{500, [this] { startAtRest(); }};
     ViewWorkspace m_views;
     Lane m_lane;
     std::optional<Question> m_jointQuestion; ///< of the optimization under way

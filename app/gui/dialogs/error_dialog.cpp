@@ -1,10 +1,11 @@
 #include "dialogs/error_dialog.h"
 
-#include <QDialog>
-#include <QDialogButtonBox>
 #include <QGridLayout>
-#include <QLabel>
 #include <QStyle>
+
+#include "dialogs/closing_buttons.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
 namespace {
@@ -18,10 +19,9 @@ QString asSentence(QString text) {
 }
 
 QLabel* selectable(const QString& text, const char* name, QWidget* parent) {
-    auto* label = new QLabel(text, parent);
-    label->setObjectName(name);
+    QLabel* label = wrappedLabel(name, parent);
+    label->setText(text);
     label->setTextFormat(Qt::PlainText);
-    label->setWordWrap(true);
     label->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
     label->setMinimumWidth(380);
     return label;
@@ -38,21 +38,15 @@ QString adviceFor(const Error& error) {
     case Remedy::AllowMoreMemory:
         return QObject::tr("close other programs, or open a smaller volume");
     case Remedy::GiveRawLayout:
-        return orElse(QObject::tr("open it with File ▸ Open raw data and say how its bytes lie"));
+        return orElse(QObject::tr("open it with File ▸ Open raw data and say how its bytes are laid out"));
     case Remedy::OtherEngine:
         return orElse(QObject::tr("choose the CPU as engine and renderer"));
-    case Remedy::CorrectRawLayout:
-    case Remedy::GiveSpacing:
-    case Remedy::NoComponent:
-    case Remedy::AsSaid:
-        break;
+    default:
+        return said;
     }
-    return said;
 }
 
 void showError(QWidget* parent, const QString& title, const Error& error) {
-    const QString what = QString::fromStdString(error.problem()), where = QString::fromStdString(error.where()),
-                  whatToDo = adviceFor(error);
     auto* dialog = new QDialog(parent);
     dialog->setObjectName("errorDialog");
     dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -61,15 +55,12 @@ void showError(QWidget* parent, const QString& title, const Error& error) {
 
     auto* icon = new QLabel(dialog);
     icon->setPixmap(dialog->style()->standardIcon(QStyle::SP_MessageBoxWarning).pixmap(40, 40));
-    auto* grid = new QGridLayout(dialog);
-    grid->setContentsMargins(20, 18, 20, 14);
+    auto* grid = inset(new QGridLayout(dialog), {20, 18, 20, 14});
     grid->setHorizontalSpacing(14);
     grid->setVerticalSpacing(10);
     grid->addWidget(icon, 0, 0, Qt::AlignTop);
-    QLabel* problem = selectable(asSentence(what), "errorWhat", dialog);
-    QFont bold = problem->font();
-    bold.setBold(true);
-    problem->setFont(bold);
+    QLabel* problem = selectable(asSentence(QString::fromStdString(error.problem())), "errorWhat", dialog);
+    makeBold(*problem);
     grid->addWidget(problem, 0, 1, 1, 2);
     int row = 1;
     const auto part = [&](const QString& caption, const QString& text, const char* name) {
@@ -80,12 +71,10 @@ void showError(QWidget* parent, const QString& title, const Error& error) {
         grid->addWidget(selectable(text, name, dialog), row, 2);
         ++row;
     };
-    part(QObject::tr("Where"), where, "errorWhere");
-    part(QObject::tr("What to do"), asSentence(whatToDo), "errorWhatToDo");
+    part(QObject::tr("Where"), QString::fromStdString(error.where()), "errorWhere");
+    part(QObject::tr("What to do"), asSentence(adviceFor(error)), "errorWhatToDo");
     grid->setColumnStretch(2, 1);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok, dialog);
-    QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
-    grid->addWidget(buttons, row, 0, 1, 3);
+    grid->addWidget(closingButtons(*dialog, QDialogButtonBox::Ok), row, 0, 1, 3);
     dialog->open();
 }
 

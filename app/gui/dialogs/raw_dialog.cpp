@@ -4,19 +4,17 @@
 #include <cmath>
 #include <map>
 
-#include <QComboBox>
-#include <QDialogButtonBox>
-#include <QDoubleSpinBox>
 #include <QDoubleValidator>
 #include <QFileInfo>
-#include <QFormLayout>
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QLineEdit>
 #include <QLocale>
 #include <QPushButton>
 #include <QRegularExpression>
 #include <QSpinBox>
+
+#include "dialogs/closing_buttons.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
 namespace {
@@ -33,11 +31,6 @@ QString typeText(SampleType type) {
 }
 
 } // namespace
-
-bool isHeaderless(const QString& path) {
-    const QString suffix = QFileInfo(path).suffix().toLower();
-    return suffix == "raw" || suffix == "dat" || suffix == "bin" || suffix == "vol";
-}
 
 RawLayout guessRawLayout(const QString& path, qint64 bytes) {
     RawLayout layout;
@@ -71,7 +64,57 @@ RawLayout guessRawLayout(const QString& path, qint64 bytes) {
 RawDialog::RawDialog(const QStringList& paths, QWidget* parent) : QDialog(parent) {
     setObjectName("rawDialog");
     setWindowTitle(tr("Open raw data"));
-    const QString& path = paths.front();
+    lookAtSizes(paths);
+    const RawLayout guess = guessRawLayout(paths.front(), m_bytes);
+    for (int i = 0; i < 3; ++i) {
+        const QChar axis = "xyz"[i];
+        m_dims[i] = named(new QSpinBox(this), QStringLiteral("rawDim") + axis);
+        m_dims[i]->setRange(1, 65536);
+        m_dims[i]->setValue(guess.dims[i]);
+        m_spacing[i] = named(new QDoubleSpinBox(this), QStringLiteral("rawSpacing") + axis);
+        m_spacing[i]->setDecimals(6);
+        m_spacing[i]->setRange(1e-6, 1e9);
+        m_spacing[i]->setValue(1);
+        m_dims[i]->setPrefix(QStringLiteral("%1  ").arg(axis));
+        m_spacing[i]->setPrefix(m_dims[i]->prefix());
+        connect(m_dims[i], &QSpinBox::valueChanged, this, &RawDialog::check);
+    }
+    m_type = named(new QComboBox(this), "rawType");
+    for (int i = 0; i < kTypes; ++i) m_type->addItem(typeText(static_cast<SampleType>(i)), i);
+    m_type->setCurrentIndex(static_cast<int>(guess.type));
+    m_endian = named(new QComboBox(this), "rawEndian");
+    m_endian->addItems({tr("little endian (PC)"), tr("big endian")});
+    m_skip = named(new QDoubleSpinBox(this), "rawSkip", tr("Bytes before the first voxel"));
+    m_skip->setDecimals(0);
+    m_skip->setRange(0, 1e15);
+    m_skip->setSuffix(tr(" bytes"));
+    m_missing = named(new QLineEdit(this), "rawMissing",
+                      tr("This value marks voxels without data, such as 1e35; NaN always does"));
+    m_missing->setPlaceholderText(tr("none"));
+    auto* number = new QDoubleValidator(m_missing);
+    number->setLocale(QLocale::c());
+    m_missing->setValidator(number);
+    m_verdict = wrappedLabel("rawVerdict", this);
+    auto* buttons = closingButtons(*this, QDialogButtonBox::Open | QDialogButtonBox::Cancel);
+    m_ok = buttons->button(QDialogButtonBox::Open);
+
+    auto* form = inset(new QFormLayout(this), {18, 16, 18, 12});
+    form->setVerticalSpacing(9);
+    form->addRow(named(new QLabel(headOf(paths), this), "rawWhat"));
+    form->addRow(tr("Voxels"), rowOf({m_dims[0], m_dims[1], m_dims[2]}));
+    form->addRow(tr("Type"), m_type);
+    form->addRow(tr("Byte order"), m_endian);
+    form->addRow(tr("Spacing"), rowOf({m_spacing[0], m_spacing[1], m_spacing[2]}));
+    form->addRow(tr("Skip"), m_skip);
+    form->addRow(tr("Missing value"), m_missing);
+    form->addRow(m_verdict);
+    form->addRow(buttons);
+    connect(m_type, &QComboBox::currentIndexChanged, this, &RawDialog::check);
+    connect(m_skip, &QDoubleSpinBox::valueChanged, this, &RawDialog::check);
+    check();
+}
+
+void RawDialog::lookAtSizes(const QStringList& paths) {
     std::map<qint64, int> sizes;
     for (const QString& file : paths) ++sizes[QFileInfo(file).size()];
     m_bytes = std::max_element(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) {
@@ -79,79 +122,18 @@ RawDialog::RawDialog(const QStringList& paths, QWidget* parent) : QDialog(parent
               })->first;
     for (const QString& file : paths)
         if (QFileInfo(file).size() != m_bytes) m_odd << QFileInfo(file).fileName();
-    const RawLayout guess = guessRawLayout(path, m_bytes);
-    auto* form = new QFormLayout(this);
-    form->setContentsMargins(18, 16, 18, 12);
-    form->setVerticalSpacing(9);
-    const QString name = QFileInfo(path).fileName().toHtmlEscaped();
-    auto* what = new QLabel(
-        paths.size() == 1
-            ? tr("<b>%1</b><br>%L2 bytes. The file has no header: say how it is laid out.").arg(name).arg(m_bytes)
-            : tr("<b>%1 … %2</b><br>%L3 files of %L4 bytes, without headers: say how each of them is laid out.")
-                  .arg(name, QFileInfo(paths.back()).fileName().toHtmlEscaped())
-                  .arg(paths.size())
-                  .arg(m_bytes),
-        this);
-    what->setObjectName("rawWhat");
-    form->addRow(what);
-    auto* dims = new QHBoxLayout;
-    auto* spacing = new QHBoxLayout;
-    const char* axes[] = {"x", "y", "z"};
-    for (int i = 0; i < 3; ++i) {
-        m_dims[i] = new QSpinBox(this);
-        m_dims[i]->setObjectName(QStringLiteral("rawDim") + axes[i]);
-        m_dims[i]->setRange(1, 65536);
-        m_dims[i]->setValue(guess.dims[i]);
-        m_dims[i]->setPrefix(QStringLiteral("%1  ").arg(axes[i]));
-        dims->addWidget(m_dims[i]);
-        m_spacing[i] = new QDoubleSpinBox(this);
-        m_spacing[i]->setObjectName(QStringLiteral("rawSpacing") + axes[i]);
-        m_spacing[i]->setDecimals(6);
-        m_spacing[i]->setRange(1e-6, 1e9);
-        m_spacing[i]->setValue(1);
-        m_spacing[i]->setPrefix(QStringLiteral("%1  ").arg(axes[i]));
-        spacing->addWidget(m_spacing[i]);
-        connect(m_dims[i], &QSpinBox::valueChanged, this, &RawDialog::check);
-    }
-    form->addRow(tr("Voxels"), dims);
-    m_type = new QComboBox(this);
-    m_type->setObjectName("rawType");
-    for (int i = 0; i < kTypes; ++i) m_type->addItem(typeText(static_cast<SampleType>(i)), i);
-    m_type->setCurrentIndex(static_cast<int>(guess.type));
-    connect(m_type, &QComboBox::currentIndexChanged, this, &RawDialog::check);
-    form->addRow(tr("Type"), m_type);
-    m_endian = new QComboBox(this);
-    m_endian->setObjectName("rawEndian");
-    m_endian->addItem(tr("little endian (PC)"));
-    m_endian->addItem(tr("big endian"));
-    form->addRow(tr("Byte order"), m_endian);
-    form->addRow(tr("Spacing"), spacing);
-    m_skip = new QDoubleSpinBox(this);
-    m_skip->setObjectName("rawSkip");
-    m_skip->setDecimals(0);
-    m_skip->setRange(0, 1e15);
-    m_skip->setSuffix(tr(" bytes"));
-    m_skip->setToolTip(tr("Bytes before the first voxel"));
-    connect(m_skip, &QDoubleSpinBox::valueChanged, this, &RawDialog::check);
-    form->addRow(tr("Skip"), m_skip);
-    m_missing = new QLineEdit(this);
-    m_missing->setObjectName("rawMissing");
-    m_missing->setPlaceholderText(tr("none"));
-    m_missing->setToolTip(tr("This value marks voxels without data, such as 1e35; NaN always does"));
-    auto* number = new QDoubleValidator(m_missing);
-    number->setLocale(QLocale::c());
-    m_missing->setValidator(number);
-    form->addRow(tr("Missing value"), m_missing);
-    m_verdict = new QLabel(this);
-    m_verdict->setObjectName("rawVerdict");
-    m_verdict->setWordWrap(true);
-    form->addRow(m_verdict);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel, this);
-    m_ok = buttons->button(QDialogButtonBox::Open);
-    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
-    form->addRow(buttons);
-    check();
+}
+
+QString RawDialog::headOf(const QStringList& paths) const {
+    const auto name = [](const QString& path) { return QFileInfo(path).fileName().toHtmlEscaped(); };
+    if (paths.size() == 1)
+        return tr("<b>%1</b><br>%L2 bytes. The file has no header: say how it is laid out.")
+            .arg(name(paths.front()))
+            .arg(m_bytes);
+    return tr("<b>%1 … %2</b><br>%L3 files of %L4 bytes, without headers: say how each of them is laid out.")
+        .arg(name(paths.front()), name(paths.back()))
+        .arg(paths.size())
+        .arg(m_bytes);
 }
 
 RawLayout RawDialog::layoutOfFile() const {
@@ -179,17 +161,16 @@ void RawDialog::check() {
     const double difference = wanted - static_cast<double>(m_bytes);
     m_ok->setEnabled(difference == 0);
     m_endian->setEnabled(bytesPerSample(layout.type) > 1);
-    if (difference == 0 && !m_odd.isEmpty()) {
-        m_verdict->setText(tr("This fits the files exactly, but for %1, which will be passed over.")
-                               .arg(m_odd.size() > 3 ? tr("%L1 of them").arg(m_odd.size()) : m_odd.join(", ")));
-    } else if (difference == 0) {
-        m_verdict->setText(tr("This fits the file exactly."));
-    } else if (difference > 0) {
-        m_verdict->setText(tr("This needs %L1 bytes more than the file has.").arg(difference, 0, 'f', 0));
-    } else {
-        m_verdict->setText(tr("The file has %L1 bytes more than this needs; skip them if they are a header.")
-                               .arg(-difference, 0, 'f', 0));
-    }
+    QString text = tr("This fits the file exactly.");
+    if (difference == 0 && !m_odd.isEmpty())
+        text = tr("This fits the files exactly, but for %1, which will be passed over.")
+                   .arg(m_odd.size() > 3 ? tr("%L1 of them").arg(m_odd.size()) : m_odd.join(", "));
+    else if (difference > 0)
+        text = tr("This needs %L1 bytes more than the file has.").arg(difference, 0, 'f', 0);
+    else if (difference < 0)
+        text = tr("The file has %L1 bytes more than this needs; skip them if they are a header.")
+                   .arg(-difference, 0, 'f', 0);
+    m_verdict->setText(text);
 }
 
 } // namespace pellucid::gui

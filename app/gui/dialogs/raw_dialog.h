@@ -20,9 +20,6 @@ namespace pellucid::gui {
 /// What the file's name and size say about its layout: "41x41x41" and a type's name in the name, else a cube of bytes.
 RawLayout guessRawLayout(const QString& path, qint64 bytes);
 
-/// Whether a path names a file that has no header we know: .raw, .dat, .bin, .vol
-bool isHeaderless(const QString& path);
-
 /// For one file, or for all of a series, which are laid out alike.
 class RawDialog : public QDialog {
     Q_OBJECT
@@ -33,6 +30,8 @@ public:
     std::optional<double> missing() const; ///< value of voxels without data
 
 private:
+    void lookAtSizes(const QStringList& paths);
+    QString headOf(const QStringList& paths) const; ///< what is opened, as rich text
     void check();
 
     qint64 m_bytes;    // of a file, as most have it

@@ -1,72 +1,45 @@
 #include "dialogs/series_dialog.h"
 
-#include <QDialogButtonBox>
 #include <QFileDialog>
-#include <QFormLayout>
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QSpinBox>
 
+#include "dialogs/closing_buttons.h"
 #include "dialogs/series_files.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
-namespace {
-
-constexpr int kPause = 200; ///< ms
-
-} // namespace
 
 SeriesDialog::SeriesDialog(const QString& folder, QWidget* parent)
     : QDialog(parent), m_folder(folder), m_path(new QLineEdit(this)), m_first(new QSpinBox(this)),
-      m_last(new QSpinBox(this)), m_every(new QSpinBox(this)), m_found(new QLabel(this)),
+      m_last(new QSpinBox(this)), m_every(new QSpinBox(this)), m_found(wrappedLabel("seriesFound", this)),
       m_listing([](const VolumeSource& source, const JobControl& job) { return listSeries(source, job); },
                 [this](const VolumeSource&, SeriesListing& listing) { show(listing); }) {
     setObjectName("seriesDialog");
     setWindowTitle(tr("Open series"));
-    auto* form = new QFormLayout(this);
-    form->setContentsMargins(18, 16, 18, 12);
-    form->setVerticalSpacing(9);
-    m_path->setObjectName("seriesPath");
+    named(m_path, "seriesPath",
+          tr("A folder of volumes; a pattern with a number (%02d) or wildcards (* ?); or a file with several time "
+             "steps"));
     m_path->setMinimumWidth(380);
     m_path->setPlaceholderText(tr("folder, or pattern such as run/f%03d.mhd or run/f*.mhd"));
-    m_path->setToolTip(tr("A folder of volumes; a pattern with a number (%02d) or wildcards (* ?); or a file with "
-                          "several time steps"));
-    auto* folderButton = new QPushButton(tr("F&older…"), this);
-    auto* filesButton = new QPushButton(tr("&Files…"), this);
-    folderButton->setObjectName("seriesFolder");
-    filesButton->setObjectName("seriesFiles");
-    auto* where = new QHBoxLayout;
-    where->addWidget(m_path, 1);
-    where->addWidget(folderButton);
-    where->addWidget(filesButton);
-    form->addRow(tr("Frames of"), where);
-    auto* range = new QHBoxLayout;
-    const std::tuple<QSpinBox*, const char*, QString, QString> boxes[] = {
-        {m_first, "seriesFirst", tr("from "), tr("First frame, counted from 0")},
-        {m_last, "seriesLast", tr("to "), tr("Last frame, itself included")},
-        {m_every, "seriesEvery", tr("every "), tr("Of these frames each n-th")}};
-    for (const auto& [box, name, prefix, tip] : boxes) {
-        box->setObjectName(name);
-        box->setPrefix(prefix);
-        box->setToolTip(tip);
-        range->addWidget(box, 1);
-    }
-    form->addRow(tr("Only"), range);
-    m_found->setObjectName("seriesFound");
-    m_found->setWordWrap(true);
+    auto* folderButton = named(new QPushButton(tr("F&older…"), this), "seriesFolder");
+    auto* filesButton = named(new QPushButton(tr("&Files…"), this), "seriesFiles");
+    named(m_first, "seriesFirst", tr("First frame, counted from 0"))->setPrefix(tr("from "));
+    named(m_last, "seriesLast", tr("Last frame, included"))->setPrefix(tr("to "));
+    named(m_every, "seriesEvery", tr("Every n-th of these frames"))->setPrefix(tr("every "));
     m_found->setTextFormat(Qt::PlainText);
+    auto* buttons = closingButtons(*this, QDialogButtonBox::Open | QDialogButtonBox::Cancel);
+    m_ok = named(buttons->button(QDialogButtonBox::Open), "seriesOpen");
+    auto* form = inset(new QFormLayout(this), {18, 16, 18, 12});
+    form->setVerticalSpacing(9);
+    form->addRow(tr("Frames of"), rowOf({{m_path, 1}, folderButton, filesButton}));
+    form->addRow(tr("Only"), rowOf({{m_first, 1}, {m_last, 1}, {m_every, 1}}));
     form->addRow(m_found);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel, this);
-    m_ok = buttons->button(QDialogButtonBox::Open);
-    m_ok->setObjectName("seriesOpen");
     form->addRow(buttons);
     setRange(0);
 
-    m_pause.setSingleShot(true);
-    m_pause.setInterval(kPause);
-    connect(&m_pause, &QTimer::timeout, this, &SeriesDialog::look);
     connect(m_path, &QLineEdit::textEdited, this, [this] {
         m_files.clear();
         setRange(0);
@@ -88,13 +61,11 @@ SeriesDialog::SeriesDialog(const QString& folder, QWidget* parent)
     });
     connect(&m_listing, &JobBase::failed, this, [this](const Error& error) {
         setRange(0);
-        m_found->setText(QString::fromUtf8(error.what()));
+        m_found->setText(error.what());
     });
-    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
 }
 
-VolumeSource SeriesDialog::named() const {
+VolumeSource SeriesDialog::allFrames() const {
     if (!m_files.isEmpty()) return sourceOf(m_files);
     VolumeSource source;
     source.path = m_path->text().trimmed().toStdString();
@@ -102,14 +73,14 @@ VolumeSource SeriesDialog::named() const {
 }
 
 VolumeSource SeriesDialog::source() const {
-    VolumeSource source = named();
+    VolumeSource source = allFrames();
     if (m_first->value() > 0 || m_last->value() < m_last->maximum() || m_every->value() > 1)
         source.frames = FrameRange{m_first->value(), m_last->value(), m_every->value()};
     return source;
 }
 
 void SeriesDialog::look() {
-    const VolumeSource source = named();
+    const VolumeSource source = allFrames();
     if (source.path.empty()) {
         m_listing.cancel();
         m_found->clear();

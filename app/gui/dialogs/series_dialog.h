@@ -2,9 +2,9 @@
 #pragma once
 
 #include <QDialog>
-#include <QTimer>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "volume/series.h"
 
 class QLabel;
@@ -22,7 +22,7 @@ public:
     VolumeSource source() const;
 
 private:
-    VolumeSource named() const; ///< all frames
+    VolumeSource allFrames() const;
     void look();
     void show(const SeriesListing& listing);
     void setRange(int count);
@@ -33,7 +33,7 @@ private:
     QSpinBox *m_first, *m_last, *m_every;
     QLabel* m_found;
     QPushButton* m_ok;
-    QTimer m_pause; ///< after the last key
+    RestTimer m_pause{200, [this] { look(); }}; ///< milliseconds after the last key
     Job<VolumeSource, SeriesListing> m_listing;
 };
 

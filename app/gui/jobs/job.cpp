@@ -1,25 +1,57 @@
 #include "jobs/job.h"
 
-#include <condition_variable>
-#include <mutex>
 #include <new>
 
 namespace pellucid::gui {
 
 Error errorOf(const std::exception_ptr& thrown, const QString& where) {
+    const auto error = [&](const QString& what, const QString& whatToDo) {
+        return Error(what.toStdString(), where.toStdString(), whatToDo.toStdString());
+    };
     try {
         std::rethrow_exception(thrown);
-    } catch (const Error& error) {
-        return error;
+    } catch (const Error& known) {
+        return known;
     } catch (const std::bad_alloc&) {
-        return {QObject::tr("not enough memory").toStdString(), where.toStdString(),
-                QObject::tr("close other programs, or choose something smaller").toStdString()};
-    } catch (const std::exception& error) { // of a library; it must not end the program
-        return {QObject::tr("unexpected failure (%1)").arg(QString::fromUtf8(error.what())).toStdString(),
-                where.toStdString(), QObject::tr("please report it").toStdString()};
+        return error(QObject::tr("not enough memory"),
+                     QObject::tr("close other programs, or choose something smaller"));
+    } catch (const std::exception& other) { // of a library; it must not end the program
+        return error(QObject::tr("unexpected failure (%1)").arg(other.what()), QObject::tr("please report it"));
     } catch (...) {
-        return {QObject::tr("unexpected failure").toStdString(), where.toStdString(),
-                QObject::tr("please report it").toStdString()};
+        return error(QObject::tr("unexpected failure"), QObject::tr("please report it"));
+    }
+}
+
+Lane::Lane() : m_thread([this](const std::stop_token& stop) { run(stop); }) {}
+
+Lane::~Lane() {
+    {
+        const std::lock_guard lock(m_mutex);
+        m_tasks.clear();
+    }
+    m_thread.request_stop();
+    m_thread.join();
+}
+
+void Lane::submit(std::function<void()> task) {
+    {
+        const std::lock_guard lock(m_mutex);
+        m_tasks.push_back(std::move(task));
+    }
+    m_wake.notify_one();
+}
+
+void Lane::run(const std::stop_token& stop) {
+    while (true) {
+        std::function<void()> task;
+        {
+            std::unique_lock lock(m_mutex);
+            if (!m_wake.wait(lock, stop, [this] { return !m_tasks.empty(); })) return;
+            if (stop.stop_requested()) return;
+            task = std::move(m_tasks.front());
+            m_tasks.pop_front();
+        }
+        task();
     }
 }
 
@@ -74,23 +106,12 @@ void JobBase::cancel() {
 void JobBase::run(const QString& where, Work work) {
     Pending next{where, std::move(work)};
     if (!m_running) return begin(std::move(next));
-    switch (m_whenBusy) {
-    case WhenBusy::StopOld:
+    if (m_whenBusy == WhenBusy::StopOld) {
         m_stop.request_stop();
         return begin(std::move(next));
-    case WhenBusy::FinishOld:
-        m_waiting.clear();
-        break;
-    case WhenBusy::Queue:
-        break;
     }
+    if (m_whenBusy == WhenBusy::FinishOld) m_waiting.clear();
     m_waiting.push_back(std::move(next));
-}
-
-void JobBase::post(quint64 number, std::function<void()> deliver) {
-    QMetaObject::invokeMethod(this, [this, number, deliver = std::move(deliver)] {
-        if (number == m_run) deliver();
-    });
 }
 
 void JobBase::ended(quint64 number, const std::function<void()>& answer) {
@@ -115,11 +136,11 @@ void JobBase::begin(Pending next) {
     const quint64 number = ++m_run;
     const auto task = [this, number, stop = m_stop.get_token(), shared = m_shared, next = std::move(next)] {
         if (!shared->enter()) return;
-        JobControl job;
-        job.stop = stop;
-        job.progress = [this, number](double fraction) {
-            post(number, [this, fraction] { Q_EMIT progress(fraction); });
-        };
+        const JobControl job{stop, [this, number](double fraction) {
+                                 QMetaObject::invokeMethod(this, [this, number, fraction] {
+                                     if (number == m_run) Q_EMIT progress(fraction);
+                                 });
+                             }};
         const auto answer = [this, number](std::function<void()> what) {
             QMetaObject::invokeMethod(this, [this, number, what = std::move(what)] { ended(number, what); });
         };
@@ -133,11 +154,10 @@ void JobBase::begin(Pending next) {
         }
         shared->leave();
     };
-    if (m_lane != nullptr) {
+    if (m_lane != nullptr)
         m_lane->submit(task);
-    } else {
+    else
         m_threads[number] = std::jthread(task);
-    }
     if (!wasRunning) Q_EMIT busyChanged();
 }
 

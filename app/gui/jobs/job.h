@@ -1,24 +1,46 @@
 // Work off the window's thread: the one way to start, watch, stop and hear of it.
 #pragma once
 
+#include <condition_variable>
 #include <deque>
 #include <exception>
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <stop_token>
 #include <thread>
 
 #include <QObject>
 #include <QString>
 
 #include "base/job.h"
-#include "jobs/lane.h"
 
 namespace pellucid::gui {
 
 /// The ladder of errors: whatever work may throw, in the three parts that users see. `where` names the object of the
 /// work where memory ran out.
 Error errorOf(const std::exception_ptr& thrown, const QString& where);
+
+/// A thread for work that must not overlap: runs tasks one after the other. A task must not throw.
+class Lane {
+public:
+    Lane();
+    /// Forgets waiting tasks and waits for the running one, whose own stop token should have been used before.
+    ~Lane();
+    Lane(const Lane&) = delete;
+    Lane& operator=(const Lane&) = delete;
+
+    void submit(std::function<void()> task);
+
+private:
+    void run(const std::stop_token& stop);
+
+    std::mutex m_mutex;
+    std::condition_variable_any m_wake;
+    std::deque<std::function<void()>> m_tasks;
+    std::jthread m_thread; // last: joined before the rest goes
+};
 
 /// What a new start means for work that is under way.
 enum class WhenBusy {
@@ -60,7 +82,6 @@ private:
         Work work;
     };
     void begin(Pending next);
-    void post(quint64 number, std::function<void()> deliver);
     void ended(quint64 number, const std::function<void()>& answer);
 
     const WhenBusy m_whenBusy;

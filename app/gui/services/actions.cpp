@@ -1,7 +1,5 @@
 #include "services/actions.h"
 
-#include <algorithm>
-
 #include <QMainWindow>
 #include <QMenu>
 #include <QMenuBar>
@@ -48,6 +46,17 @@ QAction* Actions::add(const QString& menu, const QString& id, const QString& tex
     return action;
 }
 
+QAction* ActionMenu::add(const QString& id, const QString& text, const QString& keys, const QString& tip,
+                         const std::function<void()>& trigger, ActionMore more) {
+    more.separatorBefore |= std::exchange(m_separates, false);
+    return m_actions.add(m_menu, id, text, keys, tip, trigger, more.enabled ? more.enabled : m_enabled, more);
+}
+
+QAction* ActionMenu::addCheck(const QString& id, const QString& text, const QString& keys, const QString& tip,
+                              std::function<bool()> checked, const std::function<void()>& trigger, bool inToolBar) {
+    return add(id, text, keys, tip, trigger, {.checked = std::move(checked), .inToolBar = inToolBar});
+}
+
 void Actions::addGestures(std::vector<Gesture> gestures) {
     m_gestures.insert(m_gestures.end(), gestures.begin(), gestures.end());
 }
@@ -62,19 +71,17 @@ void Actions::refresh() {
 }
 
 QMenu* Actions::menuAt(QMainWindow& window, const QString& path) {
-    const auto known = std::find_if(m_menus.begin(), m_menus.end(), [&](const auto& m) { return m.first == path; });
-    if (known != m_menus.end()) return known->second;
+    if (QMenu* const known = menu(path)) return known;
     const auto slash = path.lastIndexOf('/');
     const QString name = path.mid(slash + 1);
-    QMenu* menu = slash < 0 ? window.menuBar()->addMenu(name) : menuAt(window, path.left(slash))->addMenu(name);
-    menu->setObjectName(plain(name).toLower().replace(' ', '_') + "Menu");
-    menu->setToolTipsVisible(true);
-    m_menus.emplace_back(path, menu);
-    return menu;
+    QMenu* made = slash < 0 ? window.menuBar()->addMenu(name) : menuAt(window, path.left(slash))->addMenu(name);
+    made->setObjectName(plain(name).toLower().replace(' ', '_') + "Menu");
+    made->setToolTipsVisible(true);
+    return m_menus[path] = made;
 }
 
 QMenu* Actions::menu(const QString& path) const {
-    const auto known = std::find_if(m_menus.begin(), m_menus.end(), [&](const auto& m) { return m.first == path; });
+    const auto known = m_menus.find(path);
     return known == m_menus.end() ? nullptr : known->second;
 }
 

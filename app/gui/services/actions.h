@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include <QAction>
@@ -15,6 +17,7 @@ namespace pellucid::gui {
 
 /// What few entries of the list have.
 struct ActionMore {
+    std::function<bool()> enabled = {};    ///< in place of what its ActionMenu says
     std::function<bool()> checked = {};    ///< empty: not checkable
     std::function<QString()> say = {};     ///< the tool tip's text, where it changes ("Undo: Move point")
     std::function<QString()> caption = {}; ///< the text, where it changes
@@ -60,8 +63,29 @@ private:
     };
     std::vector<Entry> m_entries;
     std::vector<Gesture> m_gestures;
-    std::vector<std::pair<QString, QMenu*>> m_menus;
+    std::map<QString, QMenu*> m_menus; // by path
     QMenu* menuAt(QMainWindow& window, const QString& path);
+};
+
+/// Adds entries to one menu, which are enabled alike; parameters as those of Actions::add().
+class ActionMenu {
+public:
+    ActionMenu(Actions& actions, QString menu, std::function<bool()> enabled = {})
+        : m_actions(actions), m_menu(std::move(menu)), m_enabled(std::move(enabled)) {}
+
+    /// The next entry stands below a line.
+    void separate() { m_separates = true; }
+    QAction* add(const QString& id, const QString& text, const QString& keys, const QString& tip,
+                 const std::function<void()>& trigger, ActionMore more = {});
+    /// An entry with a check mark while `checked` says so.
+    QAction* addCheck(const QString& id, const QString& text, const QString& keys, const QString& tip,
+                      std::function<bool()> checked, const std::function<void()>& trigger, bool inToolBar = false);
+
+private:
+    Actions& m_actions;
+    QString m_menu;
+    std::function<bool()> m_enabled;
+    bool m_separates = false;
 };
 
 } // namespace pellucid::gui

@@ -15,7 +15,7 @@ struct Notice {
         QString text;
         std::function<void()> act; ///< the notice goes first
     };
-    std::vector<Choice> choices;
+    std::vector<Choice> choices = {};
 };
 
 /// The list that the notice bar shows; anybody may add to it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "optimize/objective.h"
+#include "tf/shown_tf.h"
 
 namespace pellucid::gui {
 namespace {
@@ -41,8 +42,6 @@ Results::Results(SessionStore& store, Lane& lane, Workspace& workspace, QObject*
                   show(figures); // of the frame before
           },
           WhenBusy::FinishOld, &lane) {
-    m_throttle.setSingleShot(true);
-    connect(&m_throttle, &QTimer::timeout, this, &Results::begin);
     connect(&store, &SessionStore::changed, this, &Results::follow);
     connect(&m_measuring, &JobBase::failed, this, [this](const Error& error) {
         m_failure = error;
@@ -80,21 +79,18 @@ void Results::follow(const Scene& before, const Scene& after) {
     }
     m_present = std::move(input);
     m_failure.reset();
-    if (const Figures* figures = known(m_present)) show(*figures);
+    if (const auto at = known(m_present); at != m_known.end()) show(*at);
     request();
     Q_EMIT changed();
 }
 
-const Results::Figures* Results::known(const MeasureInput& input) const {
-    const auto at = std::find_if(m_known.begin(), m_known.end(), [&](const Figures& f) { return f.input == input; });
-    return at == m_known.end() ? nullptr : &*at;
+std::deque<Results::Figures>::const_iterator Results::known(const MeasureInput& input) const {
+    return std::find_if(m_known.begin(), m_known.end(), [&](const Figures& f) { return f.input == input; });
 }
 
 void Results::keep(Figures figures) {
     show(figures);
-    const auto at =
-        std::find_if(m_known.begin(), m_known.end(), [&](const Figures& f) { return f.input == figures.input; });
-    if (at != m_known.end()) {
+    if (const auto at = known(figures.input); at != m_known.end()) {
         if (!figures.measures) figures.measures = at->measures;
         if (!figures.influence) {
             figures.influence = at->influence;
@@ -138,29 +134,27 @@ void Results::show(const Figures& figures) {
 
 bool Results::lacksCoverage() const { return measuresAreCurrent() && !m_measured.measures->coverage; }
 
-const Measures* Results::measures() const {
-    if (!m_measured.measures || !m_store.hasVolume() || !sameNames(m_measured.input.tf, m_store.scene().tf))
-        return nullptr;
-    return &*m_measured.measures;
+bool Results::isShowable(const Figures& figures) const {
+    return m_store.hasVolume() && sameNames(figures.input.tf, m_store.scene().tf);
 }
 
-bool Results::vwsIsCurrent() const {
-    return m_measured.measures && m_store.hasVolume() && m_measured.input == m_present;
+bool Results::isPresent(const Figures& figures) const { return m_store.hasVolume() && figures.input == m_present; }
+
+const Measures* Results::measures() const {
+    return m_measured.measures && isShowable(m_measured) ? &*m_measured.measures : nullptr;
 }
+
+bool Results::vwsIsCurrent() const { return m_measured.measures && isPresent(m_measured); }
 
 bool Results::measuresAreCurrent() const { return vwsIsCurrent() && !m_vwsOnly; }
 
 const std::vector<std::vector<double>>* Results::influence() const {
-    if (!m_derived.influence || !m_store.hasVolume() || !sameNames(m_derived.input.tf, m_store.scene().tf))
-        return nullptr;
-    return &*m_derived.influence;
+    return m_derived.influence && isShowable(m_derived) ? &*m_derived.influence : nullptr;
 }
 
 const OcclusionMatrix* Results::occlusion() const { return influence() ? &m_derived.occlusion : nullptr; }
 
-bool Results::influenceIsCurrent() const {
-    return m_derived.influence && m_store.hasVolume() && m_derived.input == m_present;
-}
+bool Results::influenceIsCurrent() const { return m_derived.influence && isPresent(m_derived); }
 
 std::optional<double> Results::objective() const {
     const Measures* m = measures();
@@ -195,14 +189,14 @@ void Results::setPaused(bool paused) {
     Q_EMIT changed();
 }
 
-void Results::addVws(const MeasureInput& input, const std::vector<double>& vws) {
-    Figures figures = m_measured;
-    if (!figures.measures || figures.measures->features.size() != vws.size()) return;
-    for (std::size_t i = 0; i < vws.size(); ++i) figures.measures->features[i].vws = vws[i];
-    figures.input = input;
-    m_measured = std::move(figures); // shown, but not kept: the rest of it is of another state
-    m_vwsOnly = true;
+MeasureInput Results::addVws(MeasureInput input, const TransferFunction& tf, const std::vector<double>& vws) {
+    input.tf = shownTf(tf);
+    if (!m_measured.measures || m_measured.measures->features.size() != vws.size()) return input;
+    for (std::size_t i = 0; i < vws.size(); ++i) m_measured.measures->features[i].vws = vws[i];
+    m_measured.input = input;
+    m_vwsOnly = true; // shown, but not kept: the rest of it is of another state
     Q_EMIT changed();
+    return input;
 }
 
 } // namespace pellucid::gui

@@ -7,17 +7,17 @@
 
 #include <QElapsedTimer>
 #include <QObject>
-#include <QTimer>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "session/workspace.h"
 #include "store/session_store.h"
 
 namespace pellucid::gui {
 
-/// Keeps figures up to date with the store, without ever making the window wait: while a drag or a rotation lasts, the
-/// latest state is measured as soon as the one before is done. A result belongs to the input that it was computed from;
-/// it is current while that is the present one, and comes back with it (undo).
+/// Keeps figures up to date with the store, and never makes the window wait: during a drag or a rotation, the latest
+/// state is measured as soon as the measurement before is done. A result belongs to the input that it was computed
+/// from. It is current while that is the present input, and comes back with it (undo).
 class Results : public QObject {
     Q_OBJECT
 public:
@@ -47,8 +47,9 @@ public:
     void setInfluenceWanted(bool wanted);
     /// While paused nothing is measured (an optimization uses the lane); going on measures what is not current.
     void setPaused(bool paused);
-    /// Figures that somebody else has computed: a move of an optimization, which tells VWS alone.
-    void addVws(const MeasureInput& input, const std::vector<double>& vws);
+    /// Figures that somebody else has computed: a move of an optimization, which tells VWS alone. `tf`, in place of
+    /// that of `input`, is with what is hidden of it. Returns what it measured.
+    MeasureInput addVws(MeasureInput input, const TransferFunction& tf, const std::vector<double>& vws);
 
 Q_SIGNALS:
     void changed(); ///< figures, whether they are current, or what is under way
@@ -74,7 +75,9 @@ private:
     void keep(Figures figures);
     void show(const Figures& figures);
     bool lacksCoverage() const; // of current figures: it waits until the hand rests
-    const Figures* known(const MeasureInput& input) const;
+    std::deque<Figures>::const_iterator known(const MeasureInput& input) const;
+    bool isShowable(const Figures& figures) const; // they are of the present features
+    bool isPresent(const Figures& figures) const;
 
     SessionStore& m_store;
     std::deque<Figures> m_known;   // the latest first
@@ -84,7 +87,7 @@ private:
     std::optional<Error> m_failure;
     QString m_engine;
     bool m_influenceWanted = false, m_paused = false;
-    QTimer m_throttle;
+    RestTimer m_throttle{0, [this] { begin(); }};
     QElapsedTimer m_sinceStart;
     qint64 m_lastTook = 0; // milliseconds
     Job<Request, Figures> m_measuring;

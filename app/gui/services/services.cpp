@@ -10,33 +10,45 @@ namespace pellucid::gui {
 Services::Services(QWidget* window) : m_results(m_store, m_compute, m_workspace), m_window(window) {
     connect(&m_results, &Results::changed, this, &Services::idleChanged);
     connect(&m_results, &Results::failed, this, [this](const Error& error) {
-        m_notices.add({tr("The figures could not be computed: %1").arg(QString::fromUtf8(error.what())), {}});
+        m_notices.add({tr("The figures could not be computed: %1").arg(error.what())});
     });
 }
 
 int Services::selectedFeature() const { return featureWithId(scene().tf, m_selection.feature()); }
+
+const Feature* Services::selected() const {
+    const int index = selectedFeature();
+    return index < 0 ? nullptr : &scene().tf.features[static_cast<std::size_t>(index)];
+}
 
 bool Services::isIdle() const {
     return m_store.hasVolume() && !m_results.isBusy() &&
            std::none_of(m_work.begin(), m_work.end(), [](const auto& isBusy) { return isBusy(); });
 }
 
+// A file of the other state may have gone: then the present state stays.
 void Services::undo() {
-    try {
-        if (!isReadOnly() && m_store.canUndo()) m_store.undo();
-    } catch (const Error& error) { // a file of that state has gone: the present state stays
-        showError(tr("This cannot be undone now"), error);
-    }
+    if (!isReadOnly() && m_store.canUndo()) attempt(tr("This cannot be undone now"), [this] { m_store.undo(); });
 }
 
 void Services::redo() {
-    try {
-        if (!isReadOnly() && m_store.canRedo()) m_store.redo();
-    } catch (const Error& error) {
-        showError(tr("This cannot be done again now"), error);
-    }
+    if (!isReadOnly() && m_store.canRedo()) attempt(tr("This cannot be done again now"), [this] { m_store.redo(); });
 }
 
 void Services::showError(const QString& title, const Error& error) { pellucid::gui::showError(m_window, title, error); }
+
+bool Services::attempt(const QString& title, const std::function<void()>& work) {
+    try {
+        work();
+        return true;
+    } catch (const Error& error) {
+        showError(title, error);
+        return false;
+    }
+}
+
+void Services::showFailuresOf(JobBase& job, const QString& title) {
+    connect(&job, &JobBase::failed, this, [this, title](const Error& error) { showError(title, error); });
+}
 
 } // namespace pellucid::gui

@@ -1,7 +1,7 @@
 // What every part of a window may use: the state, what was computed of it, and what can be done.
 #pragma once
 
-#include "jobs/lane.h"
+#include "jobs/job.h"
 #include "services/actions.h"
 #include "services/notices.h"
 #include "services/panels.h"
@@ -41,6 +41,7 @@ public:
     Lane& compute() { return m_compute; }
     /// Index of the selected feature in the scene's transfer function; −1: none.
     int selectedFeature() const;
+    const Feature* selected() const; ///< that feature; null: none
 
     /// Nothing may be edited: an optimization shows its moves.
     bool isReadOnly() const { return m_isHeld && m_isHeld(); }
@@ -52,6 +53,9 @@ public:
     void addWork(std::function<bool()> isBusy) { m_work.push_back(std::move(isBusy)); }
 
     void showError(const QString& title, const Error& error);
+    /// Does something that may throw Error, which is shown then. Whether all went well.
+    bool attempt(const QString& title, const std::function<void()>& work);
+    void showFailuresOf(JobBase& job, const QString& title); ///< from now on, whenever it fails
     /// A step of the history; where it fails the state stays, and people are told.
     void undo();
     void redo();
@@ -67,5 +71,13 @@ private:
     std::function<bool()> m_isHeld;
     std::vector<std::function<bool()>> m_work;
 };
+
+/// For actions: does `act(services, index)` to the feature that is selected then, if one is.
+template <class Act>
+std::function<void()> toSelected(Services& services, const Act& act) {
+    return [&services, act] {
+        if (const int feature = services.selectedFeature(); feature >= 0) act(services, feature);
+    };
+}
 
 } // namespace pellucid::gui

@@ -5,6 +5,18 @@
 
 namespace pellucid::gui {
 
+/// One step that changes one part of the session: `change` gets the part.
+template <class T, class Change>
+void editPart(SessionStore& store, Part<T> Session::*part, const QString& text, const QString& mergeKey,
+              const Change& change) {
+    store.edit(text, mergeKey, [&](Session& session) { (session.*part).edit(change); });
+}
+/// Changes the variable that is drawn; the session has one.
+template <class Change>
+void editVariable(Session& session, const Change& change) {
+    session.variables.edit([&](std::vector<Variable>& all) { change(all.front()); });
+}
+
 /// `tf` is written for the window, as Scene::tf is; one without a range is taken to be.
 inline void editTf(SessionStore& store, const TransferFunction& tf, const QString& text, const QString& mergeKey = {}) {
     store.edit(text, mergeKey, [&](Session& session) { session.setTf(tf); });
@@ -50,6 +62,11 @@ inline QString emptyFeatureText(const Scene& scene, int feature) {
     return QObject::tr("%1 is empty: no voxel has its values. There is nothing to aim at; move its borders.")
         .arg(QString::fromStdString(scene.tf.features.at(static_cast<std::size_t>(feature)).name));
 }
+/// What the session wants of a feature.
+inline FeatureGoal goalOf(const Session& session, FeatureId feature) {
+    const auto goal = session.goals->find(feature);
+    return goal == session.goals->end() ? FeatureGoal() : goal->second;
+}
 /// What an optimization may do to a feature's opacity.
 inline void editOpacityLimits(SessionStore& store, int feature, const OpacityLimits& limits, const QString& text) {
     store.commit();
@@ -65,10 +82,9 @@ inline void editOpacityLimits(SessionStore& store, int feature, const OpacityLim
 }
 /// As the session has them: a hidden feature is not locked by that here.
 inline OpacityLimits opacityLimits(const SessionStore& store, int feature) {
-    const FeatureGoals& goals = *store.session().goals;
-    const auto goal = goals.find(store.scene().tf.features.at(static_cast<std::size_t>(feature)).id);
-    if (goal == goals.end()) return {};
-    return {goal->second.lowest, goal->second.highest, goal->second.locked};
+    const FeatureGoal goal =
+        goalOf(store.session(), store.scene().tf.features.at(static_cast<std::size_t>(feature)).id);
+    return {goal.lowest, goal.highest, goal.locked};
 }
 
 } // namespace pellucid::gui

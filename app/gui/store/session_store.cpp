@@ -86,37 +86,37 @@ Scene SessionStore::withPresentGaze(Scene scene) const {
     return scene;
 }
 
+// The session at a frame, with the data of `basis`.
+Scene SessionStore::atFrame(Session session, int frame, Scene basis) {
+    session.frame = frame;
+    session.goals.set(goalsAt(session, frame));
+    basis.session.goals = session.goals; // so that following the target keys takes none of them for an edit
+    basis.session.targetKeys = session.targetKeys;
+    return resolve(std::move(session), basis);
+}
+
 // A scene of another frame at the present one.
 Scene SessionStore::atPresentFrame(Scene scene) const {
     scene = withPresentGaze(std::move(scene));
     if (!isSeries(scene) || scene.series != m_scene.series) return scene; // with other data come its frames
-    Session session = scene.session;
-    session.frame = m_scene.session.frame;
-    session.goals.set(goalsAt(session, session.frame));
     // Data that are there are seen through another window at once.
     Scene basis = m_scene;
     if (scene.ground) { // kept with the step
         basis.session.ground = scene.session.ground;
         basis.ground = scene.ground;
     }
-    basis.session.goals = session.goals;
-    basis.session.targetKeys = session.targetKeys;
-    Scene next = resolve(std::move(session), basis);
+    Scene next = atFrame(scene.session, m_scene.session.frame, std::move(basis));
     prepareToShow(next);
     return next;
 }
 
 Scene SessionStore::movedTo(const Scene& shown, const Scene& from) {
     Session session = from.session;
-    session.frame = shown.session.frame;
-    session.goals.set(goalsAt(session, session.frame));
+    session.hsb = shown.session.hsb; // with scales that were found in this frame
     Scene basis = shown;
-    basis.session.goals = session.goals; // so that following the target keys takes none of them for an edit
-    basis.session.targetKeys = session.targetKeys;
     basis.session.ground = from.session.ground; // one ground lies under all frames
     basis.ground = from.ground;
-    session.hsb = shown.session.hsb; // with scales that were found in this frame
-    return resolve(std::move(session), basis);
+    return atFrame(std::move(session), shown.session.frame, std::move(basis));
 }
 
 bool SessionStore::isShownBy(const Scene& shown) const {
@@ -175,15 +175,11 @@ void SessionStore::forgetOldData() {
     m_index -= std::min(m_index, first);
 }
 
-void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change) {
-    edit(text, mergeKey, change, m_scene);
-}
-
-void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change, const Scene& basis) {
+void SessionStore::edit(const QString& text, const QString& mergeKey, const Change& change, const Scene* basis) {
     if (!hasVolume()) return;
     commit();
     QString name = text;
-    Scene next = changedBy(change, m_scene, basis, name);
+    Scene next = changedBy(change, m_scene, basis == nullptr ? m_scene : *basis, name);
     if (next.session == m_scene.session) return;
     Scene before = m_scene;
     show(std::move(next));
@@ -212,18 +208,18 @@ void SessionStore::record(const Change& change) {
 }
 
 void SessionStore::commit(const QString& mergeKey) {
-    if (!m_committed) return;
-    Scene before = withPresentGaze(std::move(*m_committed));
-    m_committed.reset();
-    push(m_previewText, mergeKey, std::move(before));
-    Q_EMIT historyChanged();
+    endPreview([&](Scene before) { push(m_previewText, mergeKey, std::move(before)); });
 }
 
 void SessionStore::cancel() {
+    endPreview([this](Scene before) { show(std::move(before)); });
+}
+
+void SessionStore::endPreview(const std::function<void(Scene before)>& end) {
     if (!m_committed) return;
     Scene before = withPresentGaze(std::move(*m_committed));
     m_committed.reset();
-    show(std::move(before));
+    end(std::move(before));
     Q_EMIT historyChanged();
 }
 
@@ -238,9 +234,7 @@ void SessionStore::amend(const Change& change) {
     const bool isLatest = !isPreviewing() && m_index > 0 && m_index == m_steps.size();
     show(resolve(std::move(session), m_scene));
     if (isPreviewing()) return;
-    if (isLatest) {
-        m_steps.back().after = kept(m_scene, m_steps.back().before);
-    }
+    if (isLatest) m_steps.back().after = kept(m_scene, m_steps.back().before);
     if (clean) setClean();
 }
 
@@ -285,28 +279,29 @@ void SessionStore::setCamera(const Camera& camera, int gesture) {
         m_cameraIndex = m_cameras.size() - 1;
     }
     m_cameras[m_cameraIndex] = camera;
-    Scene next = m_scene;
-    next.session.camera = next.camera = camera;
-    show(std::move(next));
+    showCamera(camera);
     if (!sameStep) Q_EMIT historyChanged();
 }
 
 void SessionStore::undoCamera() {
-    if (!canUndoCamera()) return;
-    m_lastGesture = 0;
-    Scene next = m_scene;
-    next.session.camera = next.camera = m_cameras[--m_cameraIndex];
-    show(std::move(next));
-    Q_EMIT historyChanged();
+    if (canUndoCamera()) goToCamera(m_cameraIndex - 1);
 }
 
 void SessionStore::redoCamera() {
-    if (!canRedoCamera()) return;
+    if (canRedoCamera()) goToCamera(m_cameraIndex + 1);
+}
+
+void SessionStore::goToCamera(std::size_t index) {
+    m_cameraIndex = index;
     m_lastGesture = 0;
-    Scene next = m_scene;
-    next.session.camera = next.camera = m_cameras[++m_cameraIndex];
-    show(std::move(next));
+    showCamera(m_cameras[index]);
     Q_EMIT historyChanged();
+}
+
+void SessionStore::showCamera(const Camera& camera) {
+    Scene next = m_scene;
+    next.session.camera = next.camera = camera;
+    show(std::move(next));
 }
 
 void SessionStore::setCrosshair(const Vec3& voxel) {

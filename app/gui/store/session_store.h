@@ -38,23 +38,22 @@ public:
 
     /// One step named `text`. Steps with the same non-empty `mergeKey` in a row become one. No change, no step. The
     /// change must not need other data than there are, see needsData(); with `basis`, than that scene has.
-    void edit(const QString& text, const QString& mergeKey, const Change& change);
-    void edit(const QString& text, const QString& mergeKey, const Change& change, const Scene& basis);
+    void edit(const QString& text, const QString& mergeKey, const Change& change, const Scene* basis = nullptr);
 
     /// Shows `change` of the committed session, whatever was previewed before; the step will be named `text`.
     void preview(const QString& text, const Change& change);
     bool isPreviewing() const { return m_committed.has_value(); }
     /// The scene without the preview.
     const Scene& committed() const { return m_committed ? *m_committed : m_scene; }
-    /// Changes the state before the preview, and so what every preview of it shows: undo leaves it as it is. For
-    /// records of what was done, of which nothing that is drawn or computed depends.
+    /// Changes the state before the preview, and so every preview of it: undo keeps the change. For records of what was
+    /// done, on which nothing that is drawn or computed depends.
     void record(const Change& change);
     void commit(const QString& mergeKey = {});
     void cancel();
 
-    /// What follows of the present state by itself, but later than at once: shown, and part of the preview or else of
-    /// the step that led here; it is no step of its own, and what was clean stays it. A preview that goes on makes it
-    /// again: it keeps no references.
+    /// A change that follows from the present state by itself, but later. It is shown, and becomes part of the running
+    /// preview, else of the latest step; it is no step of its own, and a clean session stays clean. A preview that goes
+    /// on applies it again: it must hold no references.
     void amend(const Change& change);
 
     /// Asked at every edit and preview before anybody hears of it: both are one change and one step, named by both.
@@ -107,10 +106,14 @@ private:
     void show(Scene next);
     void push(const QString& text, const QString& mergeKey, Scene before);
     void forgetOldData();
+    void endPreview(const std::function<void(Scene before)>& end);
+    void goToCamera(std::size_t index);
+    void showCamera(const Camera& camera);
     /// Adds to `text` what followed.
     Scene changedBy(const Change& change, const Scene& from, const Scene& basis, QString& text) const;
     Scene withPresentGaze(Scene scene) const;
     Scene atPresentFrame(Scene scene) const;
+    static Scene atFrame(Session session, int frame, Scene basis);
     static Scene movedTo(const Scene& shown, const Scene& from);
 
     Scene m_scene;

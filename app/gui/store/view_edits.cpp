@@ -3,33 +3,40 @@
 #include <glm/common.hpp>
 
 #include "render/camera_motion.h"
+#include "store/edits.h"
 
 namespace pellucid::gui {
 
-void fitView(SessionStore& store) {
-    if (store.hasVolume()) store.setCamera(fitted(store.scene().camera, store.scene().volume->geometry()));
+namespace {
+
+/// Sets the camera that `change` makes of the present one and the volume's geometry.
+template <class Change>
+void changeCamera(SessionStore& store, const Change& change, int gesture = 0) {
+    if (store.hasVolume()) store.setCamera(change(store.scene().camera, store.scene().volume->geometry()), gesture);
 }
 
+} // namespace
+
+void fitView(SessionStore& store) { changeCamera(store, fitted); }
+
 void resetView(SessionStore& store) {
-    if (store.hasVolume())
-        store.setCamera(homeCamera(store.scene().volume->geometry(), store.scene().camera.projection));
+    changeCamera(store, [](const Camera& now, const Geometry& g) { return homeCamera(g, now.projection); });
 }
 
 void setStandardView(SessionStore& store, StandardView view) {
-    if (!store.hasVolume()) return;
-    const Geometry& geometry = store.scene().volume->geometry();
-    const ViewAngles angles = anglesOf(view, geometry.frame);
-    store.setCamera(standardCamera(geometry, angles.azimuth, angles.elevation, store.scene().camera.projection));
+    changeCamera(store, [view](const Camera& now, const Geometry& g) {
+        const ViewAngles angles = anglesOf(view, g.worldAxes);
+        return standardCamera(g, angles.azimuth, angles.elevation, now.projection);
+    });
 }
 
 void setProjection(SessionStore& store, Projection projection) {
-    if (!store.hasVolume()) return;
-    store.setCamera(withProjection(store.scene().camera, store.scene().volume->geometry(), projection));
+    changeCamera(store, [&](const Camera& now, const Geometry& g) { return withProjection(now, g, projection); });
 }
 
 void zoomView(SessionStore& store, double factor, int gesture) {
-    if (store.hasVolume())
-        store.setCamera(zoomed(store.scene().camera, store.scene().volume->geometry(), factor), gesture);
+    changeCamera(
+        store, [&](const Camera& now, const Geometry& g) { return zoomed(now, g, factor); }, gesture);
 }
 
 Vec3 crosshairOf(const Scene& scene) {
@@ -49,13 +56,12 @@ void moveCrosshairToWorld(SessionStore& store, const Vec3& world) {
 }
 
 void setLayout(SessionStore& store, SliceViews::Layout layout) {
-    store.edit(QObject::tr("Layout"), {},
-               [layout](Session& session) { session.slices.edit([layout](SliceViews& s) { s.layout = layout; }); });
+    editPart(store, &Session::slices, QObject::tr("Layout"), {}, [layout](SliceViews& s) { s.layout = layout; });
 }
 
 void resetGreyWindow(SessionStore& store) {
-    store.edit(QObject::tr("Reset the window of grey"), {},
-               [](Session& session) { session.slices.edit([](SliceViews& s) { s.window.reset(); }); });
+    editPart(store, &Session::slices, QObject::tr("Reset the window of grey"), {},
+             [](SliceViews& s) { s.window.reset(); });
 }
 
 } // namespace pellucid::gui

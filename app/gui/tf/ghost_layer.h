@@ -1,13 +1,12 @@
 // The curve as it was before the latest refinement, behind the curve.
 #pragma once
 
-#include "tf/tf_canvas.h"
-
 namespace pellucid::gui {
 
 class RefineController;
+class TfCanvas;
 
-/// Adds it to the canvas, which it keeps up to date.
+/// Has the canvas show it, while RefineController::isGhostShown(), and keeps it up to date.
 void addGhostLayer(RefineController& refining, TfCanvas& canvas);
 
 } // namespace pellucid::gui

@@ -18,6 +18,9 @@ public:
 
     double lo() const { return m_lo; }
     double hi() const { return m_hi; }
+    double width() const { return m_hi - m_lo; }
+    double middle() const { return (m_lo + m_hi) / 2; }
+    bool contains(double intensity) const { return intensity >= m_lo && intensity <= m_hi; }
     bool isWhole() const { return m_lo == 0 && m_hi == 1; }
 
     double toPixel(double intensity, const QRectF& plot) const {
@@ -42,6 +45,7 @@ public:
         const double share = (intensity - m_lo) / (m_hi - m_lo);
         setVisible(intensity - share * width, intensity + (1 - share) * width);
     }
+    void moveTo(double lo) { setVisible(lo, lo + width()); }
     void pan(double by) { setVisible(m_lo + by, m_hi + by); } ///< in intensities
     void reset() { setVisible(0, 1); }
 

@@ -1,14 +1,13 @@
 #include "tf/palette_bar.h"
 
 #include <QContextMenuEvent>
-#include <QHelpEvent>
 #include <QKeyEvent>
 #include <QMenu>
 #include <QPainter>
-#include <QToolTip>
 
 #include "controllers/refine_controller.h"
 #include "services/services.h"
+#include "widgets/controls.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -39,8 +38,6 @@ PaletteBar::PaletteBar(Services& services, RefineController& refining, TfCanvas&
                                     {place, tr("Arrow keys (Shift: finer)"), tr("move what stands out")},
                                     {place, tr("Delete, Esc, right click"), tr("clear the priority")}});
 }
-
-bool PaletteBar::isReady() const { return m_services.isEditable(); }
 
 QRectF PaletteBar::strip() const {
     const QRectF plot = m_canvas.plot(); // of a canvas that begins where this does
@@ -83,32 +80,27 @@ void PaletteBar::paintEvent(QPaintEvent*) {
     painter.setPen(QPen(hasFocus() ? theme::kAccent : theme::kLine, 1));
     painter.setBrush(Qt::NoBrush);
     painter.drawRect(r.adjusted(-0.5, -0.5, 0.5, 0.5));
-    const auto inside = [&](const QPointF& at) { return at.x() >= r.left() - 0.5 && at.x() <= r.right() + 0.5; };
-    if (const auto hovered = m_hovered ? m_hovered : m_services.selection().hoveredIntensity()) {
-        const QPointF at = positionOf(*hovered);
-        if (inside(at)) {
-            painter.setPen(QPen(QColor(0, 0, 0, 150), 3));
-            painter.drawLine(QPointF(at.x(), r.top()), QPointF(at.x(), r.bottom()));
-            painter.setPen(QPen(QColor(255, 255, 255, 200), 1));
-            painter.drawLine(QPointF(at.x(), r.top()), QPointF(at.x(), r.bottom()));
+    const auto line = [&](double x, const QColor& color, double width) {
+        painter.setPen(QPen(color, width));
+        painter.drawLine(QPointF(x, r.top()), QPointF(x, r.bottom()));
+    };
+    const auto inside = [&](double x) { return x >= r.left() - 0.5 && x <= r.right() + 0.5; };
+    if (const auto hovered = m_hovered ? m_hovered : m_services.selection().hoveredIntensity())
+        if (const double x = positionOf(*hovered).x(); inside(x)) {
+            line(x, QColor(0, 0, 0, 150), 3);
+            line(x, QColor(255, 255, 255, 200), 1);
         }
-    }
-    if (const auto x = marked()) {
-        const QPointF at = positionOf(*x);
-        if (!inside(at)) return;
-        painter.setPen(QPen(QColor(0, 0, 0, 200), 4));
-        painter.drawLine(QPointF(at.x(), r.top()), QPointF(at.x(), r.bottom()));
-        painter.setPen(QPen(QColor(Qt::white), 2));
-        painter.drawLine(QPointF(at.x(), r.top()), QPointF(at.x(), r.bottom()));
-        painter.setPen(QPen(QColor(0, 0, 0, 200), 1));
-        painter.setBrush(QColor(Qt::white));
-        painter.drawPolygon(
-            QPolygonF({QPointF(at.x() - kHead, 0.5), QPointF(at.x() + kHead, 0.5), QPointF(at.x(), r.top() + 1)}));
-    }
+    const double x = marked() ? positionOf(*marked()).x() : -1;
+    if (!marked() || !inside(x)) return;
+    line(x, QColor(0, 0, 0, 200), 4);
+    line(x, Qt::white, 2);
+    painter.setPen(QPen(QColor(0, 0, 0, 200), 1));
+    painter.setBrush(QColor(Qt::white));
+    painter.drawPolygon(QPolygonF({QPointF(x - kHead, 0.5), QPointF(x + kHead, 0.5), QPointF(x, r.top() + 1)}));
 }
 
 void PaletteBar::mousePressEvent(QMouseEvent* event) {
-    if (event->button() != Qt::LeftButton || !isReady()) return event->ignore();
+    if (event->button() != Qt::LeftButton || !m_services.isEditable()) return event->ignore();
     if (m_dragging) return;
     m_dragging = true;
     m_refining.dragPriority(intensityAt(event->position()));
@@ -131,7 +123,7 @@ void PaletteBar::mouseReleaseEvent(QMouseEvent* event) {
 }
 
 void PaletteBar::contextMenuEvent(QContextMenuEvent* event) {
-    if (!isReady() || m_dragging) return;
+    if (!m_services.isEditable() || m_dragging) return;
     const double x =
         event->reason() == QContextMenuEvent::Keyboard ? marked().value_or(0.5) : intensityAt(QPointF(event->pos()));
     QMenu menu(this);
@@ -148,11 +140,10 @@ void PaletteBar::keyPressEvent(QKeyEvent* event) {
         m_dragging = false;
         return m_refining.cancelDrag();
     }
-    if (!isReady() || m_dragging) return QWidget::keyPressEvent(event);
+    if (!m_services.isEditable() || m_dragging) return QWidget::keyPressEvent(event);
     const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 1.0 / 1024 : 1.0 / 128;
     const auto go = [&](double x) { m_refining.prioritize(std::clamp(x, 0.0, 1.0), QStringLiteral("palette-keys")); };
-    const IntensityAxis& axis = m_canvas.axis();
-    const double middle = (axis.lo() + axis.hi()) / 2;
+    const double middle = m_canvas.axis().middle();
     switch (event->key()) {
     case Qt::Key_Left:
         return go(marked() ? *marked() - step : middle);
@@ -178,17 +169,14 @@ void PaletteBar::leaveEvent(QEvent*) {
     update();
 }
 
-void PaletteBar::focusInEvent(QFocusEvent*) { update(); }
-void PaletteBar::focusOutEvent(QFocusEvent*) { update(); }
-
 bool PaletteBar::event(QEvent* event) {
-    if (event->type() != QEvent::ToolTip || !m_services.store().hasVolume()) return QWidget::event(event);
-    const auto* help = static_cast<QHelpEvent*>(event);
-    QString text = tr("Value %1. Click: refine so that this value stands out; drag: the picture follows")
-                       .arg(valueText(intensityAt(QPointF(help->pos()))));
-    if (marked()) text += tr("\nPrioritized: value %1; Esc: nothing").arg(valueText(*marked()));
-    QToolTip::showText(help->globalPos(), text, this);
-    return true;
+    const auto tip = [this](const QPoint& position) {
+        QString text = tr("Value %1. Click: refine so that this value stands out; drag: the picture follows")
+                           .arg(valueText(intensityAt(QPointF(position))));
+        if (marked()) text += tr("\nPrioritized: value %1; Esc: nothing").arg(valueText(*marked()));
+        return text;
+    };
+    return (m_services.store().hasVolume() && showsTip(*event, *this, tip)) || QWidget::event(event);
 }
 
 } // namespace pellucid::gui

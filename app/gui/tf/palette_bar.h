@@ -34,8 +34,6 @@ protected:
     void contextMenuEvent(QContextMenuEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
     void leaveEvent(QEvent* event) override;
-    void focusInEvent(QFocusEvent* event) override;
-    void focusOutEvent(QFocusEvent* event) override;
     bool event(QEvent* event) override;
 
 private:
@@ -43,7 +41,6 @@ private:
     double intensityAt(const QPointF& position) const;
     QString valueText(double intensity) const;
     std::optional<double> marked() const;
-    bool isReady() const;
 
     Services& m_services;
     RefineController& m_refining;

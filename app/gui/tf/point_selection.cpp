@@ -85,23 +85,20 @@ TransferFunction withPointsAt(const TransferFunction& tf, const PointSelection& 
     return result;
 }
 
-TransferFunction withPointsRemoved(const TransferFunction& tf, const PointSelection& points) {
-    TransferFunction result = tf;
+TransferFunction withPointsRemoved(TransferFunction tf, const PointSelection& points) {
     for (auto index = points.indices().rbegin(); index != points.indices().rend(); ++index)
-        result = withPointRemoved(result, *index);
-    return result;
+        tf = withPointRemoved(tf, *index);
+    return tf;
 }
 
-TransferFunction withPointsFixed(const TransferFunction& tf, const PointSelection& points, bool fixed) {
-    TransferFunction result = tf;
-    for (const int index : points.indices()) result = withPointFixed(result, index, fixed);
-    return result;
+TransferFunction withPointsFixed(TransferFunction tf, const PointSelection& points, bool fixed) {
+    for (const int index : points.indices()) tf = withPointFixed(tf, index, fixed);
+    return tf;
 }
 
-TransferFunction withPointsColor(const TransferFunction& tf, const PointSelection& points, const Rgb& color) {
-    TransferFunction result = tf;
-    for (const int index : points.indices()) result = withPointColor(result, index, color);
-    return result;
+TransferFunction withPointsColor(TransferFunction tf, const PointSelection& points, const Rgb& color) {
+    for (const int index : points.indices()) tf = withPointColor(tf, index, color);
+    return tf;
 }
 
 } // namespace pellucid::gui

@@ -40,8 +40,8 @@ TransferFunction withPointsMoved(const TransferFunction& tf, const PointSelectio
 /// All at one intensity (as near as their neighbours let them), or of one opacity.
 TransferFunction withPointsAt(const TransferFunction& tf, const PointSelection& points, std::optional<double> x,
                               std::optional<double> opacity);
-TransferFunction withPointsRemoved(const TransferFunction& tf, const PointSelection& points);
-TransferFunction withPointsFixed(const TransferFunction& tf, const PointSelection& points, bool fixed);
-TransferFunction withPointsColor(const TransferFunction& tf, const PointSelection& points, const Rgb& color);
+TransferFunction withPointsRemoved(TransferFunction tf, const PointSelection& points);
+TransferFunction withPointsFixed(TransferFunction tf, const PointSelection& points, bool fixed);
+TransferFunction withPointsColor(TransferFunction tf, const PointSelection& points, const Rgb& color);
 
 } // namespace pellucid::gui

@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <QColorDialog>
 #include <QContextMenuEvent>
-#include <QHelpEvent>
 #include <QKeyEvent>
 #include <QLocale>
 #include <QMenu>
-#include <QToolTip>
 #include <QWheelEvent>
 
 #include "store/edits.h"
 #include "tf/edit.h"
 #include "tf/shapes.h"
-#include "tf/tf_canvas_layout.h"
+#include "widgets/controls.h"
 #include "widgets/input_habits.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
@@ -120,6 +119,17 @@ void TfCanvas::selectPoints(const PointSelection& points) {
 
 void TfCanvas::selectPoint(int index) { selectPoints(index < 0 ? PointSelection() : PointSelection({index}, index)); }
 
+void TfCanvas::selectAll(int current) {
+    std::vector<int> all(tf().points.size());
+    std::iota(all.begin(), all.end(), 0);
+    selectPoints(PointSelection(std::move(all), current));
+}
+
+void TfCanvas::zoomTo(const Feature& feature) {
+    const double beside = (feature.b - feature.a) / 4;
+    m_axis.setVisible(feature.a - beside, feature.b + beside);
+}
+
 void TfCanvas::addPoint(double x, double opacity) {
     if (m_readOnly || !m_store.hasVolume()) return;
     m_store.commit();
@@ -138,21 +148,24 @@ void TfCanvas::removeSelected() {
     editTf(m_store, without, text);
 }
 
+bool TfCanvas::areFixed() const {
+    const auto& indices = m_points.indices();
+    return std::all_of(indices.begin(), indices.end(), [this](int index) { return point(index).fixed; });
+}
+
 void TfCanvas::toggleFixed() {
     if (m_readOnly || m_points.isEmpty()) return;
     m_store.commit();
-    const auto& indices = m_points.indices();
-    const bool fix = std::any_of(indices.begin(), indices.end(),
-                                 [&](int index) { return !tf().points[static_cast<std::size_t>(index)].fixed; });
+    const bool one = m_points.size() == 1, fix = !areFixed();
     const QString text =
-        indices.size() == 1 ? (fix ? tr("Fix point") : tr("Free point")) : (fix ? tr("Fix points") : tr("Free points"));
+        fix ? (one ? tr("Fix point") : tr("Fix points")) : (one ? tr("Free point") : tr("Free points"));
     editTf(m_store, withPointsFixed(tf(), m_points, fix), text);
 }
 
 void TfCanvas::chooseColor() {
     if (m_readOnly || m_points.isEmpty()) return;
     const PointSelection points = m_points;
-    const QColor before = colorFromRgb(tf().points[static_cast<std::size_t>(points.current())].color);
+    const QColor before = colorFromRgb(point(points.current()).color);
     const QColor color = QColorDialog::getColor(
         before, this, points.size() == 1 ? tr("Colour of the point") : tr("Colour of the points"));
     if (color.isValid()) editTf(m_store, withPointsColor(tf(), points, rgbFromColor(color)), tr("Colour"));
@@ -175,6 +188,8 @@ QPointF TfCanvas::positionOf(double x, double opacity) const {
     const QRectF r = plot();
     return {m_axis.toPixel(x, r), r.bottom() - m_opacityAxis.height(opacity) * r.height()};
 }
+
+QPointF TfCanvas::positionOf(int index) const { return positionOf(point(index).x, point(index).opacity); }
 
 QPainterPath TfCanvas::curveOf(const TransferFunction& function) const {
     constexpr int kPieces = 24;
@@ -227,7 +242,7 @@ std::vector<int> TfCanvas::pointsAt(const QPointF& position) const {
     std::vector<std::pair<double, int>> near;
     const auto& points = tf().points;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (points[i].x < m_axis.lo() || points[i].x > m_axis.hi()) continue;
+        if (!m_axis.contains(points[i].x)) continue;
         const double d = QLineF(positionOf(points[i].x, points[i].opacity), position).length();
         if (d <= kGrab) near.emplace_back(d, static_cast<int>(i));
     }
@@ -280,7 +295,7 @@ std::optional<TfCanvas::BarHit> TfCanvas::barAt(const QPointF& position) const {
 QString TfCanvas::valueText(double x) const {
     if (!m_store.hasVolume()) return {};
     const Volume& volume = *m_store.scene().volume;
-    const double seen = (volume.range().hi - volume.range().lo) * (m_axis.hi() - m_axis.lo());
+    const double seen = (volume.range().hi - volume.range().lo) * m_axis.width();
     const QString value = numberText(volume.valueOfIntensity(x), seen);
     return m_unit.isEmpty() ? value : tr("%1 %2").arg(value, m_unit);
 }
@@ -290,20 +305,15 @@ QString TfCanvas::valueText(double x) const {
 void TfCanvas::hover(const QPointF& position) {
     const bool over = m_store.hasVolume() && zoneAt(position) != Zone::None;
     m_selection.setHoveredIntensity(over ? std::optional(intensityAt(position.x())) : std::nullopt);
-    const int point = m_readOnly ? -1 : pointAt(position);
-    const std::optional<BarHit> bar = m_readOnly || point >= 0 ? std::nullopt : barAt(position);
-    const bool same = point == m_hovered && bar.has_value() == m_hoveredBar.has_value() &&
-                      (!bar || (bar->feature == m_hoveredBar->feature && bar->part == m_hoveredBar->part));
-    if (same) return;
-    m_hovered = point;
+    const int index = m_readOnly ? -1 : pointAt(position);
+    const std::optional<BarHit> bar = m_readOnly || index >= 0 ? std::nullopt : barAt(position);
+    if (index == m_hovered && bar == m_hoveredBar) return;
+    m_hovered = index;
     m_hoveredBar = bar;
-    if (point >= 0) {
-        setCursor(Qt::PointingHandCursor);
-    } else if (bar) {
-        setCursor(bar->part == Part::Middle ? Qt::OpenHandCursor : Qt::SizeHorCursor);
-    } else {
-        setCursor(Qt::ArrowCursor);
-    }
+    setCursor(index >= 0                  ? Qt::PointingHandCursor
+              : !bar                      ? Qt::ArrowCursor
+              : bar->part == Part::Middle ? Qt::OpenHandCursor
+                                          : Qt::SizeHorCursor);
     update();
 }
 
@@ -327,13 +337,9 @@ void TfCanvas::mousePressEvent(QMouseEvent* event) {
         if (adds) {
             drag.before = m_points.toggled(index);
         } else {
-            const auto& points = tf().points;
-            const auto spot = [&](int i) {
-                return positionOf(points[static_cast<std::size_t>(i)].x, points[static_cast<std::size_t>(i)].opacity);
-            };
             std::vector<int> same;
             for (const int other : near)
-                if (QLineF(spot(other), spot(index)).length() < kSameSpot) same.push_back(other);
+                if (QLineF(positionOf(other), positionOf(index)).length() < kSameSpot) same.push_back(other);
             std::sort(same.begin(), same.end());
             auto next = std::find(same.begin(), same.end(), index);
             if (m_points.size() == 1 && m_points.contains(index)) ++next;
@@ -345,7 +351,7 @@ void TfCanvas::mousePressEvent(QMouseEvent* event) {
         drag.start = tf();
         drag.index = index;
     } else if (const std::optional<BarHit> bar = barAt(at)) {
-        m_selection.setFeature(tf().features[static_cast<std::size_t>(bar->feature)].id);
+        m_selection.setFeature(feature(bar->feature).id);
         if (m_readOnly) return;
         drag.kind = Drag::Kind::Feature;
         drag.start = tf();
@@ -373,7 +379,7 @@ void TfCanvas::mouseMoveEvent(QMouseEvent* event) {
     drag.last = at;
     if (!drag.moved && (at - drag.pressed).manhattanLength() < kTremble) return; // a click that trembles is no drag
     const bool begins = !std::exchange(drag.moved, true);
-    const double perPixel = (m_axis.hi() - m_axis.lo()) / plot().width();
+    const double perPixel = m_axis.width() / plot().width(), right = at.x() - drag.pressed.x();
     switch (drag.kind) {
     case Drag::Kind::Points:
         if (begins && !m_points.contains(drag.index)) selectPoint(drag.index);
@@ -383,13 +389,16 @@ void TfCanvas::mouseMoveEvent(QMouseEvent* event) {
     case Drag::Kind::Band:
         return selectBand(QRectF(drag.pressed, at).normalized());
     case Drag::Kind::Pan:
-        return m_axis.setVisible(drag.lo - (at.x() - drag.pressed.x()) * perPixel,
-                                 drag.lo - (at.x() - drag.pressed.x()) * perPixel + m_axis.hi() - m_axis.lo());
-    case Drag::Kind::Overview: {
-        const double by = (at.x() - drag.pressed.x()) / plot().width();
-        return m_axis.setVisible(drag.lo + by, drag.lo + by + m_axis.hi() - m_axis.lo());
+        return m_axis.moveTo(drag.lo - right * perPixel);
+    case Drag::Kind::Overview:
+        return m_axis.moveTo(drag.lo + right / plot().width());
     }
-    }
+}
+
+std::function<double(double)> TfCanvas::raisedBy(double height) const {
+    return [this, height](double opacity) {
+        return height == 0 ? opacity : m_opacityAxis.opacity(m_opacityAxis.height(opacity) + height);
+    };
 }
 
 void TfCanvas::dragPoints(const QPointF& to, bool alongAxis) {
@@ -405,11 +414,8 @@ void TfCanvas::dragPoints(const QPointF& to, bool alongAxis) {
     }
     const bool one = m_points.size() == 1;
     const double rise = m_opacityAxis.height(opacity) - m_opacityAxis.height(start.opacity);
-    const auto raised = [&](double before) {
-        return rise == 0 ? before : m_opacityAxis.opacity(m_opacityAxis.height(before) + rise);
-    };
     const TransferFunction moved = one ? withPointMoved(drag.start, drag.index, x, opacity)
-                                       : withPointsMoved(drag.start, m_points, x - start.x, raised);
+                                       : withPointsMoved(drag.start, m_points, x - start.x, raisedBy(rise));
     previewTf(m_store, moved, one ? tr("Move point") : tr("Move points"));
     if (!m_drag) return;
     m_selection.setHoveredIntensity(moved.points[static_cast<std::size_t>(drag.index)].x); // what the readout tells of
@@ -418,24 +424,19 @@ void TfCanvas::dragPoints(const QPointF& to, bool alongAxis) {
 void TfCanvas::dragFeature(const QPointF& to) {
     const Drag& drag = *m_drag;
     const Feature& feature = drag.start.features[static_cast<std::size_t>(drag.index)];
-    const double dx = (to.x() - drag.pressed.x()) / plot().width() * (m_axis.hi() - m_axis.lo());
-    switch (drag.part) {
-    case Part::Middle:
+    const double dx = (to.x() - drag.pressed.x()) / plot().width() * m_axis.width();
+    if (drag.part == Part::Middle)
         return previewTf(m_store, withFeatureMoved(drag.start, drag.index, dx), tr("Move feature"));
-    case Part::Lower:
-        return previewTf(m_store, withFeatureWidened(drag.start, drag.index, feature.a + dx, feature.b),
-                         tr("Widen feature"));
-    case Part::Upper:
-        return previewTf(m_store, withFeatureWidened(drag.start, drag.index, feature.a, feature.b + dx),
-                         tr("Widen feature"));
-    }
+    const double a = feature.a + (drag.part == Part::Lower ? dx : 0),
+                 b = feature.b + (drag.part == Part::Upper ? dx : 0);
+    previewTf(m_store, withFeatureWidened(drag.start, drag.index, a, b), tr("Widen feature"));
 }
 
 void TfCanvas::selectBand(const QRectF& band) {
     std::vector<int> inside;
     const auto& points = tf().points;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const QPointF at = positionOf(points[i].x, points[i].opacity);
+        const QPointF at = positionOf(static_cast<int>(i));
         if (band.contains(at) && plot().adjusted(-1, -1, 1, 1).contains(at)) inside.push_back(static_cast<int>(i));
     }
     selectPoints(m_drag->before.united(PointSelection(std::move(inside))));
@@ -465,11 +466,7 @@ void TfCanvas::mouseDoubleClickEvent(QMouseEvent* event) {
         if (!m_points.contains(index)) selectPoint(index);
         chooseColor();
     } else if (zone == Zone::Bars) {
-        if (const std::optional<BarHit> bar = barAt(at)) {
-            const Feature& f = tf().features[static_cast<std::size_t>(bar->feature)];
-            const double beside = (f.b - f.a) / 4;
-            m_axis.setVisible(f.a - beside, f.b + beside);
-        }
+        if (const std::optional<BarHit> bar = barAt(at)) zoomTo(feature(bar->feature));
     } else if (plot().adjusted(-4, -4, 4, 4).contains(at)) {
         addPoint(intensityAt(at.x()), opacityAt(at.y()));
     }
@@ -479,12 +476,10 @@ void TfCanvas::wheelEvent(QWheelEvent* event) {
     if (!m_store.hasVolume() || (m_drag && m_drag->edits())) return event->ignore();
     const QPoint turned = event->angleDelta();
     const bool shift = event->modifiers().testFlag(Qt::ShiftModifier);
-    const double width = m_axis.hi() - m_axis.lo();
     // Sideways, or with Shift (which some systems turn into sideways themselves): along the axis.
     const double along = turned.x() != 0 && turned.y() == 0 ? turned.x() : shift ? turned.y() : 0;
     if (along != 0) {
-        const double by = -along / kNotch * width / 10;
-        m_axis.setVisible(m_axis.lo() + by, m_axis.hi() + by);
+        m_axis.pan(-along / kNotch * m_axis.width() / 10);
     } else if (turned.y() != 0) {
         m_axis.zoomAbout(intensityAt(event->position().x()), std::pow(kWheelStep, turned.y() / kNotch));
     }
@@ -495,10 +490,8 @@ void TfCanvas::wheelEvent(QWheelEvent* event) {
 void TfCanvas::contextMenuEvent(QContextMenuEvent* event) {
     if (!m_store.hasVolume() || m_drag) return;
     const int current = m_points.current();
-    const QPointF position = event->reason() == QContextMenuEvent::Keyboard && current >= 0
-                                 ? positionOf(tf().points[static_cast<std::size_t>(current)].x,
-                                              tf().points[static_cast<std::size_t>(current)].opacity)
-                                 : QPointF(event->pos());
+    const QPointF position =
+        event->reason() == QContextMenuEvent::Keyboard && current >= 0 ? positionOf(current) : QPointF(event->pos());
     QMenu menu(this);
     menu.setObjectName("tfContextMenu");
     fillMenu(menu, position);
@@ -511,36 +504,27 @@ void TfCanvas::contextMenuEvent(QContextMenuEvent* event) {
 void TfCanvas::fillMenu(QMenu& menu, const QPointF& position) {
     const double x = intensityAt(position.x());
     const int index = pointAt(position), here = featureAt(tf().features, x);
-    const FeatureId feature = here < 0 ? 0 : tf().features[static_cast<std::size_t>(here)].id;
     if (!m_readOnly && index >= 0) {
         if (!m_points.contains(index)) selectPoint(index);
         const bool one = m_points.size() == 1;
         menu.addAction(tr("Colour…"), this, &TfCanvas::chooseColor);
         QAction* fixed = menu.addAction(tr("Fixed (refinement leaves it alone)"), this, &TfCanvas::toggleFixed);
         fixed->setCheckable(true);
-        const auto& indices = m_points.indices();
-        fixed->setChecked(std::all_of(indices.begin(), indices.end(),
-                                      [&](int i) { return tf().points[static_cast<std::size_t>(i)].fixed; }));
+        fixed->setChecked(areFixed());
         menu.addSeparator();
         menu.addAction(one ? tr("Remove point") : tr("Remove %1 points").arg(m_points.size()), this,
                        &TfCanvas::removeSelected);
     } else if (!m_readOnly && zoneAt(position) == Zone::Plot) {
         const double opacity = opacityAt(position.y());
         menu.addAction(tr("Add point here"), this, [this, x, opacity] { addPoint(x, opacity); });
-        menu.addAction(tr("Select all points"), QKeySequence(QKeySequence::SelectAll), this, [this] {
-            std::vector<int> all(tf().points.size());
-            for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-            selectPoints(PointSelection(std::move(all)));
-        });
+        menu.addAction(tr("Select all points"), QKeySequence(QKeySequence::SelectAll), this, [this] { selectAll(-1); });
     }
     m_selection.setHoveredIntensity(x);
-    if (index < 0) Q_EMIT menuOpening(menu, x, feature);
+    if (index < 0) Q_EMIT menuOpening(menu, x, here < 0 ? 0 : feature(here).id);
     menu.addSeparator();
     if (here >= 0) {
-        const Feature& f = tf().features[static_cast<std::size_t>(here)];
-        const double beside = (f.b - f.a) / 4;
-        menu.addAction(tr("Zoom to %1").arg(QString::fromStdString(f.name)), this,
-                       [this, lo = f.a - beside, hi = f.b + beside] { m_axis.setVisible(lo, hi); });
+        const Feature& f = feature(here);
+        menu.addAction(tr("Zoom to %1").arg(QString::fromStdString(f.name)), this, [this, f] { zoomTo(f); });
     }
     QAction* whole = menu.addAction(tr("Show all values"), &m_axis, &IntensityAxis::reset);
     whole->setEnabled(!m_axis.isWhole());
@@ -550,24 +534,17 @@ void TfCanvas::fillMenu(QMenu& menu, const QPointF& position) {
 
 void TfCanvas::nudge(double dx, double dHeight) {
     if (m_readOnly || m_points.isEmpty()) return;
-    const auto raised = [&](double before) {
-        return dHeight == 0 ? before : m_opacityAxis.opacity(m_opacityAxis.height(before) + dHeight);
-    };
     QString key = QStringLiteral("nudge");
     for (const int index : m_points.indices()) key += QStringLiteral("-%1").arg(index);
-    editTf(m_store, withPointsMoved(tf(), m_points, dx, raised),
+    editTf(m_store, withPointsMoved(tf(), m_points, dx, raisedBy(dHeight)),
            m_points.size() == 1 ? tr("Move point") : tr("Move points"), key);
 }
 
 void TfCanvas::keyPressEvent(QKeyEvent* event) {
     const double step = event->modifiers().testFlag(Qt::ShiftModifier) ? 1.0 / 1024 : 1.0 / 128;
-    const double along = step * (m_axis.hi() - m_axis.lo());
+    const double along = step * m_axis.width();
     const int count = static_cast<int>(tf().points.size()), current = m_points.current();
-    if (event->matches(QKeySequence::SelectAll)) {
-        std::vector<int> all(tf().points.size());
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-        return selectPoints(PointSelection(std::move(all), current));
-    }
+    if (event->matches(QKeySequence::SelectAll)) return selectAll(current);
     switch (event->key()) {
     case Qt::Key_Delete:
     case Qt::Key_Backspace:
@@ -591,26 +568,17 @@ void TfCanvas::keyPressEvent(QKeyEvent* event) {
         return selectPoint(count == 0 ? -1 : (std::max(current, 0) + count - 1) % count);
     case Qt::Key_Plus:
     case Qt::Key_Equal:
-    case Qt::Key_Minus: {
-        const double middle = (m_axis.lo() + m_axis.hi()) / 2;
-        m_axis.zoomAbout(current >= 0
-                             ? std::clamp(tf().points[static_cast<std::size_t>(current)].x, m_axis.lo(), m_axis.hi())
-                             : middle,
-                         event->key() == Qt::Key_Minus ? 1 / kWheelStep : kWheelStep);
-        return;
-    }
+    case Qt::Key_Minus:
+        return m_axis.zoomAbout(current >= 0 ? std::clamp(point(current).x, m_axis.lo(), m_axis.hi()) : m_axis.middle(),
+                                event->key() == Qt::Key_Minus ? 1 / kWheelStep : kWheelStep);
     case Qt::Key_Home:
         return m_axis.reset();
-    case Qt::Key_Escape:
-        if (m_drag && m_drag->edits()) {
-            m_drag.reset();
-            m_store.cancel();
-        } else {
-            m_drag.reset();
-            selectPoints({});
-        }
-        update();
-        return;
+    case Qt::Key_Escape: {
+        const bool edits = m_drag && m_drag->edits();
+        m_drag.reset();
+        edits ? m_store.cancel() : selectPoints({});
+        return update();
+    }
     default:
         QWidget::keyPressEvent(event);
     }
@@ -651,10 +619,10 @@ QString TfCanvas::readout() const {
         parts << (count == 1 ? tr("1 voxel (%1 %)").arg(percent)
                              : tr("%1 voxels (%2 %)").arg(QLocale().toString(static_cast<qlonglong>(count)), percent));
     }
-    if (const int feature = featureAt(tf().features, *x); feature >= 0) {
-        const Feature& f = tf().features[static_cast<std::size_t>(feature)];
+    if (const int here = featureAt(tf().features, *x); here >= 0) {
+        const Feature& f = feature(here);
         const QString name = QString::fromStdString(f.name);
-        const bool empty = scene.isEmpty(static_cast<std::size_t>(feature));
+        const bool empty = scene.isEmpty(static_cast<std::size_t>(here));
         parts << (f.hidden ? tr("%1 (hidden)").arg(name) : empty ? tr("%1 (empty)").arg(name) : name);
     }
     return parts.join(QStringLiteral("  ·  "));
@@ -662,13 +630,13 @@ QString TfCanvas::readout() const {
 
 QString TfCanvas::toolTipAt(const QPointF& position) const {
     if (const int index = pointAt(position); index >= 0) {
-        const ControlPoint& p = tf().points[static_cast<std::size_t>(index)];
+        const ControlPoint& p = point(index);
         return tr("value %1, opacity %2%3\nopacity of a path one voxel long (d0)\n"
                   "Shift: along one axis; Ctrl: a tenth as fast; Ctrl+click: select several")
             .arg(valueText(p.x), QString::number(p.opacity, 'g', 4), p.fixed ? tr(", fixed") : QString());
     }
     if (const std::optional<BarHit> bar = barAt(position)) {
-        const Feature& f = tf().features[static_cast<std::size_t>(bar->feature)];
+        const Feature& f = feature(bar->feature);
         return tr("feature %1: values %2 to %3\nDrag the middle to move it, an end to widen it; double-click to zoom")
             .arg(QString::fromStdString(f.name), valueText(f.a), valueText(f.b));
     }
@@ -695,10 +663,8 @@ QString TfCanvas::toolTipAt(const QPointF& position) const {
 }
 
 bool TfCanvas::event(QEvent* event) {
-    if (event->type() != QEvent::ToolTip || !m_store.hasVolume()) return QWidget::event(event);
-    const auto* help = static_cast<QHelpEvent*>(event);
-    QToolTip::showText(help->globalPos(), m_drag ? QString() : toolTipAt(help->pos()), this);
-    return true;
+    const auto tip = [this](const QPoint& position) { return m_drag ? QString() : toolTipAt(position); };
+    return (m_store.hasVolume() && showsTip(*event, *this, tip)) || QWidget::event(event);
 }
 
 } // namespace pellucid::gui

@@ -1,7 +1,7 @@
 // The curve of the transfer function over the histogram, edited with the mouse.
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,25 +22,19 @@ class QMenu;
 
 namespace pellucid::gui {
 
-/// Where things of the plane (intensity, opacity) are drawn, widget pixels.
-class CanvasGeometry {
-public:
-    virtual ~CanvasGeometry() = default;
-    virtual QRectF plot() const = 0;
-    virtual QPointF positionOf(double x, double opacity) const = 0;
-    /// The curve of a transfer function: what is straight in opacity is bent where the axis is.
-    virtual QPainterPath curveOf(const TransferFunction& tf) const = 0;
-};
+namespace layout { // pixels
+// Around the plot. Above it: the line of words, the features' bars. Below it: colours, labels, what part is seen.
+inline constexpr double kLeft = 46, kRight = 14, kTop = 34, kBottom = 33;
+inline constexpr double kGradientAxis = 56; ///< right of the plot, in place of kRight
+inline constexpr double kTopLine = 15;      ///< height of the line of words
+inline constexpr double kBar = 14;          ///< of the features' bars
+inline constexpr double kStrip = 7;         ///< of the strip of colours
+inline constexpr double kOverview = 4;      ///< of the bar that shows which part is seen
 
-/// Something drawn behind the curve and over the histogram, by whoever knows of it. The painter is clipped to the plot.
-class CanvasLayer {
-public:
-    virtual ~CanvasLayer() = default;
-    virtual void paint(QPainter& painter, const CanvasGeometry& where) = 0;
-};
+} // namespace layout
 
 /// Every finished drag is one undo step; while the mouse is down the store previews.
-class TfCanvas : public QWidget, public CanvasGeometry {
+class TfCanvas : public QWidget {
     Q_OBJECT
 public:
     TfCanvas(SessionStore& store, Results& results, Selection& selection, QWidget* parent = nullptr);
@@ -51,7 +45,6 @@ public:
     void setJointHistogramShown(bool on);
     /// See OpacityAxis; on at first.
     void setFineOpacityAxis(bool on);
-    bool isFineOpacityAxis() const { return m_opacityAxis.isFine(); }
     void setReadOnly(bool on);
     /// What values are in, such as "HU"; empty: not known.
     void setUnit(const QString& unit);
@@ -65,12 +58,13 @@ public:
     void toggleFixed();
     void chooseColor();
 
-    QPointF positionOf(double x, double opacity) const override;
-    QRectF plot() const override;
-    QPainterPath curveOf(const TransferFunction& tf) const override;
+    // Where things of the plane (intensity, opacity) are drawn, widget pixels.
+    QPointF positionOf(double x, double opacity) const;
+    QRectF plot() const;
     IntensityAxis& axis() { return m_axis; }
-    /// In the order of adding; who adds calls update() when it looks different.
-    void addLayer(std::unique_ptr<CanvasLayer> layer) { m_layers.push_back(std::move(layer)); }
+    /// A curve behind the curve, null: none; asked whenever the canvas is painted. Who sets it calls update() when it
+    /// is another one.
+    void setGhost(std::function<const TransferFunction*()> ghost) { m_ghost = std::move(ghost); }
     QRectF barOf(const Feature& feature) const; ///< above the plot, as far as it is seen; empty: not at all
 
     /// What is at the hovered intensity: value, opacity, voxels, feature. Empty where nothing is hovered.
@@ -107,6 +101,7 @@ private:
     struct BarHit {
         int feature = 0;
         Part part = Part::Middle;
+        bool operator==(const BarHit&) const = default;
     };
     struct Drag {
         enum class Kind { Points, Band, Pan, Overview, Feature };
@@ -135,6 +130,16 @@ private:
     SeenBins seenHistogram() const;
     void follow(const Scene& before, const Scene& after);
     const TransferFunction& tf() const { return m_store.scene().tf; }
+    const ControlPoint& point(int index) const { return tf().points[static_cast<std::size_t>(index)]; }
+    const Feature& feature(int index) const { return tf().features[static_cast<std::size_t>(index)]; }
+    QPointF positionOf(int index) const; ///< of a point
+    bool areFixed() const;               ///< all selected points
+    void selectAll(int current);
+    void zoomTo(const Feature& feature);
+    /// Opacities higher by a part of the plot's height.
+    std::function<double(double)> raisedBy(double height) const;
+    /// The curve of a transfer function: what is straight in opacity is bent where the axis is.
+    QPainterPath curveOf(const TransferFunction& tf) const;
     void nudge(double dx, double dHeight);
     void hover(const QPointF& position);
     void dragPoints(const QPointF& to, bool alongAxis);
@@ -150,6 +155,7 @@ private:
     void paintAxes(QPainter& painter, const Ink& ink) const;
     void paintOverview(QPainter& painter, const Ink& ink) const;
     void paintFeatures(QPainter& painter, const Ink& ink) const;
+    void paintGhost(QPainter& painter, const Ink& ink) const;
     void paintCurve(QPainter& painter, const Ink& ink) const;
     void paintHair(QPainter& painter, const Ink& ink) const;
     void paintPoints(QPainter& painter, const Ink& ink) const;
@@ -161,7 +167,7 @@ private:
     IntensityAxis m_axis;
     OpacityAxis m_opacityAxis;
     mutable VolumeCounts m_counts; // counts when asked
-    std::vector<std::unique_ptr<CanvasLayer>> m_layers;
+    std::function<const TransferFunction*()> m_ghost;
     HistogramScale m_scale = HistogramScale::Log;
     bool m_showJoint = false, m_readOnly = false, m_menuOpen = false;
     QString m_unit;

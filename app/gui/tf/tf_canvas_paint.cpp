@@ -7,7 +7,6 @@
 #include <QPainter>
 
 #include "tf/tf_canvas.h"
-#include "tf/tf_canvas_layout.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -43,7 +42,7 @@ QLinearGradient colorsAlong(const TransferFunction& tf, const IntensityAxis& axi
     gradient.setColorAt(1, translucent(colorFromRgb(tf.color(axis.hi())), alpha));
     double last = 0;
     for (const ControlPoint& p : tf.points) {
-        double at = (p.x - axis.lo()) / (axis.hi() - axis.lo());
+        double at = (p.x - axis.lo()) / axis.width();
         if (at <= 0 || at >= 1) continue;
         at = std::max(at, last + 1e-6); // two points at one x are two colours
         if (at < 1) gradient.setColorAt(at, translucent(colorFromRgb(p.color), alpha));
@@ -86,11 +85,7 @@ void TfCanvas::paintEvent(QPaintEvent*) {
     paintAxes(painter, ink);
     paintFeatures(painter, ink);
     clipped([&] {
-        for (const auto& layer : m_layers) {
-            painter.save();
-            layer->paint(painter, *this);
-            painter.restore();
-        }
+        paintGhost(painter, ink);
         paintCurve(painter, ink);
     });
     paintHair(painter, ink);
@@ -133,8 +128,7 @@ void TfCanvas::paintJointHistogram(QPainter& painter, const Ink& ink) {
     }
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
     const double n = joint->bins;
-    painter.drawImage(r, m_jointImage,
-                      QRectF(m_axis.lo() * n, 0, (m_axis.hi() - m_axis.lo()) * n, joint->gradientBins));
+    painter.drawImage(r, m_jointImage, QRectF(m_axis.lo() * n, 0, m_axis.width() * n, joint->gradientBins));
     paintGradientAxis(painter, ink);
 }
 
@@ -252,7 +246,7 @@ void TfCanvas::paintOverview(QPainter& painter, const Ink& ink) const {
     painter.setBrush(ink.line);
     painter.drawRoundedRect(track, 2, 2);
     const double left = track.left() + m_axis.lo() * track.width();
-    const double width = std::max(6.0, (m_axis.hi() - m_axis.lo()) * track.width());
+    const double width = std::max(6.0, m_axis.width() * track.width());
     painter.setBrush(ink.accent);
     painter.drawRoundedRect(QRectF(std::min(left, track.right() - width), track.top(), width, track.height()), 2, 2);
 }
@@ -269,9 +263,8 @@ void TfCanvas::paintFeatures(QPainter& painter, const Ink& ink) const {
         const QColor color = colorFromRgb(f.color);
         const bool selected = f.id != 0 && f.id == m_selection.feature();
         const bool hovered = m_hoveredBar && m_hoveredBar->feature == static_cast<int>(i);
-        painter.fillRect(QRectF(bar.left(), r.top(), bar.width(), r.height()), translucent(color, f.hidden   ? 0.02
-                                                                                                  : selected ? 0.15
-                                                                                                             : 0.07));
+        const double strength = f.hidden ? 0.02 : selected ? 0.15 : 0.07;
+        painter.fillRect(QRectF(bar.left(), r.top(), bar.width(), r.height()), translucent(color, strength));
         painter.setPen(selected  ? QPen(ink.text, 1.8)
                        : hovered ? QPen(ink.text, 1)
                                  : (f.hidden ? QPen(color, 1, Qt::DashLine) : QPen(theme::kLine, 1)));
@@ -289,6 +282,14 @@ void TfCanvas::paintFeatures(QPainter& painter, const Ink& ink) const {
     painter.setFont(ink.small);
 }
 
+void TfCanvas::paintGhost(QPainter& painter, const Ink& ink) const {
+    const TransferFunction* const ghost = m_ghost ? m_ghost() : nullptr;
+    if (ghost == nullptr) return;
+    QPen pen(ink.faint, 1.2);
+    pen.setDashPattern({4, 3});
+    painter.strokePath(curveOf(*ghost), pen);
+}
+
 void TfCanvas::paintCurve(QPainter& painter, const Ink& ink) const {
     const QRectF r = plot();
     const QPainterPath line = curveOf(tf());
@@ -304,7 +305,7 @@ void TfCanvas::paintCurve(QPainter& painter, const Ink& ink) const {
 
 void TfCanvas::paintHair(QPainter& painter, const Ink& ink) const {
     const std::optional<double> x = m_selection.hoveredIntensity();
-    if (!x || *x < m_axis.lo() || *x > m_axis.hi()) return;
+    if (!x || !m_axis.contains(*x)) return;
     const QRectF r = plot();
     const QPointF at = positionOf(*x, tf().opacity(*x));
     painter.setPen(QPen(translucent(ink.text, 0.5), 1));
@@ -315,20 +316,16 @@ void TfCanvas::paintHair(QPainter& painter, const Ink& ink) const {
 }
 
 void TfCanvas::paintPoints(QPainter& painter, const Ink& ink) const {
-    const auto& points = tf().points;
     const auto paintOne = [&](int i) {
-        const ControlPoint& p = points[static_cast<std::size_t>(i)];
-        if (p.x < m_axis.lo() || p.x > m_axis.hi()) return;
-        const QPointF c = positionOf(p.x, p.opacity);
+        const ControlPoint& p = point(i);
+        if (!m_axis.contains(p.x)) return;
+        const QPointF c = positionOf(i);
         const bool selected = m_points.contains(i), current = i == m_points.current(), hovered = i == m_hovered;
         const double radius = kRadius + (current || hovered ? 1.5 : 0.0);
         const auto shape = [&](double grown) { // squares stay put in refinement
             const double half = radius + grown - (p.fixed ? 1 : 0);
-            if (p.fixed) {
-                painter.drawRect(QRectF(c.x() - half, c.y() - half, 2 * half, 2 * half));
-            } else {
-                painter.drawEllipse(c, half, half);
-            }
+            const QRectF box(c.x() - half, c.y() - half, 2 * half, 2 * half);
+            p.fixed ? painter.drawRect(box) : painter.drawEllipse(box);
         };
         if (selected || hovered) {
             painter.setPen(Qt::NoPen);
@@ -349,7 +346,7 @@ void TfCanvas::paintPoints(QPainter& painter, const Ink& ink) const {
         }
     };
     // What is selected lies on top, the current one on all.
-    const int count = static_cast<int>(points.size());
+    const int count = static_cast<int>(tf().points.size());
     for (int i = 0; i < count; ++i)
         if (!m_points.contains(i)) paintOne(i);
     for (const int i : m_points.indices())

@@ -39,7 +39,7 @@ private:
     QToolButton* m_color;
     QCheckBox* m_fixed; ///< partly checked: some of them are
     QToolButton* m_remove;
-    bool m_readOnly = false, m_showing = false;
+    bool m_readOnly = false;
     const QDoubleSpinBox* m_typed = nullptr; ///< typed into, not yet taken
     int m_editSession = 0;                   ///< so that the steps of one stay at a point become one undo step
 };

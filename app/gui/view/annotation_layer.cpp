@@ -9,7 +9,7 @@
 namespace pellucid::gui {
 
 void AnnotationLayer::paint(QPainter& painter, const OverlayView& view) {
-    const FrameOfReference& show = *view.scene.session.reference;
+    const AnnotationChoice& show = *view.scene.session.reference;
     const QSize size = view.size.toSize();
     if (size.isEmpty()) return;
     AnnotationInput input;

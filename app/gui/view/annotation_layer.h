@@ -1,4 +1,4 @@
-// The frame of reference over the picture in the window.
+// Annotations over the picture in the window.
 #pragma once
 
 #include "view/view_overlay.h"
@@ -7,7 +7,7 @@ namespace pellucid::gui {
 
 class FieldController;
 
-/// Draws what the session's FrameOfReference switches on, and title and legend of a field; takes no clicks.
+/// Draws what the session's AnnotationChoice switches on, and title and legend of a field; takes no clicks.
 class AnnotationLayer : public OverlayLayer {
 public:
     /// `fields` outlives this; null: the view shows the data.

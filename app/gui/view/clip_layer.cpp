@@ -1,7 +1,6 @@
 #include "view/clip_layer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <QPainter>
@@ -20,11 +19,6 @@ constexpr double kOnLine = 5;     // from a plane's outline
 constexpr double kRadius = 5.5;   // of a handle
 constexpr double kTipLength = 64; // from a plane's handle to the one that turns it
 const QColor kPlane{0xff, 0xb0, 0x3a};
-
-PictureView pictureOf(const OverlayView& view) {
-    return {view.scene.camera, std::max(1, static_cast<int>(view.size.width())),
-            std::max(1, static_cast<int>(view.size.height()))};
-}
 
 std::optional<QPointF> pointOf(const PictureView& picture, const Vec3& world) {
     const auto pixel = pixelOf(picture, world);
@@ -92,7 +86,7 @@ void ClipLayer::setShown(bool shown) {
 }
 
 std::vector<ClipLayer::Placed> ClipLayer::handles(const OverlayView& view) const {
-    const PictureView picture = pictureOf(view);
+    const PictureView picture = view.picture();
     const Geometry& geometry = view.scene.volume->geometry();
     const Clipping& clipping = *view.scene.session.clipping;
     std::vector<Placed> placed;
@@ -117,7 +111,7 @@ ClipLayer::Handle ClipLayer::handleAt(const QPointF& point, const OverlayView& v
     for (auto h = placed.rbegin(); h != placed.rend(); ++h)
         if (std::hypot(h->at.x() - point.x(), h->at.y() - point.y()) <= kReach) return h->handle;
     // A plane that is looked at from its front has its handles behind each other: its outline moves it too.
-    const PictureView picture = pictureOf(view);
+    const PictureView picture = view.picture();
     const std::vector<ClipPlane>& planes = view.scene.session.clipping->planes;
     for (std::size_t i = 0; i < planes.size(); ++i) {
         const QPolygonF outline = outlineOf(picture, planeInBox(planes[i], view.scene.volume->geometry()));
@@ -149,27 +143,24 @@ void ClipLayer::paint(QPainter& painter, const OverlayView& view) {
         corners.push_back(cornerOfPart(clipping, geometry, n));
     painter.setPen(Qt::NoPen);
     painter.setBrush(QColor(theme::kMarkAccent.red(), theme::kMarkAccent.green(), theme::kMarkAccent.blue(), 50));
-    painter.drawPolygon(outlineOf(pictureOf(view), corners));
+    painter.drawPolygon(outlineOf(view.picture(), corners));
 }
 
 void ClipLayer::paintBox(QPainter& painter, const OverlayView& view) const {
-    const PictureView picture = pictureOf(view);
+    const PictureView picture = view.picture();
     const Geometry& geometry = view.scene.volume->geometry();
     const Clipping& part = *view.scene.session.clipping;
-    std::array<std::array<bool, 2>, 3> seen{};
+    bool seen[3][2];
     for (int axis = 0; axis < 3; ++axis)
         for (const int upper : {0, 1})
-            seen[static_cast<std::size_t>(axis)][static_cast<std::size_t>(upper)] =
-                facesViewer(view.scene.camera, geometry, part, axis, upper == 1);
+            seen[axis][upper] = facesViewer(view.scene.camera, geometry, part, axis, upper == 1);
     // Hidden edges first, so that the others lie over them.
     for (const bool hidden : {true, false})
         for (int axis = 0; axis < 3; ++axis)
             for (int n = 0; n < 8; ++n) {
                 if ((n >> axis & 1) != 0) continue;
                 bool onSeenFace = false;
-                for (int other = 0; other < 3; ++other)
-                    if (other != axis)
-                        onSeenFace |= seen[static_cast<std::size_t>(other)][static_cast<std::size_t>(n >> other & 1)];
+                for (int other = 0; other < 3; ++other) onSeenFace |= other != axis && seen[other][n >> other & 1];
                 if (onSeenFace == hidden) continue;
                 const auto a = pointOf(picture, cornerOfPart(part, geometry, n));
                 const auto b = pointOf(picture, cornerOfPart(part, geometry, n | 1 << axis));
@@ -178,7 +169,7 @@ void ClipLayer::paintBox(QPainter& painter, const OverlayView& view) const {
 }
 
 void ClipLayer::paintPlanes(QPainter& painter, const OverlayView& view) const {
-    const PictureView picture = pictureOf(view);
+    const PictureView picture = view.picture();
     const Geometry& geometry = view.scene.volume->geometry();
     for (const ClipPlane& plane : view.scene.session.clipping->planes) {
         const QPolygonF outline = outlineOf(picture, planeInBox(plane, geometry));
@@ -213,7 +204,7 @@ bool ClipLayer::press(const QPointF& point, Qt::KeyboardModifiers, const Overlay
 }
 
 Clipping ClipLayer::dragged(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) const {
-    const PictureView picture = pictureOf(view);
+    const PictureView picture = view.picture();
     const Geometry& geometry = view.scene.volume->geometry();
     const PixelPoint from{m_from.x(), m_from.y()}, to{point.x(), point.y()};
     if (m_held.kind == Kind::Face) {
@@ -244,15 +235,9 @@ void ClipLayer::drag(const QPointF& point, Qt::KeyboardModifiers keys, const Ove
         text, [clipping = dragged(point, keys, view)](Session& session) { session.clipping.set(clipping); });
 }
 
-void ClipLayer::release() {
+void ClipLayer::end(bool kept) {
     m_held = {};
-    m_services.store().commit();
-    m_overlay.update();
-}
-
-void ClipLayer::cancel() {
-    m_held = {};
-    m_services.store().cancel();
+    kept ? m_services.store().commit() : m_services.store().cancel();
     m_overlay.update();
 }
 

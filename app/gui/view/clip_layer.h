@@ -1,7 +1,6 @@
 // Handles of what is cut away, over the picture.
 #pragma once
 
-#include "render/clip_handles.h"
 #include "view/view_overlay.h"
 
 class QAction;
@@ -16,15 +15,13 @@ class ClipLayer : public OverlayLayer {
 public:
     ClipLayer(Services& services, QWidget& overlay) : m_services(services), m_overlay(overlay) {}
 
-    bool isShown() const { return m_shown; }
     void setShown(bool shown);
 
     void paint(QPainter& painter, const OverlayView& view) override;
     Qt::CursorShape cursorAt(const QPointF& point, const OverlayView& view) override;
     bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
     void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
-    void release() override;
-    void cancel() override;
+    void end(bool kept) override;
 
 private:
     enum class Kind { None, Face, Plane, Tip };

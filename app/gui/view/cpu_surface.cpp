@@ -1,7 +1,6 @@
 #include "view/cpu_surface.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <vector>
@@ -9,15 +8,16 @@
 #include <QCursor>
 #include <QPainter>
 
+#include "base/stopwatch.h"
 #include "render/image_renderer.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {
 
-constexpr double kFrameSeconds = 0.045; ///< that a picture may take while the scene changes
-constexpr int kRest = 120;              ///< milliseconds without a change, before the full picture is begun
-constexpr int kGrowEvery = 40;          ///< milliseconds between looks at what has grown
+constexpr double kPictureSeconds = 0.045; ///< that a picture may take while the scene changes
+constexpr int kRest = 120;                ///< milliseconds without a change, before the full picture is begun
+constexpr int kGrowEvery = 40;            ///< milliseconds between looks at what has grown
 /// Of the picture before the last. Rays one pixel apart, samples one voxel apart: what lies between two samples counts
 /// in full, by running integrals.
 constexpr double kFullStep = 1, kCoarsestStep = 3;
@@ -54,10 +54,7 @@ CpuSurface::CpuSurface(QWidget* parent)
       m_job([shared = m_renderer](const Task& task, const JobControl& job) { return drawn(*shared, task, job); },
             [this](const Task& task, Picture& picture) { show(task, picture); }) {
     setObjectName("cpuSurface");
-    m_idle.setSingleShot(true);
-    m_idle.setInterval(kRest);
     m_grow.setInterval(kGrowEvery);
-    connect(&m_idle, &QTimer::timeout, this, [this] { draw(m_next); });
     connect(&m_grow, &QTimer::timeout, this, &CpuSurface::takeGrown);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
         m_grow.stop();
@@ -75,7 +72,7 @@ CpuSurface::Picture CpuSurface::drawn(Shared& shared, const Task& task, const Jo
         shared.volume = task.input.volume;
     }
     const PictureInput& in = task.input;
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     Picture picture;
     if (task.growing) {
         Image image(in.settings.width, in.settings.height);
@@ -88,22 +85,21 @@ CpuSurface::Picture CpuSurface::drawn(Shared& shared, const Task& task, const Jo
             },
             job);
     } else {
-        const Image image = shared.renderer->preview(in.camera, in.tf, in.settings, task.plan.scale, job);
+        const Image image = shared.renderer->preview(in.camera, in.tf, in.settings, task.plan.resolutionScale, job);
         picture.image = QImage(image.width, image.height, QImage::Format_RGB32);
         convert(image, {0, 0, image.width, image.height}, picture.image);
     }
-    picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    picture.seconds = watch.seconds();
     return picture;
 }
 
 /// Half the resolution before longer steps, and less than that where nothing else helps. `samples`: of those of a full
 /// picture.
-CpuSurface::Plan CpuSurface::planFor(double samples) {
-    Plan plan{std::clamp(std::sqrt(samples), kCoarsest, 1.0), kFullStep, {}};
-    plan.stepInD0 = std::clamp(kFullStep * plan.scale * plan.scale / samples, kFullStep, kCoarsestStep);
-    if (plan.stepInD0 == kCoarsestStep)
-        plan.scale = std::clamp(std::sqrt(samples * kCoarsestStep / kFullStep), kLastResort, plan.scale);
-    return plan;
+PicturePlan CpuSurface::planFor(double samples) {
+    double scale = std::clamp(std::sqrt(samples), kCoarsest, 1.0);
+    const double step = std::clamp(kFullStep * scale * scale / samples, kFullStep, kCoarsestStep);
+    if (step == kCoarsestStep) scale = std::clamp(std::sqrt(samples * kCoarsestStep / kFullStep), kLastResort, scale);
+    return {scale, step};
 }
 
 void CpuSurface::setScene(const PictureInput& scene) {
@@ -125,7 +121,7 @@ void CpuSurface::setScene(const PictureInput& scene) {
 void CpuSurface::resizeEvent(QResizeEvent*) { restart(); }
 
 void CpuSurface::restart() {
-    m_frame.complete = false;
+    m_info.complete = false;
     m_idle.stop();
     m_grow.stop();
     // A quick picture under way is let finish, else a steady drag would never show any.
@@ -145,21 +141,16 @@ void CpuSurface::draw(Stage stage) {
         update();
         return;
     }
-    const qreal ratio = devicePixelRatioF();
-    const QSize pixels(static_cast<int>(std::lround(width() * ratio)), static_cast<int>(std::lround(height() * ratio)));
+    const QSize pixels = devicePixels(*this);
     const QPointF mouse = mapFromGlobal(QPointF(QCursor::pos()));
     const QPointF focus = QRectF(rect()).contains(mouse) ? mouse : QRectF(rect()).center();
     const RenderSettings& wanted = m_scene.settings;
-    const Plan plan = stage == Stage::Quick  ? planFor(m_samples)
-                      : stage == Stage::Full ? Plan{1, kFullStep, {}}
-                                             : Plan{1, wanted.stepInD0, wanted.finestInD0};
-    Task task{m_scene, pixels, stage, plan, (focus * ratio).toPoint(), {}};
-    RenderSettings& settings = task.input.settings;
-    settings.width = std::max(1, pixels.width());
-    settings.height = std::max(1, pixels.height());
-    settings.stepInD0 = task.plan.stepInD0;
-    settings.finestInD0 = task.plan.finestInD0;
-    if (!settings.background) settings.background = Rgb{};
+    const PicturePlan plan = stage == Stage::Quick  ? planFor(m_samples)
+                             : stage == Stage::Full ? PicturePlan{1, kFullStep}
+                                                    : PicturePlan{1, wanted.stepInD0, wanted.finestInD0};
+    Task task{m_scene, pixels, stage, plan, (focus * devicePixelRatioF()).toPoint(), {}};
+    task.input.settings = plan.applied(wanted, pixels);
+    if (!wanted.background) task.input.settings.background = Rgb{};
     if (stage != Stage::Quick) {
         // It grows over the one before.
         QImage under(pixels, QImage::Format_RGB32);
@@ -194,13 +185,13 @@ void CpuSurface::takeGrown() {
 }
 
 void CpuSurface::show(const Task& task, const Picture& picture) {
-    m_frame = {task.pixels.width(),
-               task.pixels.height(),
-               task.plan.scale,
-               task.input.settings.smallestStep(),
-               task.stage == Stage::Finished && !m_again,
-               task.input.volume.get()};
-    const bool full = task.stage == Stage::Full || (task.plan.scale == 1 && task.plan.stepInD0 == kFullStep);
+    m_info = {task.pixels.width(),
+              task.pixels.height(),
+              task.plan.resolutionScale,
+              task.input.settings.smallestStep(),
+              task.stage == Stage::Finished && !m_again,
+              task.input.volume.get()};
+    const bool full = task.stage == Stage::Full || (task.plan.resolutionScale == 1 && task.plan.stepInD0 == kFullStep);
     m_next = full ? Stage::Finished : Stage::Full;
     if (task.growing) {
         takeGrown();
@@ -209,16 +200,16 @@ void CpuSurface::show(const Task& task, const Picture& picture) {
         if (task.stage == Stage::Full) draw(Stage::Finished);
     } else {
         m_picture = picture.image;
-        m_target = QSizeF(picture.image.size()) / task.plan.scale;
-        const double drawn = task.plan.scale * task.plan.scale * kFullStep / task.plan.stepInD0;
-        m_samples = std::clamp(drawn * kFrameSeconds / std::max(1e-4, picture.seconds), 0.01, 1.0);
+        m_target = QSizeF(picture.image.size()) / task.plan.resolutionScale;
+        const double drawn = task.plan.resolutionScale * task.plan.resolutionScale * kFullStep / task.plan.stepInD0;
+        m_samples = std::clamp(drawn * kPictureSeconds / std::max(1e-4, picture.seconds), 0.01, 1.0);
         if (m_again)
             draw(Stage::Quick);
         else
             m_idle.start();
     }
     update();
-    if (onFrame) onFrame();
+    if (onPicture) onPicture();
 }
 
 void CpuSurface::paintEvent(QPaintEvent*) {

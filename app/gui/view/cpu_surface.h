@@ -2,20 +2,18 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include <QImage>
-#include <QTimer>
-#include <QWidget>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "view/view_surface.h"
 
 namespace pellucid::gui {
 
-/// While the scene changes: as fine as a frame's time allows, by what the last frame took. At rest the full picture
-/// grows from where the mouse points, and then over it the one that would be saved. Nothing is computed while nothing
-/// changes.
+/// While the scene changes, pictures are as fine as there is time for, judged by how long the last one took. At rest
+/// the full picture grows from where the mouse points, and then over it the one that would be saved. Nothing is
+/// computed while nothing changes.
 class CpuSurface : public QWidget, public ViewSurface {
     Q_OBJECT
 public:
@@ -24,7 +22,7 @@ public:
 
     QWidget* widget() override { return this; }
     void setScene(const PictureInput& scene) override;
-    const FrameInfo& frame() const override { return m_frame; }
+    const PictureInfo& picture() const override { return m_info; }
     QString rendererName() const override { return tr("CPU"); }
 
 protected:
@@ -35,17 +33,11 @@ private:
     struct Shared; // with threads that have been cancelled but have not noticed yet
     struct Growing;
     enum class Stage { Quick, Full, Finished };
-    /// How finely a picture is drawn.
-    struct Plan {
-        double scale = 1;    ///< rays per pixel along each axis
-        double stepInD0 = 1; ///< between samples of a ray
-        std::optional<double> finestInD0;
-    };
     struct Task {
         PictureInput input;
         QSize pixels; ///< of the widget
         Stage stage;
-        Plan plan;
+        PicturePlan plan;
         QPoint focus;                     ///< pixel from which a picture grows
         std::shared_ptr<Growing> growing; ///< where it does; null: a quick picture
     };
@@ -54,7 +46,7 @@ private:
         double seconds = 0;
     };
     static Picture drawn(Shared& shared, const Task& task, const JobControl& job);
-    static Plan planFor(double samples);
+    static PicturePlan planFor(double samples);
     void restart();
     void draw(Stage stage);
     void show(const Task& task, const Picture& picture);
@@ -65,11 +57,12 @@ private:
     std::shared_ptr<Growing> m_growing; ///< the picture under way that grows, null: none
     QImage m_picture;                   ///< shown over m_target, device pixels
     QSizeF m_target;
-    FrameInfo m_frame;
+    PictureInfo m_info;
     double m_samples = 0.25;    ///< that a quick picture can afford, of those of a full one; follows the time it takes
     bool m_again = false;       ///< the scene changed while a coarse picture was being drawn
     Stage m_next = Stage::Full; ///< when the scene rests
-    QTimer m_idle, m_grow;
+    RestTimer m_idle{120, [this] { draw(m_next); }}; ///< milliseconds without a change before the full picture is begun
+    QTimer m_grow;
     Job<Task, Picture> m_job; // last: its threads end before the rest goes
 };
 

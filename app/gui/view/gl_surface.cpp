@@ -57,15 +57,6 @@ GlSurface::Available GlSurface::available(QString* renderer) {
 GlSurface::GlSurface(QWidget* parent) : QOpenGLWidget(parent) {
     setObjectName("glSurface");
     setFormat(wantedFormat());
-    m_idle.setSingleShot(true);
-    m_idle.setInterval(kIdleBeforeRefining);
-    m_next.setSingleShot(true);
-    m_next.setInterval(0);
-    connect(&m_idle, &QTimer::timeout, this, [this] {
-        m_nextRow = 0;
-        refine();
-    });
-    connect(&m_next, &QTimer::timeout, this, &GlSurface::refine);
     m_sinceShown.start();
 }
 
@@ -83,11 +74,15 @@ void GlSurface::releaseGl() {
 void GlSurface::setScene(const PictureInput& scene) {
     if (scene == m_scene) return;
     m_scene = scene;
+    beginAnew();
+    update();
+}
+
+void GlSurface::beginAnew() {
     m_dirty = true;
-    m_frame.complete = false;
+    m_info.complete = false;
     m_idle.stop();
     m_next.stop();
-    update();
 }
 
 void GlSurface::initializeGL() {
@@ -111,58 +106,40 @@ void GlSurface::initializeGL() {
 
 void GlSurface::resizeGL(int, int) {
     m_picture.reset();
-    m_dirty = true;
-    m_frame.complete = false;
-    m_idle.stop();
-    m_next.stop();
+    beginAnew();
 }
 
-QSize GlSurface::pixelSize() const {
-    const qreal ratio = devicePixelRatioF();
-    return {std::max(1, static_cast<int>(std::lround(width() * ratio))),
-            std::max(1, static_cast<int>(std::lround(height() * ratio)))};
-}
-
-double GlSurface::samples(const Plan& plan) const {
-    const QSize size = pixelSize();
+double GlSurface::samples(const PicturePlan& plan) const {
+    const QSize size = devicePixels(*this);
     const BoxInImage box = boxInImage(m_scene.camera, m_scene.volume->geometry(), size.width(), size.height());
     // A box fills about half of the prism that its outline and its depth span.
     return 0.5 * box.width * box.height * plan.resolutionScale * plan.resolutionScale * box.depthInD0 / plan.stepInD0 *
            (plan.finestInD0 ? kHalvedSamples : 1);
 }
 
-GlSurface::Plan GlSurface::fullPlan() const {
-    Plan plan{1.0, 0.5, {}};
+PicturePlan GlSurface::fullPlan() const {
+    PicturePlan plan{1.0, 0.5, {}};
     if (!m_software) return plan;
     // By the number of samples, not by a clock, so that the same scene always ends in the same picture.
     while (plan.stepInD0 < 4.0 && samples(plan) > kSoftwareSamples) plan.stepInD0 *= 2;
     return plan;
 }
 
-GlSurface::Plan GlSurface::finishedPlan() const {
+PicturePlan GlSurface::finishedPlan() const {
     const RenderSettings& s = m_scene.settings;
     return {1.0, s.stepInD0, s.halvings() > 0 ? s.finestInD0 : std::nullopt};
 }
 
-GlSurface::Plan GlSurface::quickPlan() const {
-    const Plan full = fullPlan();
+PicturePlan GlSurface::quickPlan() const {
+    const PicturePlan full = fullPlan();
     if (samples(full) * m_nanosecondsPerSample <= kQuickBudget) return full;
-    Plan plan{1.0, std::max(1.5, full.stepInD0), {}};
+    PicturePlan plan{1.0, std::max(1.5, full.stepInD0), {}};
     const auto scaleFor = [&](double step) {
         return std::sqrt(kQuickBudget / std::max(1.0, samples({1.0, step, {}}) * m_nanosecondsPerSample));
     };
     if (scaleFor(plan.stepInD0) < 0.25) plan.stepInD0 = 3.0;
     plan.resolutionScale = std::clamp(scaleFor(plan.stepInD0), 0.1, 1.0);
     return plan;
-}
-
-RenderSettings GlSurface::settings(const Plan& plan) const {
-    RenderSettings s = m_scene.settings;
-    s.width = pixelSize().width();
-    s.height = pixelSize().height();
-    s.stepInD0 = plan.stepInD0;
-    s.finestInD0 = plan.finestInD0;
-    return s;
 }
 
 void GlSurface::prepareScene() {
@@ -176,11 +153,11 @@ void GlSurface::prepareScene() {
 void GlSurface::paintGL() {
     QOpenGLFunctions* gl = context()->functions();
     if (!m_picture) {
-        m_picture = std::make_unique<QOpenGLFramebufferObject>(pixelSize());
+        m_picture = std::make_unique<QOpenGLFramebufferObject>(devicePixels(*this));
         m_dirty = true;
     }
     if (m_dirty) drawQuick();
-    const QRect all(QPoint(0, 0), pixelSize());
+    const QRect all(QPoint(0, 0), devicePixels(*this));
     gl->glBindFramebuffer(GL_FRAMEBUFFER, defaultFramebufferObject());
     QOpenGLFramebufferObject::blitFramebuffer(nullptr, all, m_picture.get(), all);
 }
@@ -200,7 +177,7 @@ void GlSurface::drawQuick() {
     if (!m_scene.volume || !m_raycaster || m_failed) return;
     try {
         prepareScene();
-        const Plan plan = quickPlan();
+        const PicturePlan plan = quickPlan();
         m_finishing = plan == fullPlan();
         gl->glFinish();
         QElapsedTimer timer;
@@ -212,20 +189,20 @@ void GlSurface::drawQuick() {
             gl::DrawTarget target;
             target.framebuffer = m_picture->handle();
             target.resolutionScale = plan.resolutionScale;
-            m_raycaster->draw(m_scene.camera, settings(plan), target);
+            m_raycaster->draw(m_scene.camera, plan.applied(m_scene.settings, devicePixels(*this)), target);
         }
         gl->glFinish(); // the time of the work, not of its submission
         const double perSample = static_cast<double>(timer.nsecsElapsed()) / std::max(1e4, samples(plan));
         m_nanosecondsPerSample = std::clamp(0.6 * m_nanosecondsPerSample + 0.4 * perSample, 0.01, 2000.0);
-        finishFrame(plan);
-        if (!m_frame.complete) m_idle.start();
+        finishPicture(plan);
+        if (!m_info.complete) m_idle.start();
     } catch (const Error& error) {
         fail(error);
     }
 }
 
-bool GlSurface::drawStrip(const Plan& plan) {
-    const RenderSettings s = settings(plan);
+bool GlSurface::drawStrip(const PicturePlan& plan) {
+    const RenderSettings s = plan.applied(m_scene.settings, devicePixels(*this));
     const BoxInImage box = boxInImage(m_scene.camera, m_scene.volume->geometry(), s.width, s.height);
     // Above and below the box there is nothing but what a coarse picture has smeared: one strip each. Inside, strips of
     // a number of samples, not of a time, since the last bits of a pixel depend on the strip that it lies in.
@@ -248,7 +225,7 @@ bool GlSurface::drawStrip(const Plan& plan) {
 
 void GlSurface::refine() {
     if (m_dirty || m_failed || !m_picture || !m_raycaster || !m_scene.volume) return;
-    const Plan plan = m_finishing ? finishedPlan() : fullPlan();
+    const PicturePlan plan = m_finishing ? finishedPlan() : fullPlan();
     makeCurrent();
     try {
         prepareScene();
@@ -261,44 +238,35 @@ void GlSurface::refine() {
         }
         doneCurrent();
         if (complete) {
-            finishFrame(plan);
+            finishPicture(plan);
             update();
             m_finishing = true;
             m_nextRow = 0;
-            if (!m_frame.complete) m_next.start();
-        } else {
-            if (m_sinceShown.elapsed() > kShowEvery) {
-                m_sinceShown.restart();
-                update();
-            }
-            m_next.start();
+        } else if (m_sinceShown.elapsed() > kShowEvery) {
+            m_sinceShown.restart();
+            update();
         }
+        if (!m_info.complete) m_next.start();
     } catch (const Error& error) {
         doneCurrent();
         fail(error);
     }
 }
 
-void GlSurface::finishFrame(const Plan& plan) {
-    m_frame = {pixelSize().width(),           pixelSize().height(),   plan.resolutionScale,
-               settings(plan).smallestStep(), plan == finishedPlan(), m_scene.volume.get()};
-    // Not from inside paintGL: whoever listens may ask for the picture.
-    QMetaObject::invokeMethod(
-        this,
-        [this] {
-            if (onFrame) onFrame();
-        },
-        Qt::QueuedConnection);
+void GlSurface::finishPicture(const PicturePlan& plan) {
+    m_info = {devicePixels(*this).width(), devicePixels(*this).height(),
+              plan.resolutionScale,        plan.applied(m_scene.settings, devicePixels(*this)).smallestStep(),
+              plan == finishedPlan(),      m_scene.volume.get()};
+    later(this, [this] { // not from inside paintGL: whoever listens may ask for the picture
+        if (onPicture) onPicture();
+    });
 }
 
 void GlSurface::fail(const Error& error) {
     m_failed = true;
-    QMetaObject::invokeMethod(
-        this,
-        [this, error] {
-            if (onFailure) onFailure(error);
-        },
-        Qt::QueuedConnection);
+    later(this, [this, error] {
+        if (onFailure) onFailure(error);
+    });
 }
 
 } // namespace pellucid::gui

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include <QElapsedTimer>
 #include <QOpenGLWidget>
-#include <QTimer>
 
+#include "jobs/rest_timer.h"
 #include "view/view_surface.h"
 
 class QOpenGLFramebufferObject;
@@ -32,7 +31,7 @@ public:
 
     QWidget* widget() override { return this; }
     void setScene(const PictureInput& scene) override;
-    const FrameInfo& frame() const override { return m_frame; }
+    const PictureInfo& picture() const override { return m_info; }
     QString rendererName() const override { return m_rendererName; }
 
 protected:
@@ -41,23 +40,17 @@ protected:
     void paintGL() override;
 
 private:
-    struct Plan {
-        double resolutionScale = 1, stepInD0 = 0.5;
-        std::optional<double> finestInD0;
-        bool operator==(const Plan&) const = default;
-    };
     void releaseGl();
-    QSize pixelSize() const;
-    double samples(const Plan& plan) const; ///< estimated number of those of a whole picture
-    Plan quickPlan() const;
-    Plan fullPlan() const;
-    Plan finishedPlan() const; ///< as it would be saved
-    RenderSettings settings(const Plan& plan) const;
+    double samples(const PicturePlan& plan) const; ///< estimated number of those of a whole picture
+    PicturePlan quickPlan() const;
+    PicturePlan fullPlan() const;
+    PicturePlan finishedPlan() const; ///< as it would be saved
+    void beginAnew();
     void prepareScene();
     void drawQuick();
-    bool drawStrip(const Plan& plan); ///< from m_nextRow on; true: it was the last
+    bool drawStrip(const PicturePlan& plan); ///< from m_nextRow on; true: it was the last
     void refine();
-    void finishFrame(const Plan& plan);
+    void finishPicture(const PicturePlan& plan);
     void fail(const Error& error);
 
     PictureInput m_scene;
@@ -69,11 +62,16 @@ private:
 
     bool m_dirty = true;               ///< the scene has changed since the picture was begun
     double m_nanosecondsPerSample = 0; ///< as measured; 0: not yet
-    QTimer m_idle, m_next;             ///< until refining begins; to its next strip
-    bool m_finishing = false;          ///< the full picture is there, what is refined now is the one to be saved
-    int m_nextRow = 0;                 ///< first row that has not been refined
+    /// Milliseconds that the scene must stay the same before it is drawn well.
+    RestTimer m_idle{200, [this] {
+                         m_nextRow = 0;
+                         refine();
+                     }};
+    RestTimer m_next{0, [this] { refine(); }}; ///< to the next strip
+    bool m_finishing = false; ///< the full picture is there, what is refined now is the one to be saved
+    int m_nextRow = 0;        ///< first row that has not been refined
     QElapsedTimer m_sinceShown;
-    FrameInfo m_frame;
+    PictureInfo m_info;
 };
 
 } // namespace pellucid::gui

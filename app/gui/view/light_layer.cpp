@@ -5,7 +5,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "render/clip_handles.h"
 #include "services/services.h"
 
 namespace pellucid::gui {
@@ -56,15 +55,9 @@ void LightLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const Overlay
     });
 }
 
-void LightLayer::release() {
+void LightLayer::end(bool kept) {
     m_held = false;
-    m_services.store().commit();
-    m_overlay.update();
-}
-
-void LightLayer::cancel() {
-    m_held = false;
-    m_services.store().cancel();
+    kept ? m_services.store().commit() : m_services.store().cancel();
     m_overlay.update();
 }
 

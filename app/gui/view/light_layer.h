@@ -15,8 +15,7 @@ public:
     void paint(QPainter& painter, const OverlayView& view) override;
     bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
     void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
-    void release() override;
-    void cancel() override;
+    void end(bool kept) override;
 
 private:
     Services& m_services;

@@ -1,21 +1,17 @@
 #include "view/picture_pair.h"
 
 #include <QGridLayout>
-#include <QLabel>
 
 #include "controllers/refine_controller.h"
 #include "services/services.h"
+#include "widgets/controls.h"
 #include "widgets/image_convert.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
-namespace {
-
-constexpr int kRest = 150; // milliseconds without a change before both are drawn anew
-
-} // namespace
 
 PicturePair::PicturePair(Services& services, RefineController& refining, QWidget* parent)
-    : QDialog(parent), m_services(services), m_refining(refining), m_words(new QLabel(this)),
+    : QDialog(parent), m_services(services), m_refining(refining), m_words(wrappedLabel("pairWords", this)),
       m_renderer(std::make_shared<KeptRenderer>()),
       m_job(
           [renderer = m_renderer](const Inputs& inputs, const JobControl& job) {
@@ -31,36 +27,30 @@ PicturePair::PicturePair(Services& services, RefineController& refining, QWidget
     setObjectName("picturePair");
     setWindowTitle(tr("Before and after refinement"));
     setAttribute(Qt::WA_DeleteOnClose);
-    auto* grid = new QGridLayout(this);
-    grid->setContentsMargins(12, 12, 12, 12);
+    auto* grid = inset(new QGridLayout(this), {12, 12, 12, 12});
     grid->setSpacing(8);
     const char* const names[] = {"Before", "After"};
     for (int i = 0; i < 2; ++i) {
-        auto* picture = m_labels[static_cast<std::size_t>(i)] = new QLabel(this);
-        picture->setObjectName(QStringLiteral("picture%1").arg(names[i]));
+        auto* picture = named(new QLabel(this), QStringLiteral("picture%1").arg(names[i]));
         picture->setAlignment(Qt::AlignCenter);
         picture->setMinimumSize(200, 150);
         picture->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored); // it must not follow what it shows
         picture->setAutoFillBackground(true);
         picture->setBackgroundRole(QPalette::Base);
-        auto* caption = m_captions[static_cast<std::size_t>(i)] = new QLabel(this);
-        caption->setObjectName(QStringLiteral("caption%1").arg(names[i]));
+        auto* caption = named(new QLabel(this), QStringLiteral("caption%1").arg(names[i]),
+                              tr("Energy: variance of the edge weights, summed over the edges with a movable end"));
         caption->setAlignment(Qt::AlignCenter);
-        caption->setToolTip(tr("Energy: variance of the edge weights, summed over the edges with a movable end"));
+        m_labels[static_cast<std::size_t>(i)] = picture;
+        m_captions[static_cast<std::size_t>(i)] = caption;
         grid->addWidget(picture, 0, i);
         grid->addWidget(caption, 1, i);
         grid->setColumnStretch(i, 1);
     }
     grid->setRowStretch(0, 1);
-    m_words->setObjectName("pairWords");
     m_words->setAlignment(Qt::AlignCenter);
-    m_words->setWordWrap(true);
     grid->addWidget(m_words, 2, 0, 1, 2);
     resize(1000, 520);
 
-    m_wait.setSingleShot(true);
-    m_wait.setInterval(kRest);
-    connect(&m_wait, &QTimer::timeout, this, &PicturePair::start);
     const auto again = [this] { m_wait.start(); };
     connect(&services.store(), &SessionStore::changed, this, [this, again](const Scene& before, const Scene& after) {
         if (before.volume != after.volume) m_renderer->release();
@@ -68,24 +58,21 @@ PicturePair::PicturePair(Services& services, RefineController& refining, QWidget
     });
     connect(&refining, &RefineController::refined, this, again);
     connect(&m_job, &JobBase::failed, this, [this](const Error& error) {
-        m_words->setText(tr("The pictures could not be drawn: %1").arg(QString::fromUtf8(error.what())));
+        m_words->setText(tr("The pictures could not be drawn: %1").arg(error.what()));
     });
     m_wait.start();
 }
 
 void PicturePair::start() {
     const Refinement* refinement = m_refining.latest();
-    if (refinement == nullptr) { // of a volume that has gone
-        close();
-        return;
-    }
-    const QSize pixels = m_labels[0]->size() * devicePixelRatioF();
-    Scene scene = m_services.scene();
-    Inputs inputs;
-    scene.tf = refinement->before;
-    inputs[0] = pictureInput(scene, std::max(1, pixels.width()), std::max(1, pixels.height()));
-    scene.tf = refinement->after;
-    inputs[1] = pictureInput(scene, std::max(1, pixels.width()), std::max(1, pixels.height()));
+    if (refinement == nullptr) return static_cast<void>(close()); // of a volume that has gone
+    const QSize pixels = (m_labels[0]->size() * devicePixelRatioF()).expandedTo({1, 1});
+    const auto inputOf = [&](const TransferFunction& tf) {
+        Scene scene = m_services.scene();
+        scene.tf = tf;
+        return pictureInput(scene, pixels.width(), pixels.height());
+    };
+    Inputs inputs{inputOf(refinement->before), inputOf(refinement->after)};
     const auto energy = [](double value) { return QString::number(value, 'g', 3).replace('-', QChar(0x2212)); };
     m_captions[0]->setText(tr("Before: energy %1").arg(energy(refinement->result.energyMovableBefore)));
     m_captions[1]->setText(tr("After: energy %1").arg(energy(refinement->result.energyMovableAfter)));

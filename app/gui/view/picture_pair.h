@@ -6,9 +6,9 @@
 
 #include <QDialog>
 #include <QImage>
-#include <QTimer>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "session/scene.h"
 #include "widgets/kept_renderer.h"
 
@@ -43,7 +43,7 @@ private:
     std::array<QLabel*, 2> m_labels, m_captions;
     QLabel* m_words;
     Pictures m_pictures;
-    QTimer m_wait; ///< for the hand to rest
+    RestTimer m_wait{150, [this] { start(); }}; ///< milliseconds without a change before both are drawn anew
     std::shared_ptr<KeptRenderer> m_renderer;
     Job<Inputs, Pictures> m_job; // last: it ends before the rest goes
 };

@@ -64,40 +64,28 @@ RegionLayer::Hold RegionLayer::holdAt(const QPointF& point, const OverlayView& v
     if (m_services.isReadOnly()) return {};
     const std::optional<ImageRegion> region = m_refining.region();
     if (m_refining.selecting() != Selecting::Nothing) return {Grip::Draw}; // over an older one too
-    if (region) {
-        if (isRectangle(*region)) {
-            const QRectF r = polygonOf(*region, view.size).boundingRect();
-            if (r.adjusted(-kReach, -kReach, kReach, kReach).contains(point)) {
-                const auto side = [](double at, double lo, double hi) {
-                    if (std::abs(at - hi) <= kReach) return 1;
-                    return std::abs(at - lo) <= kReach ? -1 : 0;
-                };
-                const Hold hold{Grip::Resize, side(point.x(), r.left(), r.right()),
-                                side(point.y(), r.top(), r.bottom())};
-                if (hold.right != 0 || hold.down != 0) return hold;
-            }
-        }
-        const glm::dvec2 at = fractionOf(point, view.size);
-        if (region->contains(at.x, at.y)) return {Grip::Move};
+    if (!region) return {};
+    const QRectF r = polygonOf(*region, view.size).boundingRect();
+    if (isRectangle(*region) && r.adjusted(-kReach, -kReach, kReach, kReach).contains(point)) {
+        const auto side = [](double at, double lo, double hi) {
+            if (std::abs(at - hi) <= kReach) return 1;
+            return std::abs(at - lo) <= kReach ? -1 : 0;
+        };
+        const Hold hold{Grip::Resize, side(point.x(), r.left(), r.right()), side(point.y(), r.top(), r.bottom())};
+        if (hold.right != 0 || hold.down != 0) return hold;
     }
-    return {};
+    const glm::dvec2 at = fractionOf(point, view.size);
+    return {region->contains(at.x, at.y) ? Grip::Move : Grip::None};
 }
 
 Qt::CursorShape RegionLayer::cursorAt(const QPointF& point, const OverlayView& view) {
     const Hold hold = holdAt(point, view);
-    switch (hold.grip) {
-    case Grip::Draw:
-        return Qt::CrossCursor;
-    case Grip::Move:
-        return Qt::SizeAllCursor;
-    case Grip::Resize:
-        if (hold.right == 0) return Qt::SizeVerCursor;
-        if (hold.down == 0) return Qt::SizeHorCursor;
-        return hold.right == hold.down ? Qt::SizeFDiagCursor : Qt::SizeBDiagCursor;
-    case Grip::None:
-        break;
-    }
-    return Qt::ArrowCursor;
+    if (hold.grip == Grip::None) return Qt::ArrowCursor;
+    if (hold.grip == Grip::Draw) return Qt::CrossCursor;
+    if (hold.grip == Grip::Move) return Qt::SizeAllCursor;
+    if (hold.right == 0) return Qt::SizeVerCursor;
+    if (hold.down == 0) return Qt::SizeHorCursor;
+    return hold.right == hold.down ? Qt::SizeFDiagCursor : Qt::SizeBDiagCursor;
 }
 
 bool RegionLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) {
@@ -107,13 +95,8 @@ bool RegionLayer::press(const QPointF& point, Qt::KeyboardModifiers keys, const 
     m_hold = hold;
     m_from = point;
     m_size = view.size;
-    if (hold.grip == Grip::Draw) {
-        m_start = {};
-        m_region = ImageRegion{{fractionOf(point, m_size)}};
-    } else {
-        m_start = *m_refining.region();
-        m_region = m_start;
-    }
+    m_start = hold.grip == Grip::Draw ? ImageRegion() : *m_refining.region();
+    m_region = hold.grip == Grip::Draw ? ImageRegion{{fractionOf(point, m_size)}} : m_start;
     return true;
 }
 
@@ -121,22 +104,17 @@ void RegionLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const Overla
     if (!m_region) return;
     const glm::dvec2 from = fractionOf(m_from, m_size), to = fractionOf(point, m_size);
     const auto& start = m_start.outline;
-    switch (m_hold.grip) {
-    case Grip::Draw:
-        if (m_refining.selecting() == Selecting::Rectangle) {
-            m_region = rectangle(from, to);
-        } else {
-            const glm::dvec2 last = m_region->outline.back();
-            if (std::hypot((to.x - last.x) * m_size.width(), (to.y - last.y) * m_size.height()) >= kStride &&
-                m_region->outline.size() < kMostCorners)
-                m_region->outline.push_back(to);
-        }
-        break;
-    case Grip::Move:
+    if (m_hold.grip == Grip::Draw && m_refining.selecting() == Selecting::Rectangle) {
+        m_region = rectangle(from, to);
+    } else if (m_hold.grip == Grip::Draw) {
+        const glm::dvec2 last = m_region->outline.back();
+        if (std::hypot((to.x - last.x) * m_size.width(), (to.y - last.y) * m_size.height()) >= kStride &&
+            m_region->outline.size() < kMostCorners)
+            m_region->outline.push_back(to);
+    } else if (m_hold.grip == Grip::Move) {
         m_region =
             moved(m_start, {(point.x() - m_from.x()) / m_size.width(), (point.y() - m_from.y()) / m_size.height()});
-        break;
-    case Grip::Resize: {
+    } else {
         const glm::dvec2 by = to - from;
         glm::dvec2 lo = start[0], hi = start[2];
         if (m_hold.right < 0) lo.x += by.x;
@@ -144,31 +122,21 @@ void RegionLayer::drag(const QPointF& point, Qt::KeyboardModifiers, const Overla
         if (m_hold.down < 0) lo.y += by.y;
         if (m_hold.down > 0) hi.y += by.y;
         m_region = rectangle(glm::clamp(lo, 0.0, 1.0), glm::clamp(hi, 0.0, 1.0));
-        break;
-    }
-    case Grip::None:
-        break;
     }
     m_overlay.update();
 }
 
-void RegionLayer::release() {
+void RegionLayer::end(bool kept) {
     const Grip grip = std::exchange(m_hold, {}).grip;
     const std::optional<ImageRegion> region = std::exchange(m_region, {});
     m_overlay.update();
-    if (!region || m_services.isReadOnly()) return;
+    if (!kept || !region || m_services.isReadOnly()) return;
     const QRectF bounds = polygonOf(*region, m_size).boundingRect();
     const bool click = region->outline.size() < 3 || bounds.width() < kSmallest || bounds.height() < kSmallest;
     if (click || *region == m_start) return;
     m_refining.prioritize(*region,
                           grip == Grip::Draw ? QObject::tr("Refine for a region") : QObject::tr("Change region"));
     if (grip == Grip::Draw) m_refining.setSelecting(Selecting::Nothing); // the mouse turns the volume again
-}
-
-void RegionLayer::cancel() {
-    m_hold = {};
-    m_region.reset();
-    m_overlay.update();
 }
 
 bool RegionLayer::key(int key, const OverlayView&) {

@@ -21,8 +21,7 @@ public:
     Qt::CursorShape cursorAt(const QPointF& point, const OverlayView& view) override;
     bool press(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
     void drag(const QPointF& point, Qt::KeyboardModifiers keys, const OverlayView& view) override;
-    void release() override;
-    void cancel() override;
+    void end(bool kept) override;
     bool key(int key, const OverlayView& view) override;
 
 private:

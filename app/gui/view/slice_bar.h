@@ -20,7 +20,7 @@ public:
 private:
     void follow();
     void editStrength(int percent);
-    void editWindow();
+    void editWindow(const QDoubleSpinBox& box);
 
     Services& m_services;
     QSlider* m_strength;

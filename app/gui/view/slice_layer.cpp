@@ -4,7 +4,6 @@
 
 #include <QPainter>
 
-#include "render/clip_handles.h"
 #include "render/slice.h"
 #include "store/view_edits.h"
 #include "view/slice_pane.h"
@@ -14,8 +13,7 @@ namespace pellucid::gui {
 void SliceLayer::paint(QPainter& painter, const OverlayView& view) {
     if (view.scene.session.slices->layout == SliceViews::Layout::Volume) return;
     const Geometry& geometry = view.scene.volume->geometry();
-    const PictureView picture{view.scene.camera, std::max(1, static_cast<int>(view.size.width())),
-                              std::max(1, static_cast<int>(view.size.height()))};
+    const PictureView picture = view.picture();
     const Vec3 crosshair = crosshairOf(view.scene), lo = geometry.voxelBoxMin(), hi = geometry.voxelBoxMax();
     const auto draw = [&](const Vec3& from, const Vec3& to, const QColor& color, double width) {
         const auto a = pixelOf(picture, geometry.worldFromVoxel(from)),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include <QKeyEvent>
@@ -13,10 +12,13 @@
 #include <QWheelEvent>
 
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
+#include "base/stopwatch.h"
 #include "services/services.h"
 #include "store/view_edits.h"
 #include "tf/shown_tf.h"
+#include "view/view_surface.h"
 #include "volume/orientation.h"
 #include "widgets/image_convert.h"
 #include "widgets/number_text.h"
@@ -51,7 +53,7 @@ void haloLine(QPainter& painter, const QLineF& line, const QColor& color) {
     painter.drawLine(line);
 }
 
-const char* unitOf(const Geometry& geometry) { return geometry.frame == Frame::Patient ? "mm" : "units"; }
+const char* unitOf(const Geometry& geometry) { return geometry.worldAxes == WorldAxes::Patient ? "mm" : "units"; }
 
 } // namespace
 
@@ -65,9 +67,9 @@ SlicePane::SlicePane(Services& services, int worldAxis, Lane& lane, QWidget* par
     : QWidget(parent), m_services(services), m_worldAxis(worldAxis), m_maximize(new QToolButton(this)),
       m_job([](const Request& request, const JobControl&) { return drawn(request); },
             [this](const Request& request, Drawn& result) { show(request, result); }, WhenBusy::FinishOld, &lane) {
-    const char axisLetter = "XYZ"[worldAxis];
-    setObjectName(QStringLiteral("slice%1").arg(QLatin1Char(axisLetter)));
-    setAccessibleName(tr("Slice across %1").arg(QLatin1Char(axisLetter)));
+    const QLatin1Char axisLetter("XYZ"[worldAxis]);
+    setObjectName(QStringLiteral("slice%1").arg(axisLetter));
+    setAccessibleName(tr("Slice across %1").arg(axisLetter));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setContextMenuPolicy(Qt::PreventContextMenu);
@@ -140,12 +142,9 @@ void SlicePane::follow(const Scene& before, const Scene& after) {
 void SlicePane::request() {
     if (isHidden() || !m_services.store().hasVolume() || width() <= 0 || height() <= 0) return;
     const Scene& scene = m_services.scene();
-    const qreal ratio = devicePixelRatioF();
-    Request next;
-    next.volume = scene.volume;
-    next.tf = shownTf(scene.tf);
-    next.plane =
-        planeOfSize(static_cast<int>(std::lround(width() * ratio)), static_cast<int>(std::lround(height() * ratio)));
+    const QSize pixels = devicePixels(*this);
+    Request next{
+        .volume = scene.volume, .tf = shownTf(scene.tf), .plane = planeOfSize(pixels.width(), pixels.height())};
     next.settings.window = greyWindowOf(scene);
     next.settings.tfStrength = scene.session.slices->tfStrength;
     next.settings.clipping = *scene.session.clipping;
@@ -155,11 +154,11 @@ void SlicePane::request() {
     m_complete = false;
     next.coarse = m_slow;
     m_job.start(std::move(next), tr("the slice"));
-    Q_EMIT frameShown();
+    Q_EMIT pictureShown();
 }
 
 SlicePane::Drawn SlicePane::drawn(const Request& request) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     SlicePlane plane = request.plane;
     if (request.coarse) {
         plane.width = (plane.width + 1) / 2;
@@ -175,10 +174,7 @@ SlicePane::Drawn SlicePane::drawn(const Request& request) {
             if (left.rgba[i + 3] == 0)
                 for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] *= kDimmed;
     }
-    Drawn result;
-    result.image = qImageFromImage(image);
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return result;
+    return {qImageFromImage(image), watch.seconds()};
 }
 
 void SlicePane::show(const Request& request, const Drawn& result) {
@@ -191,7 +187,7 @@ void SlicePane::show(const Request& request, const Drawn& result) {
     if (latest && request.coarse) m_job.start(std::move(full), tr("the slice"));
     m_complete = latest && !request.coarse;
     update();
-    Q_EMIT frameShown();
+    Q_EMIT pictureShown();
 }
 
 void SlicePane::fit() {
@@ -259,9 +255,8 @@ void SlicePane::hover(const std::optional<QPointF>& point) {
         const Volume& volume = *m_services.scene().volume;
         const Vec3 voxel = voxelAtPixel(volume.geometry(), plane(), {point->x(), point->y()});
         const Vec3 lo = volume.geometry().voxelBoxMin(), hi = volume.geometry().voxelBoxMax();
-        bool inside = true;
-        for (int a = 0; a < 3; ++a) inside = inside && voxel[a] >= lo[a] && voxel[a] <= hi[a];
-        if (inside) m_hovered = Hovered{voxel, volume.geometry().worldFromVoxel(voxel), valueAt(volume, voxel, false)};
+        if (glm::all(glm::greaterThanEqual(voxel, lo)) && glm::all(glm::lessThanEqual(voxel, hi)))
+            m_hovered = Hovered{voxel, volume.geometry().worldFromVoxel(voxel), valueAt(volume, voxel, false)};
     }
     std::optional<double> intensity;
     if (m_hovered && m_hovered->value) intensity = m_services.scene().volume->intensityOfValue(*m_hovered->value);
@@ -325,19 +320,9 @@ void SlicePane::mouseMoveEvent(QMouseEvent* event) {
     if (m_motion == Motion::None || !m_services.store().hasVolume()) return hover(point);
     if (!m_moved && (point - m_pressed).manhattanLength() < 3) return;
     m_moved = true;
-    switch (m_motion) {
-    case Motion::Crosshair:
-        moveCrosshairTo(point);
-        break;
-    case Motion::Pan:
-        pan(point - m_last);
-        break;
-    case Motion::Window:
-        dragWindow(point - m_pressed);
-        break;
-    case Motion::None:
-        break;
-    }
+    if (m_motion == Motion::Crosshair) moveCrosshairTo(point);
+    if (m_motion == Motion::Pan) pan(point - m_last);
+    if (m_motion == Motion::Window) dragWindow(point - m_pressed);
     m_last = point;
     hover(point);
 }
@@ -408,16 +393,6 @@ void SlicePane::leaveEvent(QEvent* event) {
     if (m_motion == Motion::None) hover({});
 }
 
-void SlicePane::focusInEvent(QFocusEvent* event) {
-    QWidget::focusInEvent(event);
-    update();
-}
-
-void SlicePane::focusOutEvent(QFocusEvent* event) {
-    QWidget::focusOutEvent(event);
-    update();
-}
-
 void SlicePane::resizeEvent(QResizeEvent* event) {
     QWidget::resizeEvent(event);
     m_maximize->move(width() - m_maximize->width() - 2, 3);
@@ -441,7 +416,7 @@ QString SlicePane::titleText() const {
     const Vec3 voxel = crosshairOf(m_services.scene());
     const double at = geometry.worldFromVoxel(voxel)[m_worldAxis];
     QString name = QString::fromLatin1(sliceName(geometry, a));
-    if (geometry.frame == Frame::Patient) name[0] = name[0].toUpper(); // a word, not an axis
+    if (geometry.worldAxes == WorldAxes::Patient) name[0] = name[0].toUpper(); // a word, not an axis
     return tr("%1  %2 of %3   %4 %5")
         .arg(name)
         .arg(static_cast<int>(std::lround(voxel[a])) + 1)
@@ -510,7 +485,7 @@ QStringList SlicePane::edgeLetters() const {
                up = geometry.directions[view.down] * (view.flipDown ? 1.0 : -1.0);
     QStringList letters;
     for (const Vec3& direction : {right, -right, up, -up}) {
-        if (geometry.frame == Frame::Patient) {
+        if (geometry.worldAxes == WorldAxes::Patient) {
             letters << QString::fromStdString(directionLetters(direction));
             continue;
         }

@@ -52,7 +52,7 @@ public:
     QSize minimumSizeHint() const override { return {110, 90}; }
 
 Q_SIGNALS:
-    void frameShown();     ///< isComplete() may have changed
+    void pictureShown();   ///< isComplete() may have changed
     void maximizeWanted(); ///< alone, or back
 
 protected:
@@ -63,8 +63,6 @@ protected:
     void wheelEvent(QWheelEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
     void leaveEvent(QEvent* event) override;
-    void focusInEvent(QFocusEvent* event) override;
-    void focusOutEvent(QFocusEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
     void showEvent(QShowEvent* event) override;
     void hideEvent(QHideEvent* event) override;
@@ -76,7 +74,7 @@ private:
         std::shared_ptr<const Volume> volume;
         TransferFunction tf;
         SlicePlane plane; ///< in device pixels
-        SliceSettings settings;
+        SliceSettings settings = {};
         bool coarse = false; ///< at half the resolution
         bool operator==(const Request&) const = default;
     };

@@ -6,15 +6,14 @@
 #include <numbers>
 
 #include <QApplication>
-#include <QHelpEvent>
 #include <QMouseEvent>
 #include <QPainter>
-#include <QToolTip>
 
 #include <glm/geometric.hpp>
 
 #include "render/view_direction.h"
 #include "tf/color_maps.h"
+#include "widgets/controls.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -48,8 +47,7 @@ ViewGlobe::ViewGlobe(QWidget* parent) : QWidget(parent) {
     setObjectName("viewGlobe");
     setAccessibleName(tr("Sphere of views"));
     setMouseTracking(true);
-    QSizePolicy policy(QSizePolicy::Expanding, QSizePolicy::Expanding);
-    setSizePolicy(policy);
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
 }
 
 void ViewGlobe::setMap(const ViewMap& map, bool current, const std::optional<Vec3>& best) {
@@ -149,31 +147,28 @@ void ViewGlobe::paintMarks(QPainter& painter) const {
         draw();
     };
     // Where the axes of the world come out.
-    const bool patient = m_worldAxes == WorldAxes::Patient;
-    const std::array<std::pair<Vec3, QString>, 6> axes{{{{1, 0, 0}, patient ? tr("L") : QStringLiteral("x")},
-                                                        {{-1, 0, 0}, patient ? tr("R") : QStringLiteral("−x")},
-                                                        {{0, 1, 0}, patient ? tr("P") : QStringLiteral("y")},
-                                                        {{0, -1, 0}, patient ? tr("A") : QStringLiteral("−y")},
-                                                        {{0, 0, 1}, patient ? tr("S") : QStringLiteral("z")},
-                                                        {{0, 0, -1}, patient ? tr("I") : QStringLiteral("−z")}}};
+    const QStringList letters = m_worldAxes == WorldAxes::Patient
+                                    ? QStringList{tr("L"), tr("R"), tr("P"), tr("A"), tr("S"), tr("I")}
+                                    : QStringList{"x", "−x", "y", "−y", "z", "−z"};
     QFont font = painter.font();
     font.setPointSizeF(font.pointSizeF() * 0.85);
     painter.setFont(font);
-    for (const auto& [direction, letter] : axes)
+    for (int n = 0; n < 6; ++n) {
+        Vec3 direction(0);
+        direction[n / 2] = n % 2 == 0 ? 1 : -1;
         if (const auto at = pointOf(direction); at && glm::dot(direction, m_camera.forward()) < -0.1) {
             const QRectF box(*at - QPointF(14, 9), QSizeF(28, 18));
             painter.setPen(QColor(0, 0, 0, 190));
-            painter.drawText(box.translated(1, 1), Qt::AlignCenter, letter);
+            painter.drawText(box.translated(1, 1), Qt::AlignCenter, letters[n]);
             painter.setPen(QColor(255, 255, 255, 220));
-            painter.drawText(box, Qt::AlignCenter, letter);
+            painter.drawText(box, Qt::AlignCenter, letters[n]);
         }
+    }
     painter.setBrush(Qt::NoBrush);
     const QPointF m = middle();
     edged(theme::kMark, [&] { // from here
-        painter.drawLine(m - QPointF(6, 0), m - QPointF(2, 0));
-        painter.drawLine(m + QPointF(2, 0), m + QPointF(6, 0));
-        painter.drawLine(m - QPointF(0, 6), m - QPointF(0, 2));
-        painter.drawLine(m + QPointF(0, 2), m + QPointF(0, 6));
+        for (const QPointF& way : {QPointF(-1, 0), QPointF(1, 0), QPointF(0, -1), QPointF(0, 1)})
+            painter.drawLine(m + 2 * way, m + 6 * way);
     });
     if (!m_bestDirection || !m_current) return;
     if (const auto at = pointOf(*m_bestDirection)) {
@@ -199,8 +194,6 @@ void ViewGlobe::paintLegend(QPainter& painter) const {
                          m_table.empty() ? theme::kTrack : colorOf(m_worst + t * (m_best - m_worst)));
     }
     if (m_table.empty()) return;
-    QFont font = painter.font();
-    painter.setFont(font);
     painter.setPen(m_current ? theme::kText : theme::kFaint);
     const QRectF words(all.left(), bar.bottom(), all.width(), all.bottom() - bar.bottom());
     const auto about = [](double value) { return QStringLiteral("≈ %1").arg(value, 0, 'f', 2); };
@@ -220,17 +213,11 @@ void ViewGlobe::paintEvent(QPaintEvent*) {
 }
 
 bool ViewGlobe::event(QEvent* event) {
-    if (event->type() == QEvent::ToolTip) {
-        const auto* help = static_cast<QHelpEvent*>(event);
-        const auto direction = directionAt(help->pos());
-        if (direction && m_words) {
-            QToolTip::showText(help->globalPos(), m_words(*direction), this);
-        } else {
-            QToolTip::hideText();
-        }
-        return true;
-    }
-    return QWidget::event(event);
+    const auto tip = [this](const QPoint& point) {
+        const auto direction = directionAt(point);
+        return direction && m_words ? m_words(*direction) : QString();
+    };
+    return showsTip(*event, *this, tip) || QWidget::event(event);
 }
 
 void ViewGlobe::hover(const QPointF& point) {
@@ -241,8 +228,7 @@ void ViewGlobe::hover(const QPointF& point) {
 }
 
 void ViewGlobe::endHover() {
-    if (!std::exchange(m_hovering, false)) return;
-    Q_EMIT left();
+    if (std::exchange(m_hovering, false)) Q_EMIT left();
 }
 
 void ViewGlobe::mousePressEvent(QMouseEvent* event) {

@@ -28,7 +28,7 @@ ViewGrid::ViewGrid(Services& services, VolumeView& volume, QWidget* parent)
         auto* pane = new SlicePane(services, a, m_lane, this);
         m_panes[static_cast<std::size_t>(a)] = pane;
         pane->hide();
-        connect(pane, &SlicePane::frameShown, this, &ViewGrid::slicesShown);
+        connect(pane, &SlicePane::pictureShown, this, &ViewGrid::slicesShown);
         connect(pane, &SlicePane::maximizeWanted, this, [this, pane] { maximize(m_alone == pane ? nullptr : pane); });
     }
     connect(&services.store(), &SessionStore::changed, this, [this] {

@@ -5,7 +5,7 @@
 
 #include <QWidget>
 
-#include "jobs/lane.h"
+#include "jobs/job.h"
 #include "session/session.h"
 #include "view/slice_pane.h"
 #include "view/volume_view.h"

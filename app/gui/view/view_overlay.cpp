@@ -44,13 +44,8 @@ void ViewOverlay::drag(const QPointF& point, Qt::KeyboardModifiers keys) {
     if (m_holder != nullptr && m_store.hasVolume()) m_holder->drag(point, keys, overlayView());
 }
 
-void ViewOverlay::release() {
-    if (m_holder != nullptr) m_holder->release();
-    m_holder = nullptr;
-}
-
-void ViewOverlay::cancel() {
-    if (m_holder != nullptr) m_holder->cancel();
+void ViewOverlay::end(bool kept) {
+    if (m_holder != nullptr) m_holder->end(kept);
     m_holder = nullptr;
 }
 

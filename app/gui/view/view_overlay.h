@@ -7,15 +7,20 @@
 
 #include <QWidget>
 
+#include "render/clip_handles.h"
 #include "store/session_store.h"
 
 namespace pellucid::gui {
 
-/// What a layer is about: the present scene, which has a volume, and the view's size in logical pixels, as all points
-/// here are.
+/// What a layer draws over: the present scene, which has a volume, and the view's size in logical pixels, as are all
+/// points here.
 struct OverlayView {
     const Scene& scene;
     QSizeF size;
+    PictureView picture() const {
+        return {scene.camera, std::max(1, static_cast<int>(size.width())),
+                std::max(1, static_cast<int>(size.height()))};
+    }
 };
 
 /// One sort of things over the picture. Layers keep no state of the scene: they are asked anew.
@@ -30,8 +35,8 @@ public:
         return false;
     }
     virtual void drag(const QPointF& /*point*/, Qt::KeyboardModifiers /*keys*/, const OverlayView& /*view*/) {}
-    virtual void release() {}
-    virtual void cancel() { release(); } ///< in place of the release: as if it had not been pressed
+    /// The end of what a press began: `kept` by the release, or given up, as if nothing had been pressed.
+    virtual void end(bool /*kept*/) {}
     /// A key that the view has got (Qt::Key); true: it is taken.
     virtual bool key(int /*key*/, const OverlayView& /*view*/) { return false; }
 };
@@ -48,8 +53,8 @@ public:
     bool press(const QPointF& point, Qt::KeyboardModifiers keys);
     bool isDragging() const { return m_holder != nullptr; }
     void drag(const QPointF& point, Qt::KeyboardModifiers keys);
-    void release();
-    void cancel();
+    void release() { end(true); }
+    void cancel() { end(false); }
     bool key(int key);
     Qt::CursorShape cursorAt(const QPointF& point);
 
@@ -57,6 +62,7 @@ protected:
     void paintEvent(QPaintEvent* event) override;
 
 private:
+    void end(bool kept);
     OverlayView overlayView() const { return {m_glimpse ? *m_glimpse : m_store.scene(), QSizeF(size())}; }
 
     SessionStore& m_store;

@@ -13,6 +13,7 @@
 
 #include "base/parallel.h"
 #include "controllers/field_controller.h"
+#include "jobs/rest_timer.h"
 #include "render/camera_motion.h"
 #include "store/view_edits.h"
 #include "view/annotation_layer.h"
@@ -96,7 +97,7 @@ void VolumeView::chooseRenderer(ViewRenderer wanted) {
     bool gl = available == GlSurface::Available::OnGpu;
     if (wanted != ViewRenderer::Auto) {
         gl = wanted == ViewRenderer::Gl;
-        m_reason = tr("As it was asked for.");
+        m_reason = tr("Because it was asked for.");
     } else if (available == GlSurface::Available::No) {
         m_reason = tr("There is no OpenGL 4.3 here.");
     } else {
@@ -111,10 +112,8 @@ void VolumeView::chooseRenderer(ViewRenderer wanted) {
             m_probeWaits = true;
         }
     }
-    if (gl)
-        setSurface(std::make_unique<GlSurface>());
-    else
-        setSurface(std::make_unique<CpuSurface>());
+    if (gl) return setSurface(std::make_unique<GlSurface>());
+    setSurface(std::make_unique<CpuSurface>());
 }
 
 /// Once the first picture is complete: opening comes before.
@@ -132,11 +131,11 @@ void VolumeView::showTimes(const RendererTimes& times) {
         m_reason = reasonOf(times, false);
         setSurface(std::make_unique<CpuSurface>());
     }
-    Q_EMIT frameShown();
+    Q_EMIT pictureShown();
 }
 
 VolumeView::~VolumeView() {
-    m_surface->onFrame = nullptr;
+    m_surface->onPicture = nullptr;
     m_surface->onFailure = nullptr;
 }
 
@@ -146,8 +145,8 @@ void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
     m_surface->widget()->setMouseTracking(true);
     layout()->addWidget(m_surface->widget());
     m_overlay->raise();
-    m_surface->onFrame = [this] {
-        Q_EMIT frameShown();
+    m_surface->onPicture = [this] {
+        Q_EMIT pictureShown();
         if (m_probeWaits && isComplete()) startProbe();
     };
     m_surface->onFailure = [this](const Error& error) { surfaceFailed(error); };
@@ -155,20 +154,12 @@ void VolumeView::setSurface(std::unique_ptr<ViewSurface> surface) {
 }
 
 void VolumeView::surfaceFailed(const Error& error) {
-    const bool gl = dynamic_cast<GlSurface*>(m_surface.get()) != nullptr;
-    if (!gl) {
-        Q_EMIT rendererFailed(error);
-        return;
-    }
+    if (dynamic_cast<GlSurface*>(m_surface.get()) == nullptr) return Q_EMIT rendererFailed(error);
     Q_EMIT rendererFailed({error.problem(), error.where(), tr("the CPU draws the picture from now on").toStdString()});
-    // In a later turn: the one that failed is still on the stack.
-    QMetaObject::invokeMethod(
-        this,
-        [this] {
-            m_reason = tr("OpenGL could not draw this.");
-            setSurface(std::make_unique<CpuSurface>());
-        },
-        Qt::QueuedConnection);
+    later(this, [this] { // the one that failed is still on the stack
+        m_reason = tr("OpenGL could not draw this.");
+        setSurface(std::make_unique<CpuSurface>());
+    });
 }
 
 void VolumeView::updateScene() {
@@ -192,19 +183,11 @@ void VolumeView::mousePressEvent(QMouseEvent* event) {
         return;
     }
     const bool shift = event->modifiers().testFlag(Qt::ShiftModifier);
-    switch (event->button()) {
-    case Qt::LeftButton:
-        m_motion = shift ? Motion::Pan : Motion::Rotate;
-        break;
-    case Qt::MiddleButton:
-        m_motion = Motion::Pan;
-        break;
-    case Qt::RightButton:
-        m_motion = Motion::Zoom;
-        break;
-    default:
-        return event->ignore();
-    }
+    m_motion = event->button() == Qt::LeftButton     ? (shift ? Motion::Pan : Motion::Rotate)
+               : event->button() == Qt::MiddleButton ? Motion::Pan
+               : event->button() == Qt::RightButton  ? Motion::Zoom
+                                                     : Motion::None;
+    if (m_motion == Motion::None) return event->ignore();
     m_button = event->button();
     m_last = m_pressed = event->position();
     m_moved = false;
@@ -222,21 +205,12 @@ void VolumeView::mouseMoveEvent(QMouseEvent* event) {
     const Geometry& geometry = m_store.scene().volume->geometry();
     const Camera camera = m_store.scene().camera;
     const double perPixel = 1.0 / std::max(1, height());
-    switch (m_motion) {
-    case Motion::Rotate: // the volume follows the hand, so the eye goes the other way
+    if (m_motion == Motion::Rotate) // the volume follows the hand, so the eye goes the other way
         m_store.setCamera(
             rotated(camera, geometry, -way.x() * perPixel * kDegreesPerView, way.y() * perPixel * kDegreesPerView),
             m_gesture);
-        break;
-    case Motion::Pan:
-        m_store.setCamera(panned(camera, geometry, way.x(), way.y(), height()), m_gesture);
-        break;
-    case Motion::Zoom:
-        zoomView(m_store, std::pow(kZoomPerView, -way.y() * perPixel), m_gesture);
-        break;
-    case Motion::None:
-        break;
-    }
+    if (m_motion == Motion::Pan) m_store.setCamera(panned(camera, geometry, way.x(), way.y(), height()), m_gesture);
+    if (m_motion == Motion::Zoom) zoomView(m_store, std::pow(kZoomPerView, -way.y() * perPixel), m_gesture);
 }
 
 void VolumeView::mouseReleaseEvent(QMouseEvent* event) {
@@ -266,20 +240,21 @@ void VolumeView::resizeEvent(QResizeEvent* event) {
 
 void VolumeView::keyPressEvent(QKeyEvent* event) {
     if (m_overlay->key(event->key())) return;
-    double yaw = 0, pitch = 0;
+    const auto turn = [this](double yaw, double pitch) {
+        if (!m_store.hasVolume()) return;
+        const Scene& scene = m_store.scene();
+        m_store.setCamera(
+            rotated(scene.camera, scene.volume->geometry(), yaw * kDegreesPerKey, pitch * kDegreesPerKey));
+    };
     switch (event->key()) {
     case Qt::Key_Left:
-        yaw = -kDegreesPerKey;
-        break;
+        return turn(-1, 0);
     case Qt::Key_Right:
-        yaw = kDegreesPerKey;
-        break;
+        return turn(1, 0);
     case Qt::Key_Up:
-        pitch = kDegreesPerKey;
-        break;
+        return turn(0, 1);
     case Qt::Key_Down:
-        pitch = -kDegreesPerKey;
-        break;
+        return turn(0, -1);
     case Qt::Key_Plus:
     case Qt::Key_Equal:
         return zoomView(m_store, kZoomPerNotch);
@@ -287,12 +262,11 @@ void VolumeView::keyPressEvent(QKeyEvent* event) {
         return zoomView(m_store, 1.0 / kZoomPerNotch);
     case Qt::Key_Escape:
         if (m_overlay->isDragging()) return m_overlay->cancel();
-        return QWidget::keyPressEvent(event);
+        break;
     default:
-        return QWidget::keyPressEvent(event);
+        break;
     }
-    if (m_store.hasVolume())
-        m_store.setCamera(rotated(m_store.scene().camera, m_store.scene().volume->geometry(), yaw, pitch));
+    QWidget::keyPressEvent(event);
 }
 
 } // namespace pellucid::gui

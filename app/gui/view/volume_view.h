@@ -32,8 +32,8 @@ public:
                         FieldController* fields = nullptr);
     ~VolumeView() override;
 
-    const FrameInfo& frame() const { return m_surface->frame(); }
-    bool isComplete() const { return m_surface->frame().complete; }
+    const PictureInfo& picture() const { return m_surface->picture(); }
+    bool isComplete() const { return m_surface->picture().complete; }
     ViewOverlay& overlay() { return *m_overlay; }
     /// Shows the scene from another camera for a while; empty: from its own again. The store hears nothing of it.
     void lookFrom(const std::optional<Camera>& camera);
@@ -44,7 +44,7 @@ public:
     QSize minimumSizeHint() const override { return {160, 100}; }
 
 Q_SIGNALS:
-    void frameShown();
+    void pictureShown();
     /// The left button went down and up in one place, logical pixels, which nothing over the picture has taken.
     void clicked(const QPointF& point);
     /// OpenGL gave up (a volume too large for the device, say) and the CPU draws from now on; or nobody can draw.

@@ -1,12 +1,13 @@
 #include "window/keys_dialog.h"
 
-#include <QDialogButtonBox>
 #include <QLineEdit>
 #include <QScreen>
 #include <QTextBrowser>
-#include <QVBoxLayout>
 
+#include "dialogs/closing_buttons.h"
 #include "services/actions.h"
+#include "widgets/layouts.h"
+#include "widgets/named.h"
 
 namespace pellucid::gui {
 namespace {
@@ -16,27 +17,22 @@ constexpr double kMostOfTheScreen = 0.85; // of its height
 
 } // namespace
 
-KeysDialog::KeysDialog(const Actions& actions, QWidget* parent) : QDialog(parent) {
-    setObjectName("keysBox");
-    setWindowTitle(tr("Mouse and keys"));
-    auto* find = new QLineEdit(this);
-    find->setObjectName("keysFind");
-    find->setPlaceholderText(tr("Find a key or what it does"));
+void showKeys(const Actions& actions, QWidget* parent) {
+    QDialog dialog(parent);
+    dialog.setObjectName("keysBox");
+    dialog.setWindowTitle(QObject::tr("Mouse and keys"));
+    auto* find = named(new QLineEdit(&dialog), "keysFind");
+    find->setPlaceholderText(QObject::tr("Find a key or what it does"));
     find->setClearButtonEnabled(true);
-    auto* table = new QTextBrowser(this);
-    table->setObjectName("keysTable");
+    auto* table = named(new QTextBrowser(&dialog), "keysTable");
     table->setHtml(actions.keyTable());
-    connect(find, &QLineEdit::textChanged, table,
-            [table, &actions](const QString& text) { table->setHtml(actions.keyTable(text)); });
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close, this);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
-    auto* column = new QVBoxLayout(this);
-    column->addWidget(find);
-    column->addWidget(table, 1);
-    column->addWidget(buttons);
-    const QSize screen = this->screen()->availableSize();
+    QObject::connect(find, &QLineEdit::textChanged, table,
+                     [table, &actions](const QString& text) { table->setHtml(actions.keyTable(text)); });
+    dialog.setLayout(columnOf({find, {table, 1}, closingButtons(dialog, QDialogButtonBox::Close)}));
+    const QSize screen = dialog.screen()->availableSize();
     const QSize most(screen.width() * 9 / 10, static_cast<int>(kMostOfTheScreen * screen.height()));
-    resize(QSize(kWidth, most.height()).boundedTo(most));
+    dialog.resize(QSize(kWidth, most.height()).boundedTo(most));
+    dialog.exec();
 }
 
 } // namespace pellucid::gui

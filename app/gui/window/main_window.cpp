@@ -13,7 +13,6 @@
 #include <QPointer>
 #include <QSettings>
 #include <QStatusBar>
-#include <QVBoxLayout>
 
 #include "controllers/controllers.h"
 #include "panels/panel.h"
@@ -23,6 +22,7 @@
 #include "view/picture_pair.h"
 #include "view/region_layer.h"
 #include "view/slice_layer.h"
+#include "widgets/layouts.h"
 #include "widgets/scrolled.h"
 #include "window/dock_space.h"
 #include "window/keys_dialog.h"
@@ -41,12 +41,8 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     setAcceptDrops(true);
     setDockNestingEnabled(true);
     auto* middle = new QWidget(this);
-    auto* column = new QVBoxLayout(middle);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(0);
-    column->addWidget(new NoticeBar(m_services->notices(), middle));
     m_row->addWidget(m_views, 1);
-    column->addLayout(m_row, 1);
+    middle->setLayout(inset(columnOf({new NoticeBar(m_services->notices(), middle), {m_row, 1}}, 0), {}));
     setCentralWidget(middle);
 
     m_view->overlay().add(std::make_unique<SliceLayer>());
@@ -60,16 +56,16 @@ MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     m_controllers->opening.updateRecentFiles();
     new StatusLine(*m_services, m_controllers->opening, m_controllers->saving, *m_view, *statusBar());
 
-    connect(m_view, &VolumeView::frameShown, this, [this] {
-        m_controllers->saving.setSeenSize({m_view->frame().width, m_view->frame().height});
-        m_controllers->refining.setViewSize({m_view->frame().width, m_view->frame().height});
-        m_controllers->player.pictureShown(m_view->frame().volume);
+    connect(m_view, &VolumeView::pictureShown, this, [this] {
+        const PictureInfo& picture = m_view->picture();
+        m_controllers->saving.setSeenSize({picture.width, picture.height});
+        m_controllers->refining.setViewSize({picture.width, picture.height});
+        m_controllers->player.pictureShown(picture.volume);
         Q_EMIT settledChanged();
     });
     connect(m_views, &ViewGrid::slicesShown, this, &MainWindow::settledChanged);
-    connect(m_view, &VolumeView::rendererFailed, this, [this](const Error& error) {
-        m_services->notices().add({QString::fromUtf8(error.what()), {}});
-    });
+    connect(m_view, &VolumeView::rendererFailed, this,
+            [this](const Error& error) { m_services->notices().add({error.what()}); });
     connect(m_services.get(), &Services::idleChanged, this, &MainWindow::settledChanged);
     connect(&m_services->store(), &SessionStore::historyChanged, this, &MainWindow::updateTitle);
     connect(&m_controllers->saving, &SaveController::sessionPathChanged, this, &MainWindow::updateTitle);
@@ -97,9 +93,9 @@ MainWindow::~MainWindow() {
 
 void MainWindow::addPanels() {
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-    Actions& actions = m_services->actions();
+    ActionMenu menu(m_services->actions(), tr("&View"));
+    menu.separate();
     auto* const space = new DockSpace(*this);
-    bool first = true;
     for (const PanelInfo& panel : panelRegistry()) {
         auto* dock = new QDockWidget(panel.title, this);
         dock->setObjectName(QString(panel.id) + "Dock");
@@ -116,23 +112,22 @@ void MainWindow::addPanels() {
         if (panel.below != nullptr) splitDockWidget(m_services->panels().dock(panel.below), dock, Qt::Vertical);
         if (panel.size > 0)
             resizeDocks({dock}, {panel.size}, panel.area == Qt::BottomDockWidgetArea ? Qt::Vertical : Qt::Horizontal);
-        actions.add(tr("&View"), QString(panel.id) + "Action", tr("%1 panel").arg(panel.title), panel.keys.toString(),
-                    panel.tip,
-                    [this, dock, content] {
-                        dock->setVisible(!isInFront(*dock)); // what lies behind a tab is not put away unseen
-                        if (dock->isHidden()) return;
-                        dock->raise();
-                        // As high as it likes, where it would be much lower; as wide as it must be, if it can.
-                        const int wanted = content->sizeHint().height(), least = content->leastOfContent().width();
-                        if (content->height() < wanted * 2 / 3) resizeDocks({dock}, {wanted}, Qt::Vertical);
-                        if (content->width() < least)
-                            resizeDocks({dock}, {std::min(least, width() / 2)}, Qt::Horizontal);
-                    },
-                    {},
-                    {.checked = [dock] { return isInFront(*dock); }, .separatorBefore = std::exchange(first, false)});
+        menu.addCheck(
+            QString(panel.id) + "Action", tr("%1 panel").arg(panel.title), panel.keys.toString(), panel.tip,
+            [dock] { return isInFront(*dock); }, [this, dock, content] { togglePanel(*dock, *content); });
         m_services->panels().add(panel.id, *dock);
     }
-    connect(&m_services->panels(), &Panels::visibilityChanged, &actions, &Actions::refresh);
+    connect(&m_services->panels(), &Panels::visibilityChanged, &m_services->actions(), &Actions::refresh);
+}
+
+void MainWindow::togglePanel(QDockWidget& dock, const DockScroll& content) {
+    dock.setVisible(!isInFront(dock)); // what lies behind a tab is not put away unseen
+    if (dock.isHidden()) return;
+    dock.raise();
+    // As high as it likes, where it would be much lower; as wide as it must be, if it can.
+    const int wanted = content.sizeHint().height(), least = content.leastOfContent().width();
+    if (content.height() < wanted * 2 / 3) resizeDocks({&dock}, {wanted}, Qt::Vertical);
+    if (content.width() < least) resizeDocks({&dock}, {std::min(least, width() / 2)}, Qt::Horizontal);
 }
 
 void MainWindow::addHelpActions() {
@@ -146,7 +141,7 @@ void MainWindow::addHelpActions() {
                          {volume, tr("Left drag of a clip handle; with Shift"), tr("cut; move the whole slab")},
                          {volume, tr("Esc"), tr("give up a drag")}});
     actions.add(tr("&Help"), "keysAction", tr("&Mouse and keys"), "F1", {},
-                [this] { KeysDialog(m_services->actions(), this).exec(); });
+                [this] { showKeys(m_services->actions(), this); });
     actions.add(tr("&Help"), "aboutAction", tr("&About Pellucid"), {}, {}, [this] {
         QMessageBox::about(this, tr("About Pellucid"),
                            tr("<b>Pellucid %1</b><br>The volume explorer that finds the transfer function for you.")
@@ -212,9 +207,8 @@ void MainWindow::dropEvent(QDropEvent* event) {
         if (url.isLocalFile()) paths << url.toLocalFile();
     if (paths.isEmpty()) return;
     event->acceptProposedAction();
-    // In a later turn: a dialog must not keep the program waiting that the file was dragged from.
-    QMetaObject::invokeMethod(
-        this, [this, paths] { m_controllers->opening.openPaths(paths); }, Qt::QueuedConnection);
+    // A dialog must not keep the program waiting that the file was dragged from.
+    later(this, [this, paths] { m_controllers->opening.openPaths(paths); });
 }
 
 } // namespace pellucid::gui

@@ -1,4 +1,4 @@
-// The frame: the picture in the middle, the panels around it, menus and status line. What happens, happens elsewhere.
+// The window: the picture in the middle, panels around it, menus and status line. The work is done elsewhere.
 #pragma once
 
 #include <memory>
@@ -13,6 +13,7 @@ class QHBoxLayout;
 
 namespace pellucid::gui {
 
+class DockScroll;
 struct Controllers;
 
 class MainWindow : public QMainWindow {
@@ -44,6 +45,7 @@ protected:
 
 private:
     void addPanels();
+    void togglePanel(QDockWidget& dock, const DockScroll& content);
     void addHelpActions();
     void updateTitle();
 

@@ -1,26 +1,19 @@
 #include "window/notice_bar.h"
 
-#include "widgets/named.h"
 #include <QHBoxLayout>
-#include <QLabel>
 #include <QPushButton>
-#include <QToolButton>
-#include <QVBoxLayout>
+
+#include "widgets/controls.h"
 
 namespace pellucid::gui {
 
 NoticeBar::NoticeBar(Notices& notices, QWidget* parent)
-    : QFrame(parent), m_notices(notices), m_label(new QLabel(this)), m_rows(new QVBoxLayout) {
+    : QFrame(parent), m_notices(notices), m_label(wrappedLabel("noticeText", this)), m_rows(new QVBoxLayout) {
     setObjectName("noticeBar");
-    m_label->setObjectName("noticeText");
-    m_label->setWordWrap(true);
     m_label->setTextFormat(Qt::PlainText);
     m_label->setTextInteractionFlags(Qt::TextSelectableByMouse);
-    auto* close = new QToolButton(this);
-    close->setObjectName("noticeClose");
-    close->setText(QString(QChar(0x2715)));
+    auto* close = named(toolButton(QChar(0x2715), this), "noticeClose", tr("Dismiss"));
     close->setAutoRaise(true);
-    close->setToolTip(tr("Dismiss"));
     connect(close, &QToolButton::clicked, &m_notices, &Notices::clear);
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(12, 5, 6, 5);
@@ -41,8 +34,8 @@ void NoticeBar::refresh() {
     for (const Notice& notice : m_notices.all()) {
         texts << notice.text;
         for (const Notice::Choice& choice : notice.choices) {
-            auto* button = new QPushButton(choice.text, this);
-            named(button, QStringLiteral("noticeChoice%1").arg(number++), notice.text);
+            auto* button =
+                named(new QPushButton(choice.text, this), QStringLiteral("noticeChoice%1").arg(number++), notice.text);
             connect(button, &QPushButton::clicked, &m_notices, [this, text = notice.text, act = choice.act] {
                 m_notices.remove(text);
                 act();

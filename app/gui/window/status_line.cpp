@@ -1,9 +1,6 @@
 #include "window/status_line.h"
 
-#include <QLabel>
-#include <QProgressBar>
 #include <QStatusBar>
-#include <QToolButton>
 
 #include "controllers/open_controller.h"
 #include "controllers/save_controller.h"
@@ -11,6 +8,7 @@
 #include "services/services.h"
 #include "view/volume_view.h"
 #include "volume/orientation.h"
+#include "widgets/controls.h"
 #include "widgets/number_text.h"
 
 namespace pellucid::gui {
@@ -23,21 +21,15 @@ constexpr int kMessageTime = 4000; // milliseconds
 StatusLine::StatusLine(Services& services, OpenController& opening, SaveController& saving, VolumeView& view,
                        QStatusBar& bar)
     : QObject(&bar), m_services(services), m_opening(opening), m_saving(saving), m_view(view), m_bar(bar),
-      m_volume(new QLabel(&bar)), m_camera(new QLabel(&bar)), m_renderer(new QLabel(&bar)), m_engine(new QLabel(&bar)),
-      m_background(new QLabel(&bar)), m_progress(new QProgressBar(&bar)), m_cancel(new QToolButton(&bar)) {
-    m_volume->setObjectName("volumeLabel");
-    m_camera->setObjectName("cameraLabel");
-    m_renderer->setObjectName("rendererLabel");
-    m_engine->setObjectName("engineLabel");
-    m_camera->setToolTip(tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
-                            "volume fits): what pellucid-cli takes as --view"));
-    m_engine->setToolTip(tr("What computes visibility and VWS"));
-    m_background->setObjectName("backgroundLabel");
-    m_progress->setObjectName("backgroundProgress");
+      m_volume(named(new QLabel(&bar), "volumeLabel")),
+      m_camera(named(new QLabel(&bar), "cameraLabel",
+                     tr("Direction of the eye: azimuth, elevation; magnification (at 1 the sphere around the\n"
+                        "volume fits): what pellucid-cli takes as --view"))),
+      m_renderer(named(new QLabel(&bar), "rendererLabel")),
+      m_engine(named(new QLabel(&bar), "engineLabel", tr("What computes visibility and VWS"))),
+      m_background(named(new QLabel(&bar), "backgroundLabel")), m_progress(progressBar("backgroundProgress", &bar)),
+      m_cancel(named(toolButton(tr("Cancel"), &bar), "backgroundCancel")) {
     m_progress->setMaximumSize(160, 14);
-    m_progress->setTextVisible(false);
-    m_cancel->setObjectName("backgroundCancel");
-    m_cancel->setText(tr("Cancel"));
     bar.addWidget(m_background);
     bar.addWidget(m_progress);
     bar.addWidget(m_cancel);
@@ -47,23 +39,24 @@ StatusLine::StatusLine(Services& services, OpenController& opening, SaveControll
         opening.cancel();
         saving.cancel();
     });
-    const auto showProgress = [this](double fraction) {
-        m_progress->setRange(0, 100);
-        m_progress->setValue(static_cast<int>(100 * fraction));
+    const auto watch = [this](auto& controller) {
+        using Controller = std::remove_reference_t<decltype(controller)>;
+        connect(&controller, &Controller::progress, this, [this](double fraction) {
+            m_progress->setRange(0, 100);
+            m_progress->setValue(static_cast<int>(100 * fraction));
+        });
+        connect(&controller, &Controller::cancelled, this,
+                [this] { m_bar.showMessage(tr("Cancelled"), kMessageTime); });
+        connect(&controller, &Controller::busyChanged, this, &StatusLine::followBackground);
     };
-    const auto sayCancelled = [this] { m_bar.showMessage(tr("Cancelled"), kMessageTime); };
-    connect(&opening, &OpenController::progress, this, showProgress);
-    connect(&saving, &SaveController::progress, this, showProgress);
-    connect(&opening, &OpenController::cancelled, this, sayCancelled);
-    connect(&saving, &SaveController::cancelled, this, sayCancelled);
-    connect(&opening, &OpenController::busyChanged, this, &StatusLine::followBackground);
-    connect(&saving, &SaveController::busyChanged, this, &StatusLine::followBackground);
+    watch(opening);
+    watch(saving);
     connect(&services, &Services::message, this,
             [this](const QString& text) { m_bar.showMessage(text, kMessageTime); });
     connect(&services.store(), &SessionStore::changed, this, &StatusLine::followScene);
     connect(&services.results(), &Results::changed, this, &StatusLine::followFigures);
     connect(&services, &Services::readOnlyChanged, this, &StatusLine::followFigures);
-    connect(&view, &VolumeView::frameShown, this, &StatusLine::followView);
+    connect(&view, &VolumeView::pictureShown, this, &StatusLine::followView);
     followBackground();
     followScene();
 }
@@ -103,30 +96,22 @@ void StatusLine::followView() {
     m_renderer->setToolTip(tr("What draws the picture, and how well: pixels, smallest distance of the samples along "
                               "a ray.\n%1")
                                .arg(m_view.rendererReason()));
-    const FrameInfo& frame = m_view.frame();
-    const QString quality = frame.complete              ? tr("step %1 d0").arg(stepText(frame.stepInD0))
-                            : frame.resolutionScale < 1 ? tr("coarse")
-                                                        : tr("being refined");
+    const PictureInfo& picture = m_view.picture();
+    const QString quality = picture.complete              ? tr("step %1 d0").arg(stepText(picture.stepInD0))
+                            : picture.resolutionScale < 1 ? tr("coarse")
+                                                          : tr("being refined");
     m_renderer->setText(
-        QStringLiteral("%1  %2×%3  %4").arg(m_view.rendererName()).arg(frame.width).arg(frame.height).arg(quality));
+        QStringLiteral("%1  %2×%3  %4").arg(m_view.rendererName()).arg(picture.width).arg(picture.height).arg(quality));
 }
 
 void StatusLine::followFigures() {
     const Results& results = m_services.results();
-    if (m_services.isReadOnly()) {
-        m_engine->setText(tr("optimizing"));
-        return;
-    }
-    switch (results.state()) {
-    case Results::State::Nothing:
-        return m_engine->clear();
-    case Results::State::Measuring:
-        return m_engine->setText(tr("measuring"));
-    case Results::State::Current:
-        return m_engine->setText(tr("measured: %1").arg(results.engineName()));
-    case Results::State::Failed:
-        return m_engine->setText(tr("not measured"));
-    }
+    const Results::State state = results.state();
+    m_engine->setText(m_services.isReadOnly()              ? tr("optimizing")
+                      : state == Results::State::Measuring ? tr("measuring")
+                      : state == Results::State::Current   ? tr("measured: %1").arg(results.engineName())
+                      : state == Results::State::Failed    ? tr("not measured")
+                                                           : QString());
 }
 
 void StatusLine::followBackground() {

@@ -1,11 +1,10 @@
 #include "window/welcome_card.h"
 
-#include "widgets/named.h"
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QPushButton>
 #include <QSettings>
-#include <QVBoxLayout>
+
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
 namespace {
@@ -19,29 +18,17 @@ WelcomeCard::WelcomeCard(QWidget* parent) : QFrame(parent) {
     setObjectName("welcomeCard");
     setAutoFillBackground(true);
     setFrameShape(QFrame::StyledPanel);
-    auto* title = new QLabel(tr("<b>This is a sample.</b> Three things to try:"), this);
-    title->setObjectName("welcomeTitle");
-    title->setWordWrap(true);
-    auto* things = new QLabel(tr("<ul style='margin-left: 14px; -qt-list-indent: 0;'>"
-                                 "<li>Drop a file of your own onto the window, or press Ctrl+O.</li>"
-                                 "<li>Click on a thing in the picture: what is it, and how much of it is seen?</li>"
-                                 "<li>Drag a target in the table of features, then press Optimize: the picture shows "
-                                 "that much of it.</li></ul>"),
-                              this);
-    things->setObjectName("welcomeThings");
-    things->setWordWrap(true);
-    auto* close = new QPushButton(tr("Got it"), this);
-    named(close, "welcomeClose", tr("This card does not come again"));
+    QLabel* title = wrappedLabel("welcomeTitle", this);
+    title->setText(tr("<b>This is a sample.</b> Three things to try:"));
+    QLabel* things = wrappedLabel("welcomeThings", this);
+    things->setText(tr("<ul style='margin-left: 14px; -qt-list-indent: 0;'>"
+                       "<li>Drop a file of your own onto the window, or press Ctrl+O.</li>"
+                       "<li>Click on a thing in the picture: what is it, and how much of it is seen?</li>"
+                       "<li>Drag a target in the table of features, then press Optimize: the picture shows that much "
+                       "of it.</li></ul>"));
+    auto* close = named(new QPushButton(tr("Got it"), this), "welcomeClose", tr("This card will not be shown again"));
     connect(close, &QPushButton::clicked, this, &WelcomeCard::dismiss);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(14, 12, 14, 12);
-    column->addWidget(title);
-    column->addWidget(things);
-    auto* row = new QHBoxLayout;
-    row->addStretch(1);
-    row->addWidget(close);
-    column->addLayout(row);
-    column->addStretch(1);
+    setLayout(inset(columnOf({title, things, rowOf({Cell::rest(), close}), Cell::rest()}), {14, 12, 14, 12}));
     setFixedWidth(kWidth);
 }
 

@@ -1,0 +1,34 @@
+// Asking for files, beginning in the folder of the latest ones of their kind.
+#pragma once
+
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QSettings>
+
+namespace pellucid::gui {
+
+/// The folder kept under `key`, such as "volumeFolder"; empty before the first.
+inline QString keptFolder(const QString& key) { return QSettings().value(key).toString(); }
+inline void keepFolderOf(const QString& key, const QString& path) {
+    QSettings().setValue(key, QFileInfo(path).absolutePath());
+}
+
+/// Asks where to write a file, and offers `name`, or a path. What does not end in `ending` gets `suffix`. Empty: the
+/// user gave up.
+inline QString askSavePath(QWidget* parent, const QString& title, const QString& key, const QString& name,
+                           const QString& filter, const QString& ending, const QString& suffix) {
+    QString path = QFileDialog::getSaveFileName(parent, title, QDir(keptFolder(key)).filePath(name), filter);
+    if (path.isEmpty()) return {};
+    if (!path.endsWith(ending, Qt::CaseInsensitive)) path += suffix;
+    keepFolderOf(key, path);
+    return path;
+}
+
+/// Asks for files to read; empty: the user gave up.
+inline QStringList askOpenPaths(QWidget* parent, const QString& title, const QString& key, const QString& filter) {
+    const QStringList paths = QFileDialog::getOpenFileNames(parent, title, keptFolder(key), filter);
+    if (!paths.isEmpty()) keepFolderOf(key, paths.front());
+    return paths;
+}
+
+} // namespace pellucid::gui
