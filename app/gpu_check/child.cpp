@@ -96,10 +96,12 @@ PartResult runPart(const std::vector<std::string>& arguments, double limitSecond
         if (!answer.is_discarded()) result.answer = std::move(answer);
     }
     result.skipped = lineAfter(text, kSkipped).value_or("");
-    if (!ended)
-        result.problem = "took longer than " + std::to_string(static_cast<int>(limitSeconds)) + " s and was ended";
-    else if (!result.answer)
-        result.problem = endOf(status);
+    if (result.answer)
+        result.problem = result.answer->value("problem", std::string());
+    else
+        result.problem =
+            ended ? endOf(status)
+                  : "took longer than " + std::to_string(static_cast<int>(limitSeconds)) + " s and was ended";
     result.seconds = watch.seconds();
     return result;
 }

@@ -13,7 +13,7 @@ namespace pellucid::gpu_check {
 struct PartResult {
     std::optional<Json> answer; ///< what the part said by answerPart()
     std::string skipped;        ///< the reason where it printed "SKIPPED: reason"
-    std::string problem;        ///< how it ended where there is no answer: "ended by signal 11 (Segmentation fault)"
+    std::string problem;        ///< of the answer, or without one how it ended: "ended by signal 11 (…)"; empty: none
     double seconds = 0;
 };
 

@@ -121,12 +121,8 @@ private:
                  m_gl["platform"].get<std::string>() + (m_gl["software"].get<bool>() ? " (no GPU)" : ""));
             return;
         }
-        m_glProblem = problemOf(result);
+        m_glProblem = result.problem;
         tell("No OpenGL: " + m_glProblem);
-    }
-    /// Why there is no result; empty where there is.
-    static std::string problemOf(const PartResult& result) {
-        return result.answer ? result.answer->value("problem", std::string()) : result.problem;
     }
 
     void tests() {
@@ -135,11 +131,7 @@ private:
         if (m_options.quick) std::erase_if(all, [](const GlTest& test) { return test.slow; });
         for (std::size_t n = 0; n < all.size(); ++n) {
             const PartResult result = runPart({"--part", "test", "--name", all[n].name}, kTestSeconds);
-            Json failures = Json::array();
-            if (const std::string problem = problemOf(result); !problem.empty())
-                failures.push_back(problem);
-            else
-                failures = (*result.answer)["failures"];
+            const Json failures = result.problem.empty() ? (*result.answer)["failures"] : Json::array({result.problem});
             const bool passed = failures.empty(), skipped = passed && !result.skipped.empty();
             ++(!passed ? m_failed : skipped ? m_skipped : m_passed);
             Json test{{"name", all[n].name}, {"passed", passed}, {"seconds", result.seconds}, {"failures", failures}};
@@ -175,9 +167,9 @@ private:
     }
 
     void addRows(const PartResult& result, const std::string& what) {
-        if (const std::string problem = problemOf(result); !problem.empty()) {
+        if (!result.problem.empty()) {
             ++m_broken;
-            m_notices.push_back("the rows of " + what + " are missing: " + problem);
+            m_notices.push_back("the rows of " + what + " are missing: " + result.problem);
             tell("rows  " + m_notices.back().get<std::string>());
             return;
         }

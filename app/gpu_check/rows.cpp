@@ -68,9 +68,10 @@ std::vector<int> benchThreads() {
 Json measureRows(const RowsOptions& o) {
     BenchOptions options;
     options.threads = benchThreads();
-    if (o.once) options.repeat = 1;
     options.engine = o.engine;
-    if (!o.once) {
+    if (o.once) {
+        options.repeat = 1;
+    } else {
         options.pictures.clear();
         for (const auto& [width, height] : {std::pair{512, 512}, {1920, 1080}})
             for (const bool lit : {false, true}) {
@@ -81,11 +82,9 @@ Json measureRows(const RowsOptions& o) {
                 options.pictures.push_back(picture);
             }
     }
-    const std::size_t slash = o.volumes.find('/');
-    const std::vector<BenchCase> cases =
-        o.volumes.starts_with("cubes") ? cubes(o) : knee(o.volumes.substr(slash + 1), o);
     BenchResults results;
-    bench(cases, options, {}, results);
+    bench(o.volumes.starts_with("cubes") ? cubes(o) : knee(o.volumes.substr(o.volumes.find('/') + 1), o), options, {},
+          results);
     Json rows = Json::array();
     for (const BenchResult& row : results.rows) {
         const auto at = std::find(options.threads.begin(), options.threads.end(), row.threads);
