@@ -17,19 +17,15 @@ QPolygonF polygonOf(const std::vector<Vec2>& points) {
 }
 
 QPen pen(const Rgb& rgb, double alpha, double width) {
-    QColor color = colorFromRgb(rgb);
-    color.setAlphaF(static_cast<float>(alpha));
-    return {color, width, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin};
+    return {translucent(colorFromRgb(rgb), alpha), width, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin};
 }
 
 } // namespace
 
 void drawMark(QPainter& painter, const Mark& mark) {
     if (mark.kind == Mark::Kind::Area) {
-        QColor color = colorFromRgb(mark.color);
-        color.setAlphaF(static_cast<float>(mark.alpha));
         painter.setPen(Qt::NoPen);
-        painter.setBrush(color);
+        painter.setBrush(translucent(colorFromRgb(mark.color), mark.alpha));
         painter.drawConvexPolygon(polygonOf(mark.points));
         return;
     }

@@ -6,6 +6,8 @@ namespace pellucid::gui {
 
 QString numberText(double value, double span) { return QString::fromStdString(pellucid::numberText(value, span)); }
 
+QString shortNumber(double value) { return QString::number(value, 'g', 3).replace('-', QChar(0x2212)); }
+
 QString rangeText(const ValueRange& range) {
     const double span = range.hi - range.lo;
     return QStringLiteral("%1 – %2").arg(numberText(range.lo, span), numberText(range.hi, span));

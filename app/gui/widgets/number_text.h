@@ -11,6 +11,9 @@ namespace pellucid::gui {
 /// As pellucid::numberText().
 QString numberText(double value, double span);
 
+/// With three digits that count: "0.0123".
+QString shortNumber(double value);
+
 /// "-1024 – 2986": both ends with as many digits as the range needs.
 QString rangeText(const ValueRange& range);
 

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QDoubleSpinBox>
 #include <QEvent>
-#include <QHBoxLayout>
 #include <QSignalBlocker>
 #include <QSlider>
+
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
 namespace {
@@ -17,47 +18,36 @@ constexpr int kSteps = 1000;
 }
 
 OpacityEditor::OpacityEditor(QWidget* parent)
-    : QWidget(parent), m_slider(new QSlider(Qt::Horizontal, this)), m_spin(new QDoubleSpinBox(this)) {
+    : QWidget(parent), m_slider(named(new QSlider(Qt::Horizontal, this), "opacitySlider")),
+      m_spin(named(new QDoubleSpinBox(this), "opacitySpin")) {
     setObjectName("opacityEditor");
     setAutoFillBackground(true);
-    m_slider->setObjectName("opacitySlider");
     m_slider->setRange(0, kSteps);
     m_slider->setSingleStep(10);
     m_slider->setPageStep(50);
     m_slider->setMinimumWidth(60);
-    m_spin->setObjectName("opacitySpin");
-    m_spin->setRange(0, 1);
-    m_spin->setDecimals(4);
-    m_spin->setSingleStep(0.01);
-    m_spin->setKeyboardTracking(false);
+    withLook(m_spin, {.decimals = 4, .step = 0.01});
     m_spin->setFrame(false);
     m_spin->setButtonSymbols(QAbstractSpinBox::NoButtons);
     m_spin->setFixedWidth(QFontMetrics(font()).horizontalAdvance("0.0000") + 14);
     for (QWidget* widget : std::initializer_list<QWidget*>{m_slider, m_spin}) {
         widget->setToolTip(tr("Highest opacity of the feature: opacity of a path one voxel long (d0).\n"
                               "The slider is finer near zero."));
-    }
-    // The wheel scrolls the table; it must not change an opacity in passing.
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_slider, m_spin}) {
+        // The wheel scrolls the table; it must not change an opacity in passing.
         widget->setFocusPolicy(Qt::StrongFocus);
         widget->installEventFilter(this);
     }
     setFocusProxy(m_slider);
-    auto* row = new QHBoxLayout(this);
-    row->setContentsMargins(4, 0, 2, 0);
-    row->setSpacing(4);
-    row->addWidget(m_slider, 1);
-    row->addWidget(m_spin);
+    setLayout(inset(rowOf({{m_slider, 1}, m_spin}, 4), {4, 0, 2, 0}));
     connect(m_slider, &QSlider::valueChanged, this, [this](int value) {
         const double root = static_cast<double>(value) / kSteps;
         m_opacity = root * root;
         const QSignalBlocker blocker(m_spin);
         m_spin->setValue(m_opacity);
-        if (m_slider->isSliderDown()) {
+        if (m_slider->isSliderDown())
             Q_EMIT dragged(m_opacity);
-        } else {
+        else
             Q_EMIT edited(m_opacity);
-        }
     });
     connect(m_slider, &QSlider::sliderReleased, this, &OpacityEditor::released);
     connect(m_spin, &QDoubleSpinBox::valueChanged, this, [this](double value) {

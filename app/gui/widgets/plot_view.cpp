@@ -37,22 +37,9 @@ PlotPage pageOf(const QSizeF& size, double fontSize) {
 }
 
 QColor colorOf(PlotInk ink, const Rgb& own, const PlotColors& colors) {
-    switch (ink) {
-    case PlotInk::Text:
-        return colors.text;
-    case PlotInk::Faint:
-        return colors.faint;
-    case PlotInk::Grid:
-        return colors.grid;
-    case PlotInk::Shade:
-        return colors.shade;
-    case PlotInk::Rim:
-        return colors.rim;
-    case PlotInk::Ground:
-        return colors.ground;
-    case PlotInk::Own:
-        break;
-    }
+    static constexpr QColor PlotColors::*kInks[] = {&PlotColors::text,  &PlotColors::faint, &PlotColors::grid,
+                                                    &PlotColors::shade, &PlotColors::rim,   &PlotColors::ground};
+    if (ink != PlotInk::Own) return colors.*kInks[static_cast<std::size_t>(ink)];
     return seenOn(colors.ground, colorFromRgb(own));
 }
 
@@ -73,10 +60,12 @@ void paintText(QPainter& painter, const PlotText& t, const PlotColors& colors) {
 } // namespace
 
 PlotColors themePlotColors() {
-    QColor shade = theme::kHistogram, rim = theme::kFaint;
-    shade.setAlphaF(0.35f);
-    rim.setAlphaF(0.7f);
-    return {theme::kText, theme::kFaint, theme::kHistogram, shade, rim, theme::kPanel};
+    return {theme::kText,
+            theme::kFaint,
+            theme::kHistogram,
+            translucent(theme::kHistogram, 0.35),
+            translucent(theme::kFaint, 0.7),
+            theme::kPanel};
 }
 
 PlotColors paperPlotColors() {
@@ -143,7 +132,7 @@ PlotView::PlotView(QWidget* parent) : QWidget(parent) { setMouseTracking(true); 
 
 PlotPage PlotView::page() const { return pageOf(size(), std::max(9, fontInfo().pixelSize() - 1)); }
 
-PlotFrame PlotView::frame() const { return frameOf(m_plot, page()); }
+PlotBox PlotView::box() const { return boxOf(m_plot, page()); }
 
 void PlotView::setPlot(Plot plot) {
     if (plot == m_plot) return;
@@ -158,13 +147,13 @@ void PlotView::paintEvent(QPaintEvent*) {
     painter.fillRect(rect(), colors.ground);
     paintPlot(painter, m_plot, page(), colors);
     if (!m_hovered) return;
-    const PlotFrame f = frame();
+    const PlotBox f = box();
     painter.setPen(QPen(theme::kAccent, 1));
     painter.drawLine(QPointF(f.xOf(*m_hovered), f.top), QPointF(f.xOf(*m_hovered), f.bottom));
 }
 
 void PlotView::readAt(double pixel) {
-    const PlotFrame f = frame();
+    const PlotBox f = box();
     double x = f.valueAtX(pixel);
     if (m_plot.x.whole) x = std::round(x);
     m_hovered = x;
@@ -190,21 +179,21 @@ void PlotView::mouseMoveEvent(QMouseEvent* event) {
     event->accept();
     const QPointF at = event->position();
     readAt(at.x());
-    setCursor(hitAt(m_plot, frame(), {at.x(), at.y()}, kReach) ? Qt::PointingHandCursor : Qt::ArrowCursor);
+    setCursor(hitAt(m_plot, box(), {at.x(), at.y()}, kReach) ? Qt::PointingHandCursor : Qt::ArrowCursor);
 }
 
 void PlotView::mousePressEvent(QMouseEvent* event) {
     event->accept();
     if (event->button() != Qt::LeftButton) return;
     const QPointF at = event->position();
-    if (const auto hit = hitAt(m_plot, frame(), {at.x(), at.y()}, kReach))
+    if (const auto hit = hitAt(m_plot, box(), {at.x(), at.y()}, kReach))
         Q_EMIT dotClicked(static_cast<int>(hit->series), static_cast<int>(hit->point));
 }
 
 void PlotView::mouseDoubleClickEvent(QMouseEvent* event) {
     event->accept();
     const QPointF at = event->position();
-    if (event->button() == Qt::LeftButton && !hitAt(m_plot, frame(), {at.x(), at.y()}, kReach)) Q_EMIT exportWanted();
+    if (event->button() == Qt::LeftButton && !hitAt(m_plot, box(), {at.x(), at.y()}, kReach)) Q_EMIT exportWanted();
 }
 
 void PlotView::leaveEvent(QEvent*) {

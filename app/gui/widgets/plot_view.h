@@ -35,7 +35,7 @@ public:
 
     void setPlot(Plot plot);
     const Plot& plot() const { return m_plot; }
-    PlotFrame frame() const; ///< where its axes are, in the widget's pixels
+    PlotBox box() const; ///< where its axes are, in the widget's pixels
 
     QSize sizeHint() const override { return {320, 200}; }
     QSize minimumSizeHint() const override { return {160, 110}; }

@@ -1,24 +1,12 @@
-// A panel that may be lower than what it holds.
+// The content of a dock, which may be larger than the dock.
 #pragma once
 
 #include <QScrollArea>
-#include <QVBoxLayout>
 
 namespace pellucid::gui {
 
-/// Fills `panel`, which has no layout yet, with `content`, scrolled where there is no room for all of it.
-inline void fillScrolled(QWidget* panel, QWidget* content) {
-    auto* scroll = new QScrollArea(panel);
-    scroll->setWidget(content);
-    scroll->setWidgetResizable(true);
-    scroll->setFrameShape(QFrame::NoFrame);
-    auto* column = new QVBoxLayout(panel);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->addWidget(scroll);
-}
-
-/// Around the content of a dock, which may be larger than it: a window of 640 x 400 has a dock on the right, one at the
-/// bottom, and the picture.
+/// Scrolls what there is no room for: a window of 640 x 400 has a dock on the right, one at the bottom, and the
+/// picture.
 class DockScroll : public QScrollArea {
 public:
     DockScroll(QWidget* content, Qt::DockWidgetArea area)

@@ -17,51 +17,23 @@
 namespace pellucid::gui {
 namespace {
 
-struct Colors {
-    QRgb window, panel, raised, title, line, text, faint, accent, track, histogram, curve, knob, hover, falls, disabled,
-        shadow;
-    QRgb notice, noticeLine, noticeText;
+// Those that only this file needs.
+QColor s_disabled, s_shadow, s_notice, s_noticeLine, s_noticeText;
+
+struct ThemeColor {
+    QColor& color;
+    QRgb dark, light;
 };
-
-constexpr Colors kDark{.window = 0xff262729,
-                       .panel = 0xff1c1d1f,
-                       .raised = 0xff35373a,
-                       .title = 0xff2e3033,
-                       .line = 0xff45474b,
-                       .text = 0xffe4e5e7,
-                       .faint = 0xffa3a6ac,
-                       .accent = 0xff4c9aff,
-                       .track = 0xff1c1d1f,
-                       .histogram = 0xff44474c,
-                       .curve = 0xffd8dade,
-                       .knob = 0xffffffff,
-                       .hover = 0x0effffff,
-                       .falls = 0xffd97a2b,
-                       .disabled = 0xff74767a,
-                       .shadow = 0xff0a0a0b,
-                       .notice = 0xff4a3f22,
-                       .noticeLine = 0xff6b5a2d,
-                       .noticeText = 0xfff2e3b8};
-
-constexpr Colors kLight{.window = 0xfff1f2f3,
-                        .panel = 0xffffffff,
-                        .raised = 0xffe6e8ea,
-                        .title = 0xffe0e2e5,
-                        .line = 0xffb4b8be,
-                        .text = 0xff1b1d20,
-                        .faint = 0xff585c62,
-                        .accent = 0xff1667c9,
-                        .track = 0xffcdd0d5, // white features are seen on it
-                        .histogram = 0xffcdd1d6,
-                        .curve = 0xff2b2e33,
-                        .knob = 0xff3a3d42,
-                        .hover = 0x10000000,
-                        .falls = 0xffb8651b,
-                        .disabled = 0xff83868c,
-                        .shadow = 0xff8a8d92,
-                        .notice = 0xfffff3cf,
-                        .noticeLine = 0xffdfc878,
-                        .noticeText = 0xff4d3c05};
+const ThemeColor kColors[] = {{theme::kWindow, 0xff262729, 0xfff1f2f3},    {theme::kPanel, 0xff1c1d1f, 0xffffffff},
+                              {theme::kRaised, 0xff35373a, 0xffe6e8ea},    {theme::kTitle, 0xff2e3033, 0xffe0e2e5},
+                              {theme::kLine, 0xff45474b, 0xffb4b8be},      {theme::kText, 0xffe4e5e7, 0xff1b1d20},
+                              {theme::kFaint, 0xffa3a6ac, 0xff585c62},     {theme::kAccent, 0xff4c9aff, 0xff1667c9},
+                              {theme::kTrack, 0xff1c1d1f, 0xffcdd0d5}, // white features are seen on the light one
+                              {theme::kHistogram, 0xff44474c, 0xffcdd1d6}, {theme::kCurve, 0xffd8dade, 0xff2b2e33},
+                              {theme::kKnob, 0xffffffff, 0xff3a3d42},      {theme::kHover, 0x0effffff, 0x10000000},
+                              {theme::kFalls, 0xffd97a2b, 0xffb8651b},     {s_disabled, 0xff74767a, 0xff83868c},
+                              {s_shadow, 0xff0a0a0b, 0xff8a8d92},          {s_notice, 0xff4a3f22, 0xfffff3cf},
+                              {s_noticeLine, 0xff6b5a2d, 0xffdfc878},      {s_noticeText, 0xfff2e3b8, 0xff4d3c05}};
 
 Theme s_applied = Theme::Dark;
 
@@ -127,21 +99,67 @@ public:
     void drawControl(ControlElement element, const QStyleOption* option, QPainter* painter,
                      const QWidget* widget) const override {
         const bool on = option->state.testFlag(State_On) && option->state.testFlag(State_Enabled);
-        if (const auto* button = qstyleoption_cast<const QStyleOptionToolButton*>(option);
-            on && button != nullptr && element == CE_ToolButtonLabel) {
-            QStyleOptionToolButton lit(*button);
+        const auto drawLit = [&](auto lit) {
             lit.palette.setColor(QPalette::ButtonText, theme::kPanel);
-            return QProxyStyle::drawControl(element, &lit, painter, widget);
-        }
-        if (const auto* button = qstyleoption_cast<const QStyleOptionButton*>(option);
-            on && button != nullptr && element == CE_PushButtonLabel) {
-            QStyleOptionButton lit(*button);
-            lit.palette.setColor(QPalette::ButtonText, theme::kPanel);
-            return QProxyStyle::drawControl(element, &lit, painter, widget);
-        }
+            QProxyStyle::drawControl(element, &lit, painter, widget);
+        };
+        if (const auto* tool = qstyleoption_cast<const QStyleOptionToolButton*>(option);
+            on && tool != nullptr && element == CE_ToolButtonLabel)
+            return drawLit(*tool);
+        if (const auto* push = qstyleoption_cast<const QStyleOptionButton*>(option);
+            on && push != nullptr && element == CE_PushButtonLabel)
+            return drawLit(*push);
         QProxyStyle::drawControl(element, option, painter, widget);
     }
 };
+
+QPalette paletteOf(bool light) {
+    const QColor highlight = light ? theme::kAccent : theme::kAccent.darker(130); // under white
+    const std::pair<QPalette::ColorRole, QColor> roles[] = {
+        {QPalette::Window, theme::kWindow},
+        {QPalette::WindowText, theme::kText},
+        {QPalette::Base, theme::kPanel},
+        {QPalette::AlternateBase, theme::kWindow},
+        {QPalette::ToolTipBase, theme::kRaised},
+        {QPalette::ToolTipText, theme::kText},
+        {QPalette::PlaceholderText, theme::kFaint},
+        {QPalette::Text, theme::kText},
+        {QPalette::Button, theme::kRaised},
+        {QPalette::ButtonText, theme::kText},
+        {QPalette::BrightText, Qt::white},
+        {QPalette::Link, theme::kAccent},
+        {QPalette::Highlight, highlight},
+        {QPalette::HighlightedText, Qt::white},
+        {QPalette::Light, theme::kRaised.lighter(light ? 106 : 115)},
+        {QPalette::Midlight, theme::kRaised},
+        {QPalette::Mid, theme::kLine},
+        {QPalette::Dark, light ? theme::kLine.darker(115) : theme::kPanel.darker(130)},
+        {QPalette::Shadow, s_shadow}};
+    QPalette palette;
+    for (const auto& [role, color] : roles) palette.setColor(role, color);
+    for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
+        palette.setColor(QPalette::Disabled, role, s_disabled);
+    palette.setColor(QPalette::Disabled, QPalette::Highlight, theme::kLine);
+    return palette;
+}
+
+QString styleSheetOf(bool light) {
+    const QColor& separator = light ? theme::kTitle : theme::kPanel;
+    return QStringLiteral("QToolTip { color: %1; background: %2; border: 1px solid %3; padding: 3px; }"
+                          "QDockWidget::title { background: %4; padding: 5px 8px; }"
+                          "QMainWindow::separator { background: %5; width: 4px; height: 4px; }"
+                          "QMainWindow::separator:hover { background: %6; }")
+               .arg(theme::kText.name(), theme::kRaised.name(), theme::kLine.name(), theme::kTitle.name(),
+                    separator.name(), theme::kAccent.name()) +
+           QStringLiteral("QStatusBar::item { border: none; }"
+                          "QStatusBar QLabel { color: %1; padding: 0 6px; }"
+                          "#noticeBar { background: %2; border: none; border-bottom: 1px solid %3; }"
+                          "#noticeBar QLabel { color: %4; }"
+                          "QHeaderView::section { background: %5; color: %1; border: none; padding: 3px 6px; }"
+                          "QTableView { border: none; gridline-color: %5; }")
+               .arg(theme::kFaint.name(), s_notice.name(), s_noticeLine.name(), s_noticeText.name(),
+                    theme::kTitle.name());
+}
 
 } // namespace
 
@@ -149,23 +167,7 @@ void applyTheme(QApplication& application, Theme theme) {
     const bool systemLight = systemIsLight(); // before the first palette of ours
     s_applied = theme;
     const bool light = theme == Theme::Light || (theme == Theme::System && systemLight);
-    const Colors& c = light ? kLight : kDark;
-    using Pair = std::pair<QColor&, QRgb>;
-    for (const auto& [color, value] : {Pair{theme::kWindow, c.window},
-                                       {theme::kPanel, c.panel},
-                                       {theme::kRaised, c.raised},
-                                       {theme::kTitle, c.title},
-                                       {theme::kLine, c.line},
-                                       {theme::kText, c.text},
-                                       {theme::kFaint, c.faint},
-                                       {theme::kAccent, c.accent},
-                                       {theme::kTrack, c.track},
-                                       {theme::kHistogram, c.histogram},
-                                       {theme::kCurve, c.curve},
-                                       {theme::kKnob, c.knob},
-                                       {theme::kHover, c.hover},
-                                       {theme::kFalls, c.falls}})
-        color = QColor::fromRgba(value);
+    for (const ThemeColor& c : kColors) c.color = QColor::fromRgba(light ? c.light : c.dark);
 
     static bool s_styled = false;
     if (!std::exchange(s_styled, true)) {
@@ -176,46 +178,8 @@ void applyTheme(QApplication& application, Theme theme) {
         });
 #endif
     }
-    const QColor highlight = light ? theme::kAccent : theme::kAccent.darker(130); // under white
-    QPalette p;
-    p.setColor(QPalette::Window, theme::kWindow);
-    p.setColor(QPalette::WindowText, theme::kText);
-    p.setColor(QPalette::Base, theme::kPanel);
-    p.setColor(QPalette::AlternateBase, theme::kWindow);
-    p.setColor(QPalette::ToolTipBase, theme::kRaised);
-    p.setColor(QPalette::ToolTipText, theme::kText);
-    p.setColor(QPalette::PlaceholderText, theme::kFaint);
-    p.setColor(QPalette::Text, theme::kText);
-    p.setColor(QPalette::Button, theme::kRaised);
-    p.setColor(QPalette::ButtonText, theme::kText);
-    p.setColor(QPalette::BrightText, Qt::white);
-    p.setColor(QPalette::Link, theme::kAccent);
-    p.setColor(QPalette::Highlight, highlight);
-    p.setColor(QPalette::HighlightedText, Qt::white);
-    p.setColor(QPalette::Light, theme::kRaised.lighter(light ? 106 : 115));
-    p.setColor(QPalette::Midlight, theme::kRaised);
-    p.setColor(QPalette::Mid, theme::kLine);
-    p.setColor(QPalette::Dark, light ? theme::kLine.darker(115) : theme::kPanel.darker(130));
-    p.setColor(QPalette::Shadow, QColor::fromRgba(c.shadow));
-    for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText}) {
-        p.setColor(QPalette::Disabled, role, QColor::fromRgba(c.disabled));
-    }
-    p.setColor(QPalette::Disabled, QPalette::Highlight, theme::kLine);
-    QApplication::setPalette(p);
-    const auto hex = [](QRgb value) { return QColor::fromRgb(value).name(); };
-    application.setStyleSheet(
-        QStringLiteral("QToolTip { color: %1; background: %2; border: 1px solid %3; padding: 3px; }"
-                       "QDockWidget::title { background: %4; padding: 5px 8px; }"
-                       "QMainWindow::separator { background: %5; width: 4px; height: 4px; }"
-                       "QMainWindow::separator:hover { background: %6; }")
-            .arg(hex(c.text), hex(c.raised), hex(c.line), hex(c.title), hex(light ? c.title : c.panel), hex(c.accent)) +
-        QStringLiteral("QStatusBar::item { border: none; }"
-                       "QStatusBar QLabel { color: %1; padding: 0 6px; }"
-                       "#noticeBar { background: %2; border: none; border-bottom: 1px solid %3; }"
-                       "#noticeBar QLabel { color: %4; }"
-                       "QHeaderView::section { background: %5; color: %1; border: none; padding: 3px 6px; }"
-                       "QTableView { border: none; gridline-color: %5; }")
-            .arg(hex(c.faint), hex(c.notice), hex(c.noticeLine), hex(c.noticeText), hex(c.title)));
+    QApplication::setPalette(paletteOf(light));
+    application.setStyleSheet(styleSheetOf(light));
 }
 
 Theme appliedTheme() { return s_applied; }
@@ -229,17 +193,18 @@ QColor seenOn(const QColor& ground, const QColor& color, double least) {
     if (contrast(color, ground) >= least) return color;
     // The shortest way to black or white, whichever stands out from the ground.
     const QColor end = luminance(ground) > 0.18 ? Qt::black : Qt::white;
-    const auto toward = [&](float t) {
-        return QColor::fromRgbF(color.redF() + t * (end.redF() - color.redF()),
-                                color.greenF() + t * (end.greenF() - color.greenF()),
-                                color.blueF() + t * (end.blueF() - color.blueF()), color.alphaF());
-    };
-    float low = 0, high = 1;
+    double low = 0, high = 1;
     for (int i = 0; i < 12; ++i) {
-        const float middle = (low + high) / 2;
-        (contrast(toward(middle), ground) >= least ? high : low) = middle;
+        const double middle = (low + high) / 2;
+        (contrast(between(color, end, middle), ground) >= least ? high : low) = middle;
     }
-    return toward(high);
+    return between(color, end, high);
+}
+
+QColor between(const QColor& a, const QColor& b, double share) {
+    const auto t = static_cast<float>(share);
+    return QColor::fromRgbF(a.redF() + t * (b.redF() - a.redF()), a.greenF() + t * (b.greenF() - a.greenF()),
+                            a.blueF() + t * (b.blueF() - a.blueF()), a.alphaF());
 }
 
 void makeFaint(QLabel& label) { label.setForegroundRole(QPalette::PlaceholderText); }

@@ -18,8 +18,8 @@ inline constexpr auto pellucid::kNamesOf<pellucid::gui::Theme> = pellucid::enumN
                                                                                      "system");
 namespace pellucid::gui {
 
-/// The colours of the present theme: who paints reads them when he paints. Those of marks over the picture belong to no
-/// theme, since the background of the picture is the user's.
+/// The colours of the present theme, to be read at each painting. Marks over the picture have the same in every theme,
+/// since the background of the picture is the user's.
 namespace theme {
 inline QColor kWindow, kPanel; ///< behind controls; behind what is painted or typed
 inline QColor kRaised;         ///< buttons
@@ -37,7 +37,6 @@ inline const QColor kMark{0xe4, 0xe5, 0xe7}, kMarkAccent{0x4c, 0x9a, 0xff}; ///<
 /// Style, palette and colours. At any time again: every widget is painted anew, with QEvent::PaletteChange before.
 void applyTheme(QApplication& application, Theme theme = Theme::Dark);
 Theme appliedTheme();
-/// Words of settings and command lines.
 
 /// Of relative luminances, WCAG 2.1: from 1 (the same) to 21.
 double contrast(const QColor& a, const QColor& b);
@@ -45,6 +44,14 @@ inline constexpr double kTextContrast = 4.5, kMarkContrast = 3; ///< least of te
 /// `color`, or the nearest darker or lighter one of its hue that has `least` of contrast to `ground`: for colours that
 /// the user or the data choose, such as those of features.
 QColor seenOn(const QColor& ground, const QColor& color, double least = kMarkContrast);
+
+/// From `a`, where `share` is 0, to `b`, where it is 1; as translucent as `a`.
+QColor between(const QColor& a, const QColor& b, double share);
+
+inline QColor translucent(QColor color, double alpha) {
+    color.setAlphaF(static_cast<float>(alpha));
+    return color;
+}
 
 /// For a remark beside what matters: the label's text is kFaint in every theme.
 void makeFaint(QLabel& label);
