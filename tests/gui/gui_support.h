@@ -9,7 +9,7 @@
 
 #include "controllers/controllers.h"
 #include "window/main_window.h"
-#include "panels/features_panel.h"
+#include "panels/features_model.h"
 #include "panels/target_bars.h"
 #include "store/edits.h"
 #include "tf/tf_canvas.h"

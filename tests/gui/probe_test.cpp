@@ -9,7 +9,6 @@
 
 #include "controllers/probe_controller.h"
 #include "engines/engines.h"
-#include "panels/probe_panel.h"
 #include "panels/probe_plot.h"
 
 using namespace pellucid;
@@ -67,7 +66,7 @@ QImage pictureAlone(OpenWindow& w) {
 
 TEST_CASE("a click tells what the ray meets, and its shares are the pixel's alpha", "[probe]") {
     OpenWindow w(32);
-    const auto& panel = w.child<ProbePanel>("probePanel");
+    const auto& panel = w.child<QFrame>("probePanel");
     CHECK(panel.isHidden());
     for (const QPointF& way : {QPointF(0, 0), QPointF(40, 15), QPointF(-60, -30), QPointF(10, 90)}) {
         const QPointF at = middle(w) + way;
@@ -91,7 +90,7 @@ TEST_CASE("a click tells what the ray meets, and its shares are the pixel's alph
 
 TEST_CASE("a click beside the volume, Esc and other data end the probe", "[probe]") {
     OpenWindow w;
-    const auto& panel = w.child<ProbePanel>("probePanel");
+    const auto& panel = w.child<QFrame>("probePanel");
     const QImage before = w.picture();
     click(w.view(), middle(w));
     CHECK(panel.isVisible());

@@ -22,8 +22,6 @@
 
 #include "controllers/player_controller.h"
 #include "dialogs/series_files.h"
-#include "panels/channels_box.h"
-#include "panels/variables_panel.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;

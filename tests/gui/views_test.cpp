@@ -12,7 +12,6 @@
 #include <glm/geometric.hpp>
 
 #include "controllers/view_search_controller.h"
-#include "panels/views_panel.h"
 #include "render/view_direction.h"
 #include "view/view_globe.h"
 

@@ -3,20 +3,16 @@
 #include <cmath>
 
 #include <QCheckBox>
-#include <QComboBox>
-#include <QDoubleSpinBox>
-#include <QFormLayout>
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QPushButton>
 #include <QSlider>
 #include <QSpinBox>
 
 #include "controllers/open_controller.h"
+#include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
 #include "panels/variable_words.h"
-#include "services/services.h"
-#include "widgets/named.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/number_box.h"
 
 namespace pellucid::gui {
@@ -31,49 +27,42 @@ constexpr Channel kChannels[] = {Channel::Opacity, Channel::Saturation, Channel:
 std::size_t indexOf(Channel channel) { return static_cast<std::size_t>(channel); }
 
 SessionStore::Change hueChange(bool to, double degrees) {
-    return [=](Session& session) { session.hsb.edit([=](HsbMapping& h) { (to ? h.hueTo : h.hueFrom) = degrees; }); };
+    return changing(&Session::hsb, [=](HsbMapping& h) { (to ? h.hueTo : h.hueFrom) = degrees; });
 }
 
-QString channelTitle(Channel channel) {
-    switch (channel) {
-    case Channel::Opacity:
-        return QObject::tr("Opacity");
-    case Channel::Saturation:
-        return QObject::tr("Saturation");
-    case Channel::Brightness:
-        return QObject::tr("Brightness");
-    case Channel::Hue:
-        return QObject::tr("Hue");
-    }
-    return {};
-}
+/// By Channel.
+const std::array kTitles{QT_TR_NOOP("Opacity"), QT_TR_NOOP("Saturation"), QT_TR_NOOP("Brightness"), QT_TR_NOOP("Hue")};
 
 } // namespace
 
 ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* parent)
     : QWidget(parent), m_services(services), m_opening(opening),
-      m_on(new QCheckBox(tr("&Colours from variables"), this)), m_frames(new QSpinBox(this)),
-      m_swap(new QPushButton(tr("S&wap opacity and brightness"), this)), m_hueSlider(new QSlider(Qt::Horizontal, this)),
-      m_hueFrom(new QDoubleSpinBox(this)), m_hueTo(new QDoubleSpinBox(this)), m_hueSwatch(new QLabel(this)),
-      m_note(new QLabel(this)) {
+      m_on(named(new QCheckBox(tr("&Colours from variables"), this), "hsbCheck",
+                 tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
+                    "function. Figures are measured with these colours."))),
+      m_frames(named(new QSpinBox(this), "hsbFrames",
+                     tr("Volatility is the standard deviation of a voxel over the latest n frames"))),
+      m_swap(named(new QPushButton(tr("S&wap opacity and brightness"), this), "hsbSwap",
+                   tr("The variable of brightness drives opacity, with its own transfer function, and the other way "
+                      "round; pressed again, everything is as before"))),
+      m_hueSlider(
+          named(new QSlider(Qt::Horizontal, this), "hsbHueSlider", tr("The hue, degrees: 0 red, 120 green, 240 blue"))),
+      m_hueFrom(
+          named(new QDoubleSpinBox(this), "hsbHueFrom", tr("Hue, degrees; with a variable, that of its least value"))),
+      m_hueTo(named(new QDoubleSpinBox(this), "hsbHueTo", tr("Hue of the variable's largest value, degrees"))),
+      m_hueSwatch(named(new QLabel(this), "hsbHueSwatch")), m_note(wrappedLabel("hsbNote", this)) {
     setObjectName("channelsBox");
-    named(m_on, "hsbCheck",
-          tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
-             "function. Figures are measured with these colours."));
-    auto* form = new QFormLayout(this);
-    form->setContentsMargins(0, 0, 0, 0);
+    auto* form = inset(new QFormLayout(this), {});
     form->setVerticalSpacing(6);
     form->addRow(m_on);
     addChannel(*form, Channel::Opacity, "hsbOpacity", tr("Opacity ←"),
                tr("Alpha = transfer function of X: the variable whose features, curve and histogram are shown"));
     addChannel(*form, Channel::Saturation, "hsbSaturation", tr("Saturation ←"),
                tr("Saturation = clip(a · std): what changes over time is colourful, what rests is grey"));
-    m_frames->setObjectName("hsbFrames");
     m_frames->setRange(1, kMostFrames);
     m_frames->setKeyboardTracking(false);
     m_frames->setPrefix(tr("n = "));
     m_frames->setSuffix(tr(" frames"));
-    m_frames->setToolTip(tr("Volatility is the standard deviation of a voxel over the latest n frames"));
     form->addRow(QString(), m_frames);
     auto* scales = new SettingRows(m_services, *form, settingPart<HsbMapping>(&Session::hsb));
     scales->setCommit([this](const QString& text, const QString& key, const auto& change) { edit(text, key, change); });
@@ -93,14 +82,9 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
     addChannel(*form, Channel::Brightness, "hsbBrightness", tr("Brightness ←"),
                tr("Brightness = 1 − clip(b · Y): the more of it, the darker"));
     addScale("b", "hsbB", &Scene::hsbB, tr("Scale of darkness"));
-    named(m_swap, "hsbSwap",
-          tr("The variable of brightness drives opacity, with its own transfer function, and the other "
-             "way round; again, and all is as before"));
     form->addRow(QString(), m_swap);
     addChannel(*form, Channel::Hue, "hsbHue", tr("Hue ←"), tr("One hue for all, or one for each value of a variable"));
     addHue(*form);
-    m_note->setObjectName("hsbNote");
-    m_note->setWordWrap(true);
     form->addRow(m_note);
 
     connect(m_on, &QCheckBox::clicked, this, &ChannelsBox::setOn);
@@ -111,20 +95,18 @@ ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* p
     connect(m_swap, &QPushButton::clicked, this,
             [this] { m_opening.editInJob(tr("Swap variables"), [](Session& s) { swapOpacityAndBrightness(s); }); });
     connect(&m_services.store(), &SessionStore::changed, this, [=, this](const Scene& before, const Scene& after) {
-        if (before.colors != after.colors) scales->follow(); // what "auto" stands for
-        if (before.volume != after.volume || before.colors != after.colors ||
-            !before.session.variables.isSame(after.session.variables) || !before.session.hsb.isSame(after.session.hsb))
-            follow();
+        if (before.colors == after.colors) return;
+        scales->follow(); // what "auto" stands for
+        follow();
     });
-    connect(&m_services, &Services::readOnlyChanged, this, &ChannelsBox::follow);
     scales->follow();
-    follow();
+    followParts(
+        m_services, this, [this] { follow(); }, &Session::variables, &Session::hsb);
 }
 
 void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* name, const QString& label,
                              const QString& tip) {
-    auto* combo = new QComboBox(this);
-    named(combo, name, tip);
+    auto* combo = named(new QComboBox(this), name, tip);
     combo->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     combo->setMinimumContentsLength(8);
     m_channels[indexOf(channel)] = combo;
@@ -132,39 +114,21 @@ void ChannelsBox::addChannel(QFormLayout& form, Channel channel, const char* nam
     connect(combo, &QComboBox::activated, this, [this, combo, channel] {
         const std::string driver = combo->currentData().toString().toStdString();
         if (driver == channelOf(m_services.store().session(), channel)) return;
-        m_opening.editInJob(tr("%1 from %2").arg(channelTitle(channel), combo->currentText()),
+        m_opening.editInJob(tr("%1 from %2").arg(tr(kTitles[indexOf(channel)]), combo->currentText()),
                             [channel, driver](Session& s) { setChannel(s, channel, driver); });
     });
 }
 
 void ChannelsBox::addHue(QFormLayout& form) {
-    m_hueSlider->setObjectName("hsbHueSlider");
     m_hueSlider->setRange(0, 359);
     m_hueSlider->setMinimumWidth(40);
-    m_hueSlider->setToolTip(tr("The hue, degrees: 0 red, 120 green, 240 blue"));
-    m_hueSwatch->setObjectName("hsbHueSwatch");
-    const std::tuple<QDoubleSpinBox*, const char*, QString> boxes[] = {
-        {m_hueFrom, "hsbHueFrom", tr("Hue, degrees; with a variable, that of its least value")},
-        {m_hueTo, "hsbHueTo", tr("Hue of the variable's largest value, degrees")}};
-    for (const auto& [box, name, tip] : boxes) {
-        box->setObjectName(name);
-        box->setRange(-360, 720);
-        box->setDecimals(0);
-        box->setSuffix(tr("°"));
-        box->setSingleStep(10);
-        box->setKeyboardTracking(false);
-        box->setToolTip(tip);
-        connect(box, &QDoubleSpinBox::valueChanged, this, [this, box = box](double value) {
-            edit(tr("Hue"), box->objectName(), hueChange(box == m_hueTo, value));
-        });
+    for (QDoubleSpinBox* box : {m_hueFrom, m_hueTo}) {
+        withLook(box, {.lo = -360, .hi = 720, .step = 10, .suffix = tr("°")});
+        connect(box, &QDoubleSpinBox::valueChanged, this,
+                [=, this](double value) { edit(tr("Hue"), box->objectName(), hueChange(box == m_hueTo, value)); });
     }
     m_hueTo->setPrefix(tr("to "));
-    auto* row = new QHBoxLayout;
-    row->addWidget(m_hueSwatch);
-    row->addWidget(m_hueSlider, 1);
-    row->addWidget(m_hueFrom);
-    row->addWidget(m_hueTo);
-    form.addRow(QString(), row);
+    form.addRow(QString(), rowOf({m_hueSwatch, {m_hueSlider, 1}, m_hueFrom, m_hueTo}));
     connect(m_hueSlider, &QSlider::valueChanged, this, &ChannelsBox::slideHue);
     connect(m_hueSlider, &QSlider::sliderReleased, this, [this] {
         if (isFast()) return m_services.store().commit();
@@ -259,9 +223,7 @@ void ChannelsBox::follow() {
     if (!m_hueSlider->isSliderDown()) m_hueSlider->setValue(static_cast<int>(std::lround(turned)) % 360);
     showNumber(*m_hueFrom, hsb.hueFrom);
     showNumber(*m_hueTo, hsb.hueTo);
-    QPixmap swatch(16, 16);
-    swatch.fill(QColor::fromHsvF(static_cast<float>(turned / 360), 1, 1));
-    m_hueSwatch->setPixmap(swatch);
+    m_hueSwatch->setPixmap(swatchOf(QColor::fromHsvF(static_cast<float>(turned / 360), 1, 1), 16, 16));
     m_hueSlider->setVisible(constant);
     m_hueSwatch->setVisible(constant);
     m_hueFrom->setPrefix(constant ? QString() : tr("from "));

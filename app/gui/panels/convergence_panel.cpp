@@ -2,30 +2,24 @@
 
 #include <algorithm>
 
-#include <QBoxLayout>
 #include <QCheckBox>
-#include <QDir>
-#include <QFileDialog>
-#include <QFileInfo>
 #include <QHeaderView>
 #include <QKeyEvent>
-#include <QLabel>
 #include <QMenu>
 #include <QPainter>
-#include <QSettings>
-#include <QToolButton>
 #include <QTreeWidget>
 
-#include "base/atomic_file.h"
 #include "controllers/controllers.h"
+#include "jobs/rest_timer.h"
 #include "panels/panel.h"
+#include "panels/panel_parts.h"
 #include "report/convergence.h"
 #include "report/csv.h"
-#include "report/svg_plot.h"
-#include "services/services.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
-#include "widgets/named.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
+#include "widgets/number_text.h"
 #include "widgets/plot_view.h"
 #include "widgets/theme.h"
 
@@ -50,8 +44,6 @@ QIcon swatch(const QColor& color) {
 
 Rgb colorOf(const Run& run) { return curveColor(static_cast<std::size_t>(std::max(0, run.number - 1))); }
 
-QString shortNumber(double value) { return QString::number(value, 'g', 3); }
-
 QString tipOf(const Run& run) {
     QStringList lines{QObject::tr("F %1, from %2; %3")
                           .arg(shortNumber(run.after), shortNumber(run.before), QString::fromStdString(run.ended))};
@@ -74,7 +66,7 @@ QString tipOf(const Run& run) {
 }
 
 void changeRuns(Services& services, const QString& text, const std::function<void(std::vector<Run>&)>& change) {
-    services.store().edit(text, {}, [&](Session& session) { session.runs.edit(change); });
+    services.store().edit(text, {}, changing(&Session::runs, change));
 }
 
 } // namespace
@@ -105,19 +97,52 @@ PanelInfo convergencePanel() {
 ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optimizing, SaveController& saving,
                                    QWidget* parent)
     : QWidget(parent), m_services(services), m_optimizing(optimizing), m_saving(saving),
-      m_row(new QBoxLayout(QBoxLayout::LeftToRight)), m_list(new QTreeWidget(this)),
-      m_log(new QCheckBox(tr("Logarithmic"), this)), m_readOut(new QLabel(this)), m_start(new QToolButton(this)),
-      m_export(new QToolButton(this)) {
-    const char* const names[] = {"objectivePlot", "vwsPlot", "opacityPlot"};
-    const QString tips[] = {
-        tr("F: the root mean square distance of the features' VWS from their targets, after each move;\n"
-           "dashed: the tolerance. Dots of moves along rays are hollow.\n"
-           "Click on a dot: show that move. Double-click: export."),
-        tr("VWS, each feature's share of what catches the eye, 0 to 1; dashed: the targets"),
-        tr("The peak opacity of each feature, 0 to 1, of a path of one reference length d0")};
+      m_row(new QBoxLayout(QBoxLayout::LeftToRight)), m_list(named(new QTreeWidget(this), "runList")),
+      m_log(named(new QCheckBox(tr("Logarithmic"), this), "convergenceLog", tr("F and opacities on logarithmic axes"))),
+      m_readOut(withAnyWidth(named(new QLabel(this), "convergenceReadOut"))),
+      m_start(named(toolButton(tr("To the start"), this), "showStart",
+                    tr("Show the transfer function that the selected run began with:\n"
+                       "another method can go on from there, to be compared"))),
+      m_export(named(menuButton(tr("Export…"), this), "exportCurves",
+                     tr("The curves as a table, the plots as a picture or drawing"))) {
+    m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    for (const auto& [suffix, text] :
+         {std::pair{"csv", tr("Table (CSV)…")}, {"png", tr("Picture (PNG)…")}, {"svg", tr("Drawing (SVG)…")}})
+        m_export->menu()
+            ->addAction(text, this, [this, suffix = QString(suffix)] { chooseFile(suffix); })
+            ->setObjectName(QStringLiteral("exportCurves_%1").arg(suffix));
+    makePlots();
+    makeList();
+    m_row->addLayout(columnOf({{m_list, 1}, rowOf({m_log, Cell::rest(), m_start, m_export})}));
+    setLayout(inset(columnOf({{m_row, 1}, m_readOut}, 2), {4, 4, 4, 2}));
+
+    connect(m_log, &QCheckBox::toggled, this, &ConvergencePanel::drawPlots);
+    connect(m_start, &QToolButton::clicked, this, [this] {
+        if (const Run* run = shownRun()) showMove(*run, 0);
+    });
+    connect(&services, &Services::readOnlyChanged, this, &ConvergencePanel::drawPlots);
+    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.series != after.series) {
+            m_compared.clear();
+            m_shown = -1;
+            m_latest = 0;
+        }
+        if (before.series != after.series || !before.session.runs.isSame(after.session.runs)) follow();
+    });
+    connect(&optimizing, &OptimizeController::moved, this, [this] { drawPlots(); });
+    connect(&optimizing, &OptimizeController::runningChanged, this, &ConvergencePanel::follow);
+    follow();
+}
+
+void ConvergencePanel::makePlots() {
+    const std::pair<const char*, QString> plots[] = {
+        {"objectivePlot", tr("F: the root mean square distance of the features' VWS from their targets, after each\n"
+                             "move; dashed: the tolerance. Dots of moves along rays are hollow.\n"
+                             "Click on a dot: show that move. Double-click: export.")},
+        {"vwsPlot", tr("VWS, each feature's share of what catches the eye, 0 to 1; dashed: the targets")},
+        {"opacityPlot", tr("The peak opacity of each feature, 0 to 1, of a path of one reference length d0")}};
     for (std::size_t i = 0; i < m_plots.size(); ++i) {
-        PlotView* const plot = m_plots[i] = new PlotView(this);
-        named(plot, names[i], tips[i]);
+        PlotView* const plot = m_plots[i] = named(new PlotView(this), plots[i].first, plots[i].second);
         plot->setContextMenuPolicy(Qt::CustomContextMenu);
         m_row->addWidget(plot, 1);
         connect(plot, &PlotView::readOut, m_readOut, &QLabel::setText);
@@ -133,85 +158,35 @@ ConvergencePanel::ConvergencePanel(Services& services, OptimizeController& optim
             if (run != nullptr) showMove(*run, point);
         });
     }
+}
 
-    m_list->setObjectName("runList");
+void ConvergencePanel::makeList() {
     m_list->setRootIsDecorated(false);
     m_list->setHeaderLabels({tr("Run"), tr("Moves"), tr("F"), tr("s")});
-    m_list->headerItem()->setToolTip(kTitle, tr("Checked runs are compared in the first plot; the selected one has\n"
-                                                "the other two. F2 renames, Del deletes."));
-    m_list->headerItem()->setToolTip(kMoves,
-                                     tr("Moves of the search on the volume itself. The plots also have those along\n"
-                                        "rays, hollow, and those that follow for the strength of the picture"));
-    m_list->headerItem()->setToolTip(kDistance, tr("Distance from the targets at the end"));
-    m_list->headerItem()->setToolTip(kSeconds, tr("Seconds that the search took"));
+    const QString tips[] = {tr("Checked runs are compared in the first plot; the selected one has\n"
+                               "the other two. F2 renames, Del deletes."),
+                            tr("Moves of the search on the volume itself. The plots also have those along\n"
+                               "rays, hollow, and those that follow for the strength of the picture"),
+                            tr("Distance from the targets at the end"), tr("Seconds that the search took")};
     m_list->header()->setStretchLastSection(false);
-    m_list->header()->setSectionResizeMode(kTitle, QHeaderView::Stretch);
-    for (const int column : {kMoves, kDistance, kSeconds})
-        m_list->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
+    for (int column = 0; column <= kSeconds; ++column) {
+        m_list->headerItem()->setToolTip(column, tips[column]);
+        m_list->header()->setSectionResizeMode(column,
+                                               column == kTitle ? QHeaderView::Stretch : QHeaderView::ResizeToContents);
+    }
     m_list->setContextMenuPolicy(Qt::CustomContextMenu);
     m_list->setMinimumWidth(200);
     m_list->installEventFilter(this);
     m_list->setEditTriggers(QAbstractItemView::NoEditTriggers);
     connect(m_list, &QTreeWidget::itemDoubleClicked, this, &ConvergencePanel::rename);
-    connect(m_list, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) { itemChanged(item); });
+    connect(m_list, &QTreeWidget::itemChanged, this, &ConvergencePanel::itemChanged);
     connect(m_list, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
-        if (m_filling || item == nullptr) return;
+        if (item == nullptr) return;
         m_shown = item->data(0, kNumber).toInt();
         drawPlots();
     });
     connect(m_list, &QWidget::customContextMenuRequested, this,
             [this](const QPoint& at) { showMenu(m_list->viewport()->mapToGlobal(at), true); });
-
-    named(m_log, "convergenceLog", tr("F and opacities on logarithmic axes"));
-    connect(m_log, &QCheckBox::toggled, this, &ConvergencePanel::drawPlots);
-    m_readOut->setObjectName("convergenceReadOut");
-    m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
-    m_readOut->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    m_start->setObjectName("showStart");
-    m_start->setText(tr("To the start"));
-    m_start->setToolTip(tr("Show the transfer function that the selected run began with:\n"
-                           "another method can go on from there, to be compared"));
-    connect(m_start, &QToolButton::clicked, this, [this] {
-        if (const Run* run = shownRun()) showMove(*run, 0);
-    });
-    connect(&services, &Services::readOnlyChanged, this, &ConvergencePanel::drawPlots);
-    m_export->setObjectName("exportCurves");
-    m_export->setText(tr("Export…"));
-    m_export->setToolTip(tr("The curves as a table, the plots as a picture or drawing"));
-    m_export->setPopupMode(QToolButton::InstantPopup);
-    auto* menu = new QMenu(m_export);
-    for (const auto& [suffix, text] :
-         {std::pair{"csv", tr("Table (CSV)…")}, {"png", tr("Picture (PNG)…")}, {"svg", tr("Drawing (SVG)…")}})
-        menu->addAction(text, this, [this, suffix = QString(suffix)] { chooseFile(suffix); })
-            ->setObjectName(QStringLiteral("exportCurves_%1").arg(suffix));
-    m_export->setMenu(menu);
-
-    auto* side = new QVBoxLayout;
-    side->addWidget(m_list, 1);
-    auto* below = new QHBoxLayout;
-    below->addWidget(m_log);
-    below->addStretch(1);
-    below->addWidget(m_start);
-    below->addWidget(m_export);
-    side->addLayout(below);
-    m_row->addLayout(side);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(4, 4, 4, 2);
-    column->setSpacing(2);
-    column->addLayout(m_row, 1);
-    column->addWidget(m_readOut);
-
-    connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.series != after.series) {
-            m_compared.clear();
-            m_shown = -1;
-            m_latest = 0;
-        }
-        if (before.series != after.series || !before.session.runs.isSame(after.session.runs)) follow();
-    });
-    connect(&optimizing, &OptimizeController::moved, this, [this] { drawPlots(); });
-    connect(&optimizing, &OptimizeController::runningChanged, this, &ConvergencePanel::follow);
-    follow();
 }
 
 const Run* ConvergencePanel::runNumbered(int number) const {
@@ -273,7 +248,7 @@ void ConvergencePanel::follow() {
 }
 
 void ConvergencePanel::fillList() {
-    m_filling = true;
+    const QSignalBlocker quiet(m_list);
     m_list->clear();
     const auto add = [this](const Run& run, bool ended) {
         auto* item = new QTreeWidgetItem;
@@ -295,7 +270,6 @@ void ConvergencePanel::fillList() {
     };
     for (const Run& run : *m_services.scene().session.runs)
         if (isCurve(run)) add(run, true);
-    m_filling = false;
 }
 
 void ConvergencePanel::drawPlots() {
@@ -326,7 +300,6 @@ void ConvergencePanel::showMove(const Run& run, int move) {
 }
 
 void ConvergencePanel::itemChanged(QTreeWidgetItem* item) {
-    if (m_filling) return;
     const int number = item->data(kTitle, kNumber).toInt();
     const Run* const run = runNumbered(number);
     if (run == nullptr) return;
@@ -334,16 +307,13 @@ void ConvergencePanel::itemChanged(QTreeWidgetItem* item) {
     const std::string name = item->text(kTitle).trimmed().toStdString();
     if (name != titleOf(*run) && !m_services.isReadOnly()) {
         // Later: the list is made anew by it, and this is called from inside the list.
-        QMetaObject::invokeMethod(
-            this,
-            [this, number, name] {
-                changeRuns(m_services, tr("Rename run"), [&](std::vector<Run>& runs) {
-                    for (Run& r : runs)
-                        if (r.number == number) r.name = name;
-                });
-                fillList();
-            },
-            Qt::QueuedConnection);
+        later(this, [this, number, name] {
+            changeRuns(m_services, tr("Rename run"), [&](std::vector<Run>& runs) {
+                for (Run& r : runs)
+                    if (r.number == number) r.name = name;
+            });
+            fillList();
+        });
     }
     drawPlots();
 }
@@ -394,21 +364,17 @@ void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
         menu.addSeparator();
     }
     if (run != nullptr) {
-        menu.addAction(tr("Show the start"), this,
-                       [this, number = run->number] {
-                           if (const Run* r = runNumbered(number)) showMove(*r, 0);
-                       })
-            ->setEnabled(!m_services.isReadOnly());
-        menu.addAction(tr("Show the answer"), this,
-                       [this, number = run->number] {
-                           if (const Run* r = runNumbered(number)) showMove(*r, static_cast<int>(r->best));
-                       })
-            ->setEnabled(!m_services.isReadOnly());
-        menu.addAction(tr("Save report…"), this,
-                       [this, number = run->number] {
-                           if (const Run* r = runNumbered(number)) m_saving.chooseReport(*r);
-                       })
-            ->setEnabled(run->hasStart() && !m_services.isReadOnly());
+        const bool mayEdit = !m_services.isReadOnly();
+        const auto add = [&, number = run->number](const QString& text, bool enabled, auto does) {
+            menu.addAction(text, this,
+                           [this, number, does] {
+                               if (const Run* r = runNumbered(number)) does(*r); // it may have gone meanwhile
+                           })
+                ->setEnabled(enabled);
+        };
+        add(tr("Show the start"), mayEdit, [this](const Run& r) { showMove(r, 0); });
+        add(tr("Show the answer"), mayEdit, [this](const Run& r) { showMove(r, static_cast<int>(r.best)); });
+        add(tr("Save report…"), mayEdit && run->hasStart(), [this](const Run& r) { m_saving.chooseReport(r); });
         menu.addSeparator();
         menu.addActions(m_export->menu()->actions());
     }
@@ -417,38 +383,18 @@ void ConvergencePanel::showMenu(const QPoint& global, bool ofList) {
 
 void ConvergencePanel::chooseFile(const QString& suffix) {
     if (shownRun() == nullptr) return;
-    const QString folder = QSettings().value("curvesFolder", QDir::homePath()).toString();
-    const QString csv = tr("Table (*.csv)"), png = tr("Picture (*.png)"), svg = tr("Drawing (*.svg)");
-    const QString filters = suffix.isEmpty()  ? QStringList{csv, png, svg}.join(";;")
-                            : suffix == "csv" ? csv
-                            : suffix == "png" ? png
-                                              : svg;
-    const QString kind = suffix.isEmpty() ? QStringLiteral("csv") : suffix;
-    QString path = QFileDialog::getSaveFileName(m_services.window(), tr("Export the curves"),
-                                                QDir(folder).filePath("curves." + kind), filters);
-    if (path.isEmpty()) return;
-    if (QFileInfo(path).suffix().isEmpty()) path += "." + kind;
-    QSettings().setValue("curvesFolder", QFileInfo(path).absolutePath());
-    exportTo(path);
+    const QString path = askCurveFile(m_services, tr("Export the curves"), "curves", suffix);
+    if (!path.isEmpty()) exportTo(path);
 }
 
 void ConvergencePanel::exportTo(const QString& path) {
-    const std::string file = path.toStdString();
-    const QString suffix = QFileInfo(path).suffix().toLower();
-    const std::vector<Plot> all = plots();
-    try {
-        if (suffix == "csv") {
-            std::vector<const Run*> runs = comparedRuns();
-            if (const Run* shown = shownRun(); shown && std::find(runs.begin(), runs.end(), shown) == runs.end())
-                runs.push_back(shown);
-            writeTextAtomically(file, csvOf(runs));
-        } else {
-            writePlots(file, all);
-        }
-        Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
-    } catch (const Error& error) {
-        m_services.showError(tr("Cannot export the curves"), error);
-    }
+    const auto table = [this] {
+        std::vector<const Run*> runs = comparedRuns();
+        if (const Run* shown = shownRun(); shown && std::find(runs.begin(), runs.end(), shown) == runs.end())
+            runs.push_back(shown);
+        return csvOf(runs);
+    };
+    exportCurves(m_services, path, table, [this] { return plots(); });
 }
 
 } // namespace pellucid::gui

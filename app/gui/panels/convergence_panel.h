@@ -42,6 +42,8 @@ protected:
 private:
     static constexpr int kUnderWay = 0; ///< in place of the number of a run that has not ended
 
+    void makePlots();
+    void makeList();
     void follow(); ///< runs have come or gone
     void fillList();
     void drawPlots();
@@ -69,7 +71,6 @@ private:
     std::set<int> m_compared; ///< numbers
     int m_shown = -1;         ///< number; −1: the latest
     int m_latest = 0;         ///< the highest number that was there: what is above is new
-    bool m_filling = false;
 };
 
 } // namespace pellucid::gui

@@ -3,19 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QEvent>
-#include <QHBoxLayout>
 #include <QKeyEvent>
-#include <QLabel>
+#include <QScopedValueRollback>
 #include <QSignalBlocker>
 #include <QSlider>
-#include <QToolButton>
 
 #include "optimize/answer/visibility_words.h"
 #include "services/services.h"
 #include "store/edits.h"
 #include "tf/edit.h"
 #include "tf/shown_tf.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
 namespace {
@@ -40,49 +39,35 @@ QString textOf(double share) { return QString::fromStdString(percentText(share))
 } // namespace
 
 DensitySlider::DensitySlider(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_slider(new QSlider(Qt::Horizontal, this)), m_value(new QLabel(this)),
-      m_all(new QToolButton(this)),
+    : QWidget(parent), m_services(services), m_slider(named(new QSlider(Qt::Horizontal, this), "densitySlider")),
+      m_value(named(new QLabel(this), "densityValue")),
+      m_all(named(toolButton(tr("Scale all"), this), "densityAll",
+                  tr("Scale all opacities alike instead: the extinction times a factor; the shares change"))),
       m_job(
           [&workspace = services.workspace()](const Request& request, const JobControl& job) {
               return workspace.densityCurve(request.input, request.limits, {job.stop, {}});
           },
           [this](const Request& request, DensityCurve& curve) { take(request, curve); }, WhenBusy::StopOld,
-          &services.compute()) {
+          &services.compute()),
+      m_later(kSettleTime, [this] { compute(); }) {
     setObjectName("densityRow");
-    m_slider->setObjectName("densitySlider");
     m_slider->setMinimumWidth(80);
     m_slider->setFocusPolicy(Qt::StrongFocus);
     m_slider->installEventFilter(this);
-    m_value->setObjectName("densityValue");
     m_value->setFixedWidth(m_value->fontMetrics().horizontalAdvance(QStringLiteral("× 00.00")) + 4);
     m_value->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-    m_all->setObjectName("densityAll");
-    m_all->setText(tr("Scale all"));
     m_all->setCheckable(true);
-    m_all->setToolTip(tr("Scale all opacities alike instead: the extinction times a factor; the shares change"));
     auto* label = new QLabel(tr("&Density"), this);
     label->setBuddy(m_slider);
     label->setToolTip(tr("How strong the picture is, in % of alpha"));
-    auto* row = new QHBoxLayout(this);
-    row->setContentsMargins(0, 0, 0, 0);
-    row->setSpacing(6);
-    row->addWidget(label);
-    row->addWidget(m_slider, 1);
-    row->addWidget(m_value);
-    row->addWidget(m_all);
-    m_later.setSingleShot(true);
-    m_later.setInterval(kSettleTime);
-    connect(&m_later, &QTimer::timeout, this, [this] { compute(); });
+    setLayout(inset(rowOf({label, {m_slider, 1}, m_value, m_all}, 6), {}));
     connect(m_slider, &QSlider::valueChanged, this, &DensitySlider::follow);
     connect(m_slider, &QSlider::sliderPressed, this, [this] {
-        if (!m_scales) compute();
+        if (!scales()) compute();
     });
     connect(m_slider, &QSlider::sliderReleased, this, &DensitySlider::release);
-    connect(m_all, &QToolButton::toggled, this, [this](bool on) {
-        m_scales = on;
-        rest();
-    });
-    connect(&m_job, &JobBase::busyChanged, this, [this] { rest(); });
+    connect(m_all, &QToolButton::toggled, this, &DensitySlider::rest);
+    connect(&m_job, &JobBase::busyChanged, this, &DensitySlider::rest);
     connect(&m_job, &JobBase::failed, this,
             [this](const Error& error) { m_services.showError(tr("The curve of equal shares"), error); });
     connect(&services, &Services::readOnlyChanged, this, [this] {
@@ -130,14 +115,14 @@ void DensitySlider::compute() {
 void DensitySlider::take(const Request& request, DensityCurve& curve) {
     m_curve = Known{request, std::move(curve)};
     const std::optional<double> place = placeOf(present());
-    if (!place) m_curve.reset(); // the scene has gone on
     if (place) {
-        m_changing = true;
+        const QScopedValueRollback changing(m_changing, true);
         m_services.store().amend([at = shareOf(*place)](Session& session) { session.density = at; });
-        m_changing = false;
+        // What the mouse holds is where the scene is, wherever it took the slider.
+        if (m_slider->isSliderDown() && !scales()) m_offset = valueOf(*place) - m_slider->value();
+    } else {
+        m_curve.reset(); // the scene has gone on
     }
-    // What the mouse holds is where the scene is, wherever it took the slider.
-    if (m_slider->isSliderDown() && place && !m_scales) m_offset = valueOf(*place) - m_slider->value();
     rest();
 }
 
@@ -148,6 +133,7 @@ void DensitySlider::followScene() {
     rest();
 }
 
+bool DensitySlider::scales() const { return m_all->isChecked(); }
 double DensitySlider::factor() const { return std::exp2(m_slider->value() / kPerDoubling); }
 
 double DensitySlider::coverageAt(int value) const {
@@ -166,7 +152,7 @@ int DensitySlider::valueOf(double coverage) const { return static_cast<int>(std:
 
 void DensitySlider::follow() {
     if (m_givenUp || !m_services.store().hasVolume()) return rest();
-    if (m_scales)
+    if (scales())
         followFactor();
     else
         followCurve();
@@ -192,14 +178,13 @@ void DensitySlider::followCurve() {
         session.setTf(tf);
         session.density = at;
     };
-    m_changing = true;
+    const QScopedValueRollback changing(m_changing, true);
     if (m_slider->isSliderDown()) {
         m_services.store().preview(tr("Density"), change);
     } else {
         m_services.store().commit();
         m_services.store().edit(tr("Density"), QStringLiteral("density at equal shares"), change);
     }
-    m_changing = false;
     showCoverage(coverage);
 }
 
@@ -217,13 +202,13 @@ void DensitySlider::showCoverage(std::optional<double> coverage) {
 
 void DensitySlider::rest() {
     if (m_slider->isSliderDown() && !m_givenUp) {
-        if (!m_scales && !m_curve) showCoverage({});
+        if (!scales() && !m_curve) showCoverage({});
         return;
     }
     const QSignalBlocker blocker(m_slider);
     QString tip;
     const Measures* const measures = m_services.results().measures();
-    if (m_scales) {
+    if (scales()) {
         const int reach = static_cast<int>(std::lround(std::log2(kMostDensity) * kPerDoubling));
         m_slider->setRange(-reach, reach);
         m_slider->setSingleStep(10);

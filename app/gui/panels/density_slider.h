@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include <QTimer>
 #include <QWidget>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "optimize/answer/density_curve.h"
 #include "session/scene.h"
 
@@ -60,6 +60,7 @@ private:
     void release();
     void rest();
     void showCoverage(std::optional<double> coverage);
+    bool scales() const;   ///< all opacities alike
     double factor() const; ///< [1/16, 16]
     double coverageAt(int value) const;
     double shareOf(double coverage) const; ///< of the way from the faint end of the curve to its strong one, [0,1]
@@ -71,9 +72,8 @@ private:
     QToolButton* m_all;
     std::optional<Known> m_curve;
     Job<Request, DensityCurve> m_job;
-    QTimer m_later;
+    RestTimer m_later;
     int m_offset = 0;        ///< of the curve from the mouse, where it came after the press
-    bool m_scales = false;   ///< all opacities alike
     bool m_givenUp = false;  ///< Escape was pressed while the mouse still holds the slider
     bool m_changing = false; ///< the scene, by this slider
 };

@@ -1,27 +1,18 @@
-#include "panels/display_panel.h"
-
+// The panel of the picture: how it is made, what is behind it, one feature alone, and which values are looked at.
 #include <algorithm>
 #include <array>
 
-#include <QCheckBox>
-#include <QColorDialog>
-#include <QComboBox>
-#include <QDoubleSpinBox>
-#include <QFormLayout>
-#include <QGridLayout>
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
-#include <QToolButton>
 
 #include "controllers/controllers.h"
 #include "panels/panel.h"
-#include "services/services.h"
-#include "widgets/named.h"
+#include "panels/panel_parts.h"
+#include "panels/setting_rows.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/number_box.h"
 #include "widgets/number_text.h"
-#include "widgets/scrolled.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -31,8 +22,8 @@ namespace {
 const std::array kModes{
     std::pair{QT_TR_NOOP("Composite"), QT_TR_NOOP("Emission and absorption by the transfer function")},
     std::pair{QT_TR_NOOP("Maximum (MIP)"), QT_TR_NOOP("The largest value along each ray, as grey")},
-    std::pair{QT_TR_NOOP("Minimum (MinIP)"), QT_TR_NOOP("The smallest value, as grey")},
-    std::pair{QT_TR_NOOP("Average"), QT_TR_NOOP("The mean value, as grey: like an X-ray")},
+    std::pair{QT_TR_NOOP("Minimum (MinIP)"), QT_TR_NOOP("The smallest value along each ray, as grey")},
+    std::pair{QT_TR_NOOP("Average"), QT_TR_NOOP("The mean value along each ray, as grey: like an X-ray")},
     std::pair{QT_TR_NOOP("Surfaces"), QT_TR_NOOP("The first surface of each feature")}};
 
 constexpr double kCoarsestFinest = 0.5,
@@ -45,149 +36,107 @@ QString finestText(double step) {
                                   : QObject::tr("%1 d0 everywhere").arg(stepText(kCoarsestFinest));
 }
 
-QPixmap swatchOf(const Rgb& color) {
-    QPixmap swatch(22, 14);
-    swatch.fill(colorFromRgb(color));
-    return swatch;
-}
+class DisplayPanel : public QWidget {
+public:
+    DisplayPanel(Services& services, OpenController& opening, QWidget* parent);
 
-} // namespace
+private:
+    void addRows(QFormLayout& form);
+    void follow();
+    void editVariable(const QString& text, const std::function<void(Variable&)>& change);
+    void editWindow();
+
+    Services& m_services;
+    OpenController& m_opening;
+    QComboBox* m_feature =
+        named(new QComboBox(this), "onlyFeatureCombo", tr("Draw only the voxels of one feature; figures are of all"));
+    QComboBox* m_finest =
+        named(new QComboBox(this), "finestStepCombo",
+              tr("How finely the picture is drawn when the scene rests: the steps along a ray are halved, down\n"
+                 "to this, where the picture would change by 1/255 otherwise. Long steps leave rings where\n"
+                 "opacity rises steeply. d0 is the smallest distance of voxels"));
+    QDoubleSpinBox* m_lo = named(new QDoubleSpinBox(this), "windowLo",
+                                 tr("Value of intensity 0, in the unit of the data: lower ones are drawn like it"));
+    QDoubleSpinBox* m_hi = named(new QDoubleSpinBox(this), "windowHi",
+                                 tr("Value of intensity 1, in the unit of the data: higher ones are drawn like it"));
+    QPushButton* m_wholeRange = named(new QPushButton(tr("&All values"), this), "wholeRangeButton",
+                                      tr("From the smallest to the largest value of the data"));
+    QSpinBox* m_component =
+        named(new QSpinBox(this), "componentSpin",
+              tr("Which number of each voxel is shown, where the file has several; the first one is 0"));
+    QLabel* m_note = wrappedLabel("displayNote", this);
+};
 
 DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget* parent)
-    : QWidget(parent), m_services(services), m_opening(opening), m_mode(new QComboBox(this)),
-      m_background(new QToolButton(this)), m_gradient(new QCheckBox(tr("to the top"), this)),
-      m_top(new QToolButton(this)), m_feature(new QComboBox(this)), m_finest(new QComboBox(this)),
-      m_lo(new QDoubleSpinBox(this)), m_hi(new QDoubleSpinBox(this)),
-      m_wholeRange(new QPushButton(tr("&All values"), this)), m_component(new QSpinBox(this)),
-      m_note(new QLabel(this)) {
+    : QWidget(parent), m_services(services), m_opening(opening) {
     setObjectName("displayPanel");
-    named(m_mode, "modeCombo", tr("What becomes of the values along a ray"));
-    for (const auto& [text, tip] : kModes) {
-        m_mode->addItem(tr(text));
-        m_mode->setItemData(m_mode->count() - 1, tr(tip), Qt::ToolTipRole);
-    }
-    named(m_background, "backgroundColor", tr("Colour behind the volume; a saved picture can be transparent instead"));
-    named(m_gradient, "gradientCheck", tr("Another colour at the top of the picture"));
-    named(m_top, "backgroundTopColor", tr("Colour at the top of the picture"));
-    named(m_feature, "onlyFeatureCombo", tr("Draw the voxels of one feature alone; figures are of all"));
-    named(m_finest, "finestStepCombo",
-          tr("How finely the picture is drawn when the scene rests: the steps along a ray are halved, down\n"
-             "to this, where the picture would change by 1/255 otherwise. Long steps leave rings where\n"
-             "opacity rises steeply. d0 is the smallest distance of voxels"));
     for (double step = kCoarsestFinest; step >= kMostFinest; step /= 2) m_finest->addItem(finestText(step), step);
-    named(m_wholeRange, "wholeRangeButton", tr("From the smallest to the largest value of the data"));
-    m_component->setObjectName("componentSpin");
     m_component->setRange(0, 1'000'000);
     m_component->setKeyboardTracking(false);
-    m_component->setToolTip(tr("Which number of each voxel is shown, where the file has several; from 0"));
     for (QDoubleSpinBox* box : {m_lo, m_hi}) {
-        box->setKeyboardTracking(false);
-        box->setRange(-1e300, 1e300);
+        withLook(box, {-1e300, 1e300});
         box->setMinimumWidth(QFontMetrics(font()).horizontalAdvance("-00000.000") + 24);
     }
-    m_lo->setObjectName("windowLo");
-    m_hi->setObjectName("windowHi");
-    m_lo->setToolTip(tr("Value of intensity 0, in the units of the data: what is below is drawn as if it were this"));
-    m_hi->setToolTip(tr("Value of intensity 1, in the units of the data: what is above is drawn as if it were this"));
-    m_note->setWordWrap(true);
     makeFaint(*m_note);
+    addRows(*scrolledForm(this, 7));
 
-    auto* content = new QWidget;
-    auto* form = new QFormLayout(content);
-    form->setContentsMargins(10, 8, 10, 8);
-    form->setVerticalSpacing(7);
-    form->addRow(tr("&Mode"), m_mode);
-    auto* behind = new QHBoxLayout;
-    behind->addWidget(m_background);
-    behind->addWidget(m_gradient);
-    behind->addWidget(m_top);
-    behind->addStretch(1);
-    form->addRow(tr("Background"), behind);
-    form->addRow(tr("&Only"), m_feature);
-    form->addRow(tr("&Finest step"), m_finest);
-    auto* window = new QGridLayout;
-    window->addWidget(m_lo, 0, 0);
-    window->addWidget(m_hi, 0, 1);
-    window->addWidget(m_wholeRange, 1, 0, 1, 2);
-    form->addRow(tr("Values"), window);
-    form->addRow(tr("Co&mponent"), m_component);
-    form->addRow(m_note);
-    fillScrolled(this, content);
-
-    SessionStore& store = m_services.store();
-    connect(m_mode, &QComboBox::activated, this, [this](int index) {
-        m_services.store().edit(tr("Mode"), {}, [&](Session& session) {
-            session.display.edit([&](DisplaySettings& d) { d.mode = static_cast<RenderMode>(index); });
-        });
-    });
-    connect(m_background, &QToolButton::clicked, this, [this] { chooseBackground(false); });
-    connect(m_top, &QToolButton::clicked, this, [this] { chooseBackground(true); });
-    connect(m_gradient, &QCheckBox::clicked, this, [this](bool checked) {
-        m_services.store().edit(tr("Background"), {}, [&](Session& session) {
-            session.display.edit([&](DisplaySettings& d) {
-                d.backgroundTop.reset();
-                if (checked) d.backgroundTop = kFirstTop;
-            });
-        });
-    });
     connect(m_feature, &QComboBox::activated, this, [this] {
-        const auto id = static_cast<FeatureId>(m_feature->currentData().toULongLong());
-        m_services.store().edit(tr("Feature alone"), {}, [&](Session& session) {
-            session.display.edit([&](DisplaySettings& d) { d.onlyFeature = id; });
-        });
+        m_services.store().edit(tr("Feature alone"), {}, changing(&Session::display, [this](DisplaySettings& d) {
+                                    d.onlyFeature = chosenFeature(*m_feature);
+                                }));
     });
     connect(m_finest, &QComboBox::activated, this, [this] {
-        m_services.store().edit(tr("Finest step"), {}, [&](Session& session) {
-            session.display.edit([&](DisplaySettings& d) { d.finestStep = m_finest->currentData().toDouble(); });
-        });
+        m_services.store().edit(tr("Finest step"), {}, changing(&Session::display, [this](DisplaySettings& d) {
+                                    d.finestStep = m_finest->currentData().toDouble();
+                                }));
     });
     connect(m_lo, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_hi, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
-    connect(m_wholeRange, &QPushButton::clicked, this, [this] {
-        m_opening.editData(tr("All values"), [](Session& session) {
-            session.variables.edit([](std::vector<Variable>& all) { all.front().window.reset(); });
-        });
-    });
+    connect(m_wholeRange, &QPushButton::clicked, this,
+            [this] { editVariable(tr("All values"), [](Variable& v) { v.window.reset(); }); });
     connect(m_component, &QSpinBox::valueChanged, this, [this](int component) {
-        m_opening.editData(tr("Component"), [component](Session& session) {
-            session.variables.edit([&](std::vector<Variable>& all) { all.front().source.component = component; });
-        });
+        editVariable(tr("Component"), [component](Variable& v) { v.source.component = component; });
     });
     connect(&m_opening, &OpenController::busyChanged, this, [this] {
         if (!m_opening.isBusy()) follow(); // also where it failed; till then it shows what was asked for
     });
-    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        const Session &old = before.session, &now = after.session;
-        const bool same =
-            before.volume == after.volume && before.tf.features == after.tf.features && old.display.isSame(now.display);
-        if (!same) follow(); // the view turns, the curve is dragged: nothing of this panel's
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.tf.features != after.tf.features) follow();
     });
-    connect(&m_services, &Services::readOnlyChanged, this, &DisplayPanel::follow);
-    follow();
+    followParts(
+        m_services, this, [this] { follow(); }, &Session::display);
 }
 
-void DisplayPanel::chooseBackground(bool top) {
-    const DisplaySettings& display = *m_services.store().session().display;
-    const Rgb now = top ? display.backgroundTop.value_or(display.background) : display.background;
-    const QColor color = QColorDialog::getColor(
-        colorFromRgb(now), this, top ? tr("Colour at the top of the picture") : tr("Colour behind the volume"));
-    if (!color.isValid()) return;
-    m_services.store().edit(tr("Background"), {}, [&](Session& session) {
-        session.display.edit([&](DisplaySettings& d) {
-            if (top)
-                d.backgroundTop = rgbFromColor(color);
-            else
-                d.background = rgbFromColor(color);
-        });
-    });
+void DisplayPanel::addRows(QFormLayout& form) {
+    auto* rows = new SettingRows(m_services, form, settingPart<DisplaySettings>(&Session::display));
+    auto* modes = static_cast<QComboBox*>(rows->add("mode", {.id = "modeCombo"}));
+    for (int i = 0; i < modes->count(); ++i) {
+        const auto& [text, tip] = kModes[static_cast<std::size_t>(i)];
+        modes->setItemText(i, tr(text));
+        modes->setItemData(i, tr(tip), Qt::ToolTipRole);
+    }
+    rows->add("background", {.id = "backgroundColor"});
+    rows->add("background_top", {.id = "gradientCheck",
+                                 .colorId = "backgroundTopColor",
+                                 .firstColor = kFirstTop,
+                                 .stepText = tr("Background")});
+    rows->follow();
+    form.addRow(tr("&Only"), m_feature);
+    form.addRow(tr("&Finest step"), m_finest);
+    form.addRow(tr("Values"), columnOf({rowOf({{m_lo, 1}, {m_hi, 1}}), m_wholeRange}));
+    form.addRow(tr("Co&mponent"), m_component);
+    form.addRow(m_note);
+}
+
+void DisplayPanel::editVariable(const QString& text, const std::function<void(Variable&)>& change) {
+    m_opening.editData(text,
+                       changing(&Session::variables, [change](std::vector<Variable>& all) { change(all.front()); }));
 }
 
 void DisplayPanel::editWindow() {
     const ValueRange window{m_lo->value(), m_hi->value()};
     if (!(window.lo < window.hi)) return follow(); // nothing lies between them
-    m_opening.editData(tr("Values"), [window](Session& session) {
-        session.variables.edit([&](std::vector<Variable>& all) { all.front().window = window; });
-    });
+    editVariable(tr("Values"), [window](Variable& v) { v.window = window; });
 }
 
 void DisplayPanel::follow() {
@@ -197,19 +146,7 @@ void DisplayPanel::follow() {
     if (!m_services.store().hasVolume()) return;
     const QSignalBlocker low(m_lo), high(m_hi), quiet(m_component); // other decimals are other numbers to them
     const DisplaySettings& display = *scene.session.display;
-    m_mode->setCurrentIndex(static_cast<int>(display.mode));
-    m_background->setIcon(swatchOf(display.background));
-    m_gradient->setChecked(display.backgroundTop.has_value());
-    m_top->setIcon(swatchOf(display.backgroundTop.value_or(display.background)));
-    m_top->setEnabled(display.backgroundTop.has_value());
-    m_feature->clear();
-    m_feature->addItem(tr("all features"), QVariant::fromValue<qulonglong>(0));
-    for (const Feature& f : scene.tf.features) {
-        QPixmap color(12, 12);
-        color.fill(colorFromRgb(f.color));
-        m_feature->addItem(color, QString::fromStdString(f.name), QVariant::fromValue<qulonglong>(f.id));
-    }
-    m_feature->setCurrentIndex(scene.onlyFeature() + 1);
+    fillFeatures(*m_feature, scene, tr("all features"), scene.onlyFeature());
     m_finest->setEnabled(display.mode == RenderMode::Composite);
     int finest = m_finest->findData(std::min(display.finestStep, kCoarsestFinest));
     if (finest < 0) { // as the command line wanted it
@@ -235,12 +172,12 @@ void DisplayPanel::follow() {
     m_component->setEnabled(ready && !source.isSample() && !source.raw);
 }
 
+} // namespace
+
 PanelInfo displayPanel() {
     return {.id = "display",
             .title = QObject::tr("Display"),
-            .area = Qt::RightDockWidgetArea,
             .visible = false,
-            .size = 0,
             .keys = QKeySequence("Ctrl+D"),
             .tip =
                 QObject::tr("Mode, background, one feature alone, how finely it is drawn, range of values, component"),

@@ -7,6 +7,24 @@
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
+namespace {
+
+/// By FeaturesModel::Column: name and tool tip.
+const std::array<std::pair<const char*, const char*>, FeaturesModel::ColumnCount> kHeaders{
+    std::pair{"", QT_TR_NOOP("Show or hide the feature; hidden, it is neither drawn nor measured, and has no target.\n"
+                             "Alt+click or Ctrl+click: draw only this one, or all again")},
+    {QT_TR_NOOP("Feature"),
+     QT_TR_NOOP("Name and colour of the feature; click the colour to change it, double-click the name")},
+    {QT_TR_NOOP("Values"), QT_TR_NOOP("Values of the feature's voxels, in the unit of the data")},
+    {QT_TR_NOOP("Opacity"), QT_TR_NOOP("Highest opacity of the feature: opacity of a path one voxel long (d0)")},
+    {QT_TR_NOOP("Visibility"), QT_TR_NOOP("The feature's share of the picture, 0 to 1, from this camera")},
+    {QT_TR_NOOP("VWS"),
+     QT_TR_NOOP("Visibility-weighted saliency: the feature's share of what catches the eye, 0 to 1")},
+    {QT_TR_NOOP("Target"), QT_TR_NOOP("The share of saliency that Optimize aims at; all targets add up to 1")}};
+
+bool isLimited(const OpacityLimits& limits) { return limits.lowest > 0 || limits.highest < 1; }
+
+} // namespace
 
 FeaturesModel::FeaturesModel(SessionStore& store, Results& results, QObject* parent)
     : QAbstractTableModel(parent), m_store(store), m_results(results) {
@@ -41,105 +59,79 @@ int FeaturesModel::columnCount(const QModelIndex& parent) const { return parent.
 QVariant FeaturesModel::data(const QModelIndex& index, int role) const {
     if (!checkIndex(index, CheckIndexOption::IndexIsValid)) return {};
     const auto f = static_cast<std::size_t>(index.row());
+    const int column = index.column();
     const Scene& scene = m_store.scene();
     // Between a change of the scene and its signal the rows are those of before.
     if (f >= scene.tf.features.size() || f >= m_opacities.size()) return {};
-    const Feature& feature = scene.tf.features[f];
-    const Measures* const measures = m_results.measures();
-    const bool measured = measures && f < measures->features.size();
-
-    if (role == LockRole) {
+    switch (role) {
+    case LockRole: {
         const OpacityLimits limits = opacityLimits(m_store, index.row());
-        return static_cast<int>(limits.locked                             ? Lock::Locked
-                                : limits.lowest > 0 || limits.highest < 1 ? Lock::Limited
-                                                                          : Lock::None);
+        return static_cast<int>(limits.locked ? Lock::Locked : isLimited(limits) ? Lock::Limited : Lock::None);
     }
-    if (role == Qt::TextAlignmentRole && index.column() > Range) return QVariant(Qt::AlignRight | Qt::AlignVCenter);
-    if (role == Qt::ForegroundRole && !isDrawn(index.row())) return theme::kFaint;
-    if (role == Qt::DecorationRole && index.column() == Name) return colorFromRgb(feature.color);
-    if (role == Qt::ToolTipRole) {
-        const QString text = headerData(index.column(), Qt::Horizontal, Qt::ToolTipRole).toString();
-        if (scene.isEmpty(f)) return text + "\n" + emptyFeatureText(scene, index.row());
-        const OpacityLimits limits = opacityLimits(m_store, index.row());
-        if (limits.locked) return text + tr("\nLocked: Optimize leaves its opacity as it is");
-        if (limits.lowest > 0 || limits.highest < 1)
-            return text + tr("\nOptimize keeps its opacity between %1 and %2").arg(limits.lowest).arg(limits.highest);
-        return text;
-    }
-    if (role != Qt::DisplayRole && role != Qt::EditRole) return {};
-
-    double number = 0;
-    switch (index.column()) {
-    case Eye:
-        return role == Qt::EditRole ? QVariant(!feature.hidden) : QVariant();
-    case Name:
-        return role == Qt::DisplayRole && scene.isEmpty(f) ? tr("%1 (empty)").arg(QString::fromStdString(feature.name))
-                                                           : QString::fromStdString(feature.name);
-    case Range: {
-        if (!m_store.hasVolume()) return {};
-        const Volume& volume = *scene.volume;
-        const double span = volume.range().hi - volume.range().lo;
-        return QStringLiteral("%1 – %2").arg(numberText(volume.valueOfIntensity(feature.a), span),
-                                             numberText(volume.valueOfIntensity(feature.b), span));
-    }
-    case Opacity:
-        number = m_opacities[f];
-        break;
-    case Visibility:
-        if (!measured) return {};
-        number = measures->features[f].visibility;
-        break;
-    case Vws:
-        if (!measured) return {};
-        number = measures->features[f].vws;
-        break;
-    case Target:
-        if ((feature.hidden || scene.isEmpty(f)) && role == Qt::DisplayRole) return QStringLiteral("–");
-        number = scene.targets().at(f);
+    case Qt::TextAlignmentRole:
+        return column > Range ? QVariant(Qt::AlignRight | Qt::AlignVCenter) : QVariant();
+    case Qt::ForegroundRole:
+        return isDrawn(index.row()) ? QVariant() : QVariant(theme::kFaint);
+    case Qt::DecorationRole:
+        return column == Name ? QVariant(colorFromRgb(scene.tf.features[f].color)) : QVariant();
+    case Qt::ToolTipRole:
+        return tip(index.row(), column);
+    case Qt::DisplayRole:
+    case Qt::EditRole:
         break;
     default:
         return {};
     }
-    if (role == Qt::EditRole) return number;
-    return QString::number(number, 'f', index.column() == Opacity && number < 0.1 ? 4 : 3);
+    if (column <= Range) return text(f, column, role);
+    if (column == Target && role == Qt::DisplayRole && (scene.tf.features[f].hidden || scene.isEmpty(f)))
+        return QStringLiteral("–");
+    const std::optional<double> number = this->number(f, column);
+    if (!number) return {};
+    if (role == Qt::EditRole) return *number;
+    return QString::number(*number, 'f', column == Opacity && *number < 0.1 ? 4 : 3);
+}
+
+QVariant FeaturesModel::text(std::size_t f, int column, int role) const {
+    const Scene& scene = m_store.scene();
+    const Feature& feature = scene.tf.features[f];
+    if (column == Eye) return role == Qt::EditRole ? QVariant(!feature.hidden) : QVariant();
+    if (column == Name) {
+        const QString name = QString::fromStdString(feature.name);
+        return role == Qt::DisplayRole && scene.isEmpty(f) ? tr("%1 (empty)").arg(name) : name;
+    }
+    if (!m_store.hasVolume()) return {};
+    const Volume& volume = *scene.volume;
+    const double span = volume.range().hi - volume.range().lo;
+    return QStringLiteral("%1 – %2").arg(numberText(volume.valueOfIntensity(feature.a), span),
+                                         numberText(volume.valueOfIntensity(feature.b), span));
+}
+
+std::optional<double> FeaturesModel::number(std::size_t f, int column) const {
+    if (column == Opacity) return m_opacities[f];
+    if (column == Target) return m_store.scene().targets().at(f);
+    const Measures* const measures = m_results.measures();
+    if (!measures || f >= measures->features.size()) return {};
+    return column == Visibility ? measures->features[f].visibility : measures->features[f].vws;
+}
+
+QString FeaturesModel::tip(int row, int column) const {
+    const QString text = headerData(column, Qt::Horizontal, Qt::ToolTipRole).toString();
+    const Scene& scene = m_store.scene();
+    if (scene.isEmpty(static_cast<std::size_t>(row))) return text + "\n" + emptyFeatureText(scene, row);
+    const OpacityLimits limits = opacityLimits(m_store, row);
+    if (limits.locked) return text + tr("\nLocked: Optimize leaves its opacity as it is");
+    if (isLimited(limits))
+        return text + tr("\nOptimize keeps its opacity between %1 and %2").arg(limits.lowest).arg(limits.highest);
+    return text;
 }
 
 QVariant FeaturesModel::headerData(int section, Qt::Orientation orientation, int role) const {
-    if (orientation != Qt::Horizontal || section < 0 || section >= ColumnCount)
+    const bool known = role == Qt::DisplayRole || role == Qt::ToolTipRole;
+    if (orientation != Qt::Horizontal || section < 0 || section >= ColumnCount || !known)
         return QAbstractTableModel::headerData(section, orientation, role);
-    if (role == Qt::DisplayRole) {
-        static const std::array<const char*, ColumnCount> names{"",
-                                                                QT_TR_NOOP("Feature"),
-                                                                QT_TR_NOOP("Values"),
-                                                                QT_TR_NOOP("Opacity"),
-                                                                QT_TR_NOOP("Visibility"),
-                                                                QT_TR_NOOP("VWS"),
-                                                                QT_TR_NOOP("Target")};
-        const char* const text = names[static_cast<std::size_t>(section)];
-        return *text == 0 ? QString() : tr(text);
-    }
-    if (role == Qt::ToolTipRole) {
-        switch (section) {
-        case Eye:
-            return tr("Show or hide the feature; hidden, it is neither drawn nor measured, and has no target.\n"
-                      "Alt+click or Ctrl+click: draw only this one, or all again");
-        case Name:
-            return tr("Name and colour of the feature; click the colour to change it, double-click the name");
-        case Range:
-            return tr("Values of the feature's voxels, in the units of the data");
-        case Opacity:
-            return tr("Highest opacity of the feature: opacity of a path one voxel long (d0)");
-        case Visibility:
-            return tr("Share of the picture that the feature makes, 0 to 1, from this camera");
-        case Vws:
-            return tr("Visibility-weighted saliency: share of what catches the eye that the feature has, 0 to 1");
-        case Target:
-            return tr("The share of saliency that Optimize aims at; all targets add up to 1");
-        default:
-            break;
-        }
-    }
-    return {};
+    const auto& [name, tip] = kHeaders[static_cast<std::size_t>(section)];
+    const char* const text = role == Qt::DisplayRole ? name : tip;
+    return *text == 0 ? QString() : tr(text);
 }
 
 Qt::ItemFlags FeaturesModel::flags(const QModelIndex& index) const {

@@ -41,6 +41,9 @@ public:
 private:
     void follow(const Scene& before, const Scene& after);
     void refresh(Column first, Column last);
+    QVariant text(std::size_t feature, int column, int role) const;      ///< of Eye, Name and Range
+    std::optional<double> number(std::size_t feature, int column) const; ///< of the others; empty: not measured
+    QString tip(int row, int column) const;
 
     SessionStore& m_store;
     Results& m_results;

@@ -1,34 +1,31 @@
-#include "panels/features_panel.h"
-
+// The panel of the features: what each shows, what it should show, and the buttons that get it there.
 #include <algorithm>
 #include <cmath>
 
 #include <QColorDialog>
-#include <QComboBox>
 #include <QGridLayout>
 #include <QHeaderView>
 #include <QItemSelectionModel>
-#include <QLabel>
 #include <QMenu>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QPainterPath>
-#include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
-#include <QSignalBlocker>
 #include <QStyledItemDelegate>
 #include <QTableView>
-#include <QToolButton>
-#include <QVBoxLayout>
 
 #include "controllers/controllers.h"
 #include "panels/density_slider.h"
+#include "panels/features_model.h"
 #include "panels/panel.h"
+#include "panels/setting_rows.h"
+#include "panels/target_bars.h"
 #include "panels/variable_words.h"
 #include "services/services.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/lock_mark.h"
-#include "widgets/named.h"
 #include "widgets/opacity_editor.h"
 #include "widgets/theme.h"
 
@@ -40,8 +37,6 @@ constexpr int kSwatch = 26;   // width of the colour in the name's cell
 constexpr int kEye = 30;      // width of the eyes' column
 constexpr int kOpacity = 104; // width of the opacities: a slider and four decimals
 constexpr int kPadlock = 16;  // width in the name's cell
-
-constexpr const char* kNoIndicator = "QToolButton::menu-indicator { image: none; }"; // the text has an arrow
 
 /// An eye in each cell of its column: open, closed, or faint where another feature is drawn alone.
 class EyeDelegate : public QStyledItemDelegate {
@@ -90,12 +85,12 @@ public:
         QStyleOptionViewItem narrower = option;
         if (lock != FeaturesModel::Lock::None) narrower.rect.adjust(0, 0, -kPadlock, 0);
         QStyledItemDelegate::paint(painter, narrower, index);
-        if (lock != FeaturesModel::Lock::None && option.state.testFlag(QStyle::State_Selected))
+        if (lock == FeaturesModel::Lock::None) return;
+        if (option.state.testFlag(QStyle::State_Selected))
             painter->fillRect(option.rect.adjusted(option.rect.width() - kPadlock, 0, 0, 0),
                               option.palette.highlight());
-        if (lock != FeaturesModel::Lock::None)
-            paintLock(*painter, QPointF(option.rect.right() - kPadlock / 2.0, option.rect.center().y()),
-                      lock == FeaturesModel::Lock::Locked, theme::kText);
+        paintLock(*painter, QPointF(option.rect.right() - kPadlock / 2.0, option.rect.center().y()),
+                  lock == FeaturesModel::Lock::Locked, theme::kText);
     }
 
 protected:
@@ -142,51 +137,160 @@ private:
 };
 
 QPushButton* button(const QString& text, const char* name, const QString& tip, QWidget* parent) {
-    auto* b = new QPushButton(text, parent);
-    named(b, name, tip);
+    auto* b = named(new QPushButton(text, parent), name, tip);
     b->setAutoDefault(false);
     return b;
 }
 
-} // namespace
+/// A button with a menu, whose text has an arrow already.
+QToolButton* arrowButton(const QString& text, const char* name, const QString& tip, QWidget* parent) {
+    QToolButton* const b = named(menuButton(text, parent), name, tip);
+    b->setStyleSheet("QToolButton::menu-indicator { image: none; }");
+    return b;
+}
+
+/// A button that does what an action of a menu does, with a text of its own.
+QToolButton* actionButton(QAction& action, const QString& text, const QString& name) {
+    action.setIconText(text);
+    auto* b = named(new QToolButton, name);
+    b->setDefaultAction(&action);
+    return b;
+}
+
+const QMargins kSides{10, 0, 10, 0}; ///< of rows beside the table, which has none
+
+class FeaturesPanel : public QWidget {
+public:
+    FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent);
+
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override; ///< the mouse on eyes and colours
+
+private:
+    void prepareTable();
+    QLayout* makeShapeRow();
+    QLayout* makeMethodRow();
+    QLayout* makeButtons();
+    bool pressTable(const QMouseEvent& mouse);
+    void select(int row);
+    void followSelection();
+    void follow(); ///< the state, and what is computed of it
+    void followRun();
+    void showMessage();
+    void adjustTable();
+
+    Services& m_services;
+    Controllers& m_controllers;
+    FeaturesModel* m_model = new FeaturesModel(m_services.store(), m_services.results(), this);
+    QTableView* m_table = named(new QTableView(this), "featuresTable");
+    TargetBars* m_bars = new TargetBars(m_services.store(), m_services.results());
+    DensitySlider* m_density = new DensitySlider(m_services, this);
+    QToolButton* m_add = arrowButton(tr("Add ▾"), "addShapeButton",
+                                     tr("A new feature of some shape, in a gap between the others"), this);
+    QToolButton* m_colors =
+        arrowButton(tr("Colours ▾"), "colorMapButton", tr("Colours by value from a map; opacities stay"), this);
+    QToolButton* m_targets =
+        arrowButton(tr("Targets ▾"), "targetsButton",
+                    tr("All targets at once: equal, by value, as now, for one feature, inverted; and locks"), this);
+    QPushButton* m_refine =
+        button(tr("&Refine"), "refineButton",
+               tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this);
+    QPushButton* m_optimize = button(tr("&Optimize"), "optimizeButton",
+                                     tr("Change the features' opacities until their saliency (VWS) meets the targets,\n"
+                                        "as seen from this camera"),
+                                     this);
+    QPushButton* m_cancel =
+        button(tr("&Cancel"), "cancelButton", tr("Stop, and go back to where the optimization began"), this);
+    QPushButton* m_undo = button(tr("Undo"), "undoButton", tr("Undo the last change (Ctrl+Z)"), this);
+    QPushButton* m_redo = button(tr("Redo"), "redoButton", tr("Redo the change that was undone (Ctrl+Shift+Z)"), this);
+    QProgressBar* m_progress = progressBar("optimizeProgress", this, 1000);
+    QLabel* m_distance = withAnyWidth(
+        named(new QLabel(this), "distanceLabel", tr("F: root of the mean squared difference between VWS and targets")));
+    QLabel* m_message = withAnyWidth(wrappedLabel("panelMessage", this));
+};
 
 FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidget* parent)
-    : QWidget(parent), m_services(services), m_controllers(controllers),
-      m_model(new FeaturesModel(services.store(), services.results(), this)), m_table(new QTableView(this)),
-      m_bars(new TargetBars(services.store(), services.results())), m_density(new DensitySlider(services, this)),
-      m_add(new QToolButton(this)), m_colors(new QToolButton(this)), m_targets(new QToolButton(this)),
-      m_method(new QComboBox(this)),
-      m_refine(button(tr("&Refine"), "refineButton",
-                      tr("Refine the opacities by entropy: values that are common get less, rare ones more"), this)),
-      m_optimize(button(tr("&Optimize"), "optimizeButton",
-                        tr("Change the features' opacities until their saliency (VWS) meets the targets,\n"
-                           "as seen from this camera"),
-                        this)),
-      m_cancel(button(tr("&Cancel"), "cancelButton", tr("Stop, and go back to where the optimization began"), this)),
-      m_undo(button(tr("Undo"), "undoButton", tr("Undo the last change (Ctrl+Z)"), this)),
-      m_redo(button(tr("Redo"), "redoButton", tr("Redo the change that was undone (Ctrl+Shift+Z)"), this)),
-      m_progress(new QProgressBar(this)), m_distance(new QLabel(this)), m_message(new QLabel(this)) {
+    : QWidget(parent), m_services(services), m_controllers(controllers) {
     setObjectName("featuresPanel");
+    prepareTable();
+    m_add->menu()->addActions(m_controllers.features.shapes());
+    m_controllers.features.fillColorMenu(*m_colors->menu());
+    m_targets->menu()->addActions(m_controllers.targets.entries());
+    m_progress->setTextVisible(true);
+    m_progress->setMaximumHeight(18);
+    makeFaint(*m_message);
+    auto* scroll = named(new QScrollArea(this), "barsScroll");
+    scroll->setWidget(m_bars);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 
-    m_table->setObjectName("featuresTable");
+    QLayout* const status = columnOf({m_distance, m_progress, m_message}, 4);
+    QLayout* const liveRow = rowOf(
+        {m_targets, actionButton(*m_controllers.live.action(), tr("Live"), "liveTargetsButton"), Cell::rest()}, 4);
+    setLayout(inset(columnOf({m_table,
+                              inset(makeShapeRow(), kSides),
+                              inset(liveRow, kSides),
+                              {scroll, 1},
+                              // Above what is taken hold of, which must not move when a message comes or goes.
+                              inset(status, kSides),
+                              inset(rowOf({{m_density, 1}, m_colors}, 10), kSides),
+                              inset(makeMethodRow(), kSides),
+                              makeButtons()},
+                             8),
+                    {0, 0, 0, 8}));
+
+    OptimizeController& optimizing = controllers.optimizing;
+    connect(m_refine, &QPushButton::clicked, controllers.refining.actions().refine, &QAction::trigger);
+    connect(m_optimize, &QPushButton::clicked, &optimizing, &OptimizeController::start);
+    connect(m_undo, &QPushButton::clicked, &services, &Services::undo);
+    connect(m_redo, &QPushButton::clicked, &services, &Services::redo);
+    connect(m_cancel, &QPushButton::clicked, &optimizing, &OptimizeController::cancel);
+    connect(m_message, &QLabel::linkActivated, &optimizing, &OptimizeController::takeExact);
+    connect(m_bars, &TargetBars::currentChanged, this, &FeaturesPanel::select);
+    connect(&optimizing, &OptimizeController::runningChanged, this, &FeaturesPanel::followRun);
+    connect(&optimizing, &OptimizeController::moved, this, &FeaturesPanel::followRun);
+    connect(&optimizing, &OptimizeController::messageChanged, this, &FeaturesPanel::showMessage);
+    connect(&m_services.selection(), &Selection::featureChanged, this, &FeaturesPanel::followSelection);
+    connect(&m_services.store(), &SessionStore::changed, this, &FeaturesPanel::follow);
+    connect(&m_services.store(), &SessionStore::historyChanged, this, &FeaturesPanel::follow);
+    connect(&m_services.results(), &Results::changed, this, &FeaturesPanel::follow);
+    adjustTable();
+    followRun();
+    showMessage();
+}
+
+QLayout* FeaturesPanel::makeButtons() {
+    auto* buttons = inset(new QGridLayout, kSides);
+    buttons->setSpacing(6);
+    buttons->addWidget(m_refine, 0, 0);
+    buttons->addWidget(m_optimize, 0, 1);
+    buttons->addWidget(m_cancel, 0, 1);
+    buttons->addWidget(m_undo, 0, 2);
+    buttons->addWidget(m_redo, 0, 3);
+    for (int i = 0; i < 4; ++i) buttons->setColumnStretch(i, 1);
+    return buttons;
+}
+
+void FeaturesPanel::prepareTable() {
     m_table->setModel(m_model);
     m_table->setItemDelegateForColumn(FeaturesModel::Opacity, new OpacityDelegate(*m_model, m_table));
     m_table->setItemDelegateForColumn(FeaturesModel::Name, new NameDelegate(m_table));
     m_table->setItemDelegateForColumn(FeaturesModel::Eye, new EyeDelegate(*m_model, m_table));
-    for (const auto column : {FeaturesModel::Visibility, FeaturesModel::Vws, FeaturesModel::Target}) {
+    for (const auto column : {FeaturesModel::Visibility, FeaturesModel::Vws, FeaturesModel::Target})
         m_table->setColumnHidden(column, true); // the bars below show them
-    }
     m_table->verticalHeader()->hide();
     m_table->verticalHeader()->setDefaultSectionSize(kRowHeight);
-    m_table->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
-    m_table->horizontalHeader()->setMinimumSectionSize(kEye);
-    m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Eye, QHeaderView::Fixed);
+    QHeaderView& header = *m_table->horizontalHeader();
+    header.setSectionResizeMode(QHeaderView::Stretch);
+    header.setMinimumSectionSize(kEye);
+    header.setSectionResizeMode(FeaturesModel::Eye, QHeaderView::Fixed);
     m_table->setColumnWidth(FeaturesModel::Eye, kEye);
-    m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Range, QHeaderView::ResizeToContents);
-    m_table->horizontalHeader()->setSectionResizeMode(FeaturesModel::Opacity, QHeaderView::Fixed);
+    header.setSectionResizeMode(FeaturesModel::Range, QHeaderView::ResizeToContents);
+    header.setSectionResizeMode(FeaturesModel::Opacity, QHeaderView::Fixed);
     m_table->setColumnWidth(FeaturesModel::Opacity, kOpacity);
-    m_table->horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
-    m_table->horizontalHeader()->setHighlightSections(false);
+    header.setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
+    header.setHighlightSections(false);
     m_table->setShowGrid(false);
     m_table->setSelectionMode(QAbstractItemView::SingleSelection);
     m_table->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -201,171 +305,32 @@ FeaturesPanel::FeaturesPanel(Services& services, Controllers& controllers, QWidg
         m_controllers.features.fillMenu(menu);
         menu.exec(m_table->viewport()->mapToGlobal(at));
     });
-    connect(m_table->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this](const QModelIndex& now) {
-        if (!m_showingSelection && now.isValid()) select(now.row());
-    });
-    connect(m_bars, &TargetBars::currentChanged, this, &FeaturesPanel::select);
-    connect(&m_services.selection(), &Selection::featureChanged, this, &FeaturesPanel::followSelection);
+    connect(m_table->selectionModel(), &QItemSelectionModel::currentRowChanged, this,
+            [this](const QModelIndex& now) { select(now.row()); });
     connect(m_model, &QAbstractItemModel::modelReset, this, &FeaturesPanel::adjustTable);
-
-    auto* scroll = new QScrollArea(this);
-    scroll->setObjectName("barsScroll");
-    scroll->setWidget(m_bars);
-    scroll->setWidgetResizable(true);
-    scroll->setFrameShape(QFrame::NoFrame);
-    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-
-    m_method->setObjectName("methodCombo");
-    m_method->addItem(tr("Newton"), static_cast<int>(SearchMethod::Newton));
-    m_method->addItem(tr("Parallel line search"), static_cast<int>(SearchMethod::Parallel));
-    m_method->addItem(tr("Line search"), static_cast<int>(SearchMethod::Line));
-    m_method->addItem(tr("Fixed steps"), static_cast<int>(SearchMethod::Fixed));
-    m_method->setToolTip(
-        tr("Newton: exact derivatives, few moves, and starts all over where it is stuck.\n"
-           "The others are the thesis's: how far each move goes is the best of eight lengths tried at\n"
-           "once, one length found by doubling or halving, or always the same"));
-    m_progress->setObjectName("optimizeProgress");
-    m_progress->setRange(0, 1000);
-    m_progress->setTextVisible(true);
-    m_progress->setMaximumHeight(18);
-    named(m_distance, "distanceLabel", tr("F: root of the mean squared difference between VWS and targets"));
-    // What is said must not change how wide the dock is, else the picture would be drawn anew.
-    for (QLabel* label : {m_distance, m_message}) label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    m_message->setObjectName("panelMessage");
-    m_message->setWordWrap(true);
-    connect(m_message, &QLabel::linkActivated, this, [this] { m_controllers.optimizing.takeExact(); });
-    makeFaint(*m_message);
-
-    auto* choices = new QGridLayout;
-    choices->setContentsMargins(10, 0, 10, 0);
-    choices->setHorizontalSpacing(8);
-    choices->setVerticalSpacing(6);
-    auto* methodLabel = new QLabel(tr("&Method"), this);
-    methodLabel->setBuddy(m_method);
-    choices->addWidget(methodLabel, 0, 0);
-    choices->addWidget(m_method, 0, 1);
-    auto* settings = new QToolButton(this);
-    settings->setObjectName("settingsButton");
-    settings->setText(tr("Settings…"));
-    settings->setToolTip(tr("Steps, tolerance and limit of optimizations; how saliency is measured"));
-    connect(settings, &QToolButton::clicked, this, [this] { m_services.panels().show("settings"); });
-    choices->addWidget(settings, 0, 2);
-    choices->setColumnStretch(1, 1);
-    auto* buttons = new QGridLayout;
-    buttons->setContentsMargins(10, 0, 10, 0);
-    buttons->setSpacing(6);
-    buttons->addWidget(m_refine, 0, 0);
-    buttons->addWidget(m_optimize, 0, 1);
-    buttons->addWidget(m_cancel, 0, 1);
-    buttons->addWidget(m_undo, 0, 2);
-    buttons->addWidget(m_redo, 0, 3);
-    for (int i = 0; i < 4; ++i) buttons->setColumnStretch(i, 1);
-    auto* status = new QVBoxLayout;
-    status->setContentsMargins(10, 0, 10, 0);
-    status->setSpacing(4);
-    status->addWidget(m_distance);
-    status->addWidget(m_progress);
-    status->addWidget(m_message);
-
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 8);
-    column->setSpacing(8);
-    column->addWidget(m_table);
-    column->addWidget(makeShapeRow());
-    column->addWidget(makeTargetRow());
-    column->addWidget(scroll, 1);
-    column->addLayout(status); // above what is taken hold of, which must not move when a message comes or goes
-    column->addWidget(makeColorRow());
-    column->addLayout(choices);
-    column->addLayout(buttons);
-
-    OptimizeController& optimizing = controllers.optimizing;
-    connect(m_refine, &QPushButton::clicked, controllers.refining.actions().refine, &QAction::trigger);
-    connect(m_optimize, &QPushButton::clicked, &optimizing, &OptimizeController::start);
-    connect(m_undo, &QPushButton::clicked, &services, &Services::undo);
-    connect(m_redo, &QPushButton::clicked, &services, &Services::redo);
-    connect(m_cancel, &QPushButton::clicked, &optimizing, &OptimizeController::cancel);
-    connect(m_method, &QComboBox::activated, this, &FeaturesPanel::editOptions);
-    connect(&optimizing, &OptimizeController::runningChanged, this, &FeaturesPanel::followRun);
-    connect(&optimizing, &OptimizeController::moved, this, &FeaturesPanel::followRun);
-    connect(&optimizing, &OptimizeController::messageChanged, this, &FeaturesPanel::showMessage);
-    connect(&m_services.store(), &SessionStore::changed, this, &FeaturesPanel::follow);
-    connect(&m_services.store(), &SessionStore::historyChanged, this, &FeaturesPanel::follow);
-    connect(&m_services.results(), &Results::changed, this, &FeaturesPanel::follow);
-    adjustTable();
-    followRun();
-    showMessage();
 }
 
-QWidget* FeaturesPanel::makeShapeRow() {
-    auto* widget = new QWidget(this);
-    auto* row = new QHBoxLayout(widget);
-    row->setContentsMargins(10, 0, 10, 0);
-    row->setSpacing(4);
-    m_add->setObjectName("addShapeButton");
-    m_add->setText(tr("Add ▾"));
-    m_add->setStyleSheet(kNoIndicator);
-    m_add->setToolTip(tr("A new feature of some shape, in a gap between the others"));
-    m_add->setPopupMode(QToolButton::InstantPopup);
-    auto* shapes = new QMenu(m_add);
-    shapes->setToolTipsVisible(true);
-    shapes->addActions(m_controllers.features.shapes());
-    m_add->setMenu(shapes);
-    row->addWidget(m_add);
-    const QString texts[] = {tr("Split"), tr("Merge"), tr("Duplicate"), tr("Remove")}; // what buttons say
+QLayout* FeaturesPanel::makeShapeRow() {
+    QHBoxLayout* const row = rowOf({m_add}, 4);
+    const QString texts[] = {tr("Split"), tr("Merge"), tr("Duplicate"), tr("Remove")};
     const QList<QAction*>& actions = m_controllers.features.shaping();
-    for (qsizetype i = 0; i < actions.size(); ++i) {
-        actions[i]->setIconText(texts[i]);
-        auto* b = new QToolButton(widget);
-        b->setDefaultAction(actions[i]);
-        b->setObjectName(actions[i]->objectName() + "Button");
-        row->addWidget(b);
-    }
+    for (qsizetype i = 0; i < actions.size(); ++i)
+        row->addWidget(actionButton(*actions[i], texts[i], actions[i]->objectName() + "Button"));
     row->addStretch(1);
-    return widget;
+    return row;
 }
 
-QWidget* FeaturesPanel::makeTargetRow() {
-    auto* widget = new QWidget(this);
-    auto* row = new QHBoxLayout(widget);
-    row->setContentsMargins(10, 0, 10, 0);
-    row->setSpacing(4);
-    m_targets->setObjectName("targetsButton");
-    m_targets->setText(tr("Targets ▾"));
-    m_targets->setStyleSheet(kNoIndicator);
-    m_targets->setToolTip(tr("All targets at once: equal, by value, as now, for one feature, turned round; and locks"));
-    m_targets->setPopupMode(QToolButton::InstantPopup);
-    auto* menu = new QMenu(m_targets);
-    menu->setToolTipsVisible(true);
-    menu->addActions(m_controllers.targets.entries());
-    m_targets->setMenu(menu);
-    row->addWidget(m_targets);
-    QAction* const live = m_controllers.live.action();
-    live->setIconText(tr("Live")); // what buttons say
-    auto* b = new QToolButton(widget);
-    b->setDefaultAction(live);
-    b->setObjectName("liveTargetsButton");
-    row->addWidget(b);
-    row->addStretch(1);
-    return widget;
-}
-
-QWidget* FeaturesPanel::makeColorRow() {
-    auto* widget = new QWidget(this);
-    auto* row = new QHBoxLayout(widget);
-    row->setContentsMargins(10, 0, 10, 0);
-    row->setSpacing(10);
-    m_colors->setObjectName("colorMapButton");
-    m_colors->setText(tr("Colours ▾"));
-    m_colors->setStyleSheet(kNoIndicator);
-    m_colors->setToolTip(tr("Colours by value from a map; opacities stay"));
-    m_colors->setPopupMode(QToolButton::InstantPopup);
-    auto* maps = new QMenu(m_colors);
-    m_controllers.features.fillColorMenu(*maps);
-    m_colors->setMenu(maps);
-    row->addWidget(m_density, 1);
-    row->addWidget(m_colors);
-    return widget;
+QLayout* FeaturesPanel::makeMethodRow() {
+    auto* settings = named(toolButton(tr("Settings…"), this), "settingsButton",
+                           tr("Steps, tolerance and limit of optimizations; how saliency is measured"));
+    connect(settings, &QToolButton::clicked, this, [this] { m_services.panels().show("settings"); });
+    auto* method = new QWidget(this);
+    auto* form = inset(new QFormLayout(method), {});
+    auto* rows = new SettingRows(m_services, *form, settingPart<OptimizeOptions>(&Session::optimize),
+                                 {tr("Optimization settings"), "optimize-settings"});
+    rows->add("method", {.id = "methodCombo"});
+    rows->follow();
+    return rowOf({{method, 1}, settings}, 8);
 }
 
 bool FeaturesPanel::eventFilter(QObject* watched, QEvent* event) {
@@ -411,22 +376,13 @@ void FeaturesPanel::select(int row) {
 
 void FeaturesPanel::followSelection() {
     const int row = m_services.selectedFeature();
-    m_showingSelection = true;
     if (row >= 0 && row < m_model->rowCount()) {
         if (m_table->currentIndex().row() != row) m_table->setCurrentIndex(m_model->index(row, FeaturesModel::Name));
         if (!m_table->selectionModel()->isRowSelected(row)) m_table->selectRow(row);
     } else {
         m_table->clearSelection();
     }
-    m_showingSelection = false;
     m_bars->setCurrentFeature(row);
-}
-
-void FeaturesPanel::editOptions() {
-    const auto method = static_cast<SearchMethod>(m_method->currentData().toInt());
-    m_services.store().edit(tr("Optimization settings"), "optimize-settings", [&](Session& session) {
-        session.optimize.edit([&](OptimizeOptions& options) { options.method = method; });
-    });
 }
 
 void FeaturesPanel::adjustTable() {
@@ -467,7 +423,7 @@ void FeaturesPanel::followRun() {
     m_cancel->setVisible(on);
     m_progress->setVisible(on);
     m_distance->setVisible(!on);
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_table, m_density, m_colors, m_add, m_targets, m_method})
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_table, m_density, m_colors, m_add, m_targets})
         widget->setEnabled(!on);
     follow();
 }
@@ -483,10 +439,6 @@ void FeaturesPanel::showMessage() {
 
 void FeaturesPanel::follow() {
     const SessionStore& store = m_services.store();
-    const OptimizeOptions& options = *store.session().optimize;
-    const QSignalBlocker blockMethod(m_method);
-    m_method->setCurrentIndex(m_method->findData(static_cast<int>(options.method)));
-
     const bool ready = m_services.isEditable();
     const bool features = !store.scene().tf.features.empty();
     m_refine->setEnabled(ready);
@@ -508,11 +460,11 @@ void FeaturesPanel::follow() {
     }
 }
 
+} // namespace
+
 PanelInfo featuresPanel() {
     return {.id = "features",
             .title = QObject::tr("Features"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = true,
             .size = 380,
             .keys = QKeySequence("Ctrl+2"),
             .tip = QObject::tr("What each feature shows and what it should show"),

@@ -1,25 +1,19 @@
-#include "panels/fields_panel.h"
-
+// The panel of fields: which one is drawn in the place of the data, how, and where it is saved.
 #include <array>
 #include <cmath>
 
-#include <QComboBox>
-#include <QFormLayout>
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QLineEdit>
 #include <QLocale>
 #include <QPainter>
-#include <QProgressBar>
 #include <QPushButton>
 
 #include "controllers/controllers.h"
 #include "panels/panel.h"
+#include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
-#include "services/services.h"
 #include "tf/color_maps.h"
-#include "widgets/named.h"
-#include "widgets/scrolled.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -41,55 +35,98 @@ QIcon iconOf(const ColorMap& map) {
     return pixmap;
 }
 
-} // namespace
+class FieldsPanel : public QWidget {
+public:
+    FieldsPanel(Services& services, FieldController& fields, QWidget* parent);
+
+    QSize sizeHint() const override { return sizeWithoutScrolling(*this); }
+
+private:
+    void fillLists();
+    void addRows(QFormLayout& form);
+    void edit(const QString& text, const std::function<void(FieldView&)>& change);
+    void editTop();
+    void follow();      ///< the session
+    void followField(); ///< what has become of the field
+    QString stateText() const;
+
+    Services& m_services;
+    FieldController& m_fields;
+    QComboBox* m_kind = named(new QComboBox(this), "fieldKindCombo",
+                              tr("What is drawn: the data, or what each voxel contributes to this picture (V)"));
+    QComboBox* m_feature = named(
+        new QComboBox(this), "fieldFeatureCombo",
+        tr("The field in the voxels of one feature alone; its colours stay those of the whole field, so that features "
+           "can be compared"));
+    QComboBox* m_colorMap =
+        named(new QComboBox(this), "fieldColorMapCombo", tr("Colours from 0 to the top of the field"));
+    QLineEdit* m_top = named(new QLineEdit(this), "fieldTop",
+                             tr("Value of the field that the colours reach to, above 0; in the unit of the field"));
+    QPushButton* m_usualTop =
+        named(new QPushButton(tr("&Usual"), this), "fieldUsualTop",
+              tr("The value below which lie 99.9 % of the field's values above 0, in the voxels of all features"));
+    QPushButton* m_stop = named(new QPushButton(this), "fieldStop");
+    QPushButton* m_save = named(new QPushButton(tr("Sa&ve…"), this), "fieldSave",
+                                tr("Write the values of this field to an NRRD file, on the grid of the data"));
+    QLabel* m_state = wrappedLabel("fieldState", this);
+    QProgressBar* m_progress = progressBar("fieldProgress", this);
+};
 
 FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* parent)
-    : QWidget(parent), m_services(services), m_fields(fields), m_kind(new QComboBox(this)),
-      m_feature(new QComboBox(this)), m_colorMap(new QComboBox(this)), m_top(new QLineEdit(this)),
-      m_usualTop(new QPushButton(tr("&Usual"), this)), m_stop(new QPushButton(this)),
-      m_save(new QPushButton(tr("Sa&ve…"), this)), m_state(new QLabel(this)), m_progress(new QProgressBar(this)) {
+    : QWidget(parent), m_services(services), m_fields(fields) {
     setObjectName("fieldsPanel");
-    named(m_kind, "fieldKindCombo", tr("What is drawn: the data, or what each voxel contributes to this picture (V)"));
+    fillLists();
+    makeFaint(*m_state);
+    m_progress->setMaximumHeight(6);
+    addRows(*scrolledForm(this, 7));
+
+    connect(m_kind, &QComboBox::activated, this, [this](int index) {
+        const int kind = m_kind->itemData(index).toInt();
+        m_fields.show(kind < 0 ? std::nullopt : std::optional(static_cast<FieldKind>(kind)));
+    });
+    connect(m_feature, &QComboBox::activated, this, [this] {
+        edit(tr("Field of a feature"), [this](FieldView& f) { f.feature = chosenFeature(*m_feature); });
+    });
+    connect(m_colorMap, &QComboBox::activated, this, [this] {
+        edit(tr("Colours of the field"),
+             [this](FieldView& f) { f.colorMap = m_colorMap->currentData().toString().toStdString(); });
+    });
+    connect(m_top, &QLineEdit::editingFinished, this, &FieldsPanel::editTop);
+    connect(m_usualTop, &QPushButton::clicked, this,
+            [this] { edit(tr("Usual top of the field"), [](FieldView& f) { f.top.reset(); }); });
+    connect(m_stop, &QPushButton::clicked, this,
+            [this] { m_fields.state() == FieldController::State::Computing ? m_fields.cancel() : m_fields.compute(); });
+    connect(m_save, &QPushButton::clicked, this, [this] { m_fields.chooseFile(); });
+    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
+        if (before.tf.features != after.tf.features) follow();
+    });
+    connect(&m_fields, &FieldController::changed, this, &FieldsPanel::followField);
+    followParts(
+        m_services, this, [this] { follow(); }, &Session::field);
+}
+
+void FieldsPanel::fillLists() {
     m_kind->addItem(tr("none: the data"), -1);
     for (const FieldKind kind : allOf<FieldKind>()) {
         const auto i = static_cast<std::size_t>(kind);
-        m_kind->addItem(QString::fromLatin1(title(kind)), static_cast<int>(i));
-        m_kind->setItemData(m_kind->count() - 1, tr(kTips[i]), Qt::ToolTipRole);
+        addItem(*m_kind, QString::fromLatin1(title(kind)), static_cast<int>(i), tr(kTips[i]));
     }
-    named(m_feature, "fieldFeatureCombo",
-          tr("The field in the voxels of one feature alone; its colours stay those of the whole field, so "
-             "that features compare"));
-    named(m_colorMap, "fieldColorMapCombo", tr("Colours from 0 to the top of the field"));
     m_colorMap->setIconSize({48, 12});
-    for (const ColorMap& map : colorMaps())
-        if (map.kind != ColorMap::Kind::Categorical) {
-            m_colorMap->addItem(iconOf(map), QString::fromStdString(map.name), QString::fromStdString(map.name));
-            m_colorMap->setItemData(m_colorMap->count() - 1, QString::fromStdString(map.title), Qt::ToolTipRole);
-        }
-    m_colorMap->addItem(tr("of the feature"), QString::fromLatin1(kFeatureColorMap));
-    m_colorMap->setItemData(m_colorMap->count() - 1,
-                            tr("Black over the colour of the chosen feature to white; of all features, the usual map"),
-                            Qt::ToolTipRole);
-    named(m_top, "fieldTop", tr("Value of the field that the colours reach to, above 0; in the unit of the field"));
-    named(m_usualTop, "fieldUsualTop", tr("The value below which lie 99.9 % of those above 0, of all features"));
-    m_stop->setObjectName("fieldStop");
-    named(m_save, "fieldSave", tr("Write the values of this field to an NRRD file, on the grid of the data"));
-    m_state->setObjectName("fieldState");
-    m_state->setWordWrap(true);
-    makeFaint(*m_state);
-    m_progress->setObjectName("fieldProgress");
-    m_progress->setRange(0, 100);
-    m_progress->setTextVisible(false);
-    m_progress->setMaximumHeight(6);
+    for (const ColorMap& map : colorMaps()) {
+        if (map.kind == ColorMap::Kind::Categorical) continue;
+        const QString name = QString::fromStdString(map.name);
+        addItem(*m_colorMap, name, name, QString::fromStdString(map.title));
+        m_colorMap->setItemIcon(m_colorMap->count() - 1, iconOf(map));
+    }
+    addItem(*m_colorMap, tr("of the feature"), QString::fromLatin1(kFeatureColorMap),
+            tr("Black over the colour of the chosen feature to white; of all features, the usual map"));
+}
 
-    auto* content = new QWidget;
-    auto* form = new QFormLayout(content);
-    form->setContentsMargins(10, 8, 10, 8);
-    form->setVerticalSpacing(7);
-    form->addRow(tr("&Field"), m_kind);
-    form->addRow(tr("F&eature"), m_feature);
-    form->addRow(tr("&Colours"), m_colorMap);
-    auto* rows = new SettingRows(m_services, *form, settingPart<FieldView>(&Session::field));
+void FieldsPanel::addRows(QFormLayout& form) {
+    form.addRow(tr("&Field"), m_kind);
+    form.addRow(tr("F&eature"), m_feature);
+    form.addRow(tr("&Colours"), m_colorMap);
+    auto* rows = new SettingRows(m_services, form, settingPart<FieldView>(&Session::field));
     rows->add("strength", {.id = "fieldStrength",
                            .slider = true,
                            .logarithmic = true,
@@ -106,50 +143,14 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
                             .most = 99,
                             .stepText = tr("Threshold of the field")});
     rows->follow();
-    auto* top = new QHBoxLayout;
-    top->addWidget(m_top, 1);
-    top->addWidget(m_usualTop);
-    form->addRow(tr("Top"), top);
-    form->addRow(m_state);
-    form->addRow(m_progress);
-    auto* buttons = new QHBoxLayout;
-    buttons->addWidget(m_stop, 1);
-    buttons->addWidget(m_save, 1);
-    form->addRow(buttons);
-    fillScrolled(this, content);
-
-    connect(m_kind, &QComboBox::activated, this, [this](int index) {
-        const int kind = m_kind->itemData(index).toInt();
-        m_fields.show(kind < 0 ? std::nullopt : std::optional(static_cast<FieldKind>(kind)));
-    });
-    connect(m_feature, &QComboBox::activated, this, [this] {
-        const auto id = static_cast<FeatureId>(m_feature->currentData().toULongLong());
-        edit(tr("Field of a feature"), {}, [id](FieldView& f) { f.feature = id; });
-    });
-    connect(m_colorMap, &QComboBox::activated, this, [this] {
-        edit(tr("Colours of the field"), {},
-             [name = m_colorMap->currentData().toString().toStdString()](FieldView& f) { f.colorMap = name; });
-    });
-    connect(m_top, &QLineEdit::editingFinished, this, &FieldsPanel::editTop);
-    connect(m_usualTop, &QPushButton::clicked, this,
-            [this] { edit(tr("Usual top of the field"), {}, [](FieldView& f) { f.top.reset(); }); });
-    connect(m_stop, &QPushButton::clicked, this,
-            [this] { m_fields.state() == FieldController::State::Computing ? m_fields.cancel() : m_fields.compute(); });
-    connect(m_save, &QPushButton::clicked, this, [this] { m_fields.chooseFile(); });
-    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.volume != after.volume || before.tf.features != after.tf.features ||
-            !before.session.field.isSame(after.session.field))
-            follow();
-    });
-    connect(&m_fields, &FieldController::changed, this, &FieldsPanel::followField);
-    connect(&m_services, &Services::readOnlyChanged, this, &FieldsPanel::follow);
-    follow();
+    form.addRow(tr("Top"), rowOf({{m_top, 1}, m_usualTop}));
+    form.addRow(m_state);
+    form.addRow(m_progress);
+    form.addRow(rowOf({{m_stop, 1}, {m_save, 1}}));
 }
 
-QSize FieldsPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
-
-void FieldsPanel::edit(const QString& text, const QString& mergeKey, const Change& change) {
-    m_services.store().edit(text, mergeKey, [&](Session& session) { session.field.edit(change); });
+void FieldsPanel::edit(const QString& text, const std::function<void(FieldView&)>& change) {
+    m_services.store().edit(text, {}, changing(&Session::field, change));
 }
 
 void FieldsPanel::editTop() {
@@ -157,7 +158,7 @@ void FieldsPanel::editTop() {
     bool isNumber = false;
     const double value = QLocale::c().toDouble(m_top->text().trimmed(), &isNumber);
     if (!isNumber || !(value > 0) || !std::isfinite(value)) return followField(); // no such top
-    edit(tr("Top of the field"), {}, [value](FieldView& f) { f.top = value; });
+    edit(tr("Top of the field"), [value](FieldView& f) { f.top = value; });
 }
 
 void FieldsPanel::follow() {
@@ -166,59 +167,55 @@ void FieldsPanel::follow() {
     const FieldView& view = *scene.session.field;
     const bool on = view.kind.has_value();
     m_kind->setCurrentIndex(on ? 1 + static_cast<int>(*view.kind) : 0);
-    m_feature->clear();
-    m_feature->addItem(tr("all"), QVariant::fromValue<qulonglong>(0));
-    for (const Feature& f : scene.tf.features) {
-        QPixmap color(12, 12);
-        color.fill(colorFromRgb(f.color));
-        m_feature->addItem(color, QString::fromStdString(f.name), QVariant::fromValue<qulonglong>(f.id));
-    }
-    m_feature->setCurrentIndex(scene.fieldFeature() + 1);
+    fillFeatures(*m_feature, scene, tr("all"), scene.fieldFeature());
     m_colorMap->setCurrentIndex(m_colorMap->findData(QString::fromStdString(view.colorMap)));
     for (QWidget* widget : std::initializer_list<QWidget*>{m_feature, m_colorMap, m_top}) widget->setEnabled(on);
     m_usualTop->setEnabled(on && view.top);
     followField();
 }
 
+QString FieldsPanel::stateText() const {
+    using State = FieldController::State;
+    const Field* const field = m_fields.field();
+    switch (m_fields.state()) {
+    case State::Off:
+        return tr("A field shows what each voxel contributes to the picture, in the same view.");
+    case State::Computing:
+        return field ? tr("The field that is drawn is of an earlier state; that of the present one is being computed.")
+                     : tr("The field is being computed.");
+    case State::Current:
+        return tr("Largest value %1").arg(QString::number(field->volume->dataRange().hi, 'g', 4));
+    case State::Stopped:
+        return field ? tr("Stopped; the field that is drawn is of an earlier state.") : tr("Stopped.");
+    case State::Failed:
+        return QString::fromUtf8(m_fields.failure()->what());
+    }
+    return {};
+}
+
 void FieldsPanel::followField() {
     using State = FieldController::State;
-    const FieldController& fields = m_fields;
-    const State state = fields.state();
-    const Field* const field = fields.field();
-    m_stop->setText(state == State::Computing ? tr("&Stop") : tr("&Compute"));
-    m_stop->setToolTip(state == State::Computing ? tr("Stop computing; the picture stays as it is")
-                                                 : tr("Compute the field of the present state"));
-    m_stop->setEnabled(state == State::Computing || state == State::Stopped || state == State::Failed);
+    const State state = m_fields.state();
+    const bool computing = state == State::Computing;
+    m_stop->setText(computing ? tr("&Stop") : tr("&Compute"));
+    m_stop->setToolTip(computing ? tr("Stop computing; the picture stays as it is")
+                                 : tr("Compute the field of the present state"));
+    m_stop->setEnabled(computing || state == State::Stopped || state == State::Failed);
     m_save->setEnabled(state == State::Current);
-    m_progress->setVisible(state == State::Computing);
-    m_progress->setValue(static_cast<int>(100 * fields.progress()));
-    switch (state) {
-    case State::Off:
-        m_state->setText(tr("A field shows what each voxel contributes to the picture, in the same view."));
-        break;
-    case State::Computing:
-        m_state->setText(field ? tr("What is seen is of an earlier state; the present one is being computed.")
-                               : tr("It is being computed."));
-        break;
-    case State::Current:
-        m_state->setText(tr("Largest value %1").arg(QString::number(field->volume->dataRange().hi, 'g', 4)));
-        break;
-    case State::Stopped:
-        m_state->setText(field ? tr("Stopped; what is seen is of an earlier state.") : tr("Stopped."));
-        break;
-    case State::Failed:
-        m_state->setText(QString::fromUtf8(fields.failure()->what()));
-        break;
-    }
+    m_progress->setVisible(computing);
+    m_progress->setValue(static_cast<int>(100 * m_fields.progress()));
+    m_state->setText(stateText());
     if (m_top->hasFocus() && m_top->isModified()) return; // somebody types
+    const Field* const field = m_fields.field();
     m_top->setText(field ? QString::number(topOf(*m_services.scene().session.field, *field), 'g', 4) : QString());
     m_top->setModified(false);
 }
 
+} // namespace
+
 PanelInfo fieldsPanel() {
     return {.id = "fields",
             .title = QObject::tr("Fields"),
-            .area = Qt::RightDockWidgetArea,
             .visible = false,
             .tabOf = "display",
             .keys = QKeySequence("Shift+V"),

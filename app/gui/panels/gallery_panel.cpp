@@ -1,23 +1,20 @@
 #include "panels/gallery_panel.h"
 
-#include <QComboBox>
 #include <QDir>
-#include <QHBoxLayout>
 #include <QInputDialog>
 #include <QListWidget>
 #include <QMenu>
 #include <QMessageBox>
 #include <QStandardPaths>
-#include <QToolButton>
-#include <QVBoxLayout>
 
 #include "panels/panel.h"
 #include "services/services.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
 #include "tf/tf_range.h"
+#include "widgets/controls.h"
 #include "widgets/image_convert.h"
-#include "widgets/named.h"
+#include "widgets/layouts.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -57,8 +54,6 @@ PanelInfo galleryPanel() {
     return {
         .id = "gallery",
         .title = QObject::tr("Presets"),
-        .area = Qt::RightDockWidgetArea,
-        .visible = true,
         .tabOf = "features",
         .keys = QKeySequence("Ctrl+9"),
         .tip = QObject::tr("Transfer functions as small pictures of this volume"),
@@ -66,9 +61,17 @@ PanelInfo galleryPanel() {
 }
 
 GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_group(new QComboBox(this)), m_take(new QComboBox(this)),
-      m_list(new QListWidget(this)), m_keep(new QToolButton(this)), m_remove(new QToolButton(this)),
-      m_renderer(std::make_shared<KeptRenderer>()),
+    : QWidget(parent), m_services(services),
+      m_group(named(new QComboBox(this), "galleryGroup", tr("Which presets are listed"))),
+      m_take(named(new QComboBox(this), "galleryTake",
+                   tr("What is taken of a preset: everything, its colours under the present opacities,\n"
+                      "or its opacities in the present colours"))),
+      m_list(named(new QListWidget(this), "galleryList")),
+      m_keep(named(toolButton(tr("Keep this…"), this), "galleryKeep",
+                   tr("Keeps the present transfer function, with its opacities, as a preset of your own"))),
+      m_remove(named(toolButton(tr("Remove"), this), "galleryRemove",
+                     tr("Removes the selected preset, if it is one of your own"))),
+      m_wait(kWait, [this] { draw(); }), m_renderer(std::make_shared<KeptRenderer>()),
       m_job(
           [this, renderer = m_renderer](const Task& task, const JobControl& job) {
               PictureInput picture = task.picture;
@@ -83,14 +86,7 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
           },
           [](const Task&, int&) {}) {
     setObjectName("galleryPanel");
-    named(m_group, "galleryGroup", tr("Which presets are listed"));
-    m_take->setObjectName("galleryTake");
-    m_take->addItem(tr("Take all"));
-    m_take->addItem(tr("Take colours"));
-    m_take->addItem(tr("Take opacities"));
-    m_take->setToolTip(tr("What is taken of a preset: everything, its colours under the present opacities,\n"
-                          "or its opacities in the present colours"));
-    m_list->setObjectName("galleryList");
+    m_take->addItems({tr("Take all"), tr("Take colours"), tr("Take opacities")});
     m_list->setViewMode(QListView::IconMode);
     m_list->setResizeMode(QListView::Adjust);
     m_list->setMovement(QListView::Static);
@@ -99,36 +95,17 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
     m_list->setUniformItemSizes(true);
     m_list->setWordWrap(false);
     m_list->setContextMenuPolicy(Qt::CustomContextMenu);
-    m_keep->setObjectName("galleryKeep");
-    m_keep->setText(tr("Keep this…"));
-    m_keep->setToolTip(tr("Keeps the present transfer function, with its opacities, as a preset of your own"));
-    m_remove->setObjectName("galleryRemove");
-    m_remove->setText(tr("Remove"));
-    m_remove->setToolTip(tr("Removes the preset of your own that is selected"));
+    setLayout(
+        inset(columnOf({rowOf({{m_group, 1}, {m_take, 1}}), {m_list, 1}, rowOf({m_keep, m_remove, Cell::rest()})}),
+              {8, 8, 8, 8}));
 
-    auto* top = new QHBoxLayout;
-    top->addWidget(m_group, 1);
-    top->addWidget(m_take, 1);
-    auto* bottom = new QHBoxLayout;
-    bottom->addWidget(m_keep);
-    bottom->addWidget(m_remove);
-    bottom->addStretch(1);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(8, 8, 8, 8);
-    column->addLayout(top);
-    column->addWidget(m_list, 1);
-    column->addLayout(bottom);
-
-    m_wait.setSingleShot(true);
-    m_wait.setInterval(kWait);
-    connect(&m_wait, &QTimer::timeout, this, &GalleryPanel::draw);
     connect(m_group, &QComboBox::activated, this, &GalleryPanel::fill);
-    connect(m_list, &QListWidget::itemActivated, this, [this](QListWidgetItem* item) { apply(m_list->row(item)); });
-    connect(m_list, &QListWidget::itemClicked, this, [this](QListWidgetItem* item) { apply(m_list->row(item)); });
+    for (const auto signal : {&QListWidget::itemActivated, &QListWidget::itemClicked})
+        connect(m_list, signal, this, [this](QListWidgetItem* item) { apply(m_list->row(item)); });
     connect(m_list, &QListWidget::customContextMenuRequested, this, &GalleryPanel::showMenu);
     connect(m_list, &QListWidget::currentRowChanged, this, [this](int row) {
-        m_remove->setEnabled(row >= 0 && row < static_cast<int>(m_entries.size()) &&
-                             !m_entries[static_cast<std::size_t>(row)].path.isEmpty());
+        const Entry* const entry = entryAt(row);
+        m_remove->setEnabled(entry != nullptr && !entry->path.isEmpty());
     });
     connect(m_keep, &QToolButton::clicked, this, &GalleryPanel::keep);
     connect(m_remove, &QToolButton::clicked, this, &GalleryPanel::remove);
@@ -138,6 +115,11 @@ GalleryPanel::GalleryPanel(Services& services, QWidget* parent)
     });
     connect(&services, &Services::readOnlyChanged, this, [this] { m_list->setEnabled(!m_services.isReadOnly()); });
     fill();
+}
+
+const GalleryPanel::Entry* GalleryPanel::entryAt(int row) const {
+    const auto at = static_cast<std::size_t>(row);
+    return row >= 0 && at < m_entries.size() ? &m_entries[at] : nullptr;
 }
 
 QString GalleryPanel::presetFolder() {
@@ -232,15 +214,15 @@ void GalleryPanel::showPicture(int number, int row, const QImage& image) {
 
 void GalleryPanel::apply(int row) {
     SessionStore& store = m_services.store();
-    if (row < 0 || row >= static_cast<int>(m_entries.size()) || !m_services.isEditable()) return;
+    const Entry* const entry = entryAt(row);
+    if (entry == nullptr || !m_services.isEditable()) return;
     store.commit();
-    const Entry& entry = m_entries[static_cast<std::size_t>(row)];
     const auto what = static_cast<Take>(m_take->currentIndex());
     const TransferFunction tf =
-        taken(m_services.scene().tf, placed(entry.preset.tf, m_services.scene().volume->range()), what);
-    const QString title = QString::fromStdString(entry.preset.title);
+        taken(m_services.scene().tf, placed(entry->preset.tf, m_services.scene().volume->range()), what);
+    const QString title = QString::fromStdString(entry->preset.title);
     editTf(store, tf, tr("Preset %1").arg(title));
-    const bool empty = what != Take::Colors && !entry.preset.tf.points.empty() && tf.points.empty();
+    const bool empty = what != Take::Colors && !entry->preset.tf.points.empty() && tf.points.empty();
     Q_EMIT m_services.message(empty ? tr("Preset %1 shows values that this volume does not have.").arg(title)
                                     : tr("Preset %1.").arg(title));
 }
@@ -269,13 +251,12 @@ void GalleryPanel::keep() {
 }
 
 void GalleryPanel::remove() {
-    const int row = m_list->currentRow();
-    if (row < 0 || m_entries[static_cast<std::size_t>(row)].path.isEmpty()) return;
-    const Entry& entry = m_entries[static_cast<std::size_t>(row)];
-    if (!QFile::moveToTrash(entry.path) && !QFile::remove(entry.path))
+    const Entry* const entry = entryAt(m_list->currentRow());
+    if (entry == nullptr || entry->path.isEmpty()) return;
+    if (!QFile::moveToTrash(entry->path) && !QFile::remove(entry->path))
         return m_services.showError(
             tr("The preset cannot be removed"),
-            FileError("the file cannot be deleted", entry.path.toStdString(), "check its rights"));
+            FileError("the file cannot be deleted", entry->path.toStdString(), "check its rights"));
     fill();
 }
 

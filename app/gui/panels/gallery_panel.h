@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include <QTimer>
 #include <QWidget>
 
 #include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "session/scene.h"
 #include "tf/presets.h"
 #include "widgets/kept_renderer.h"
@@ -42,6 +42,7 @@ private:
         int number = 0;
     };
 
+    const Entry* entryAt(int row) const; ///< of the list; null: there is none
     void follow(const Scene& before, const Scene& after);
     void fill();
     void drawSoon();
@@ -57,7 +58,7 @@ private:
     QListWidget* m_list;
     QToolButton *m_keep, *m_remove;
     std::vector<Entry> m_entries; ///< in the list's order
-    QTimer m_wait;
+    RestTimer m_wait;
     bool m_shown = false, m_stale = true;
     int m_number = 0;
     std::shared_ptr<KeptRenderer> m_renderer;

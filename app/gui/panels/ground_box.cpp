@@ -1,66 +1,54 @@
 #include "panels/ground_box.h"
 
 #include <QCheckBox>
-#include <QComboBox>
-#include <QFormLayout>
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QMenu>
 #include <QPushButton>
-#include <QToolButton>
 
 #include <glm/geometric.hpp>
 
 #include "controllers/open_controller.h"
 #include "dialogs/series_files.h"
+#include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
-#include "services/services.h"
 #include "tf/terrain.h"
 #include "volume/procedural.h"
-#include "widgets/named.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
-GroundBox::GroundBox(Services& services, OpenController& opening, QWidget* parent)
-    : QWidget(parent), m_services(services), m_opening(opening), m_file(new QLabel(this)),
-      m_choose(new QToolButton(this)), m_remove(new QPushButton(tr("Remove"), this)),
-      m_shown(new QCheckBox(tr("&Ground"), this)), m_colorMap(new QComboBox(this)) {
+namespace {
+
+class GroundBox : public QWidget {
+public:
+    GroundBox(Services& services, OpenController& opening);
+
+private:
+    void follow();
+    void fillMenu();
+    void chooseFile();
+    void lay(const VolumeSource& source);
+
+    Services& m_services;
+    OpenController& m_opening;
+    QCheckBox* m_shown = named(new QCheckBox(tr("&Ground"), this), "groundShown",
+                               tr("A height field under the volume; figures do not depend on it"));
+    QLabel* m_file = withAnyWidth(named(new QLabel(this), "groundFile"));
+    QToolButton* m_choose = named(menuButton(tr("Choose"), this), "groundChoose",
+                                  tr("Heights: a volume of one layer, over the whole box of the data"));
+    QPushButton* m_remove = named(new QPushButton(tr("Remove"), this), "groundRemove", tr("Take the ground away"));
+    QComboBox* m_colorMap =
+        named(new QComboBox(this), "groundColorMap", tr("Colours from the lowest to the highest ground"));
+};
+
+GroundBox::GroundBox(Services& services, OpenController& opening) : m_services(services), m_opening(opening) {
     setObjectName("groundBox");
-    named(m_shown, "groundShown", tr("A height field under the volume; figures do not depend on it"));
-    m_file->setObjectName("groundFile");
     m_file->setTextFormat(Qt::PlainText);
-    m_file->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    m_choose->setObjectName("groundChoose");
-    m_choose->setText(tr("Choose"));
-    m_choose->setPopupMode(QToolButton::InstantPopup);
-    m_choose->setToolTip(tr("Heights: a volume of one layer, over the whole box of the data"));
-    auto* menu = new QMenu(m_choose);
-    menu->setObjectName("groundMenu");
-    menu->addAction(tr("File…"), this, &GroundBox::chooseFile)->setObjectName("groundFileAction");
-    menu->addSeparator();
-    for (const SampleInfo& sample : samples()) {
-        if (sample.defaultDims.z != 1) continue;
-        const QString name = QString::fromStdString(sample.name);
-        QAction* action = menu->addAction(tr("Sample %1").arg(name), this, [this, name] {
-            VolumeSource source;
-            source.path = "sample:" + name.toStdString();
-            lay(source);
-        });
-        action->setObjectName("ground_" + name);
-    }
-    m_choose->setMenu(menu);
-    named(m_remove, "groundRemove", tr("No ground"));
-    named(m_colorMap, "groundColorMap", tr("Colours from the lowest to the highest ground"));
+    fillMenu();
     for (const std::string& name : groundColorNames())
         m_colorMap->addItem(QString::fromStdString(name), QString::fromStdString(name));
-    auto* form = new QFormLayout(this);
-    form->setContentsMargins(0, 0, 0, 0);
+    auto* form = inset(new QFormLayout(this), {});
     form->setVerticalSpacing(6);
-    auto* head = new QHBoxLayout;
-    head->addWidget(m_shown);
-    head->addWidget(m_file, 1);
-    head->addWidget(m_choose);
-    head->addWidget(m_remove);
-    form->addRow(head);
+    form->addRow(rowOf({m_shown, {m_file, 1}, m_choose, m_remove}));
     form->addRow(tr("Colours"), m_colorMap);
     auto* scale = new SettingRows(m_services, *form, settingPart<GroundView>(&Session::ground));
     scale->setCommit([this](const QString& text, const QString&, const SessionStore::Change& change) {
@@ -78,27 +66,43 @@ GroundBox::GroundBox(Services& services, OpenController& opening, QWidget* paren
     relief->add("relief", {.id = "groundRelief", .slider = true, .stepText = tr("Relief of the ground")});
 
     connect(m_shown, &QCheckBox::clicked, this, [this](bool shown) {
-        m_opening.editInJob(shown ? tr("Show ground") : tr("Hide ground"), [shown](Session& session) {
-            session.ground.edit([shown](GroundView& g) { g.shown = shown; });
-        });
+        m_opening.editInJob(shown ? tr("Show ground") : tr("Hide ground"),
+                            changing(&Session::ground, [shown](GroundView& g) { g.shown = shown; }));
         m_shown->setChecked(m_services.store().session().ground->shown); // until it has been done
     });
     connect(m_remove, &QPushButton::clicked, this,
-            [this] { edit(tr("Remove ground"), {}, [](GroundView& g) { g = {}; }); });
+            [this] { m_services.store().edit(tr("Remove ground"), {}, [](Session& s) { s.ground.set({}); }); });
     connect(m_colorMap, &QComboBox::activated, this, [this] {
-        edit(tr("Colours of the ground"), {},
-             [name = m_colorMap->currentData().toString().toStdString()](GroundView& g) { g.colorMap = name; });
+        m_services.store().edit(tr("Colours of the ground"), {}, changing(&Session::ground, [this](GroundView& g) {
+                                    g.colorMap = m_colorMap->currentData().toString().toStdString();
+                                }));
     });
     connect(&m_services.store(), &SessionStore::changed, this, [=, this](const Scene& before, const Scene& after) {
-        if (before.ground != after.ground) scale->follow(); // what "auto" stands for
-        if (before.volume != after.volume || before.ground != after.ground ||
-            !before.session.ground.isSame(after.session.ground))
-            follow();
+        if (before.ground == after.ground) return;
+        scale->follow(); // what "auto" stands for
+        follow();
     });
-    connect(&m_services, &Services::readOnlyChanged, this, &GroundBox::follow);
     scale->follow();
     relief->follow();
-    follow();
+    followParts(
+        m_services, this, [this] { follow(); }, &Session::ground);
+}
+
+void GroundBox::fillMenu() {
+    QMenu& menu = *m_choose->menu();
+    menu.setObjectName("groundMenu");
+    menu.addAction(tr("File…"), this, &GroundBox::chooseFile)->setObjectName("groundFileAction");
+    menu.addSeparator();
+    for (const SampleInfo& sample : samples()) {
+        if (sample.defaultDims.z != 1) continue;
+        const QString name = QString::fromStdString(sample.name);
+        QAction* action = menu.addAction(tr("Sample %1").arg(name), this, [this, name] {
+            VolumeSource source;
+            source.path = "sample:" + name.toStdString();
+            lay(source);
+        });
+        action->setObjectName("ground_" + name);
+    }
 }
 
 void GroundBox::chooseFile() {
@@ -106,19 +110,13 @@ void GroundBox::chooseFile() {
 }
 
 void GroundBox::lay(const VolumeSource& source) {
-    m_opening.editInJob(tr("Ground %1").arg(titleOf(source)), [source](Session& session) {
-        session.ground.edit([&](GroundView& g) {
-            g.path = source.path;
-            g.raw = source.raw;
-            g.missing = source.missing;
-            g.scale.reset();
-            g.shown = true;
-        });
-    });
-}
-
-void GroundBox::edit(const QString& text, const QString& mergeKey, const Change& change) {
-    m_services.store().edit(text, mergeKey, [&](Session& session) { session.ground.edit(change); });
+    m_opening.editInJob(tr("Ground %1").arg(titleOf(source)), changing(&Session::ground, [source](GroundView& g) {
+                            g.path = source.path;
+                            g.raw = source.raw;
+                            g.missing = source.missing;
+                            g.scale.reset();
+                            g.shown = true;
+                        }));
 }
 
 void GroundBox::follow() {
@@ -138,5 +136,9 @@ void GroundBox::follow() {
     m_remove->setEnabled(any);
     m_colorMap->setEnabled(any && view.shown);
 }
+
+} // namespace
+
+QWidget* makeGroundBox(Services& services, OpenController& opening) { return new GroundBox(services, opening); }
 
 } // namespace pellucid::gui

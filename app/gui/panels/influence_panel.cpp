@@ -1,5 +1,4 @@
-#include "panels/influence_panel.h"
-
+// The dock that tells how each feature's VWS follows each opacity, and which feature hides which.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,7 +6,6 @@
 #include <QAction>
 #include <QApplication>
 #include <QClipboard>
-#include <QComboBox>
 #include <QEvent>
 #include <QHeaderView>
 #include <QTableWidget>
@@ -16,6 +14,7 @@
 
 #include "panels/panel.h"
 #include "services/services.h"
+#include "widgets/controls.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -30,46 +29,44 @@ QString signedText(double value, int digits) {
     return text.replace('-', QChar(0x2212));
 }
 
-QColor blend(const QColor& from, const QColor& to, double share) {
-    const auto part = [share](int a, int b) { return static_cast<int>(std::lround(a + share * (b - a))); };
-    return {part(from.red(), to.red()), part(from.green(), to.green()), part(from.blue(), to.blue())};
-}
+/// A square table of the present state, as a heat map: ∂W_i/∂x_j, row i a feature's VWS, column j a feature's opacity;
+/// or the part of feature i that feature j hides. Pale while the figures are of an older state.
+class InfluencePanel : public QWidget {
+public:
+    InfluencePanel(SessionStore& store, Results& results, QWidget* parent);
 
-} // namespace
+private:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+    void showEvent(QShowEvent* event) override;
+    void changeEvent(QEvent* event) override;
+    void fitColumns();
+    void rebuild();
+    /// What the table shows: the influence, or who hides whom. Null before it is known.
+    const std::vector<std::vector<double>>* matrix() const;
+    QString cellText(double value) const;
+    QString cellTip(int row, int column, double value) const;
+    /// Values and colours, in the cells that are there.
+    void refresh();
+    /// The table as lines of tab-separated columns, names first, with all digits; nothing while it is of an older
+    /// state.
+    void copy() const;
 
-PanelInfo influencePanel() {
-    return {.id = "influence",
-            .title = QObject::tr("Influence"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = false, // costs a sweep more
-            .size = 0,
-            .keys = QKeySequence("Ctrl+I"),
-            .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
-            .make = [](Services& services, Controllers&, QWidget* parent) {
-                services.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
-                Results& results = services.results();
-                QObject::connect(&services.panels(), &Panels::visibilityChanged, &results,
-                                 [&results](const QString& id, bool visible) {
-                                     if (id == "influence") results.setInfluenceWanted(visible);
-                                 });
-                return new InfluencePanel(services.store(), results, parent);
-            }};
-}
+    SessionStore& m_store;
+    Results& m_results;
+    QComboBox* m_what = named(new QComboBox(this), "influenceCombo");
+    QTableWidget* m_table = named(new QTableWidget(this), "influenceTable");
+    QAction* m_copyAction = new QAction(tr("Copy the table"), m_table);
+    bool m_fitsLater = false;
+};
 
 InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* parent)
-    : QWidget(parent), m_store(store), m_results(results), m_what(new QComboBox(this)), m_table(new QTableWidget(this)),
-      m_copyAction(new QAction(tr("Copy the table"), m_table)) {
-    m_what->setObjectName("influenceCombo");
-    m_what->addItem(tr("How fast each VWS (rows) follows each opacity (columns)"));
-    m_what->addItem(tr("How much of a feature (rows) another one hides (columns)"));
-    m_what->setItemData(0,
-                        tr("∂W/∂x: the change of a feature's share per change of an opacity, both from 0 to 1,\n"
-                           "from this view and at the present opacities"),
-                        Qt::ToolTipRole);
-    m_what->setItemData(1,
-                        tr("The part of the row's visibility that comes back where the column's opacity is 0,\n"
-                           "from this view and at the present opacities"),
-                        Qt::ToolTipRole);
+    : QWidget(parent), m_store(store), m_results(results) {
+    addItem(*m_what, tr("How fast each VWS (rows) follows each opacity (columns)"), {},
+            tr("∂W/∂x: the change of a feature's share per change of an opacity, both from 0 to 1,\n"
+               "from this view and at the present opacities"));
+    addItem(*m_what, tr("How much of a feature (rows) another one hides (columns)"), {},
+            tr("The part of the row's visibility that comes back where the column's opacity is 0,\n"
+               "from this view and at the present opacities"));
     m_what->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     m_what->setMinimumContentsLength(20);
     const auto tell = [this] { m_what->setToolTip(m_what->currentData(Qt::ToolTipRole).toString()); };
@@ -78,7 +75,6 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
         rebuild();
     });
     tell();
-    m_table->setObjectName("influenceTable");
     m_table->setEditTriggers(QAbstractItemView::NoEditTriggers);
     m_table->setSelectionMode(QAbstractItemView::NoSelection);
     // As wide as the numbers, names in two lines: many features scroll, numbers are not cut off.
@@ -103,11 +99,7 @@ InfluencePanel::InfluencePanel(SessionStore& store, Results& results, QWidget* p
     column->addWidget(m_what);
     column->addWidget(m_table, 1);
     connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.tf.features == after.tf.features) {
-            refresh();
-        } else {
-            rebuild();
-        }
+        before.tf.features == after.tf.features ? refresh() : rebuild();
     });
     connect(&results, &Results::changed, this, &InfluencePanel::refresh);
 }
@@ -212,7 +204,7 @@ void InfluencePanel::refresh() {
             cell->setText(cellText(value));
             cell->setToolTip(current ? cellTip(i, j, value) : tr("Of an older state; being measured"));
             cell->setBackground(
-                blend(theme::kPanel, value < 0 ? theme::kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
+                between(theme::kPanel, value < 0 ? theme::kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
             cell->setForeground(current ? theme::kText : theme::kFaint);
         }
 }
@@ -230,6 +222,25 @@ void InfluencePanel::copy() const {
         text += '\n';
     }
     QApplication::clipboard()->setText(text);
+}
+
+} // namespace
+
+PanelInfo influencePanel() {
+    return {.id = "influence",
+            .title = QObject::tr("Influence"),
+            .visible = false, // costs a sweep more
+            .keys = QKeySequence("Ctrl+I"),
+            .tip = QObject::tr("How each feature's VWS follows each opacity, and which feature hides which"),
+            .make = [](Services& services, Controllers&, QWidget* parent) {
+                services.actions().addGestures({{QObject::tr("Influence"), "Ctrl+C", QObject::tr("copy the table")}});
+                Results& results = services.results();
+                QObject::connect(&services.panels(), &Panels::visibilityChanged, &results,
+                                 [&results](const QString& id, bool visible) {
+                                     if (id == "influence") results.setInfluenceWanted(visible);
+                                 });
+                return new InfluencePanel(services.store(), results, parent);
+            }};
 }
 
 } // namespace pellucid::gui

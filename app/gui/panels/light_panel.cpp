@@ -1,125 +1,100 @@
-#include "panels/light_panel.h"
-
+// The panel of light: what makes shapes visible. No figure depends on it.
 #include <cmath>
 #include <numbers>
 
 #include <QCheckBox>
-#include <QComboBox>
-#include <QDoubleSpinBox>
-#include <QFormLayout>
-#include <QHBoxLayout>
 #include <QPushButton>
-#include <QSignalBlocker>
 
 #include <glm/geometric.hpp>
 
 #include "panels/panel.h"
+#include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
 #include "render/light_presets.h"
-#include "services/services.h"
-#include "widgets/named.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/number_box.h"
-#include "widgets/scrolled.h"
 
 namespace pellucid::gui {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-bool isReady(Services& services) { return services.isEditable(); }
+class LightPanel : public QWidget {
+public:
+    /// `light` puts it on and off.
+    LightPanel(Services& services, QAction& light, QWidget* parent);
 
-} // namespace
+    QSize sizeHint() const override { return sizeWithoutScrolling(*this); }
 
-LightPanel::LightPanel(Services& services, QAction& light, QWidget* parent)
-    : QWidget(parent), m_services(services), m_on(new QCheckBox(tr("&Light"), this)), m_preset(new QComboBox(this)),
-      m_right(new QDoubleSpinBox(this)), m_up(new QDoubleSpinBox(this)),
-      m_fromEye(new QPushButton(tr("From the &eye"), this)) {
+private:
+    void follow();
+    void edit(const QString& text, const QString& mergeKey, const std::function<void(Light&)>& change);
+    void editDirection();
+
+    Services& m_services;
+    QCheckBox* m_on = named(new QCheckBox(tr("&Light"), this), "shadingCheck",
+                            tr("Light by the gradient of the values; figures do not depend on it (L)"));
+    QComboBox* m_preset =
+        named(new QComboBox(this), "lightPresetCombo", tr("Ready-made light; the direction that it comes from stays"));
+    QDoubleSpinBox* m_right = named(new QDoubleSpinBox(this), "lightRight",
+                                    tr("How far from the right the light comes, degrees; 0 is from the eye"));
+    QDoubleSpinBox* m_up = named(new QDoubleSpinBox(this), "lightUp",
+                                 tr("How far from above the light comes, degrees; 0 is from the eye"));
+    QPushButton* m_fromEye = named(new QPushButton(tr("From the &eye"), this), "lightFromEyeButton",
+                                   tr("The light goes with the viewer; drag in the picture with Ctrl held to turn it"));
+};
+
+LightPanel::LightPanel(Services& services, QAction& light, QWidget* parent) : QWidget(parent), m_services(services) {
     setObjectName("lightPanel");
-    named(m_on, "shadingCheck", tr("Light by the gradient of the values; figures do not depend on it (L)"));
-    named(m_preset, "lightPresetCombo", tr("Ready-made light; where it comes from stays"));
-    for (const LightPreset& preset : lightPresets()) {
-        m_preset->addItem(QString::fromLatin1(preset.name));
-        m_preset->setItemData(m_preset->count() - 1, QString::fromLatin1(preset.description), Qt::ToolTipRole);
-    }
+    for (const LightPreset& preset : lightPresets())
+        addItem(*m_preset, QString::fromLatin1(preset.name), {}, QString::fromLatin1(preset.description));
     m_preset->setPlaceholderText(tr("own"));
-    named(m_fromEye, "lightFromEyeButton",
-          tr("The light goes with the viewer; drag in the picture with Ctrl held to turn it"));
+    withLook(m_right, {.lo = -180, .hi = 180, .step = 5, .suffix = tr("°")});
+    withLook(m_up, {.lo = -90, .hi = 90, .step = 5, .suffix = tr("°")});
 
-    auto* content = new QWidget;
-    auto* form = new QFormLayout(content);
-    form->setContentsMargins(10, 8, 10, 8);
-    form->setVerticalSpacing(6);
-    auto* head = new QHBoxLayout;
-    head->addWidget(m_on);
-    head->addWidget(m_preset, 1);
-    form->addRow(head);
+    QFormLayout* const form = scrolledForm(this, 6);
+    form->addRow(rowOf({m_on, {m_preset, 1}}));
     auto* rows = new SettingRows(m_services, *form, settingPart<Light>(&Session::display, &DisplaySettings::light));
     rows->add("ambient", {.id = "lightAmbient", .slider = true});
     rows->add("diffuse", {.id = "lightDiffuse", .slider = true});
     rows->add("specular", {.id = "lightSpecular", .slider = true});
     rows->add("shininess", {.id = "lightShininess", .slider = true, .logarithmic = true, .decimals = 0, .step = 1});
-    addDirection(*form);
+    form->addRow(tr("From"), rowOf({{m_right, 1}, {m_up, 1}}));
+    form->addRow(QString(), m_fromEye);
     rows->add("silhouettes", {.id = "lightSilhouettes", .slider = true});
     rows->add("occlusion", {.id = "lightOcclusion", .slider = true});
     rows->add("depth_cue", {.id = "lightDepthCue", .slider = true});
     rows->add("gradient_opacity", {.id = "lightGradientOpacity", .slider = true});
     rows->follow();
-    fillScrolled(this, content);
 
-    SessionStore& store = m_services.store();
     connect(m_on, &QCheckBox::clicked, &light, &QAction::trigger);
     connect(m_preset, &QComboBox::activated, this, [this](int index) {
         const LightPreset& preset = lightPresets()[static_cast<std::size_t>(index)];
-        m_services.store().edit(tr("Light: %1").arg(QString::fromLatin1(preset.name)), {}, [&](Session& session) {
-            session.display.edit([&](DisplaySettings& d) { d.light = withPreset(d.light, preset); });
-        });
+        edit(tr("Light: %1").arg(QString::fromLatin1(preset.name)), {},
+             [&](Light& present) { present = withPreset(present, preset); });
     });
-    connect(m_fromEye, &QPushButton::clicked, this, [this] {
-        m_services.store().edit(tr("Light from the eye"), {}, [](Session& session) {
-            session.display.edit([](DisplaySettings& d) { d.light.direction = Light{}.direction; });
-        });
-    });
-    connect(&store, &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.volume != after.volume || !before.session.display.isSame(after.session.display)) follow();
-    });
-    connect(&m_services, &Services::readOnlyChanged, this, &LightPanel::follow);
-    follow();
+    for (QDoubleSpinBox* box : {m_right, m_up})
+        connect(box, &QDoubleSpinBox::valueChanged, this, &LightPanel::editDirection);
+    connect(m_fromEye, &QPushButton::clicked, this,
+            [this] { edit(tr("Light from the eye"), {}, [](Light& l) { l.direction = Light{}.direction; }); });
+    followParts(
+        m_services, this, [this] { follow(); }, &Session::display);
 }
 
-void LightPanel::addDirection(QFormLayout& form) {
-    const std::pair<QDoubleSpinBox*, const char*> angles[] = {{m_right, "lightRight"}, {m_up, "lightUp"}};
-    auto* from = new QHBoxLayout;
-    for (const auto& [box, name] : angles) {
-        box->setObjectName(name);
-        box->setDecimals(0);
-        box->setSuffix(tr("°"));
-        box->setSingleStep(5);
-        box->setKeyboardTracking(false);
-        from->addWidget(box, 1);
-        connect(box, &QDoubleSpinBox::valueChanged, this, &LightPanel::editDirection);
-    }
-    m_right->setRange(-180, 180);
-    m_right->setToolTip(tr("How far from the right the light comes, degrees; 0 is from the eye"));
-    m_up->setRange(-90, 90);
-    m_up->setToolTip(tr("How far from above the light comes, degrees; 0 is from the eye"));
-    form.addRow(tr("From"), from);
-    form.addRow(QString(), m_fromEye);
+void LightPanel::edit(const QString& text, const QString& mergeKey, const std::function<void(Light&)>& change) {
+    m_services.store().edit(text, mergeKey, changing(&Session::display, [&](DisplaySettings& d) { change(d.light); }));
 }
 
 void LightPanel::editDirection() {
     const double right = m_right->value() / kDegrees, up = m_up->value() / kDegrees;
     const Vec3 direction{std::sin(right) * std::cos(up), std::sin(up), std::cos(right) * std::cos(up)};
-    m_services.store().edit(tr("Light's direction"), "lightDirection", [&](Session& session) {
-        session.display.edit([&](DisplaySettings& d) { d.light.direction = direction; });
-    });
+    edit(tr("Light's direction"), "lightDirection", [&](Light& light) { light.direction = direction; });
 }
 
-QSize LightPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
-
 void LightPanel::follow() {
-    setEnabled(isReady(m_services));
+    setEnabled(m_services.isEditable());
     if (!m_services.store().hasVolume()) return;
-    const QSignalBlocker right(m_right), up(m_up);
     const Light& light = m_services.scene().session.display->light;
     m_on->setChecked(light.on);
     const LightPreset* preset = presetOf(light);
@@ -127,14 +102,15 @@ void LightPanel::follow() {
     const Vec3 toward = glm::normalize(light.direction);
     if (std::abs(toward.y) <= 1 - 1e-9) showNumber(*m_right, kDegrees * std::atan2(toward.x, toward.z));
     showNumber(*m_up, kDegrees * std::asin(std::clamp(toward.y, -1.0, 1.0)));
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_right, m_up}) widget->setEnabled(light.on);
+    for (QWidget* widget : {m_right, m_up}) widget->setEnabled(light.on);
     m_fromEye->setEnabled(light.on && light.direction != Light{}.direction);
 }
+
+} // namespace
 
 PanelInfo lightPanel() {
     return {.id = "light",
             .title = QObject::tr("Light"),
-            .area = Qt::RightDockWidgetArea,
             .visible = false,
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+L"),
@@ -145,17 +121,11 @@ PanelInfo lightPanel() {
                     QObject::tr("&View"), "shadingAction", QObject::tr("&Light"), "L",
                     QObject::tr("Light by the gradient of the values, or plain colours"),
                     [&store] {
-                        store.edit(QObject::tr("Light"), {}, [](Session& session) {
-                            session.display.edit([](DisplaySettings& d) { d.light.on = !d.light.on; });
-                        });
+                        store.edit(QObject::tr("Light"), {},
+                                   changing(&Session::display, [](DisplaySettings& d) { d.light.on = !d.light.on; }));
                     },
-                    [&services] { return isReady(services); },
+                    [&services] { return services.isEditable(); },
                     {.checked = [&store] { return store.session().display->light.on; }, .separatorBefore = true});
-                QObject::connect(&store, &SessionStore::changed, &services.actions(),
-                                 [&services](const Scene& before, const Scene& after) {
-                                     if (before.session.display->light.on != after.session.display->light.on)
-                                         services.actions().refresh();
-                                 });
                 return new LightPanel(services, *light, parent);
             }};
 }

@@ -1,24 +1,17 @@
-#include "panels/player_panel.h"
-
+// Time: the frames of a series over their histograms, and what plays them.
 #include <cmath>
 #include <limits>
 
 #include <QAction>
-#include <QComboBox>
-#include <QDoubleSpinBox>
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QPainter>
-#include <QProgressBar>
 #include <QSlider>
-#include <QToolButton>
-#include <QVBoxLayout>
 
 #include "controllers/controllers.h"
 #include "panels/panel.h"
 #include "panels/time_strip.h"
 #include "services/services.h"
-#include "widgets/named.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/number_box.h"
 #include "widgets/theme.h"
 
@@ -104,82 +97,73 @@ QString coherenceText(double coherence) {
     return std::isinf(coherence) ? QStringLiteral("∞") : QString::number(coherence, 'g', 2);
 }
 
-} // namespace
+/// What goes on by itself: how far it is, and a button that stops it or lets it go on.
+struct Work {
+    QLabel* text;
+    QProgressBar* bar;
+    QToolButton* stop;
 
-PanelInfo playerPanel() {
-    return {.id = "player",
-            .title = QObject::tr("Time"),
-            .area = Qt::BottomDockWidgetArea,
-            .visible = false,
-            .below = "tf",
-            .keys = QKeySequence("Ctrl+3"),
-            .tip = QObject::tr("The frames of a series: play, step, key frames, transfer functions over time"),
-            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
-                services.actions().addGestures(
-                    {{QObject::tr("Time"), QObject::tr("Drag over the frames"), QObject::tr("go to the frame")},
-                     {QObject::tr("Time"), QObject::tr("Wheel, ← and →"), QObject::tr("one frame back, forward")},
-                     {QObject::tr("Time"), QObject::tr("Page up, page down"), QObject::tr("ten frames")}});
-                return new PlayerPanel(services, controllers.player, controllers.adapting, parent);
-            }};
-}
+    Work(const QString& id, QWidget* parent)
+        : text(named(new QLabel(parent), id + "Label")), bar(progressBar(id + "Progress", parent, 1000)),
+          stop(named(new QToolButton(parent), id + "Stop")) {
+        makeFaint(*text);
+        bar->setMaximumSize(100, 12);
+        stop->setAutoRaise(true);
+    }
+    void show(double share, bool goesOn, const QString& tip) {
+        bar->setValue(static_cast<int>(1000 * share));
+        stop->setText(goesOn ? QObject::tr("Stop") : QObject::tr("Go on"));
+        stop->setToolTip(tip);
+    }
+};
+
+/// Comes up by itself where a series is opened, and goes with it.
+class PlayerPanel : public QWidget {
+public:
+    PlayerPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent);
+
+private:
+    void follow(const Scene& before, const Scene& after);
+    void followPlayer();
+    void followSurvey();
+    void followMarks();
+    void followAdapting();
+    QLayout* playRow();
+    QLayout* adaptRow();
+    QToolButton* button(QAction& action, const char* name, const QIcon& icon, const QString& text = {});
+    void showDock(bool shown);
+
+    Services& m_services;
+    PlayerController& m_player;
+    AdaptController& m_adapting;
+    TimeStrip* m_strip = new TimeStrip(this);
+    QLabel* m_frame = named(new QLabel(this), "frameLabel",
+                            tr("The frame that is shown: its time, in the unit of the data, and its number"));
+    QLabel* m_rate = named(new QLabel(this), "rateLabel",
+                           tr("Frames that were shown a second, of those that were due; frames that could not be read\n"
+                              "or drawn in time are dropped"));
+    QToolButton* m_play = nullptr;
+    QDoubleSpinBox* m_speed =
+        named(new QDoubleSpinBox(this), "framesPerSecond", tr("Speed of play, frames a second, 1 to 60"));
+    Work m_survey{"survey", this};
+    QComboBox* m_mode = named(new QComboBox(this), "adaptMode",
+                              tr("How the transfer function follows the frames\n"
+                                 "static: the keys, and what lies between them\n"
+                                 "refine: that of the frame before, refined by entropy, priorities included\n"
+                                 "optimize: opacities bring VWS to the targets in every frame"));
+    QSlider* m_coherence =
+        named(new QSlider(Qt::Horizontal, this), "coherence",
+              tr("Coherence, 0 to ∞, without unit: how much jumps of the transfer function from frame to\n"
+                 "frame are held back; 0: each frame for itself, ∞: as static\n"
+                 "optimize: over the whole series, for a mean distance (RMS) of a hundredth of this from the targets"));
+    QLabel* m_coherenceText = named(new QLabel(this), "coherenceLabel");
+    Work m_adapt{"adapt", this};
+    bool m_shownByItself = false;
+};
 
 PlayerPanel::PlayerPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent)
-    : QWidget(parent), m_services(services), m_player(player), m_adapting(adapting), m_strip(new TimeStrip(this)),
-      m_frame(new QLabel(this)), m_rate(new QLabel(this)), m_surveyText(new QLabel(this)),
-      m_stopSurvey(new QToolButton(this)), m_speed(new QDoubleSpinBox(this)), m_survey(new QProgressBar(this)) {
-    const PlayerActions& does = player.actions();
-    auto* row = new QHBoxLayout;
-    row->setSpacing(2);
-    for (const auto& [action, name, sign] : std::initializer_list<std::tuple<QAction*, const char*, Sign>>{
-             {does.first, "firstFrame", Sign::First},
-             {does.previous, "previousFrame", Sign::Previous},
-             {does.play, "play", Sign::Play},
-             {does.next, "nextFrame", Sign::Next},
-             {does.last, "lastFrame", Sign::Last},
-             {does.loops, "loopFrames", Sign::Loop},
-             {does.backward, "playBackward", Sign::Back}}) {
-        QToolButton* const made = button(*action, name, signOf(sign));
-        if (sign == Sign::Play) m_play = made;
-        row->addWidget(made);
-    }
-    m_speed->setObjectName("framesPerSecond");
-    m_speed->setRange(PlayerController::kSlowest, PlayerController::kFastest);
-    m_speed->setDecimals(0);
-    m_speed->setSuffix(tr(" fps"));
-    m_speed->setToolTip(tr("Speed of play, frames a second, 1 to 60"));
-    m_speed->setValue(player.speed());
-    connect(m_speed, &QDoubleSpinBox::valueChanged, this, [&player](double value) { player.setSpeed(value); });
-    row->addWidget(m_speed);
-    row->addSpacing(8);
-    named(m_frame, "frameLabel", tr("The frame that is shown: its time, in the unit of the data, and its number"));
-    row->addWidget(m_frame);
-    row->addSpacing(12);
-    named(m_rate, "rateLabel",
-          tr("Frames that were shown a second, of those that were due; frames that could not be read or\n"
-             "drawn in time are dropped"));
-    makeFaint(*m_rate);
-    row->addWidget(m_rate);
-    row->addStretch(1);
-    m_surveyText->setObjectName("surveyLabel");
-    makeFaint(*m_surveyText);
-    m_survey->setObjectName("surveyProgress");
-    m_survey->setMaximumSize(100, 12);
-    m_survey->setTextVisible(false);
-    m_stopSurvey->setObjectName("surveyStop");
-    m_stopSurvey->setAutoRaise(true);
-    connect(m_stopSurvey, &QToolButton::clicked, this,
-            [&player] { player.isSurveying() ? player.stopSurvey() : player.goOnSurveying(); });
-    row->addWidget(m_surveyText);
-    row->addWidget(m_survey);
-    row->addWidget(m_stopSurvey);
-
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(4, 2, 4, 2);
-    column->setSpacing(2);
-    column->addLayout(row);
-    column->addWidget(m_strip, 1);
-    column->addWidget(adaptRow());
-
+    : QWidget(parent), m_services(services), m_player(player), m_adapting(adapting) {
+    setLayout(inset(columnOf({playRow(), {m_strip, 1}, adaptRow()}, 2), {4, 2, 4, 2}));
     connect(m_strip, &TimeStrip::frameWanted, &player, &PlayerController::goTo);
     connect(m_strip, &TimeStrip::stepWanted, &player, &PlayerController::step);
     connect(&services.store(), &SessionStore::changed, this, &PlayerPanel::follow);
@@ -192,13 +176,38 @@ PlayerPanel::PlayerPanel(Services& services, PlayerController& player, AdaptCont
     followAdapting();
 }
 
+QLayout* PlayerPanel::playRow() {
+    const PlayerActions& does = m_player.actions();
+    auto* row = rowOf({}, 2);
+    for (const auto& [action, name, sign] : std::initializer_list<std::tuple<QAction*, const char*, Sign>>{
+             {does.first, "firstFrame", Sign::First},
+             {does.previous, "previousFrame", Sign::Previous},
+             {does.play, "play", Sign::Play},
+             {does.next, "nextFrame", Sign::Next},
+             {does.last, "lastFrame", Sign::Last},
+             {does.loops, "loopFrames", Sign::Loop},
+             {does.backward, "playBackward", Sign::Back}}) {
+        QToolButton* const made = button(*action, name, signOf(sign));
+        if (sign == Sign::Play) m_play = made;
+        row->addWidget(made);
+    }
+    m_speed->setRange(PlayerController::kSlowest, PlayerController::kFastest);
+    m_speed->setDecimals(0);
+    m_speed->setSuffix(tr(" fps"));
+    m_speed->setValue(m_player.speed());
+    connect(m_speed, &QDoubleSpinBox::valueChanged, this, [this](double value) { m_player.setSpeed(value); });
+    makeFaint(*m_rate);
+    connect(m_survey.stop, &QToolButton::clicked, this,
+            [this] { m_player.isSurveying() ? m_player.stopSurvey() : m_player.goOnSurveying(); });
+    add(*row, {m_speed, Cell::gap(8), m_frame, Cell::gap(12), m_rate, Cell::rest()});
+    add(*row, {m_survey.text, m_survey.bar, m_survey.stop});
+    return row;
+}
+
 QToolButton* PlayerPanel::button(QAction& does, const char* name, const QIcon& icon, const QString& text) {
-    auto* made = new QToolButton(this);
-    made->setObjectName(name);
+    QToolButton* const made = named(toolButton(text, this), name, does.toolTip());
     made->setIcon(icon);
-    made->setText(text);
     made->setAutoRaise(true);
-    made->setToolTip(does.toolTip());
     made->setAccessibleName(does.toolTip());
     made->setCheckable(does.isCheckable());
     const auto followAction = [made, &does] {
@@ -214,42 +223,20 @@ QToolButton* PlayerPanel::button(QAction& does, const char* name, const QIcon& i
     return made;
 }
 
-QWidget* PlayerPanel::adaptRow() {
-    auto* widget = new QWidget(this);
-    auto* row = new QHBoxLayout(widget);
-    row->setContentsMargins(0, 0, 0, 0);
-    row->setSpacing(2);
-    m_mode = new QComboBox(widget);
-    m_mode->setObjectName("adaptMode");
+QLayout* PlayerPanel::adaptRow() {
     m_mode->addItems({tr("static"), tr("refine"), tr("optimize")});
-    m_mode->setToolTip(tr("How the transfer function follows the frames\n"
-                          "static: the keys, and what lies between them\n"
-                          "refine: that of the frame before, refined by entropy, priorities included\n"
-                          "optimize: opacities bring VWS to the targets in every frame"));
     connect(m_mode, &QComboBox::activated, this,
             [this](int index) { m_adapting.setMode(static_cast<AdaptSettings::Mode>(index)); });
-    m_coherence = new QSlider(Qt::Horizontal, widget);
-    m_coherence->setObjectName("coherence");
     m_coherence->setRange(0, kCoherenceSteps);
     m_coherence->setFixedWidth(110);
-    m_coherence->setToolTip(
-        tr("Coherence, 0 to ∞, without unit: how much jumps of the transfer function from frame to\n"
-           "frame are held back; 0: each frame for itself, ∞: as static\n"
-           "optimize: over the whole series, for a mean distance (RMS) of a hundredth of this from the targets"));
     connect(m_coherence, &QSlider::valueChanged, this,
             [this](int step) { m_adapting.setCoherence(coherenceOf(step)); });
-    m_coherenceText = new QLabel(widget);
-    m_coherenceText->setObjectName("coherenceLabel");
     m_coherenceText->setMinimumWidth(m_coherenceText->fontMetrics().horizontalAdvance("0.0099"));
-    auto* label = new QLabel(tr("Transfer function:"), widget);
+    auto* label = new QLabel(tr("Transfer function:"), this);
     label->setBuddy(m_mode);
-    row->addWidget(label);
-    row->addWidget(m_mode);
-    row->addSpacing(6);
-    row->addWidget(new QLabel(tr("Coherence"), widget));
-    row->addWidget(m_coherence);
-    row->addWidget(m_coherenceText);
-    row->addSpacing(6);
+    auto* row = rowOf(
+        {label, m_mode, Cell::gap(6), new QLabel(tr("Coherence"), this), m_coherence, m_coherenceText, Cell::gap(6)},
+        2);
     const std::pair<const char*, QString> keys[] = {{"tfKey", tr("◆ Key")},
                                                     {"targetKey", tr("○ Targets")},
                                                     {"previousKey", tr("‹ key")},
@@ -257,21 +244,10 @@ QWidget* PlayerPanel::adaptRow() {
                                                     {"fromHere", tr("From here on")}};
     for (qsizetype i = 0; i < m_adapting.keyActions().size(); ++i)
         row->addWidget(button(*m_adapting.keyActions()[i], keys[i].first, {}, keys[i].second));
-    row->addStretch(1);
-    m_adaptText = new QLabel(widget);
-    m_adaptText->setObjectName("adaptLabel");
-    makeFaint(*m_adaptText);
-    m_adapt = new QProgressBar(widget);
-    m_adapt->setObjectName("adaptProgress");
-    m_adapt->setMaximumSize(100, 12);
-    m_adapt->setTextVisible(false);
-    m_stopAdapt = new QToolButton(widget);
-    m_stopAdapt->setObjectName("adaptStop");
-    m_stopAdapt->setAutoRaise(true);
-    connect(m_stopAdapt, &QToolButton::clicked, this,
+    connect(m_adapt.stop, &QToolButton::clicked, this,
             [this] { m_adapting.isStopped() ? m_adapting.goOn() : m_adapting.stop(); });
-    for (QWidget* w : std::initializer_list<QWidget*>{m_adaptText, m_adapt, m_stopAdapt}) row->addWidget(w);
-    return widget;
+    add(*row, {Cell::rest(), m_adapt.text, m_adapt.bar, m_adapt.stop});
+    return row;
 }
 
 void PlayerPanel::followAdapting() {
@@ -289,21 +265,17 @@ void PlayerPanel::followAdapting() {
     }
     m_coherenceText->setText(coherenceText(coherence));
     const AdaptProgress progress = m_adapting.progress();
-    m_adaptText->setVisible(adapts && open);
-    m_adaptText->setText(progress.done < progress.all
-                             ? tr("made for %L1 of %L2 frames").arg(progress.done).arg(progress.all)
-                         : progress.smooth < progress.all ? tr("smoothing over all frames")
-                                                          : tr("made for all frames"));
-    const bool making = adapts && open && (progress.done < progress.all || progress.smooth < progress.all);
-    m_adapt->setVisible(making);
-    m_adapt->setRange(0, 1000);
-    m_adapt->setValue(
-        static_cast<int>(1000 * (progress.done < progress.all ? static_cast<double>(progress.done) / progress.all
-                                                              : m_adapting.smoothing())));
-    m_stopAdapt->setVisible(making);
-    m_stopAdapt->setText(m_adapting.isStopped() ? tr("Go on") : tr("Stop"));
-    m_stopAdapt->setToolTip(m_adapting.isStopped() ? tr("Make the transfer functions of the other frames")
-                                                   : tr("Make no more transfer functions of other frames for now"));
+    const bool all = progress.done >= progress.all, smooth = progress.smooth >= progress.all;
+    m_adapt.text->setVisible(adapts && open);
+    m_adapt.text->setText(!all      ? tr("made for %L1 of %L2 frames").arg(progress.done).arg(progress.all)
+                          : !smooth ? tr("smoothing over all frames")
+                                    : tr("made for all frames"));
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_adapt.bar, m_adapt.stop})
+        widget->setVisible(adapts && open && !(all && smooth));
+    m_adapt.show(all ? m_adapting.smoothing() : static_cast<double>(progress.done) / progress.all,
+                 !m_adapting.isStopped(),
+                 m_adapting.isStopped() ? tr("Make the transfer functions of the other frames")
+                                        : tr("Make no more transfer functions of other frames for now"));
     followMarks();
 }
 
@@ -349,14 +321,12 @@ void PlayerPanel::followPlayer() {
 void PlayerPanel::followSurvey() {
     const int known = m_player.knownCount(), count = m_player.frameCount();
     const bool open = m_player.hasSeries() && known < count;
-    for (QWidget* widget : std::initializer_list<QWidget*>{m_surveyText, m_survey, m_stopSurvey})
+    for (QWidget* widget : std::initializer_list<QWidget*>{m_survey.text, m_survey.bar, m_survey.stop})
         widget->setVisible(open);
-    m_survey->setRange(0, std::max(1, count));
-    m_survey->setValue(known);
-    m_surveyText->setText(tr("%L1 of %L2 frames known").arg(known).arg(count));
-    m_stopSurvey->setText(m_player.isSurveying() ? tr("Stop") : tr("Go on"));
-    m_stopSurvey->setToolTip(m_player.isSurveying() ? tr("Look at no more frames than are shown")
-                                                    : tr("Look at all frames, so that the strip shows them"));
+    m_survey.text->setText(tr("%L1 of %L2 frames known").arg(known).arg(count));
+    m_survey.show(static_cast<double>(known) / std::max(1, count), m_player.isSurveying(),
+                  m_player.isSurveying() ? tr("Look at no more frames than are shown")
+                                         : tr("Look at all frames, so that the strip shows them"));
     m_strip->refresh();
     followMarks();
 }
@@ -377,6 +347,25 @@ void PlayerPanel::followMarks() {
         mark.problem = m_player.problemOf(f);
     }
     m_strip->setMarks(std::move(marks));
+}
+
+} // namespace
+
+PanelInfo playerPanel() {
+    return {.id = "player",
+            .title = QObject::tr("Time"),
+            .area = Qt::BottomDockWidgetArea,
+            .visible = false,
+            .below = "tf",
+            .keys = QKeySequence("Ctrl+3"),
+            .tip = QObject::tr("The frames of a series: play, step, key frames, transfer functions over time"),
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                services.actions().addGestures(
+                    {{QObject::tr("Time"), QObject::tr("Drag over the frames"), QObject::tr("go to the frame")},
+                     {QObject::tr("Time"), QObject::tr("Wheel, ← and →"), QObject::tr("one frame back, forward")},
+                     {QObject::tr("Time"), QObject::tr("Page up, page down"), QObject::tr("ten frames")}});
+                return new PlayerPanel(services, controllers.player, controllers.adapting, parent);
+            }};
 }
 
 } // namespace pellucid::gui

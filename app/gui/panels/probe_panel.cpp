@@ -2,15 +2,12 @@
 
 #include <algorithm>
 
-#include <QHBoxLayout>
+#include <QFrame>
 #include <QKeyEvent>
-#include <QLabel>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QPushButton>
 #include <QScrollArea>
-#include <QToolButton>
-#include <QVBoxLayout>
 #include <QWheelEvent>
 
 #include "controllers/probe_controller.h"
@@ -18,7 +15,8 @@
 #include "render/clip_handles.h"
 #include "services/services.h"
 #include "view/volume_view.h"
-#include "widgets/named.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -44,11 +42,9 @@ public:
         const QColor color =
             f >= 0 ? colorFromRgb(m_probe.tf().features[static_cast<std::size_t>(f)].color) : QColor(Qt::white);
         painter.setBrush(Qt::NoBrush);
-        for (const auto& [pen, radius] :
-             {std::pair{QPen(QColor(0, 0, 0, 200), 5), 7.0}, std::pair{QPen(QColor(255, 255, 255), 3), 7.0},
-              std::pair{QPen(color, 1.5), 7.0}}) {
+        for (const QPen& pen : {QPen(QColor(0, 0, 0, 200), 5), QPen(Qt::white, 3), QPen(color, 1.5)}) {
             painter.setPen(pen);
-            painter.drawEllipse(place, radius, radius);
+            painter.drawEllipse(place, 7, 7);
         }
     }
 
@@ -56,43 +52,60 @@ private:
     ProbeController& m_probe;
 };
 
-QLabel* label(const char* name, QWidget* parent) {
-    auto* l = new QLabel(parent);
-    l->setObjectName(name);
-    l->setWordWrap(true);
-    return l;
-}
+/// Lies over the view while the probe is active, in a corner away from the click; it can be dragged elsewhere.
+class ProbePanel : public QFrame {
+public:
+    ProbePanel(Services& services, ProbeController& probe, VolumeView& view);
 
-} // namespace
+protected:
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override { event->accept(); }
+    void keyPressEvent(QKeyEvent* event) override;
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
+private:
+    void refresh();
+    void refreshText();
+    void keepInView();
+
+    Services& m_services;
+    ProbeController& m_probe;
+    VolumeView& m_view;
+    QLabel* m_title = wrappedLabel("probeTitle", this);
+    QLabel* m_readout = wrappedLabel("probeReadout", this);
+    QLabel* m_text = wrappedLabel("probeText", this);
+    QLabel* m_hint = wrappedLabel("probeHint", this);
+    ProbePlot* m_plot = new ProbePlot(m_services, m_probe, this);
+    ProbeShares* m_shares = new ProbeShares(m_services, m_probe, this);
+    QScrollArea* m_scroll = new QScrollArea(this);
+    QPushButton* m_more = named(new QPushButton(tr("More of this"), this), "moreOfThisButton",
+                                tr("Raise the opacity of this feature, and lower that of what hides it here (Ctrl+]).\n"
+                                   "Locked features and fixed points stay."));
+    QPushButton* m_less = named(new QPushButton(tr("Less of this"), this), "lessOfThisButton",
+                                tr("Lower the opacity of this feature, and raise that of what hides it here (Ctrl+[).\n"
+                                   "Locked features and fixed points stay."));
+    QPointF m_clicked; ///< in the view
+    QPoint m_grip;     ///< where the hand has taken hold of it
+    bool m_held = false;
+};
 
 ProbePanel::ProbePanel(Services& services, ProbeController& probe, VolumeView& view)
-    : QFrame(&view), m_services(services), m_probe(probe), m_view(view), m_title(label("probeTitle", this)),
-      m_readout(label("probeReadout", this)), m_text(label("probeText", this)), m_hint(label("probeHint", this)),
-      m_plot(new ProbePlot(services, probe, this)), m_shares(new ProbeShares(services, probe, this)),
-      m_scroll(new QScrollArea(this)), m_more(new QPushButton(tr("More of this"), this)),
-      m_less(new QPushButton(tr("Less of this"), this)) {
+    : QFrame(&view), m_services(services), m_probe(probe), m_view(view) {
     setObjectName("probePanel");
     setAccessibleName(tr("Probe"));
     setFrameShape(QFrame::StyledPanel);
     setAutoFillBackground(true);
     setFixedWidth(kWidth);
     setCursor(Qt::ArrowCursor);
-    named(m_more, "moreOfThisButton",
-          tr("Raise the opacity of this feature, and lower that of what hides it here (Ctrl+]).\n"
-             "Locked features and fixed points stay."));
-    named(m_less, "lessOfThisButton",
-          tr("Lower the opacity of this feature, and raise that of what hides it here (Ctrl+[).\n"
-             "Locked features and fixed points stay."));
     for (QPushButton* b : {m_more, m_less}) {
         b->setAutoDefault(false);
         b->setFocusPolicy(Qt::TabFocus); // a click leaves the keys to the picture
     }
-    auto* close = new QToolButton(this);
-    close->setObjectName("closeProbeButton");
-    close->setText(QStringLiteral("×"));
+    auto* close = named(toolButton(QStringLiteral("×"), this), "closeProbeButton", tr("End the probe (Esc)"));
     close->setAutoRaise(true);
     close->setFocusPolicy(Qt::TabFocus);
-    close->setToolTip(tr("End the probe (Esc)"));
     m_text->setTextInteractionFlags(Qt::TextSelectableByMouse);
     m_text->setCursor(Qt::IBeamCursor);
     m_text->setToolTip(tr("At the mark: value in data units, place in world units (mm to the left, back and head of a "
@@ -100,30 +113,15 @@ ProbePanel::ProbePanel(Services& services, ProbeController& probe, VolumeView& v
     m_readout->setMinimumHeight(fontMetrics().height());
     m_readout->setTextFormat(Qt::PlainText);
     m_title->setTextFormat(Qt::PlainText);
+    makeBold(*m_title);
     m_scroll->setWidget(m_shares);
     m_scroll->setWidgetResizable(true);
     m_scroll->setFrameShape(QFrame::NoFrame);
     m_scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-    QFont bold = font();
-    bold.setBold(true);
-    m_title->setFont(bold);
-
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(10, 6, 10, 8);
-    column->setSpacing(5);
-    auto* head = new QHBoxLayout;
-    head->addWidget(m_title, 1);
+    auto* head = rowOf({{m_title, 1}});
     head->addWidget(close, 0, Qt::AlignTop);
-    column->addLayout(head);
-    column->addWidget(m_plot);
-    column->addWidget(m_readout);
-    column->addWidget(m_scroll);
-    column->addWidget(m_text);
-    column->addWidget(m_hint);
-    auto* buttons = new QHBoxLayout;
-    buttons->addWidget(m_more);
-    buttons->addWidget(m_less);
-    column->addLayout(buttons);
+    setLayout(inset(columnOf({head, m_plot, m_readout, m_scroll, m_text, m_hint, rowOf({m_more, m_less})}, 5),
+                    {10, 6, 10, 8}));
     hide();
 
     connect(close, &QToolButton::clicked, &m_probe, &ProbeController::clear);
@@ -185,7 +183,7 @@ void ProbePanel::refreshText() {
     QString text = tr("alpha %1").arg(percent(ray.alpha));
     text += tr(" · value %1").arg(value ? numberText(*value, span) : tr("invalid"));
     text += tr(" · at %1, %2, %3").arg(numberText(p.x, size), numberText(p.y, size), numberText(p.z, size));
-    if (volume.geometry().frame == Frame::Patient) text += tr(" mm");
+    if (volume.geometry().worldAxes == WorldAxes::Patient) text += tr(" mm");
     m_text->setText(text);
     const bool composite = scene.session.display->mode == RenderMode::Composite;
     m_hint->setVisible(!composite);
@@ -217,8 +215,6 @@ void ProbePanel::mouseReleaseEvent(QMouseEvent* event) {
     m_held = false;
 }
 
-void ProbePanel::wheelEvent(QWheelEvent* event) { event->accept(); }
-
 void ProbePanel::keyPressEvent(QKeyEvent* event) {
     if (event->key() == Qt::Key_Escape) return m_probe.clear();
     QFrame::keyPressEvent(event);
@@ -236,6 +232,8 @@ bool ProbePanel::eventFilter(QObject* watched, QEvent* event) {
     }
     return QFrame::eventFilter(watched, event);
 }
+
+} // namespace
 
 void addProbe(Services& services, ProbeController& probe, VolumeView& view) {
     view.overlay().add(std::make_unique<ProbeLayer>(probe));

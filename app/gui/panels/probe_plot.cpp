@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QHelpEvent>
 #include <QMouseEvent>
 #include <QPainter>
-#include <QToolTip>
 
 #include <glm/geometric.hpp>
 
 #include "controllers/probe_controller.h"
 #include "services/services.h"
+#include "widgets/controls.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -21,7 +20,11 @@ namespace {
 constexpr int kRow = 22, kStrip = 6;
 
 QString unitOf(const Scene& scene) {
-    return scene.volume->geometry().frame == Frame::Patient ? QObject::tr("mm") : QObject::tr("units");
+    return scene.volume->geometry().worldAxes == WorldAxes::Patient ? QObject::tr("mm") : QObject::tr("units");
+}
+
+QString nameOf(const ProbeController& probe, int feature) {
+    return QString::fromStdString(probe.tf().features[static_cast<std::size_t>(feature)].name);
 }
 
 QString percentText(double share) { return QStringLiteral("%1 %").arg(100 * share, 0, 'f', 1); }
@@ -61,31 +64,13 @@ const ProbeSample& ProbePlot::sampleAt(double depth) const {
 void ProbePlot::paintEvent(QPaintEvent*) {
     if (!m_probe.isActive()) return;
     const RayProbe& ray = m_probe.ray();
-    const Volume& volume = *m_services.scene().volume;
     const QRectF box = plot();
     QPainter painter(this);
-    painter.setRenderHint(QPainter::Antialiasing);
-    const QColor text = palette().color(QPalette::Text), faint = palette().color(QPalette::PlaceholderText);
+    const QColor text = palette().color(QPalette::Text);
     painter.fillRect(box, palette().color(QPalette::Base));
-
-    // Values: a column per pixel, as high as the intensity.
-    const TfSampler sampler(m_probe.tf());
-    painter.setRenderHint(QPainter::Antialiasing, false);
-    QPolygonF outline;
-    for (double x = box.left() + 0.5; x < box.right(); ++x) {
-        const double s = sampleAt(depthAt(x)).intensity;
-        if (std::isnan(s)) continue;
-        const double top = box.bottom() - s * box.height();
-        QColor color = colorFromRgb(sampler.color(s));
-        color.setAlphaF(static_cast<float>(sampler.opacity(s) > 0 ? 0.85 : 0.25));
-        painter.fillRect(QRectF(x - 0.5, top, 1, box.bottom() - top), color);
-        outline << QPointF(x, top);
-    }
+    paintValues(painter);
     painter.setRenderHint(QPainter::Antialiasing);
-    painter.setPen(QPen(faint, 1));
-    painter.drawPolyline(outline);
 
-    // Opacity.
     QPolygonF opacity;
     for (const ProbeSample& s : ray.samples) opacity << QPointF(xOf(s.t), box.bottom() - s.opacity * box.height());
     painter.setPen(QPen(palette().color(QPalette::Base), 4));
@@ -93,14 +78,13 @@ void ProbePlot::paintEvent(QPaintEvent*) {
     painter.setPen(QPen(text, 2));
     painter.drawPolyline(opacity);
 
-    // Features.
     painter.setPen(Qt::NoPen);
     for (const ProbeRun& run : ray.runs) {
         if (run.feature < 0) continue;
         const double left = xOf(run.begin), right = std::max(xOf(run.end), left + 1);
-        QColor color = colorFromRgb(m_probe.tf().features[static_cast<std::size_t>(run.feature)].color);
-        if (run.feature != m_probe.feature()) color.setAlphaF(0.55f);
-        painter.fillRect(QRectF(left, box.bottom() + 3, right - left, kStrip), color);
+        const QColor color = colorFromRgb(m_probe.tf().features[static_cast<std::size_t>(run.feature)].color);
+        painter.fillRect(QRectF(left, box.bottom() + 3, right - left, kStrip),
+                         translucent(color, run.feature == m_probe.feature() ? 1 : 0.55));
     }
 
     // Where the mark is, and the mouse.
@@ -111,13 +95,34 @@ void ProbePlot::paintEvent(QPaintEvent*) {
     const double place = glm::length(m_probe.place() - ray.entry);
     if (place <= length()) upright(place, QPen(text, 1, Qt::DashLine));
     if (m_hovered) upright(*m_hovered, QPen(palette().color(QPalette::Highlight), 1.5));
+    paintAxes(painter);
+}
 
-    painter.setPen(faint);
-    const double span = volume.range().hi - volume.range().lo;
+/// A column per pixel, as high as the intensity.
+void ProbePlot::paintValues(QPainter& painter) const {
+    const QRectF box = plot();
+    const TfSampler sampler(m_probe.tf());
+    QPolygonF outline;
+    for (double x = box.left() + 0.5; x < box.right(); ++x) {
+        const double s = sampleAt(depthAt(x)).intensity;
+        if (std::isnan(s)) continue;
+        const double top = box.bottom() - s * box.height();
+        painter.fillRect(QRectF(x - 0.5, top, 1, box.bottom() - top),
+                         translucent(colorFromRgb(sampler.color(s)), sampler.opacity(s) > 0 ? 0.85 : 0.25));
+        outline << QPointF(x, top);
+    }
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setPen(QPen(palette().color(QPalette::PlaceholderText), 1));
+    painter.drawPolyline(outline);
+}
+
+void ProbePlot::paintAxes(QPainter& painter) const {
+    const QRectF box = plot();
+    const ValueRange range = m_services.scene().volume->range();
     const QRectF above(box.left(), 0, box.width(), box.top() - 2),
         below(box.left(), box.bottom() + kStrip + 5, box.width(), height() - box.bottom() - kStrip - 5);
-    painter.drawText(above, Qt::AlignLeft | Qt::AlignVCenter,
-                     tr("value %1 – %2").arg(numberText(volume.range().lo, span), numberText(volume.range().hi, span)));
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    painter.drawText(above, Qt::AlignLeft | Qt::AlignVCenter, tr("value %1").arg(rangeText(range)));
     painter.drawText(above, Qt::AlignRight | Qt::AlignVCenter, tr("opacity 0 – 1"));
     painter.drawText(below, Qt::AlignLeft | Qt::AlignTop, QStringLiteral("0"));
     painter.drawText(below, Qt::AlignRight | Qt::AlignTop,
@@ -131,16 +136,14 @@ void ProbePlot::mouseMoveEvent(QMouseEvent* event) {
     const ProbeSample& s = sampleAt(*m_hovered);
     const Volume& volume = *m_services.scene().volume;
     QString value = tr("invalid");
+    std::optional<double> hovered;
     if (!std::isnan(s.intensity)) {
         const int f = featureAt(m_probe.tf().features, s.intensity);
         value = numberText(volume.valueOfIntensity(s.intensity), volume.range().hi - volume.range().lo);
-        if (f >= 0)
-            value += QStringLiteral(" (%1)").arg(
-                QString::fromStdString(m_probe.tf().features[static_cast<std::size_t>(f)].name));
-        m_services.selection().setHoveredIntensity(s.intensity);
-    } else {
-        m_services.selection().setHoveredIntensity({});
+        if (f >= 0) value += QStringLiteral(" (%1)").arg(nameOf(m_probe, f));
+        hovered = s.intensity;
     }
+    m_services.selection().setHoveredIntensity(hovered);
     Q_EMIT readOut(tr("depth %1 %2: value %3, opacity %4")
                        .arg(numberText(s.t, length()), unitOf(m_services.scene()), value, percentText(s.opacity)));
     update();
@@ -184,17 +187,13 @@ void ProbeShares::paintEvent(QPaintEvent*) {
     for (int i = 0; i < static_cast<int>(all.size()); ++i) {
         const Row& row = all[static_cast<std::size_t>(i)];
         const QRect box = rowRect(i);
-        if (row.feature >= 0 && row.feature == m_probe.feature()) {
-            QColor chosen = palette().color(QPalette::Highlight);
-            chosen.setAlphaF(0.3f);
-            painter.fillRect(box, chosen);
-        }
+        if (row.feature >= 0 && row.feature == m_probe.feature())
+            painter.fillRect(box, translucent(palette().color(QPalette::Highlight), 0.3));
         QColor color = palette().color(QPalette::Mid);
         QString name = tr("in no feature");
         if (row.feature >= 0) {
-            const Feature& feature = m_probe.tf().features[static_cast<std::size_t>(row.feature)];
-            color = colorFromRgb(feature.color);
-            name = QString::fromStdString(feature.name);
+            color = colorFromRgb(m_probe.tf().features[static_cast<std::size_t>(row.feature)].color);
+            name = nameOf(m_probe, row.feature);
         }
         painter.fillRect(QRect(box.left() + 4, box.top() + 5, 12, kRow - 10), color);
         const int nameWidth = box.width() * 2 / 5 - 22;
@@ -223,18 +222,14 @@ void ProbeShares::mousePressEvent(QMouseEvent* event) {
 }
 
 bool ProbeShares::event(QEvent* event) {
-    if (event->type() != QEvent::ToolTip) return QWidget::event(event);
-    const auto* help = static_cast<QHelpEvent*>(event);
-    const int row = rowAt(help->pos());
-    if (row < 0) return true;
-    const Row of = rows()[static_cast<std::size_t>(row)];
-    const QString name = of.feature >= 0
-                             ? QString::fromStdString(m_probe.tf().features[static_cast<std::size_t>(of.feature)].name)
-                             : tr("What is in no feature");
-    QToolTip::showText(
-        help->globalPos(),
-        tr("%1 makes %2 of this pixel; all rows together make its alpha. Click: select it").arg(name, of.text), this);
-    return true;
+    const auto textAt = [this](const QPoint& at) {
+        const int row = rowAt(at);
+        if (row < 0) return QString();
+        const Row of = rows()[static_cast<std::size_t>(row)];
+        return tr("%1 makes %2 of this pixel; all rows together make its alpha. Click: select it")
+            .arg(of.feature >= 0 ? nameOf(m_probe, of.feature) : tr("What is in no feature"), of.text);
+    };
+    return showsTip(*event, *this, textAt) || QWidget::event(event);
 }
 
 } // namespace pellucid::gui

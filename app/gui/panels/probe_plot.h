@@ -37,6 +37,8 @@ protected:
 private:
     const ProbeSample& sampleAt(double depth) const;
     double length() const;
+    void paintValues(QPainter& painter) const;
+    void paintAxes(QPainter& painter) const;
 
     Services& m_services;
     ProbeController& m_probe;

@@ -3,46 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QCheckBox>
-#include <QFormLayout>
-#include <QHBoxLayout>
-#include <QHelpEvent>
-#include <QLabel>
 #include <QPainter>
-#include <QPushButton>
-#include <QToolButton>
-#include <QToolTip>
-#include <QVBoxLayout>
 
 #include "controllers/controllers.h"
 #include "optimize/refine/refine_features.h"
 #include "panels/panel.h"
+#include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
-#include "services/services.h"
-#include "widgets/named.h"
+#include "widgets/layouts.h"
 #include "widgets/number_text.h"
-#include "widgets/plot_view.h"
-#include "widgets/scrolled.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {
 
-constexpr int kRest = 300; // milliseconds without a change before the methods are compared
 constexpr double kMargin = 10;
-
-QString shortNumber(double value) { return QString::number(value, 'g', 3).replace('-', QChar(0x2212)); }
-
-QColor translucent(QColor color, double alpha) {
-    color.setAlphaF(static_cast<float>(alpha));
-    return color;
-}
-
-QFont smallFont(const QFont& font) {
-    QFont small = font;
-    small.setPointSizeF(small.pointSizeF() * 0.85);
-    return small;
-}
 
 /// The energy over the iterations; empty where there is none above 0. `isPresent`: what came of it is still shown.
 Plot energyPlot(const RefineResult& result, bool isPresent) {
@@ -73,10 +48,7 @@ Plot energyPlot(const RefineResult& result, bool isPresent) {
 PanelInfo refinePanel() {
     return {.id = "refine",
             .title = QObject::tr("Refinement"),
-            .area = Qt::RightDockWidgetArea,
-            .visible = true,
             .tabOf = "features",
-            .size = 0,
             .keys = QKeySequence("Ctrl+Shift+R"),
             .tip = QObject::tr("Opacities by entropy: how, for what, and what came of it"),
             .make = [](Services& services, Controllers& controllers, QWidget* parent) {
@@ -134,29 +106,25 @@ void EdgeBars::paintEvent(QPaintEvent*) {
 }
 
 bool EdgeBars::event(QEvent* event) {
-    if (event->type() != QEvent::ToolTip) return QWidget::event(event);
-    const auto* help = static_cast<QHelpEvent*>(event);
-    QString text = tr("Weight of each edge of the curve: the information −α p ln p between two points.\n"
-                      "Pale: before the refinement; line: the mean. Heights are square roots");
+    return showsTip(*event, *this, [this](const QPoint& at) { return tipAt(at.x()); }) || QWidget::event(event);
+}
+
+QString EdgeBars::tipAt(int x) const {
     for (std::size_t i = 0; i < m_bars.size(); ++i) {
         const QRectF r = cell(i);
-        if (help->pos().x() < r.left() || help->pos().x() >= r.right()) continue;
+        if (x < r.left() || x >= r.right()) continue;
         const Bar& bar = m_bars[i];
-        text = tr("%1\nweight %2").arg(bar.text, shortNumber(bar.weight));
+        QString text = tr("%1\nweight %2").arg(bar.text, shortNumber(bar.weight));
         if (bar.before) text += tr(", before %1").arg(shortNumber(*bar.before));
         if (!bar.participates) text += tr("\nboth ends are fixed: refinement leaves it out");
+        return text;
     }
-    QToolTip::showText(help->globalPos(), text, this);
-    return true;
+    return tr("Weight of each edge of the curve: the information −α p ln p between two points.\n"
+              "Pale: before the refinement; line: the mean. Heights are square roots");
 }
 
 RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget* parent)
-    : QWidget(parent), m_services(services), m_refining(refining), m_refine(new QPushButton(tr("&Refine"), this)),
-      m_pair(new QPushButton(tr("&Side by side…"), this)), m_live(new QCheckBox(tr("Li&ve"), this)),
-      m_ghost(new QCheckBox(tr("Show the &curve before"), this)), m_priority(new QLabel(this)),
-      m_nothing(new QToolButton(this)), m_words(new QLabel(this)), m_note(new QLabel(this)),
-      m_figures(new QLabel(this)), m_comparison(new QLabel(this)), m_help(new QPushButton(this)),
-      m_edges(new EdgeBars(this)), m_plot(new PlotView(this)),
+    : QWidget(parent), m_services(services), m_refining(refining),
       m_compare([](const Comparing& task,
                    const JobControl& job) { return compareMethods(*task.histogram, task.start, task.options, job); },
                 [this](const Comparing&, RefineComparison& answer) {
@@ -169,82 +137,19 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
                                           .arg(QString::number(less, 'g', 3), shortNumber(exact), shortNumber(greedy)));
                 }) {
     setObjectName("refinePanel");
-    named(m_refine, "refineNowButton", tr("Refine the opacities with these settings (Ctrl+R)"));
-    named(m_pair, "sideBySideButton", tr("The picture before and after the latest refinement"));
-    named(m_live, "liveRefineCheck",
-          tr("Refine after every edit: what you move stays where you put it,\n"
-             "the other points give way evenly, so that the total opacity stays"));
-    named(m_ghost, "ghostCheck", tr("Dashed, behind the curve: what it was before the latest refinement"));
-    named(m_priority, "refinePriority",
-          tr("What becomes more opaque, relative to everything else. Click on the palette below the\n"
-             "curve for a value, or select a part of the picture"));
-    m_nothing->setObjectName("clearPriorityButton");
-    m_nothing->setText(tr("Clear"));
-    m_nothing->setToolTip(tr("Give no value or region priority; the opacities stay as they are"));
-    m_edges->setObjectName("refineEdges");
-    named(m_plot, "refineCurve", tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
-    const std::pair<QLabel*, const char*> labels[] = {{m_words, "refineWords"},
-                                                      {m_note, "refineNote"},
-                                                      {m_figures, "refineFigures"},
-                                                      {m_comparison, "refineComparison"}};
-    for (const auto& [label, name] : labels) {
-        label->setObjectName(name);
-        label->setWordWrap(true);
-        label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred); // what is said makes nothing wider
-    }
-    m_priority->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     m_words->setToolTip(tr("Mean opacity of each feature, before and after; the largest changes first"));
-    QFont bold = font();
-    bold.setBold(true);
-    m_words->setFont(bold);
+    makeBold(*m_words);
     makeFaint(*m_comparison);
-
-    auto* content = new QWidget;
-    auto* column = new QVBoxLayout(content);
-    column->setContentsMargins(10, 8, 10, 8);
-    column->setSpacing(7);
-    auto* head = new QHBoxLayout;
-    head->addWidget(m_refine, 1);
-    head->addWidget(m_live);
-    column->addLayout(head);
-    auto* priority = new QHBoxLayout;
-    priority->addWidget(m_priority, 1);
-    priority->addWidget(m_nothing);
-    column->addLayout(priority);
-    auto* selecting = new QHBoxLayout;
     const RefineActions& does = refining.actions();
-    for (const auto& [action, text] :
-         {std::pair{does.rectangle, tr("Select rectangle")}, std::pair{does.lasso, tr("Select with lasso")}}) {
-        auto* button = new QToolButton(this);
-        button->setObjectName(action->objectName().replace("Action", "Button"));
-        button->setText(text);
-        button->setToolTip(action->toolTip());
-        button->setCheckable(true);
-        button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-        connect(button, &QToolButton::clicked, action, &QAction::trigger);
-        connect(action, &QAction::changed, button, [button, action = action] {
-            button->setChecked(action->isChecked());
-            button->setEnabled(action->isEnabled());
-        });
-        selecting->addWidget(button, 1);
-    }
-    column->addLayout(selecting);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(5);
-    column->addWidget(m_words);
-    column->addWidget(m_note);
-    column->addWidget(m_help);
-    column->addWidget(m_figures);
-    column->addWidget(m_edges);
-    column->addWidget(m_plot);
-    column->addWidget(m_comparison);
-    auto* foot = new QHBoxLayout;
-    foot->addWidget(m_ghost, 1);
-    foot->addWidget(m_pair);
-    column->addLayout(foot);
-    column->addLayout(form); // what came of it is looked at more often
-    column->addStretch(1);
-    fillScrolled(this, content);
+    QLayout* const selecting = rowOf({{regionButton(*does.rectangle, tr("Select rectangle")), 1},
+                                      {regionButton(*does.lasso, tr("Select with lasso")), 1}});
+    fillScrolled(this, columnOf({rowOf({{m_refine, 1}, m_live}), rowOf({{m_priority, 1}, m_nothing}), selecting,
+                                 m_words, m_note, m_help, m_figures, m_edges, m_plot, m_comparison,
+                                 rowOf({{m_ghost, 1}, m_pair}), form, // what came of it is looked at more often
+                                 Cell::rest()},
+                                7));
     auto* rows = new SettingRows(services, *form, settingPart<RefineSteps>(&Session::refine),
                                  {tr("Refinement settings"), "refine-settings"});
     rows->add("method", {.id = "refineMethodCombo"});
@@ -262,19 +167,25 @@ RefinePanel::RefinePanel(Services& services, RefineController& refining, QWidget
                                                               {m_ghost, does.ghost},
                                                               {m_nothing, does.nothing}};
     for (const auto& [button, action] : triggers) connect(button, &QAbstractButton::clicked, action, &QAction::trigger);
-    m_help->setObjectName("refineHelpButton");
     connect(m_help, &QPushButton::clicked, this, [this] { m_refining.takeHelp(); });
-    m_wait.setSingleShot(true);
-    m_wait.setInterval(kRest);
-    connect(&m_wait, &QTimer::timeout, this, &RefinePanel::compare);
-    connect(&m_services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
-        if (before.volume != after.volume || !before.session.refine.isSame(after.session.refine)) follow();
-    });
     connect(&refining, &RefineController::refined, this, &RefinePanel::follow);
     connect(&refining, &RefineController::busyChanged, this, &RefinePanel::showPriority);
     connect(&refining, &RefineController::ghostChanged, this, &RefinePanel::follow);
-    connect(&m_services, &Services::readOnlyChanged, this, &RefinePanel::follow);
-    follow();
+    followParts(
+        m_services, this, [this] { follow(); }, &Session::refine);
+}
+
+QToolButton* RefinePanel::regionButton(QAction& action, const QString& text) {
+    QToolButton* const button =
+        named(toolButton(text, this), action.objectName().replace("Action", "Button"), action.toolTip());
+    button->setCheckable(true);
+    button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    connect(button, &QToolButton::clicked, &action, &QAction::trigger);
+    connect(&action, &QAction::changed, button, [button, &action] {
+        button->setChecked(action.isChecked());
+        button->setEnabled(action.isEnabled());
+    });
+    return button;
 }
 
 void RefinePanel::showEvent(QShowEvent* event) {
@@ -313,6 +224,30 @@ void RefinePanel::showPriority() {
     m_nothing->setEnabled((r.intensity || r.region) && !m_services.isReadOnly());
 }
 
+std::vector<EdgeBars::Bar> RefinePanel::bars() const {
+    const Scene& scene = m_services.scene();
+    const Refinement* now = m_refining.current();
+    const std::vector<double> weights = now != nullptr
+                                            ? now->result.edgesAfter
+                                            : edgeWeights(*scene.histogram, scene.tf, m_refining.options().priority);
+    const std::vector<RefineEdge> edges =
+        now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
+    const TfSampler sampler(scene.tf);
+    const double span = scene.volume->range().hi - scene.volume->range().lo;
+    const auto value = [&](double x) { return numberText(scene.volume->valueOfIntensity(x), span); };
+    std::vector<EdgeBars::Bar> all;
+    for (std::size_t i = 0; i < weights.size() && i < edges.size(); ++i) {
+        EdgeBars::Bar bar;
+        bar.weight = weights[i];
+        if (now != nullptr) bar.before = now->result.edgesBefore[i];
+        bar.color = colorFromRgb(sampler.color((edges[i].a + edges[i].b) / 2));
+        bar.participates = edges[i].participates;
+        bar.text = tr("values %1 to %2").arg(value(edges[i].a), value(edges[i].b));
+        all.push_back(std::move(bar));
+    }
+    return all;
+}
+
 void RefinePanel::showOutcome() {
     if (!isVisible()) return;
     m_compare.cancel();
@@ -328,25 +263,7 @@ void RefinePanel::showOutcome() {
     }
     const Refinement* now = m_refining.current();
     const Refinement* any = m_refining.latest();
-    const std::vector<double> weights = now != nullptr
-                                            ? now->result.edgesAfter
-                                            : edgeWeights(*scene.histogram, scene.tf, m_refining.options().priority);
-    const std::vector<RefineEdge> edges =
-        now != nullptr ? refineEdges(now->start, now->options) : refineEdges(scene.tf);
-    const TfSampler sampler(scene.tf);
-    const double span = scene.volume->range().hi - scene.volume->range().lo;
-    const auto value = [&](double x) { return numberText(scene.volume->valueOfIntensity(x), span); };
-    std::vector<EdgeBars::Bar> bars;
-    for (std::size_t i = 0; i < weights.size() && i < edges.size(); ++i) {
-        EdgeBars::Bar bar;
-        bar.weight = weights[i];
-        if (now != nullptr) bar.before = now->result.edgesBefore[i];
-        bar.color = colorFromRgb(sampler.color((edges[i].a + edges[i].b) / 2));
-        bar.participates = edges[i].participates;
-        bar.text = tr("values %1 to %2").arg(value(edges[i].a), value(edges[i].b));
-        bars.push_back(std::move(bar));
-    }
-    m_edges->setBars(std::move(bars));
+    m_edges->setBars(bars());
     showNote(any);
     m_words->setEnabled(now != nullptr);
     m_figures->setEnabled(now != nullptr);

@@ -4,19 +4,16 @@
 #include <optional>
 #include <vector>
 
-#include <QTimer>
-#include <QWidget>
+#include <QCheckBox>
+#include <QPushButton>
 
 #include "controllers/refine_controller.h"
-
-class QCheckBox;
-class QLabel;
-class QPushButton;
-class QToolButton;
+#include "jobs/rest_timer.h"
+#include "widgets/controls.h"
+#include "widgets/plot_view.h"
 
 namespace pellucid::gui {
 
-class PlotView;
 class Services;
 
 /// One bar per edge of the curve: its weight before the refinement (pale) and now. Heights are square roots.
@@ -43,6 +40,7 @@ protected:
 
 private:
     QRectF cell(std::size_t i) const;
+    QString tipAt(int x) const;
     std::vector<Bar> m_bars;
 };
 
@@ -63,21 +61,38 @@ private:
     void follow();
     void showSettings();
     void showPriority();
+    QToolButton* regionButton(QAction& action, const QString& text);
+    std::vector<EdgeBars::Bar> bars() const;
     void showOutcome();
     void showNote(const Refinement* refinement); ///< null: there is none
     void compare();
 
     Services& m_services;
     RefineController& m_refining;
-    QPushButton *m_refine, *m_pair;
-    QCheckBox *m_live, *m_ghost;
-    QLabel* m_priority;
-    QToolButton* m_nothing;
-    QLabel *m_words, *m_note, *m_figures, *m_comparison;
-    QPushButton* m_help; ///< what keeps the picture from getting dark
-    EdgeBars* m_edges;
-    PlotView* m_plot;
-    QTimer m_wait; ///< before the methods are compared
+    QPushButton* m_refine = named(new QPushButton(tr("&Refine"), this), "refineNowButton",
+                                  tr("Refine the opacities with these settings (Ctrl+R)"));
+    QPushButton* m_pair = named(new QPushButton(tr("&Side by side…"), this), "sideBySideButton",
+                                tr("The picture before and after the latest refinement"));
+    QCheckBox* m_live = named(new QCheckBox(tr("Li&ve"), this), "liveRefineCheck",
+                              tr("Refine after every edit: what you move stays where you put it,\n"
+                                 "the other points give way evenly, so that the total opacity stays"));
+    QCheckBox* m_ghost = named(new QCheckBox(tr("Show the &curve before"), this), "ghostCheck",
+                               tr("Dashed, behind the curve: what it was before the latest refinement"));
+    QLabel* m_priority =
+        withAnyWidth(named(new QLabel(this), "refinePriority",
+                           tr("What becomes more opaque, relative to everything else. Click on the palette below the\n"
+                              "curve for a value, or select a part of the picture")));
+    QToolButton* m_nothing = named(toolButton(tr("Clear"), this), "clearPriorityButton",
+                                   tr("Give no value or region priority; the opacities stay as they are"));
+    QLabel* m_words = withAnyWidth(wrappedLabel("refineWords", this));
+    QLabel* m_note = withAnyWidth(wrappedLabel("refineNote", this));
+    QLabel* m_figures = withAnyWidth(wrappedLabel("refineFigures", this));
+    QLabel* m_comparison = withAnyWidth(wrappedLabel("refineComparison", this));
+    QPushButton* m_help = named(new QPushButton(this), "refineHelpButton"); ///< keeps the picture from getting dark
+    EdgeBars* m_edges = named(new EdgeBars(this), "refineEdges");
+    PlotView* m_plot = named(new PlotView(this), "refineCurve",
+                             tr("Energy, the variance of the edge weights, over the iterations; logarithmic"));
+    RestTimer m_wait{300, [this] { compare(); }}; ///< before the methods are compared
     Job<Comparing, RefineComparison> m_compare;
 };
 

@@ -7,14 +7,13 @@
 #include <QComboBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
-#include <QLabel>
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QSlider>
 #include <QSpinBox>
-#include <QToolButton>
 
 #include "services/services.h"
+#include "widgets/controls.h"
 #include "widgets/number_box.h"
 #include "widgets/theme.h"
 
@@ -25,33 +24,33 @@ namespace {
 constexpr int kSliderSteps = 200;
 constexpr int kTipWidth = 90; ///< letters
 
-/// Between what is shown and the places of a slider.
-struct Scale {
-    double lo, hi;
-    bool logarithmic;
-    int placeOf(double number) const {
-        const double part =
-            logarithmic ? std::log(std::max(number, lo) / lo) / std::log(hi / lo) : (number - lo) / (hi - lo);
-        return static_cast<int>(std::lround(part * kSliderSteps));
-    }
-    double numberAt(int place) const {
-        const double part = static_cast<double>(place) / kSliderSteps;
-        return logarithmic ? lo * std::pow(hi / lo, part) : lo + part * (hi - lo);
-    }
-};
-
-/// A number, whether it is optional or not; empty: none.
-std::optional<double> numberIn(const Setting& setting, const void* settings) {
+/// A value that may be optional or not; empty: none.
+template <class T>
+std::optional<T> maybeIn(const Setting& setting, const void* settings) {
     const SettingValue value = setting.at(const_cast<void*>(settings));
-    if (const auto* plain = std::get_if<double*>(&value)) return **plain;
-    return *std::get<std::optional<double>*>(value);
+    if (const auto* plain = std::get_if<T*>(&value)) return **plain;
+    return *std::get<std::optional<T>*>(value);
 }
-void setNumber(const Setting& setting, void* settings, std::optional<double> number) {
+template <class T>
+void setMaybe(const Setting& setting, void* settings, const std::optional<T>& wanted) {
     const SettingValue value = setting.at(settings);
-    if (const auto* plain = std::get_if<double*>(&value))
-        **plain = *number;
+    if (const auto* plain = std::get_if<T*>(&value))
+        **plain = *wanted;
     else
-        *std::get<std::optional<double>*>(value) = number;
+        *std::get<std::optional<T>*>(value) = wanted;
+}
+
+/// The least and the largest number that a row shows.
+std::pair<double, double> shownEnds(const Setting& setting, const RowLook& look) {
+    using Open = NumberRange::Open;
+    const double smallest = std::pow(10.0, -look.decimals);
+    return {setting.range.lo * look.factor + (setting.range.open == Open::Low ? smallest : 0),
+            std::min(setting.range.hi * look.factor, 1e9) - (setting.range.open == Open::High ? smallest : 0)};
+}
+
+/// Sets a number that is given as it is shown.
+std::function<void(void*)> writeOf(const Setting& setting, const RowLook& look, double shown) {
+    return [&setting, number = shown / look.factor](void* settings) { setMaybe<double>(setting, settings, number); };
 }
 
 template <class T>
@@ -65,9 +64,7 @@ QString tipOf(const Setting& setting) {
     const NumberRange usual; // of what is no number, too
     if (*setting.unit != '\0' || setting.range.lo != usual.lo || setting.range.hi != usual.hi ||
         setting.range.open != usual.open)
-        text += QStringLiteral(" (%1%2)").arg(
-            QString::fromStdString(setting.range.text()),
-            *setting.unit == '\0' ? QString() : QStringLiteral(" ") + QString::fromUtf8(setting.unit));
+        text += QString::fromStdString(" (" + setting.range.text() + setting.unitText() + ")");
     QString lines;
     int length = 0;
     for (const QString& word : text.split(' ')) {
@@ -79,6 +76,21 @@ QString tipOf(const Setting& setting) {
 }
 
 } // namespace
+
+/// Between what is shown and the places of a slider.
+struct SettingRows::Scale {
+    double lo, hi;
+    bool logarithmic;
+    int placeOf(double number) const {
+        const double part =
+            logarithmic ? std::log(std::max(number, lo) / lo) / std::log(hi / lo) : (number - lo) / (hi - lo);
+        return static_cast<int>(std::lround(part * kSliderSteps));
+    }
+    double numberAt(int place) const {
+        const double part = static_cast<double>(place) / kSliderSteps;
+        return logarithmic ? lo * std::pow(hi / lo, part) : lo + part * (hi - lo);
+    }
+};
 
 SettingRows::SettingRows(Services& services, QFormLayout& form, SettingPart part, RowStep step)
     : QObject(form.parentWidget()), m_services(services), m_form(form), m_part(std::move(part)),
@@ -102,13 +114,13 @@ QWidget* SettingRows::add(const char* key, const RowLook& look) {
     m_looks[&setting] = look;
     std::vector<QWidget*> controls; // the one that has the name first
     if (std::holds_alternative<bool*>(kind))
-        addCheck(setting, controls);
+        controls.push_back(makeCheck(setting));
     else if (std::holds_alternative<int*>(kind))
-        addWhole(setting, look, controls);
+        controls.push_back(makeWhole(setting, look));
     else if (std::holds_alternative<Choice>(kind))
-        addChoice(setting, controls);
-    else if (std::holds_alternative<Rgb*>(kind))
-        addColor(setting, controls);
+        controls.push_back(makeChoice(setting));
+    else if (std::holds_alternative<Rgb*>(kind) || std::holds_alternative<std::optional<Rgb>*>(kind))
+        addColor(setting, look, controls);
     else
         addNumber(setting, look, controls);
     controls.front()->setObjectName(look.id);
@@ -121,140 +133,147 @@ QWidget* SettingRows::add(const char* key, const RowLook& look) {
 }
 
 void SettingRows::addNumber(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
+    const auto [lowest, highest] = shownEnds(setting, look);
     auto* box = new NumberBox;
-    const double smallest = std::pow(10.0, -look.decimals);
-    using Open = NumberRange::Open;
-    const double lowest = setting.range.lo * look.factor + (setting.range.open == Open::Low ? smallest : 0);
-    const double highest =
-        std::min(setting.range.hi * look.factor, 1e9) - (setting.range.open == Open::High ? smallest : 0);
-    box->setDecimals(look.decimals);
-    box->setRange(lowest, highest);
-    box->setSingleStep(look.step);
-    box->setKeyboardTracking(false);
-    box->setSuffix(!look.suffix.isEmpty()  ? look.suffix
-                   : *setting.unit == '\0' ? QString()
-                                           : QStringLiteral(" ") + QString::fromUtf8(setting.unit));
-    const double factor = look.factor;
-    const auto writeOf = [&setting, factor](double shown) {
-        return [&setting, number = shown / factor](void* settings) { setNumber(setting, settings, number); };
-    };
+    withLook(box, {lowest, highest, look.decimals, look.step});
+    box->setSuffix(look.suffix.isEmpty() ? QString::fromStdString(setting.unitText()) : look.suffix);
     connect(box, &QDoubleSpinBox::valueChanged, this,
-            [this, &setting, writeOf, id = look.id](double shown) { edit(setting, id, writeOf(shown)); });
+            [this, &setting, look](double shown) { edit(setting, look.id, writeOf(setting, look, shown)); });
     controls.push_back(box);
-    auto* row = new QHBoxLayout;
-    QSlider* slider = nullptr;
     const Scale scale{look.least.value_or(lowest), look.most.value_or(highest), look.logarithmic};
-    if (look.slider) {
-        slider = new QSlider(Qt::Horizontal);
-        slider->setObjectName(look.id + "Slider");
-        slider->setRange(0, kSliderSteps);
-        slider->setPageStep(kSliderSteps / 10);
-        slider->setMinimumWidth(60);
+    QSlider* const slider = look.slider ? makeSlider(setting, look, scale) : nullptr;
+    const bool optional = std::holds_alternative<std::optional<double>*>(setting.at(const_cast<void*>(present())));
+    QToolButton* const automatic = optional ? makeAutomatic(setting, look, *box) : nullptr;
+    auto* row = new QHBoxLayout;
+    if (slider != nullptr) {
         row->addWidget(slider, 1);
         controls.push_back(slider);
-        const auto writeAt = [writeOf, scale, isWhole = look.decimals == 0](int place) {
-            const double number = scale.numberAt(place);
-            return writeOf(isWhole ? std::round(number) : number);
-        };
-        connect(slider, &QSlider::valueChanged, this, [=, this, &setting, id = look.id](int place) {
-            if (!slider->isSliderDown()) return edit(setting, id, writeAt(place));
-            if (m_isFast()) preview(setting, writeAt(place));
-        });
-        connect(slider, &QSlider::sliderReleased, this, [=, this, &setting] {
-            m_isFast() ? m_services.store().commit() : edit(setting, {}, writeAt(slider->value()));
-        });
     }
     row->addWidget(box, look.slider ? 0 : 1);
-    QToolButton* automatic = nullptr;
-    if (std::holds_alternative<std::optional<double>*>(setting.at(const_cast<void*>(present())))) {
-        automatic = new QToolButton;
-        automatic->setObjectName(look.id + "Automatic");
-        automatic->setText(tr("auto"));
-        automatic->setCheckable(true);
+    if (automatic != nullptr) {
         row->addWidget(automatic);
         controls.push_back(automatic);
-        connect(automatic, &QToolButton::clicked, this, [=, this, &setting, none = look.automatic](bool on) {
-            std::optional<double> number; // what stood for none stays, with all its digits
-            if (!on) number = none ? none() : box->value() / factor;
-            edit(setting, {}, [&setting, number](void* settings) { setNumber(setting, settings, number); });
-        });
     }
     m_form.addRow(QString::fromUtf8(setting.words), row);
     if (auto* label = qobject_cast<QLabel*>(m_form.labelForField(row))) label->setBuddy(box);
-    m_show.push_back([=, this, &setting, none = look.automatic] {
-        std::optional<double> number = numberIn(setting, present());
+    m_show.push_back([=, this, &setting] {
+        std::optional<double> number = maybeIn<double>(setting, present());
         if (automatic != nullptr) automatic->setChecked(!number);
-        if (!number && none) number = none();
+        if (!number && look.automatic) number = look.automatic();
         if (!number) return;
         const QSignalBlocker quiet(box);
-        showNumber(*box, *number * factor);
+        showNumber(*box, *number * look.factor);
         if (slider == nullptr || slider->isSliderDown()) return;
         const QSignalBlocker still(slider);
-        slider->setValue(scale.placeOf(*number * factor));
+        slider->setValue(scale.placeOf(*number * look.factor));
     });
 }
 
-void SettingRows::addWhole(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
+QSlider* SettingRows::makeSlider(const Setting& setting, const RowLook& look, const Scale& scale) {
+    auto* slider = named(new QSlider(Qt::Horizontal), look.id + "Slider");
+    slider->setRange(0, kSliderSteps);
+    slider->setPageStep(kSliderSteps / 10);
+    slider->setMinimumWidth(60);
+    const auto writeAt = [&setting, look, scale](int place) {
+        const double number = scale.numberAt(place);
+        return writeOf(setting, look, look.decimals == 0 ? std::round(number) : number);
+    };
+    connect(slider, &QSlider::valueChanged, this, [=, this, &setting](int place) {
+        if (!slider->isSliderDown()) return edit(setting, look.id, writeAt(place));
+        if (m_isFast()) m_preview(textOf(setting), changeOf(setting, writeAt(place)));
+    });
+    connect(slider, &QSlider::sliderReleased, this, [=, this, &setting] {
+        m_isFast() ? m_services.store().commit() : edit(setting, {}, writeAt(slider->value()));
+    });
+    return slider;
+}
+
+QToolButton* SettingRows::makeAutomatic(const Setting& setting, const RowLook& look, const QDoubleSpinBox& box) {
+    auto* automatic = named(toolButton(tr("auto"), nullptr), look.id + "Automatic");
+    automatic->setCheckable(true);
+    connect(automatic, &QToolButton::clicked, this, [this, &setting, look, &box](bool on) {
+        std::optional<double> number; // what stood for none stays, with all its digits
+        if (!on) number = look.automatic ? look.automatic() : box.value() / look.factor;
+        edit(setting, {}, [&setting, number](void* settings) { setMaybe<double>(setting, settings, number); });
+    });
+    return automatic;
+}
+
+QWidget* SettingRows::makeWhole(const Setting& setting, const RowLook& look) {
     auto* box = new QSpinBox;
     box->setRange(static_cast<int>(setting.range.lo), static_cast<int>(setting.range.hi));
     box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     box->setGroupSeparatorShown(true);
     box->setKeyboardTracking(false);
-    if (*setting.unit != '\0') box->setSuffix(QStringLiteral(" ") + QString::fromUtf8(setting.unit));
+    box->setSuffix(QString::fromStdString(setting.unitText()));
     m_form.addRow(QString::fromUtf8(setting.words), box);
     connect(box, &QSpinBox::valueChanged, this, [this, &setting, id = look.id](int number) {
         edit(setting, id, [&setting, number](void* settings) { valueIn<int>(setting, settings) = number; });
     });
-    controls.push_back(box);
     m_show.push_back([this, &setting, box] {
         const QSignalBlocker quiet(box);
         if (const int number = valueIn<int>(setting, present()); box->value() != number) box->setValue(number);
     });
+    return box;
 }
 
-void SettingRows::addCheck(const Setting& setting, std::vector<QWidget*>& controls) {
+QWidget* SettingRows::makeCheck(const Setting& setting) {
     auto* box = new QCheckBox(QString::fromUtf8(setting.words));
     m_form.addRow(QString(), box);
     connect(box, &QCheckBox::clicked, this, [this, &setting](bool on) {
         edit(setting, {}, [&setting, on](void* settings) { valueIn<bool>(setting, settings) = on; });
     });
-    controls.push_back(box);
     m_show.push_back([this, &setting, box] { box->setChecked(valueIn<bool>(setting, present())); });
+    return box;
 }
 
-void SettingRows::addChoice(const Setting& setting, std::vector<QWidget*>& controls) {
+QWidget* SettingRows::makeChoice(const Setting& setting) {
     auto* box = new QComboBox;
     const Choice choice = std::get<Choice>(setting.at(const_cast<void*>(present())));
     for (const char* name : setting.choices.empty() ? choice.names : setting.choices)
         box->addItem(QString::fromUtf8(name), box->count());
     m_form.addRow(QString::fromUtf8(setting.words), box);
-    connect(box, &QComboBox::activated, this, [this, &setting, box] {
-        edit(setting, {}, [&setting, index = box->currentData().toInt()](void* settings) {
+    connect(box, &QComboBox::activated, this, [this, &setting](int index) {
+        edit(setting, {}, [&setting, index](void* settings) {
             const Choice chosen = std::get<Choice>(setting.at(settings));
             chosen.set(chosen.value, index);
         });
     });
-    controls.push_back(box);
     m_show.push_back([this, &setting, box] {
         box->setCurrentIndex(box->findData(std::get<Choice>(setting.at(const_cast<void*>(present()))).index()));
     });
+    return box;
 }
 
-void SettingRows::addColor(const Setting& setting, std::vector<QWidget*>& controls) {
-    auto* button = new QPushButton;
-    m_form.addRow(QString::fromUtf8(setting.words), button);
-    connect(button, &QPushButton::clicked, this, [this, &setting, button] {
-        const QColor color =
-            QColorDialog::getColor(colorFromRgb(valueIn<Rgb>(setting, present())), button, textOf(setting));
-        if (color.isValid())
-            edit(setting, {}, [&setting, color](void* s) { valueIn<Rgb>(setting, s) = rgbFromColor(color); });
-    });
+void SettingRows::addColor(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls) {
+    auto* button = named(new QPushButton, look.colorId);
+    QCheckBox* check = nullptr;
+    if (std::holds_alternative<std::optional<Rgb>*>(setting.at(const_cast<void*>(present())))) {
+        check = new QCheckBox;
+        controls.push_back(check);
+        connect(check, &QCheckBox::clicked, this, [this, &setting, first = look.firstColor](bool on) {
+            const auto color = on ? std::optional(first) : std::nullopt;
+            edit(setting, {}, [&setting, color](void* settings) { setMaybe<Rgb>(setting, settings, color); });
+        });
+    }
     controls.push_back(button);
-    m_show.push_back([this, &setting, button] {
-        const QColor color = colorFromRgb(valueIn<Rgb>(setting, present()));
-        QPixmap swatch(28, 12);
-        swatch.fill(color);
-        button->setIcon(QIcon(swatch));
+    connect(button, &QPushButton::clicked, this, [this, &setting, button] {
+        const Rgb now = maybeIn<Rgb>(setting, present()).value_or(Rgb{});
+        const QColor color = QColorDialog::getColor(colorFromRgb(now), button, textOf(setting));
+        if (color.isValid())
+            edit(setting, {}, [&setting, color](void* s) { setMaybe<Rgb>(setting, s, rgbFromColor(color)); });
+    });
+    auto* row = new QHBoxLayout;
+    if (check != nullptr) row->addWidget(check);
+    row->addWidget(button, 1);
+    m_form.addRow(QString::fromUtf8(setting.words), row);
+    m_show.push_back([=, this, &setting] {
+        const std::optional<Rgb> now = maybeIn<Rgb>(setting, present());
+        if (check != nullptr) check->setChecked(now.has_value());
+        button->setVisible(now.has_value());
+        if (!now) return;
+        const QColor color = colorFromRgb(*now);
+        button->setIcon(swatchOf(color, 28, 12));
         button->setText(color.name());
     });
 }
@@ -279,10 +298,6 @@ SessionStore::Change SettingRows::changeOf(const Setting& setting, const Write& 
 void SettingRows::edit(const Setting& setting, const QString& mergeKey, const Write& write) {
     m_commit(textOf(setting), m_step.mergeKey.isEmpty() ? mergeKey : m_step.mergeKey, changeOf(setting, write));
     follow(); // also where nothing has come of it
-}
-
-void SettingRows::preview(const Setting& setting, const Write& write) {
-    m_preview(textOf(setting), changeOf(setting, write));
 }
 
 void SettingRows::follow() {

@@ -14,7 +14,10 @@
 #include "base/setting.h"
 #include "store/session_store.h"
 
+class QDoubleSpinBox;
 class QFormLayout;
+class QSlider;
+class QToolButton;
 class QWidget;
 
 namespace pellucid::gui {
@@ -28,22 +31,22 @@ struct SettingPart {
     std::function<void(Session&, const std::function<void(void*)>&)> edit;
     std::function<bool(const Session&, const Session&)> isSame;
 };
+/// `within` leads from a part of the session to the settings in it.
+template <class T, class Held, class Within>
+SettingPart settingPartWithin(Part<Held> Session::*part, Within within) {
+    return {settingsOf<T>(), [=](const Session& s) -> const void* { return &within(const_cast<Held&>(*(s.*part))); },
+            [=](Session& s, const auto& change) { (s.*part).edit([&](Held& held) { change(&within(held)); }); },
+            [=](const Session& a, const Session& b) { return (a.*part).isSame(b.*part); }};
+}
 /// `&Session::optimize`.
 template <class T, class Held>
 SettingPart settingPart(Part<Held> Session::*part) {
-    return {
-        settingsOf<T>(), [part](const Session& s) -> const void* { return static_cast<const T*>(&*(s.*part)); },
-        [part](Session& s, const auto& change) { (s.*part).edit([&](Held& held) { change(static_cast<T*>(&held)); }); },
-        [part](const Session& a, const Session& b) { return (a.*part).isSame(b.*part); }};
+    return settingPartWithin<T>(part, [](Held& held) -> T& { return held; });
 }
 /// `&Session::measure, &MeasureSettings::saliency`.
 template <class T, class Held>
 SettingPart settingPart(Part<Held> Session::*part, T Held::*member) {
-    return {settingsOf<T>(), [part, member](const Session& s) -> const void* { return &((*(s.*part)).*member); },
-            [part, member](Session& s, const auto& change) {
-                (s.*part).edit([&](Held& held) { change(&(held.*member)); });
-            },
-            [part](const Session& a, const Session& b) { return (a.*part).isSame(b.*part); }};
+    return settingPartWithin<T>(part, [=](Held& held) -> T& { return held.*member; });
 }
 
 /// What a row looks like, as far as its setting does not tell.
@@ -57,6 +60,8 @@ struct RowLook {
     QString suffix = {};                         ///< in the place of the setting's unit
     std::optional<double> least = {}, most = {}; ///< of the slider, as shown; else the ends of the range
     std::function<double()> automatic = {};      ///< of an optional number: what none stands for
+    QString colorId = {};                        ///< of an optional colour: object name of its button
+    Rgb firstColor = {};                         ///< of an optional colour that is switched on
     QString stepText = {};                       ///< names its steps; empty: its setting does
     std::function<void(void*)> then = {}; ///< done to the settings after a change of this one: what follows of it
 };
@@ -98,13 +103,15 @@ public:
 
 private:
     using Write = std::function<void(void*)>;
+    struct Scale;
     void addNumber(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
-    void addWhole(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
-    void addCheck(const Setting& setting, std::vector<QWidget*>& controls);
-    void addChoice(const Setting& setting, std::vector<QWidget*>& controls);
-    void addColor(const Setting& setting, std::vector<QWidget*>& controls);
+    QWidget* makeWhole(const Setting& setting, const RowLook& look);
+    QWidget* makeCheck(const Setting& setting);
+    QWidget* makeChoice(const Setting& setting);
+    void addColor(const Setting& setting, const RowLook& look, std::vector<QWidget*>& controls);
+    QSlider* makeSlider(const Setting& setting, const RowLook& look, const Scale& scale);
+    QToolButton* makeAutomatic(const Setting& setting, const RowLook& look, const QDoubleSpinBox& box);
     void edit(const Setting& setting, const QString& mergeKey, const Write& write);
-    void preview(const Setting& setting, const Write& write);
     SessionStore::Change changeOf(const Setting& setting, const Write& write) const;
     QString textOf(const Setting& setting) const;
 

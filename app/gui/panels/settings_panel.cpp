@@ -1,68 +1,40 @@
-#include "panels/settings_panel.h"
-
-#include <QFormLayout>
-#include <QLabel>
+// How figures are computed and how optimizations search: all settings that they depend on, as edits of the session.
+#include <QComboBox>
+#include <QPushButton>
 
 #include "panels/panel.h"
-#include "panels/profile_settings.h"
 #include "panels/setting_rows.h"
+#include "render/published_engine.h"
 #include "services/services.h"
-#include "widgets/scrolled.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
+#include "widgets/theme.h"
 
 namespace pellucid::gui {
 namespace {
 
 constexpr double kUsualCoverage = 0.5; ///< offered while that of the picture is not known
 
-QLabel* heading(const QString& text, QWidget* parent) {
-    auto* label = new QLabel(text, parent);
-    QFont bold = label->font();
-    bold.setBold(true);
-    label->setFont(bold);
-    return label;
+void addHeading(QFormLayout& form, const QString& text) {
+    auto* label = new QLabel(text);
+    makeBold(*label);
+    form.addRow(label);
 }
 
-} // namespace
-
-PanelInfo settingsPanel() {
-    return {
-        .id = "settings",
-        .title = QObject::tr("Settings"),
-        .area = Qt::RightDockWidgetArea,
-        .visible = true,
-        .tabOf = "features",
-        .size = 0,
-        .keys = QKeySequence("Ctrl+8"),
-        .tip = QObject::tr("How visibility and saliency are measured, and how optimizations search"),
-        .make = [](Services& services, Controllers&, QWidget* parent) { return new SettingsPanel(services, parent); }};
-}
-
-SettingsPanel::SettingsPanel(Services& services, QWidget* parent) : QWidget(parent), m_services(services) {
-    setObjectName("settingsPanel");
-    auto* content = new QWidget;
-    auto* form = new QFormLayout(content);
-    form->setContentsMargins(10, 8, 10, 8);
-    form->setVerticalSpacing(5);
-    form->setFieldGrowthPolicy(QFormLayout::ExpandingFieldsGrow);
-    addOptimization(*form);
-    addMeasuring(*form);
-    fillScrolled(this, content);
-}
-
-void SettingsPanel::addOptimization(QFormLayout& form) {
-    form.addRow(heading(tr("Optimization"), this));
-    auto* rows = new SettingRows(m_services, form, settingPart<OptimizeOptions>(&Session::optimize),
-                                 {tr("Optimization settings"), "optimize-settings"});
+void addOptimization(Services& services, QFormLayout& form) {
+    addHeading(form, QObject::tr("Optimization"));
+    auto* rows = new SettingRows(services, form, settingPart<OptimizeOptions>(&Session::optimize),
+                                 {QObject::tr("Optimization settings"), "optimize-settings"});
     rows->add("direction", {.id = "directionCombo"});
     rows->add("step", {.id = "stepSpin", .decimals = 6, .step = 0.01});
     rows->add("b", {.id = "bSpin", .decimals = 6, .step = 0.1});
     rows->add("tolerance", {.id = "toleranceSpin", .decimals = 6, .step = 0.01});
     rows->add("max_iterations", {.id = "mostMovesSpin"});
-    rows->add("coverage", {.id = "coverageSpin", .decimals = 3, .automatic = [this] {
-                               const Measures* const now = m_services.results().measures();
+    rows->add("coverage", {.id = "coverageSpin", .decimals = 3, .automatic = [&services] {
+                               const Measures* const now = services.results().measures();
                                return now && now->coverage ? now->coverage->coverage : kUsualCoverage;
                            }});
-    connect(&m_services.results(), &Results::changed, rows, &SettingRows::follow);
+    QObject::connect(&services.results(), &Results::changed, rows, &SettingRows::follow);
     rows->add("normalize", {.id = "normalizeCheck"});
     rows->add("coarse", {.id = "coarseCheck"});
     rows->add("restarts", {.id = "restartsCheck"});
@@ -70,11 +42,52 @@ void SettingsPanel::addOptimization(QFormLayout& form) {
     rows->follow();
 }
 
-void SettingsPanel::addMeasuring(QFormLayout& form) {
-    const RowStep step{tr("Settings of the figures"), "measure-settings"};
-    form.addRow(heading(tr("Saliency and visibility"), this));
-    form.addRow(new ProfileSettings(m_services, this));
-    auto* saliency = new SettingRows(m_services, form,
+/// Whether the picture shows what the figures are of, but for its size.
+bool looksAlong(const Camera& camera, const Geometry& geometry, Along along) {
+    const Vec3 off = camera.forward() - cameraAlong(geometry, along).forward();
+    return camera.projection == Projection::Orthographic && dot(off, off) < 1e-12;
+}
+
+/// Pellucid's own definitions or the published ones, and for those the face of the grid that they look at; a remark
+/// where the picture does not show that face, and a button to go there.
+void addDefinitions(Services& services, QFormLayout& form) {
+    auto* rows = new SettingRows(services, form, settingPart<MeasureSettings>(&Session::measure),
+                                 {QObject::tr("Definitions of figures"), "profile"});
+    rows->add("profile", {.id = "profileCombo"});
+    auto* along = static_cast<QComboBox*>(rows->add("along", {.id = "alongCombo"}));
+    rows->follow();
+    QLabel* const remark = withAnyWidth(wrappedLabel("profileRemark", form.parentWidget()));
+    makeFaint(*remark);
+    auto* look = named(new QPushButton(QObject::tr("Look &there")), "lookAlongButton",
+                       QObject::tr("Turn the picture to what the figures are of, in parallel projection"));
+    look->setAutoDefault(false);
+    form.addRow(rowOf({{remark, 1}, look}));
+    QObject::connect(look, &QPushButton::clicked, rows, [&services] {
+        const Scene& scene = services.scene();
+        services.store().setCamera(cameraAlong(scene.volume->geometry(), scene.session.measure->along));
+    });
+    const auto follow = [=, &services, &form] {
+        const Scene& scene = services.scene();
+        const MeasureSettings& settings = *scene.session.measure;
+        const bool published = settings.profile == Profile::Published;
+        const bool elsewhere =
+            published && scene.volume && !looksAlong(scene.camera, scene.volume->geometry(), settings.along);
+        form.setRowVisible(along, published);
+        remark->setText(QObject::tr("Figures are of the %1 of the grid, not of this view.").arg(along->currentText()));
+        remark->setVisible(elsewhere);
+        look->setVisible(elsewhere);
+        look->setEnabled(services.isEditable());
+    };
+    QObject::connect(&services.store(), &SessionStore::changed, rows, follow);
+    QObject::connect(&services, &Services::readOnlyChanged, rows, follow);
+    follow();
+}
+
+void addMeasuring(Services& services, QFormLayout& form) {
+    const RowStep step{QObject::tr("Settings of the figures"), "measure-settings"};
+    addHeading(form, QObject::tr("Saliency and visibility"));
+    addDefinitions(services, form);
+    auto* saliency = new SettingRows(services, form,
                                      settingPart<SaliencyOptions>(&Session::measure, &MeasureSettings::saliency), step);
     saliency->add("sigma", {.id = "sigmaSpin", .decimals = 3, .step = 0.1});
     saliency->add("kernel", {.id = "kernelCombo"});
@@ -82,14 +95,34 @@ void SettingsPanel::addMeasuring(QFormLayout& form) {
     saliency->add("w2", {.id = "w2Spin", .decimals = 6, .step = 0.1});
     saliency->add("background", {.id = "saliencyBackground"});
     auto* shares =
-        new SettingRows(m_services, form, settingPart<VwsOptions>(&Session::measure, &MeasureSettings::vws), step);
+        new SettingRows(services, form, settingPart<VwsOptions>(&Session::measure, &MeasureSettings::vws), step);
     const auto sharesOf = [](void* options) -> VwsOptions& { return *static_cast<VwsOptions*>(options); };
     shares->add("u1", {.id = "u1Spin", .decimals = 6, .then = [=](void* o) { sharesOf(o).u2 = 1 - sharesOf(o).u1; }});
     shares->add("u2", {.id = "u2Spin", .decimals = 6, .then = [=](void* o) { sharesOf(o).u1 = 1 - sharesOf(o).u2; }});
-    auto* engine = new SettingRows(m_services, form, settingPart<MeasureSettings>(&Session::measure), step);
+    auto* engine = new SettingRows(services, form, settingPart<MeasureSettings>(&Session::measure), step);
     engine->add("quality", {.id = "qualityCombo"});
     engine->add("engine", {.id = "engineCombo"});
     for (SettingRows* rows : {saliency, shares, engine}) rows->follow();
+}
+
+QWidget* makePanel(Services& services, QWidget* parent) {
+    auto* panel = named(new QWidget(parent), "settingsPanel");
+    QFormLayout* const form = scrolledForm(panel, 5);
+    form->setFieldGrowthPolicy(QFormLayout::ExpandingFieldsGrow);
+    addOptimization(services, *form);
+    addMeasuring(services, *form);
+    return panel;
+}
+
+} // namespace
+
+PanelInfo settingsPanel() {
+    return {.id = "settings",
+            .title = QObject::tr("Settings"),
+            .tabOf = "features",
+            .keys = QKeySequence("Ctrl+8"),
+            .tip = QObject::tr("How visibility and saliency are measured, and how optimizations search"),
+            .make = [](Services& services, Controllers&, QWidget* parent) { return makePanel(services, parent); }};
 }
 
 } // namespace pellucid::gui

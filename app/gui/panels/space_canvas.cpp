@@ -111,9 +111,7 @@ void SpaceCanvas::paintEvent(QPaintEvent*) {
     if (m_outdated.isEmpty()) return;
     const QRect box = rect().adjusted(12, 12, -12, -12);
     const QRect text = painter.fontMetrics().boundingRect(box, Qt::AlignCenter | Qt::TextWordWrap, m_outdated);
-    QColor behind = Qt::black;
-    behind.setAlphaF(0.7f);
-    painter.fillRect(text.adjusted(-8, -6, 8, 6), behind);
+    painter.fillRect(text.adjusted(-8, -6, 8, 6), translucent(Qt::black, 0.7));
     painter.setPen(theme::kMark);
     painter.drawText(box, Qt::AlignCenter | Qt::TextWordWrap, m_outdated);
 }

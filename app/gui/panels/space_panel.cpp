@@ -3,29 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QComboBox>
 #include <QDir>
 #include <QFileDialog>
-#include <QFormLayout>
-#include <QHBoxLayout>
-#include <QLabel>
-#include <QProgressBar>
-#include <QPushButton>
 #include <QSettings>
 #include <QSignalBlocker>
-#include <QSpinBox>
-#include <QToolButton>
-#include <QVBoxLayout>
 
 #include "base/atomic_file.h"
 #include "image_io/image_file.h"
 #include "panels/panel.h"
-#include "panels/space_canvas.h"
 #include "services/services.h"
 #include "session/coarser_input.h"
 #include "store/edits.h"
 #include "tf/shown_tf.h"
-#include "widgets/named.h"
+#include "widgets/layouts.h"
 
 namespace pellucid::gui {
 namespace {
@@ -49,9 +39,7 @@ TransferFunction shapesOf(const TransferFunction& tf) {
 PanelInfo spacePanel() {
     return {.id = "space",
             .title = QObject::tr("Parameter space"),
-            .area = Qt::RightDockWidgetArea,
             .visible = false,
-            .size = 0,
             .keys = QKeySequence("Ctrl+Shift+P"),
             .tip = QObject::tr("VWS and the distance from the targets over the opacities of two or three features"),
             .make = [](Services& services, Controllers&, QWidget* parent) {
@@ -63,105 +51,62 @@ PanelInfo spacePanel() {
             }};
 }
 
+ParameterSpace SpacePanel::sampled(const Task& task, const JobControl& job) {
+    Workspace workspace; // one of its own: figures and bars do not wait for it
+    const MeasureInput input = coarserInput(task.measured, task.factor);
+    const WeightFields& weights = workspace.weights(input, {job.stop, {}});
+    const EngineVws function(workspace.engine(input), input.view, input.tf, weights, input.settings.vws);
+    return sampleParameterSpace(function, task.targets, task.axes, job);
+}
+
+bool SpacePanel::written(const Saving& task, const JobControl& job) {
+    if (task.path.ends_with(".csv"))
+        writeTextAtomically(task.path, csvOf(*task.space, task.view.names));
+    else
+        writeImage(spaceImage(*task.space, task.view, job), task.path);
+    return true;
+}
+
+void SpacePanel::takeSpace(const Task& task, ParameterSpace& space) {
+    m_space = std::make_shared<const ParameterSpace>(std::move(space));
+    m_targets = task.targets;
+    m_inputs = task.inputs;
+    m_computedFeatures = task.features;
+    m_usedFactor = task.factor;
+    refresh();
+}
+
 SpacePanel::SpacePanel(Services& services, QWidget* parent)
-    : QWidget(parent), m_services(services), m_features{new QComboBox(this), new QComboBox(this), new QComboBox(this)},
-      m_samples(new QSpinBox(this)), m_scale(new QComboBox(this)), m_factor(new QComboBox(this)),
-      m_shown(new QComboBox(this)), m_compute(new QPushButton(tr("&Compute"), this)),
-      m_cancel(new QPushButton(tr("Cancel"), this)), m_least(new QPushButton(tr("&Go to the least F"), this)),
-      m_save(new QToolButton(this)), m_progress(new QProgressBar(this)), m_words(new QLabel(this)),
-      m_reading(new QLabel(this)), m_canvas(new SpaceCanvas(this)),
-      m_job(
-          [](const Task& task, const JobControl& job) {
-              Workspace workspace; // one of its own: figures and bars do not wait for it
-              const MeasureInput input = coarserInput(task.measured, task.factor);
-              const WeightFields& weights = workspace.weights(input, {job.stop, {}});
-              const EngineVws function(workspace.engine(input), input.view, input.tf, weights, input.settings.vws);
-              return sampleParameterSpace(function, task.targets, task.axes, job);
-          },
-          [this](const Task& task, ParameterSpace& space) {
-              m_space = std::make_shared<const ParameterSpace>(std::move(space));
-              m_targets = task.targets;
-              m_inputs = task.inputs;
-              m_computedFeatures = task.features;
-              m_usedFactor = task.factor;
-              refresh();
-          }),
-      m_saving(
-          [](const Saving& task, const JobControl& job) {
-              if (task.path.ends_with(".csv"))
-                  writeTextAtomically(task.path, csvOf(*task.space, task.view.names));
-              else
-                  writeImage(spaceImage(*task.space, task.view, job), task.path);
-              return true;
-          },
-          [this](const Saving& task, bool&) {
-              Q_EMIT m_services.message(tr("Saved %1.").arg(QString::fromStdString(task.path)));
-          }) {
+    : QWidget(parent), m_services(services),
+      m_job(sampled, [this](const Task& task, ParameterSpace& space) { takeSpace(task, space); }),
+      m_saving(written, [this](const Saving& task, bool&) {
+          Q_EMIT m_services.message(tr("Saved %1.").arg(QString::fromStdString(task.path)));
+      }) {
     setObjectName("spacePanel");
     const char* const axisNames[] = {"X", "Y", "Z"};
     for (std::size_t a = 0; a < 3; ++a) {
-        m_features[a]->setObjectName(QStringLiteral("spaceAxis%1").arg(axisNames[a]));
-        m_features[a]->setToolTip(tr("The feature whose opacity, 0 to 1, is the %1 axis; the features without an axis "
-                                     "keep their opacities.\nWithout a third one: a heat map")
-                                      .arg(QString(axisNames[a]).toLower()));
+        named(m_features[a], QStringLiteral("spaceAxis%1").arg(axisNames[a]),
+              tr("The feature whose opacity, 0 to 1, is the %1 axis; the features without an axis keep their "
+                 "opacities.\nWithout a third one: a heat map")
+                  .arg(QString(axisNames[a]).toLower()));
         connect(m_features[a], &QComboBox::activated, this, [this, a] { chooseAxes(a); });
     }
-    m_samples->setObjectName("spaceSamples");
     m_samples->setRange(2, kMostAxisSamples);
     m_samples->setValue(ParameterAxes{}.samples);
-    m_samples->setToolTip(tr("Samples along each axis, its ends too; 11 are steps of 0.1"));
-    m_scale->setObjectName("spaceScale");
     m_scale->addItems({tr("linear"), tr("logarithmic")});
-    m_scale->setToolTip(tr("Opacities along an axis: from 0 to 1 in equal steps, or from 0.001 to 1 in equal factors"));
-    m_factor->setObjectName("spaceFactor");
     m_factor->addItem(tr("automatic"), 0);
     m_factor->addItem(tr("full volume"), 1);
     m_factor->addItem(tr("halved"), 2);
     m_factor->addItem(tr("a quarter"), 4);
-    m_factor->setToolTip(tr("What is sampled: the volume, or a copy that is coarser along each axis.\n"
-                            "Automatic: coarser where the whole would take long"));
-    named(m_shown, "spaceShown",
-          tr("F: distance from the targets, 0 is on target; W: the share of saliency (VWS) of a feature, "
-             "0 to 1"));
-    named(m_compute, "spaceCompute", tr("Samples VWS and F, from this camera"));
-    m_cancel->setObjectName("spaceCancel");
-    named(m_least, "spaceLeast", tr("Sets the opacities of the sample with the least F"));
-    m_save->setObjectName("spaceSave");
-    m_save->setText(tr("Save…"));
-    m_save->setToolTip(tr("Saves the picture, or all samples as a table (.csv)"));
-    m_progress->setObjectName("spaceProgress");
-    m_progress->setRange(0, 1000);
-    m_progress->setTextVisible(false);
-    m_words->setObjectName("spaceWords");
-    m_words->setWordWrap(true);
-    m_reading->setObjectName("spaceReading");
-    m_reading->setWordWrap(true);
     m_reading->setMinimumHeight(2 * fontMetrics().lineSpacing()); // so that nothing moves below the mouse
     m_reading->setAlignment(Qt::AlignLeft | Qt::AlignTop);
 
-    auto* axes = new QHBoxLayout;
-    for (QComboBox* box : m_features) axes->addWidget(box, 1);
-    auto* settings = new QHBoxLayout;
-    settings->addWidget(m_samples);
-    settings->addWidget(m_scale, 1);
-    settings->addWidget(m_factor, 1);
     auto* form = new QFormLayout;
-    form->addRow(tr("Axes"), axes);
-    form->addRow(tr("Samples"), settings);
+    form->addRow(tr("Axes"), rowOf({{m_features[0], 1}, {m_features[1], 1}, {m_features[2], 1}}));
+    form->addRow(tr("Samples"), rowOf({m_samples, {m_scale, 1}, {m_factor, 1}}));
     form->addRow(tr("Show"), m_shown);
-    auto* buttons = new QHBoxLayout;
-    buttons->addWidget(m_compute);
-    buttons->addWidget(m_cancel);
-    buttons->addWidget(m_progress, 1);
-    buttons->addWidget(m_least);
-    buttons->addWidget(m_save);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(8, 8, 8, 8);
-    column->addLayout(form);
-    column->addLayout(buttons);
-    column->addWidget(m_words);
-    column->addWidget(m_canvas, 1);
-    column->addWidget(m_reading);
+    auto* buttons = rowOf({m_compute, m_cancel, {m_progress, 1}, m_least, m_save});
+    setLayout(inset(columnOf({form, buttons, m_words, {m_canvas, 1}, m_reading}), {8, 8, 8, 8}));
 
     connect(m_compute, &QPushButton::clicked, this, &SpacePanel::compute);
     connect(m_cancel, &QPushButton::clicked, this, &SpacePanel::cancel);
@@ -212,8 +157,6 @@ SpacePanel::Inputs SpacePanel::inputs() const {
     return inputs;
 }
 
-std::vector<double> SpacePanel::targets() const { return m_services.scene().targets(); }
-
 bool SpacePanel::isCurrent() const {
     return m_space != nullptr && m_services.store().hasVolume() && axes().features.size() >= 2 && inputs() == m_inputs;
 }
@@ -244,7 +187,8 @@ void SpacePanel::fillFeatures() {
     if (!kept) {
         chosen.clear();
         if (m_services.store().hasVolume() && shown.size() >= 2)
-            for (const std::size_t f : defaultAxes(wanted, targets())) chosen.push_back(static_cast<int>(f));
+            for (const std::size_t f : defaultAxes(wanted, m_services.scene().targets()))
+                chosen.push_back(static_cast<int>(f));
     }
     for (std::size_t a = 0; a < 3; ++a) {
         const QSignalBlocker quiet(m_features[a]);
@@ -294,7 +238,8 @@ void SpacePanel::compute() {
     const std::vector<Feature>& features = m_services.scene().tf.features;
     if (std::all_of(features.begin(), features.end(), [](const Feature& f) { return f.hidden; })) return;
     const Inputs now = inputs();
-    Task task{measureInput(m_services.scene()), targets(), now.axes, now.factor, now, m_services.scene().tf.features};
+    Task task{measureInput(m_services.scene()), m_services.scene().targets(), now.axes, now.factor, now,
+              m_services.scene().tf.features};
     if (task.measured.settings.profile == Profile::Published)
         task.factor = 1; // it knows planes of voxels, and no lengths
     else if (task.factor == 0)
@@ -323,7 +268,7 @@ void SpacePanel::refresh() {
     const bool hasTwo = m_services.store().hasVolume() && axes().features.size() >= 2;
     const bool current = isCurrent(), running = m_job.isRunning(), mayEdit = current && !m_services.isReadOnly();
     if (current) // F follows from W
-        if (std::vector<double> wanted = targets(); wanted != m_targets && isAimed(wanted)) {
+        if (std::vector<double> wanted = m_services.scene().targets(); wanted != m_targets && isAimed(wanted)) {
             m_space = std::make_shared<const ParameterSpace>(withTargets(*m_space, wanted));
             m_targets = std::move(wanted);
         }

@@ -4,22 +4,16 @@
 #include <array>
 #include <memory>
 
-#include <QWidget>
+#include <QPushButton>
+#include <QSpinBox>
 
 #include "jobs/job.h"
-#include "report/space_picture.h"
+#include "panels/space_canvas.h"
 #include "session/scene.h"
-
-class QComboBox;
-class QLabel;
-class QProgressBar;
-class QPushButton;
-class QSpinBox;
-class QToolButton;
+#include "widgets/controls.h"
 
 namespace pellucid::gui {
 
-class SpaceCanvas;
 class Services;
 
 /// Computes VWS and F on a grid of opacities where asked to, off this thread, and shows them with the session's
@@ -68,9 +62,11 @@ private:
         std::string path;
     };
 
+    static ParameterSpace sampled(const Task& task, const JobControl& job);
+    static bool written(const Saving& task, const JobControl& job);
+    void takeSpace(const Task& task, ParameterSpace& space);
     ParameterAxes axes() const;
     Inputs inputs() const;
-    std::vector<double> targets() const;
     void follow(const Scene& before, const Scene& after);
     void fillFeatures();
     void chooseAxes(std::size_t changed);
@@ -82,14 +78,29 @@ private:
     void save();
 
     Services& m_services;
-    std::array<QComboBox*, 3> m_features;
-    QSpinBox* m_samples;
-    QComboBox *m_scale, *m_factor, *m_shown;
-    QPushButton *m_compute, *m_cancel, *m_least;
-    QToolButton* m_save;
-    QProgressBar* m_progress;
-    QLabel *m_words, *m_reading;
-    SpaceCanvas* m_canvas;
+    std::array<QComboBox*, 3> m_features{new QComboBox(this), new QComboBox(this), new QComboBox(this)};
+    QSpinBox* m_samples = named(new QSpinBox(this), "spaceSamples",
+                                tr("Samples along each axis, its ends included; 11 are steps of 0.1"));
+    QComboBox* m_scale =
+        named(new QComboBox(this), "spaceScale",
+              tr("Opacities along an axis: from 0 to 1 in equal steps, or from 0.001 to 1 in equal factors"));
+    QComboBox* m_factor = named(new QComboBox(this), "spaceFactor",
+                                tr("What is sampled: the volume, or a copy that is coarser along each axis.\n"
+                                   "Automatic: coarser where the whole would take long"));
+    QComboBox* m_shown =
+        named(new QComboBox(this), "spaceShown",
+              tr("F: distance from the targets, 0 is on target; W: the share of saliency (VWS) of a feature, 0 to 1"));
+    QPushButton* m_compute =
+        named(new QPushButton(tr("&Compute"), this), "spaceCompute", tr("Samples VWS and F, from this camera"));
+    QPushButton* m_cancel = named(new QPushButton(tr("Cancel"), this), "spaceCancel");
+    QPushButton* m_least = named(new QPushButton(tr("&Go to the least F"), this), "spaceLeast",
+                                 tr("Sets the opacities of the sample with the least F"));
+    QToolButton* m_save =
+        named(toolButton(tr("Save…"), this), "spaceSave", tr("Saves the picture, or all samples as a table (.csv)"));
+    QProgressBar* m_progress = progressBar("spaceProgress", this, 1000);
+    QLabel* m_words = wrappedLabel("spaceWords", this);
+    QLabel* m_reading = wrappedLabel("spaceReading", this);
+    SpaceCanvas* m_canvas = new SpaceCanvas(this);
     std::shared_ptr<const ParameterSpace> m_space;
     std::vector<double> m_targets;           ///< shares that its F is of
     Inputs m_inputs;                         ///< of m_space

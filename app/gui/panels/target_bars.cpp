@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QHelpEvent>
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QPainterPath>
+#include <QScopedValueRollback>
 #include <QToolTip>
 
 #include "store/edits.h"
+#include "widgets/controls.h"
 #include "widgets/lock_mark.h"
-#include "widgets/named.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -36,6 +36,14 @@ double brightnessPart(const FeatureMeasures& m, const VwsOptions& options) {
     return b + s > 0 ? b / (b + s) : 1;
 }
 
+/// Colours that are hardly told from what is behind them have an outline.
+void paintOutline(QPainter& painter, const QColor& ground, const QColor& color, const QRectF& box) {
+    if (contrast(ground, color) >= kMarkContrast || box.width() < 1) return;
+    painter.setPen(QPen(seenOn(ground, color), 1));
+    painter.setBrush(Qt::NoBrush);
+    painter.drawRoundedRect(box.adjusted(0.5, 0.5, -0.5, -0.5), 2, 2);
+}
+
 } // namespace
 
 std::optional<double> shareFromText(const QString& text) {
@@ -49,14 +57,15 @@ std::optional<double> shareFromText(const QString& text) {
 }
 
 TargetBars::TargetBars(SessionStore& store, Results& results, QWidget* parent)
-    : QWidget(parent), m_store(store), m_results(results), m_box(new QLineEdit(this)) {
+    : QWidget(parent), m_store(store), m_results(results),
+      m_box(
+          named(new QLineEdit(this), "targetBox",
+                tr("Share of the saliency from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"))) {
     setObjectName("targetBars");
     setAccessibleName(tr("Saliency of the features and their targets"));
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Minimum);
-    named(m_box, "targetBox",
-          tr("Share of the saliency from 0 to 1, or in per cent (\"30 %\").\nEnter sets it, Escape does not"));
     m_box->setAlignment(Qt::AlignRight);
     m_box->hide();
     m_box->installEventFilter(this);
@@ -133,6 +142,11 @@ QRectF TargetBars::trackRect(int feature) const {
 QRectF TargetBars::vwsRect(int feature) const {
     const QRectF track = trackRect(feature);
     return {track.left(), track.top() + 1, track.width(), track.height() - kVisibilityBar - 5};
+}
+
+QRectF TargetBars::visibilityRect(int feature) const {
+    const QRectF track = trackRect(feature);
+    return {track.left(), track.bottom() - kVisibilityBar - 1, track.width(), kVisibilityBar};
 }
 
 QRectF TargetBars::lockRect(int feature) const {
@@ -244,11 +258,13 @@ void TargetBars::mousePressEvent(QMouseEvent* event) {
     const QRectF reach = trackRect(feature).adjusted(-10, -8, 10, 8);
     if (!canEdit(feature) || !reach.contains(event->position())) return;
     m_dragged = feature;
-    m_pressed = true;
     // A press beside the handle brings it there, as a press on a slider's groove does in most people's hands.
-    if (std::abs(event->position().x() - handlePosition(feature).x()) > 8)
-        previewTarget(m_store, feature, shareAt(event->position().x()), tr("Target of feature"));
-    m_pressed = false;
+    if (std::abs(event->position().x() - handlePosition(feature).x()) > 8) dragTo(event->position().x());
+}
+
+void TargetBars::dragTo(double pixelX) {
+    const QScopedValueRollback pressed(m_pressed, true);
+    previewTarget(m_store, m_dragged, shareAt(pixelX), tr("Target of feature"));
 }
 
 void TargetBars::mouseDoubleClickEvent(QMouseEvent* event) {
@@ -260,12 +276,7 @@ void TargetBars::mouseDoubleClickEvent(QMouseEvent* event) {
 }
 
 void TargetBars::mouseMoveEvent(QMouseEvent* event) {
-    if (m_dragged >= 0) {
-        m_pressed = true;
-        previewTarget(m_store, m_dragged, shareAt(event->position().x()), tr("Target of feature"));
-        m_pressed = false;
-        return;
-    }
+    if (m_dragged >= 0) return dragTo(event->position().x());
     const int row = featureAtPosition(event->position());
     const int hovered =
         row >= 0 && canEdit(row) && std::abs(event->position().x() - handlePosition(row).x()) < 8 ? row : -1;
@@ -331,20 +342,15 @@ bool TargetBars::event(QEvent* event) {
         event->accept();
         return true;
     }
-    if (event->type() != QEvent::ToolTip) return QWidget::event(event);
-    const auto* help = static_cast<QHelpEvent*>(event);
-    const int feature = featureAtPosition(help->pos());
-    if (feature < 0) {
-        QToolTip::hideText();
-        return true;
-    }
-    QToolTip::showText(help->globalPos(),
-                       lockRect(feature).contains(help->pos())
-                           ? tr("Lock: this target stays where others are set (L). An optimization still moves the\n"
-                                "feature's opacity; to hold that, lock the opacity in the feature's menu")
-                           : tip(feature),
-                       this);
-    return true;
+    const auto textAt = [this](const QPoint& at) {
+        const int feature = featureAtPosition(at);
+        if (feature < 0) return QString();
+        return lockRect(feature).contains(at)
+                   ? tr("Lock: this target stays where others are set (L). An optimization still moves the\n"
+                        "feature's opacity; to hold that, lock the opacity in the feature's menu")
+                   : tip(feature);
+    };
+    return showsTip(*event, *this, textAt) || QWidget::event(event);
 }
 
 QString TargetBars::tip(int feature) const {
@@ -391,89 +397,79 @@ void TargetBars::paintEvent(QPaintEvent*) {
 void TargetBars::paintRow(QPainter& painter, int i, const QFont& small, double target) {
     const auto f = static_cast<std::size_t>(i);
     const Feature& feature = m_store.scene().tf.features[f];
-    const Measures* const measures = m_results.measures();
-    // Faint: of an older state, being measured anew.
-    const double strength = m_results.vwsIsCurrent() ? 1.0 : 0.45;
-    const double thinStrength = m_results.measuresAreCurrent() ? 0.55 : 0.25;
     const QRectF row = rowRect(i), track = trackRect(i);
+    painter.setPen(Qt::NoPen);
     if (i == m_current && (m_marked || hasFocus())) {
-        painter.setPen(Qt::NoPen);
         painter.setBrush(theme::kHover);
         painter.drawRoundedRect(row.adjusted(3, 1, -3, -1), 4, 4);
     }
-    QColor color = colorFromRgb(feature.color);
-    if (!hasTarget(i)) color.setAlphaF(0.35F);
-    painter.setPen(Qt::NoPen);
+    const QColor color = translucent(colorFromRgb(feature.color), hasTarget(i) ? 1 : 0.35);
+    const QRectF swatch(10, track.center().y() - 5, 10, 10);
     painter.setBrush(color);
-    painter.drawRoundedRect(QRectF(10, track.center().y() - 5, 10, 10), 2, 2);
-    // Colours that are hardly told from what is behind them have an outline.
-    const auto outline = [&painter](const QColor& ground, const QColor& of, const QRectF& box) {
-        if (contrast(ground, of) >= kMarkContrast || box.width() < 1) return;
-        painter.setPen(QPen(seenOn(ground, of), 1));
-        painter.setBrush(Qt::NoBrush);
-        painter.drawRoundedRect(box.adjusted(0.5, 0.5, -0.5, -0.5), 2, 2);
-    };
-    if (!feature.hidden) outline(theme::kWindow, color, QRectF(10, track.center().y() - 5, 10, 10));
+    painter.drawRoundedRect(swatch, 2, 2);
+    if (!feature.hidden) paintOutline(painter, theme::kWindow, color, swatch);
     painter.setFont(font());
     painter.setPen(hasTarget(i) ? theme::kText : theme::kFaint);
     painter.drawText(
         QRectF(26, row.top(), kName - 32, row.height()), Qt::AlignVCenter | Qt::AlignLeft,
         QFontMetricsF(font()).elidedText(QString::fromStdString(feature.name), Qt::ElideRight, kName - 32));
     painter.setPen(Qt::NoPen);
-    const QRectF vws = vwsRect(i);
-    const QRectF visibility(track.left(), track.bottom() - kVisibilityBar - 1, track.width(), kVisibilityBar);
     painter.setBrush(theme::kTrack);
-    painter.drawRoundedRect(vws, 2, 2);
-    painter.drawRoundedRect(visibility, 2, 2);
+    painter.drawRoundedRect(vwsRect(i), 2, 2);
+    painter.drawRoundedRect(visibilityRect(i), 2, 2);
     painter.setFont(small);
-    const QRectF number = targetRect(i);
-    if (measures && f < measures->features.size()) {
-        const FeatureMeasures& m = measures->features[f];
-        const QRectF bar(vws.topLeft(), QSizeF(vws.width() * std::clamp(m.vws, 0.0, 1.0), vws.height()));
-        const double b = bar.width() * brightnessPart(m, m_store.session().measure->vws);
-        QPainterPath shape;
-        shape.addRoundedRect(bar, 2, 2);
-        painter.save();
-        painter.setClipPath(shape);
-        QColor fill = color;
-        fill.setAlphaF(static_cast<float>(strength));
-        painter.fillRect(QRectF(bar.left(), bar.top(), b, bar.height()), fill);
-        fill.setAlphaF(static_cast<float>(0.35 * strength));
-        const QRectF saturation(bar.left() + b, bar.top(), bar.width() - b, bar.height());
-        painter.fillRect(saturation, fill);
-        fill.setAlphaF(static_cast<float>(strength));
-        painter.setClipRect(saturation, Qt::IntersectClip);
-        painter.setPen(QPen(fill, 2));
-        for (double x = saturation.left() - bar.height(); x < saturation.right(); x += 5)
-            painter.drawLine(QPointF(x, bar.bottom()), QPointF(x + bar.height(), bar.top()));
-        painter.restore();
-        outline(theme::kTrack, color, bar);
-        painter.setPen(Qt::NoPen);
-        fill.setAlphaF(static_cast<float>(thinStrength));
-        painter.setBrush(fill);
-        painter.drawRoundedRect(QRectF(visibility.topLeft(), QSizeF(visibility.width() * m.visibility, kVisibilityBar)),
-                                2, 2);
-        painter.setPen(strength < 1 ? theme::kFaint : theme::kText);
-        const double half = std::min(QFontMetricsF(small).height() * 0.95, row.height() / 2);
-        const QRectF now(number.left() - kNow, row.center().y() - half, kNow, half);
-        painter.drawText(now, Qt::AlignRight | Qt::AlignVCenter, share(m.vws));
-        painter.setPen(theme::kFaint);
-        painter.drawText(now.translated(0, half), Qt::AlignRight | Qt::AlignVCenter, share(m.visibility));
-    }
+    if (const Measures* const measures = m_results.measures(); measures && f < measures->features.size())
+        paintMeasures(painter, i, measures->features[f], color);
+    paintTarget(painter, i, target);
+}
+
+/// Its bars and numbers; faint where they are of an older state and being measured anew.
+void TargetBars::paintMeasures(QPainter& painter, int i, const FeatureMeasures& m, const QColor& color) {
+    const bool current = m_results.vwsIsCurrent();
+    const double strength = current ? 1.0 : 0.45, thinStrength = m_results.measuresAreCurrent() ? 0.55 : 0.25;
+    const QRectF row = rowRect(i), vws = vwsRect(i), visibility = visibilityRect(i);
+    const QRectF bar(vws.topLeft(), QSizeF(vws.width() * std::clamp(m.vws, 0.0, 1.0), vws.height()));
+    const double b = bar.width() * brightnessPart(m, m_store.session().measure->vws);
+    const QColor fill = translucent(color, strength);
+    QPainterPath shape;
+    shape.addRoundedRect(bar, 2, 2);
+    painter.save();
+    painter.setClipPath(shape);
+    painter.fillRect(QRectF(bar.left(), bar.top(), b, bar.height()), fill);
+    const QRectF saturation(bar.left() + b, bar.top(), bar.width() - b, bar.height());
+    painter.fillRect(saturation, translucent(color, 0.35 * strength));
+    painter.setClipRect(saturation, Qt::IntersectClip);
+    painter.setPen(QPen(fill, 2));
+    for (double x = saturation.left() - bar.height(); x < saturation.right(); x += 5)
+        painter.drawLine(QPointF(x, bar.bottom()), QPointF(x + bar.height(), bar.top()));
+    painter.restore();
+    paintOutline(painter, theme::kTrack, color, bar);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(translucent(color, thinStrength));
+    painter.drawRoundedRect(QRectF(visibility.topLeft(), QSizeF(visibility.width() * m.visibility, kVisibilityBar)), 2,
+                            2);
+    painter.setPen(current ? theme::kText : theme::kFaint);
+    const double half = std::min(QFontMetricsF(painter.font()).height() * 0.95, row.height() / 2);
+    const QRectF now(targetRect(i).left() - kNow, row.center().y() - half, kNow, half);
+    painter.drawText(now, Qt::AlignRight | Qt::AlignVCenter, share(m.vws));
+    painter.setPen(theme::kFaint);
+    painter.drawText(now.translated(0, half), Qt::AlignRight | Qt::AlignVCenter, share(m.visibility));
+}
+
+void TargetBars::paintTarget(QPainter& painter, int i, double target) {
     if (!hasTarget(i)) { // it is aimed at nothing
         painter.setPen(theme::kFaint);
-        painter.drawText(number, Qt::AlignRight | Qt::AlignVCenter, QStringLiteral("–"));
+        painter.drawText(targetRect(i), Qt::AlignRight | Qt::AlignVCenter, QStringLiteral("–"));
         return;
     }
-    const bool locked = isLocked(i);
-    const QPointF handle(pixelOfShare(target), track.center().y());
-    const bool active = i == m_dragged || i == m_hovered;
+    const QRectF track = trackRect(i);
+    const bool locked = isLocked(i), active = i == m_dragged || i == m_hovered;
     painter.setPen(QPen(QColor(0, 0, 0, 160), 1));
     painter.setBrush(m_readOnly ? theme::kFaint : active ? theme::kAccent.lighter(130) : theme::kKnob);
     const double reach = track.height() / 2 + 1;
-    painter.drawRoundedRect(QRectF(handle.x() - 2.5, handle.y() - reach, 5, 2 * reach), 2.5, 2.5);
+    painter.drawRoundedRect(QRectF(pixelOfShare(target) - 2.5, track.center().y() - reach, 5, 2 * reach), 2.5, 2.5);
     painter.setPen(theme::kText);
-    painter.drawText(number, Qt::AlignRight | Qt::AlignVCenter, share(target));
+    painter.drawText(targetRect(i), Qt::AlignRight | Qt::AlignVCenter, share(target));
     paintLock(painter, lockRect(i).center(), locked, locked ? theme::kText : theme::kFaint);
 }
 

@@ -70,7 +70,11 @@ private:
     void takeTyped();
     void endTyping();
     QString tip(int feature) const;
+    QRectF visibilityRect(int feature) const; ///< the track of its visibility
+    void dragTo(double pixelX);
     void paintRow(QPainter& painter, int feature, const QFont& small, double target);
+    void paintMeasures(QPainter& painter, int feature, const FeatureMeasures& measures, const QColor& color);
+    void paintTarget(QPainter& painter, int feature, double target);
 
     SessionStore& m_store;
     Results& m_results;

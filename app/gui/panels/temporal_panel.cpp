@@ -2,25 +2,13 @@
 
 #include <algorithm>
 
-#include <QCheckBox>
-#include <QComboBox>
-#include <QDir>
-#include <QFileDialog>
-#include <QFileInfo>
-#include <QGridLayout>
-#include <QLabel>
-#include <QProgressBar>
-#include <QSettings>
-#include <QToolButton>
-
-#include "base/atomic_file.h"
 #include "controllers/controllers.h"
 #include "panels/panel.h"
-#include "report/svg_plot.h"
-#include "services/services.h"
+#include "panels/panel_parts.h"
 #include "session/scene_data.h"
 #include "tf/tf_range.h"
-#include "widgets/named.h"
+#include "widgets/layouts.h"
+#include "widgets/number_text.h"
 #include "widgets/plot_view.h"
 #include "widgets/theme.h"
 
@@ -32,8 +20,6 @@ enum Shown { kVws, kVisibility, kOpacity };
 bool same(const std::shared_ptr<const TransferFunction>& a, const std::shared_ptr<const TransferFunction>& b) {
     return a == b || (a != nullptr && b != nullptr && *a == *b);
 }
-
-QString shortNumber(double value) { return QString::number(value, 'g', 3); }
 
 } // namespace
 
@@ -52,100 +38,29 @@ PanelInfo temporalPanel() {
 }
 
 TemporalPanel::TemporalPanel(Services& services, PlayerController& player, AdaptController& adapting, QWidget* parent)
-    : QWidget(parent), m_services(services), m_player(player), m_adapting(adapting), m_shown(new QComboBox(this)),
-      m_overGaps(new QCheckBox(tr("Flicker over gaps"), this)), m_words(new QLabel(this)), m_readOut(new QLabel(this)),
-      m_measure(new QToolButton(this)), m_export(new QToolButton(this)), m_progress(new QProgressBar(this)),
-      m_job(
-          [this](const Task& task, const JobControl& job) {
-              Known known = task.known;
-              const JobControl quiet{job.stop, {}};
-              try {
-                  Scene scene = sceneAt(task.basis, task.frame, *known.tf, quiet);
-                  const ValueRange window = scene.volume->range();
-                  const auto written = [&](const TransferFunction& tf) {
-                      return tf.range && window.lo < window.hi ? inRange(tf, window) : tf;
-                  };
-                  const auto measured = [&](const std::shared_ptr<const TransferFunction>& tf,
-                                            const std::shared_ptr<const TransferFunction>& before) {
-                      scene.tf = written(*tf);
-                      const auto was = before ? std::optional(written(*before)) : std::nullopt;
-                      return figuresOf(scene, was ? &*was : nullptr, m_workspace, quiet);
-                  };
-                  known.dynamic = measured(known.tf, known.before);
-                  known.fixed = same(known.tf, known.fixedTf) && same(known.before, known.fixedBefore)
-                                    ? known.dynamic
-                                    : measured(known.fixedTf, known.fixedBefore);
-              } catch (const FileError&) {
-                  known.dynamic = known.fixed = brokenFigures(*task.basis.series, task.frame);
-              }
-              return known;
-          },
-          [this](const Task& task, Known& known) {
-              if (m_services.scene().series == task.basis.series) m_known[task.frame] = std::move(known);
-              refresh();
-              next();
-          },
-          WhenBusy::StopOld, &m_lane) {
-    static const char* const names[] = {"temporalDynamic", "temporalStatic", "temporalObjective", "temporalFlicker"};
-    const QString tips[] = {
-        tr("Under the transfer functions that follow the frames: the share of each feature of what catches the eye,\n"
-           "0 to 1 (VWS; dashed: the targets), its visibility (FV), or the opacity of its peak. Double-click: export."),
-        tr("The same under the keys alone, as in the mode static"),
-        tr("F, the root mean square distance of the features' VWS from their targets"),
-        tr("Flicker: mean colour difference ΔE (CIELAB) per pixel between a frame under its transfer function and the\n"
-           "same frame under that of the frame before")};
-    auto* grid = new QGridLayout(this);
-    grid->setContentsMargins(4, 4, 4, 2);
-    grid->setSpacing(2);
-    for (std::size_t i = 0; i < m_plots.size(); ++i) {
-        PlotView* const plot = m_plots[i] = new PlotView(this);
-        named(plot, names[i], tips[i]);
-        connect(plot, &PlotView::readOut, m_readOut, &QLabel::setText);
-        connect(plot, &PlotView::exportWanted, this, &TemporalPanel::chooseFile);
-        grid->addWidget(plot, 0, static_cast<int>(i));
-        grid->setColumnStretch(static_cast<int>(i), 1);
-    }
-    grid->setRowStretch(0, 1);
-    m_shown->setObjectName("temporalShown");
+    : QWidget(parent), m_services(services), m_player(player), m_adapting(adapting),
+      m_job([this](const Task& task, const JobControl& job) { return figuresFor(task, job); },
+            [this](const Task& task, Known& known) {
+                if (m_services.scene().series == task.basis.series) m_known[task.frame] = std::move(known);
+                refresh();
+                next();
+            },
+            WhenBusy::StopOld, &m_lane) {
+    auto* plots = makePlots();
     m_shown->addItems({tr("VWS"), tr("FV"), tr("Opacity")});
-    m_shown->setToolTip(tr("What the first two plots show of each feature: share of saliency (VWS), visibility (FV),\n"
-                           "or the opacity of its peak, of a path of one reference length d0"));
+    m_progress->setMaximumSize(120, 12);
+    m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
+    makeFaint(*m_readOut);
+    auto* row = rowOf({m_shown, m_overGaps, m_measure, m_progress, {m_words, 3}, {m_readOut, 2}, m_export});
+    setLayout(inset(columnOf({{plots, 1}, row}, 2), {4, 4, 4, 2}));
+
     connect(m_shown, &QComboBox::activated, this, &TemporalPanel::refresh);
-    named(m_overGaps, "temporalOverGaps",
-          tr("After missing or broken frames, compare with the frame before the gap;\n"
-             "otherwise no flicker is reported there"));
     connect(m_overGaps, &QCheckBox::toggled, this, [this] {
         refresh();
         next();
     });
-    m_measure->setObjectName("temporalMeasure");
     connect(m_measure, &QToolButton::clicked, this, [this] { m_asked ? cancel() : measure(); });
-    m_export->setObjectName("temporalExport");
-    m_export->setText(tr("Export…"));
-    m_export->setToolTip(tr("The curves as a table (CSV), the plots as a picture (PNG) or drawing (SVG)"));
     connect(m_export, &QToolButton::clicked, this, &TemporalPanel::chooseFile);
-    m_progress->setObjectName("temporalProgress");
-    m_progress->setMaximumSize(120, 12);
-    m_progress->setTextVisible(false);
-    m_words->setObjectName("temporalWords");
-    m_words->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    m_words->setToolTip(
-        tr("Over the frames that are known: root mean square of F, the largest F and its frame, how many frames are\n"
-           "not on target, and mean flicker"));
-    m_readOut->setObjectName("temporalReadOut");
-    m_readOut->setTextInteractionFlags(Qt::TextSelectableByMouse);
-    m_readOut->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    makeFaint(*m_readOut);
-    auto* row = new QHBoxLayout;
-    row->addWidget(m_shown);
-    row->addWidget(m_overGaps);
-    row->addWidget(m_measure);
-    row->addWidget(m_progress);
-    row->addWidget(m_words, 3);
-    row->addWidget(m_readOut, 2);
-    row->addWidget(m_export);
-    grid->addLayout(row, 1, 0, 1, 4);
-
     connect(&services.store(), &SessionStore::changed, this, &TemporalPanel::follow);
     connect(&adapting, &AdaptController::changed, this, &TemporalPanel::next);
     connect(&services, &Services::readOnlyChanged, this, [this] {
@@ -158,6 +73,51 @@ TemporalPanel::TemporalPanel(Services& services, PlayerController& player, Adapt
         refresh();
     });
     refresh();
+}
+
+TemporalPanel::Known TemporalPanel::figuresFor(const Task& task, const JobControl& job) {
+    Known known = task.known;
+    const JobControl quiet{job.stop, {}};
+    try {
+        Scene scene = sceneAt(task.basis, task.frame, *known.tf, quiet);
+        const ValueRange window = scene.volume->range();
+        const auto written = [&](const TransferFunction& tf) {
+            return tf.range && window.lo < window.hi ? inRange(tf, window) : tf;
+        };
+        const auto measured = [&](const std::shared_ptr<const TransferFunction>& tf,
+                                  const std::shared_ptr<const TransferFunction>& before) {
+            scene.tf = written(*tf);
+            const auto was = before ? std::optional(written(*before)) : std::nullopt;
+            return figuresOf(scene, was ? &*was : nullptr, m_workspace, quiet);
+        };
+        known.dynamic = measured(known.tf, known.before);
+        known.fixed = same(known.tf, known.fixedTf) && same(known.before, known.fixedBefore)
+                          ? known.dynamic
+                          : measured(known.fixedTf, known.fixedBefore);
+    } catch (const FileError&) {
+        known.dynamic = known.fixed = brokenFigures(*task.basis.series, task.frame);
+    }
+    return known;
+}
+
+QLayout* TemporalPanel::makePlots() {
+    const std::pair<const char*, QString> plots[] = {
+        {"temporalDynamic",
+         tr("Under the transfer functions that follow the frames: the share of each feature of what\n"
+            "catches the eye, 0 to 1 (VWS; dashed: the targets), its visibility (FV), or the\n"
+            "opacity of its peak. Double-click: export.")},
+        {"temporalStatic", tr("The same under the keys alone, as in the mode static")},
+        {"temporalObjective", tr("F, the root mean square distance of the features' VWS from their targets")},
+        {"temporalFlicker", tr("Flicker: mean colour difference ΔE (CIELAB) per pixel between a frame under its\n"
+                               "transfer function and the same frame under that of the frame before")}};
+    QHBoxLayout* const row = rowOf({});
+    for (std::size_t i = 0; i < m_plots.size(); ++i) {
+        PlotView* const plot = m_plots[i] = named(new PlotView(this), plots[i].first, plots[i].second);
+        connect(plot, &PlotView::readOut, m_readOut, &QLabel::setText);
+        connect(plot, &PlotView::exportWanted, this, &TemporalPanel::chooseFile);
+        row->addWidget(plot, 1);
+    }
+    return row;
 }
 
 TemporalPanel::Task TemporalPanel::taskOf(int frame) const {
@@ -297,6 +257,25 @@ std::vector<Plot> TemporalPanel::plots() const {
     return all;
 }
 
+QString TemporalPanel::words(int known) const {
+    if (!m_player.hasSeries()) return tr("Open a series, and its curves are drawn here.");
+    if (known == 0) return m_asked ? tr("Measuring…") : tr("Measure the frames, and their curves are drawn here.");
+    QStringList words;
+    for (const TemporalRun& run : curves().runs) {
+        const double tolerance = m_services.scene().session.optimize->tolerance;
+        const SequenceFigures sum = summaryOf(run.frames, tolerance);
+        if (sum.worst < 0) continue; // no frame could be read
+        const QString above = sum.above == 0 ? QString() : tr(", %L1 not below %2").arg(sum.above).arg(tolerance);
+        words << tr("%1: F %2 (largest %3, frame %4%5), flicker %6")
+                     .arg(QString::fromStdString(run.name), shortNumber(sum.rms), shortNumber(sum.worstObjective))
+                     .arg(sum.worst)
+                     .arg(above, shortNumber(sum.flicker));
+    }
+    const int count = m_player.frameCount();
+    if (known < count) words << tr("%L1 of %L2 frames").arg(known).arg(count);
+    return words.join("; ");
+}
+
 void TemporalPanel::refresh() {
     const bool series = m_player.hasSeries();
     const int count = m_player.frameCount(), known = series ? knownCount() : 0;
@@ -309,62 +288,26 @@ void TemporalPanel::refresh() {
     m_progress->setRange(0, std::max(1, count));
     m_progress->setValue(known);
     m_export->setEnabled(known > 0);
-    if (!series) {
-        m_words->setText(tr("Open a series, and its curves are drawn here."));
-    } else if (known == 0) {
-        m_words->setText(m_asked ? tr("Measuring…") : tr("Measure the frames, and their curves are drawn here."));
-    } else {
-        QStringList words;
-        for (const TemporalRun& run : curves().runs) {
-            const double tolerance = m_services.scene().session.optimize->tolerance;
-            const SequenceFigures sum = summaryOf(run.frames, tolerance);
-            if (sum.worst < 0) continue; // no frame could be read
-            const QString above = sum.above == 0 ? QString() : tr(", %L1 not below %2").arg(sum.above).arg(tolerance);
-            words << tr("%1: F %2 (largest %3, frame %4%5), flicker %6")
-                         .arg(QString::fromStdString(run.name), shortNumber(sum.rms), shortNumber(sum.worstObjective))
-                         .arg(sum.worst)
-                         .arg(above, shortNumber(sum.flicker));
-        }
-        if (known < count) words << tr("%L1 of %L2 frames").arg(known).arg(count);
-        m_words->setText(words.join(QStringLiteral("; ")));
-    }
+    m_words->setText(words(known));
     if (!isVisible()) return;
     std::vector<Plot> all = plots();
     const bool two = all.size() == m_plots.size();
     m_plots[1]->setVisible(two);
-    std::size_t i = 0;
-    for (std::size_t p = 0; p < m_plots.size(); ++p) {
-        if (p == 1 && !two) continue;
-        m_plots[p]->setPlot(i < all.size() && known > 0 ? std::move(all[i]) : Plot());
-        ++i;
-    }
+    if (known == 0) all.clear();
+    if (!two && !all.empty()) all.insert(all.begin() + 1, Plot());
+    all.resize(m_plots.size());
+    for (std::size_t p = 0; p < m_plots.size(); ++p) m_plots[p]->setPlot(std::move(all[p]));
 }
 
 void TemporalPanel::chooseFile() {
     if (!m_player.hasSeries() || knownCount() == 0) return;
-    const QString folder = QSettings().value("curvesFolder", QDir::homePath()).toString();
-    QString path = QFileDialog::getSaveFileName(
-        m_services.window(), tr("Export the curves over time"), QDir(folder).filePath("curves_over_time.csv"),
-        QStringList{tr("Table (*.csv)"), tr("Picture (*.png)"), tr("Drawing (*.svg)")}.join(";;"));
-    if (path.isEmpty()) return;
-    if (QFileInfo(path).suffix().isEmpty()) path += ".csv";
-    QSettings().setValue("curvesFolder", QFileInfo(path).absolutePath());
-    exportTo(path);
+    const QString path = askCurveFile(m_services, tr("Export the curves over time"), "curves_over_time");
+    if (!path.isEmpty()) exportTo(path);
 }
 
 void TemporalPanel::exportTo(const QString& path) {
-    const std::string file = path.toStdString();
-    const QString suffix = QFileInfo(path).suffix().toLower();
-    try {
-        if (suffix == "csv") {
-            writeTextAtomically(file, csvOf(curves()));
-        } else {
-            writePlots(file, temporalPlots(curves()));
-        }
-        Q_EMIT m_services.message(tr("Saved %1").arg(QFileInfo(path).fileName()));
-    } catch (const Error& error) {
-        m_services.showError(tr("Cannot export the curves"), error);
-    }
+    exportCurves(
+        m_services, path, [this] { return csvOf(curves()); }, [this] { return temporalPlots(curves()); });
 }
 
 } // namespace pellucid::gui

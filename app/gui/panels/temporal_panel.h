@@ -5,17 +5,11 @@
 #include <array>
 #include <map>
 
-#include <QWidget>
+#include <QCheckBox>
 
 #include "jobs/job.h"
 #include "report/temporal_curves.h"
-
-class QCheckBox;
-class QComboBox;
-class QGridLayout;
-class QLabel;
-class QProgressBar;
-class QToolButton;
+#include "widgets/controls.h"
 
 namespace pellucid::gui {
 
@@ -67,11 +61,14 @@ private:
         Known known;
     };
     Task taskOf(int frame) const;
+    Known figuresFor(const Task& task, const JobControl& job);
     static bool isCurrent(const Known& known, const Known& wanted);
     bool isKnown(int frame) const;
     void next();
     void follow(const Scene& before, const Scene& after);
     void refresh();
+    QLayout* makePlots();
+    QString words(int known) const;
     std::vector<Plot> plots() const;
     void chooseFile();
 
@@ -79,11 +76,22 @@ private:
     PlayerController& m_player;
     AdaptController& m_adapting;
     std::array<PlotView*, 4> m_plots{};
-    QComboBox* m_shown;
-    QCheckBox* m_overGaps;
-    QLabel *m_words, *m_readOut;
-    QToolButton *m_measure, *m_export;
-    QProgressBar* m_progress;
+    QComboBox* m_shown =
+        named(new QComboBox(this), "temporalShown",
+              tr("What the first two plots show of each feature: share of saliency (VWS), visibility (FV),\n"
+                 "or the opacity of its peak, of a path of one reference length d0"));
+    QCheckBox* m_overGaps = named(new QCheckBox(tr("Flicker over gaps"), this), "temporalOverGaps",
+                                  tr("After missing or broken frames, compare with the frame before the gap;\n"
+                                     "otherwise no flicker is reported there"));
+    QLabel* m_words =
+        withAnyWidth(named(new QLabel(this), "temporalWords",
+                           tr("Over the frames that are known: root mean square of F, the largest F and its\n"
+                              "frame, how many frames are not on target, and mean flicker")));
+    QLabel* m_readOut = withAnyWidth(named(new QLabel(this), "temporalReadOut"));
+    QToolButton* m_measure = named(new QToolButton(this), "temporalMeasure");
+    QToolButton* m_export = named(toolButton(tr("Export…"), this), "temporalExport",
+                                  tr("The curves as a table (CSV), the plots as a picture (PNG) or drawing (SVG)"));
+    QProgressBar* m_progress = progressBar("temporalProgress", this);
     std::map<int, Known> m_known;
     bool m_asked = false;  ///< frames that are not known are measured
     Workspace m_workspace; // used in m_job alone

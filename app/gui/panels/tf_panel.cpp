@@ -28,7 +28,6 @@ PanelInfo transferFunctionPanel() {
     return {.id = "tf",
             .title = QObject::tr("Transfer function"),
             .area = Qt::BottomDockWidgetArea,
-            .visible = true,
             .size = 250,
             .keys = QKeySequence("Ctrl+1"),
             .tip = QObject::tr("The curve of opacity and colour over the histogram"),

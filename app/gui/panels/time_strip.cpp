@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QHelpEvent>
 #include <QMouseEvent>
 #include <QPainter>
-#include <QToolTip>
 #include <QWheelEvent>
 
+#include "widgets/controls.h"
 #include "widgets/number_text.h"
 #include "widgets/theme.h"
 
@@ -17,12 +16,6 @@ namespace {
 
 constexpr int kBins = 64;
 constexpr double kMargin = 6, kMarks = 13, kHeld = 3; // pixels: at the sides, the row of marks, the line below
-
-QColor between(const QColor& a, const QColor& b, double t) {
-    return QColor::fromRgbF(static_cast<float>(a.redF() + t * (b.redF() - a.redF())),
-                            static_cast<float>(a.greenF() + t * (b.greenF() - a.greenF())),
-                            static_cast<float>(a.blueF() + t * (b.blueF() - a.blueF())));
-}
 
 } // namespace
 
@@ -106,52 +99,18 @@ void TimeStrip::paintEvent(QPaintEvent*) {
     painter.setPen(QPen(theme::kLine, 1));
     painter.drawRect(r);
     painter.setRenderHint(QPainter::Antialiasing);
-    const auto column = [&](int f) { return rectOf(f); };
-    for (int f = 0; f < count(); ++f) {
-        const FrameMark& mark = m_marks[static_cast<std::size_t>(f)];
-        const QRectF c = column(f);
-        if (!mark.problem.isEmpty()) {
-            painter.fillRect(c, QBrush(theme::kFalls, Qt::BDiagPattern));
-            painter.setPen(QPen(theme::kFalls, 1.5));
-            const QPointF m(c.center().x(), kMarks / 2);
-            painter.drawLine(m + QPointF(-3, -3), m + QPointF(3, 3));
-            painter.drawLine(m + QPointF(-3, 3), m + QPointF(3, -3));
-        }
-        // Whether there is a transfer function of its own: a bar under the marks; pale where it is of other inputs.
-        if (mark.adapted) {
-            QColor bar = theme::kAccent;
-            if (mark.stale) bar.setAlphaF(0.35f);
-            painter.fillRect(QRectF(c.left(), kMarks - 3, c.width(), 2), bar);
-        }
-        if (mark.held) painter.fillRect(QRectF(c.left(), r.bottom() + 2, c.width(), kHeld - 1), theme::kFaint);
-    }
-    for (int f = 0; f < count(); ++f) { // over the bars
-        const FrameMark& mark = m_marks[static_cast<std::size_t>(f)];
-        const double x = column(f).center().x(), y = kMarks / 2 - 1;
-        painter.setPen(QPen(theme::kKnob, 1.2));
-        if (mark.tfKey) {
-            painter.setBrush(theme::kAccent);
-            painter.drawPolygon(QPolygonF{{x - 4, y}, {x, y - 4.5}, {x + 4, y}, {x, y + 4.5}});
-        }
-        if (mark.targetKey) {
-            painter.setBrush(Qt::NoBrush);
-            painter.drawEllipse(QPointF(x, y), 5.5, 5.5);
-        }
-    }
+    for (int f = 0; f < count(); ++f) paintState(painter, f);
+    for (int f = 0; f < count(); ++f) paintKeys(painter, f); // over the bars
     painter.setBrush(Qt::NoBrush);
-    if (m_hovered >= 0) {
-        painter.setPen(QPen(theme::kFaint, 1));
-        const double x = column(m_hovered).center().x();
+    const auto upright = [&](int frame, const QPen& pen) {
+        painter.setPen(pen);
+        const double x = rectOf(frame).center().x();
         painter.drawLine(QPointF(x, r.top()), QPointF(x, r.bottom()));
-    }
-    if (m_awaited) {
-        painter.setPen(QPen(theme::kAccent, 1, Qt::DotLine));
-        const double x = column(*m_awaited).center().x();
-        painter.drawLine(QPointF(x, r.top()), QPointF(x, r.bottom()));
-    }
-    const double x = column(m_frame).center().x();
-    painter.setPen(QPen(theme::kAccent, 2));
-    painter.drawLine(QPointF(x, r.top()), QPointF(x, r.bottom()));
+        return x;
+    };
+    if (m_hovered >= 0) upright(m_hovered, QPen(theme::kFaint, 1));
+    if (m_awaited) upright(*m_awaited, QPen(theme::kAccent, 1, Qt::DotLine));
+    const double x = upright(m_frame, QPen(theme::kAccent, 2));
     painter.setPen(QPen(theme::kKnob, 1));
     painter.setBrush(theme::kAccent);
     painter.drawPolygon(
@@ -160,6 +119,37 @@ void TimeStrip::paintEvent(QPaintEvent*) {
         painter.setBrush(Qt::NoBrush);
         painter.setPen(QPen(theme::kAccent, 1));
         painter.drawRect(r.adjusted(-1, -1, 1, 1));
+    }
+}
+
+/// Whether it can be shown, would be shown at once, and has a transfer function of its own.
+void TimeStrip::paintState(QPainter& painter, int frame) const {
+    const FrameMark& mark = m_marks[static_cast<std::size_t>(frame)];
+    const QRectF c = rectOf(frame);
+    if (!mark.problem.isEmpty()) {
+        painter.fillRect(c, QBrush(theme::kFalls, Qt::BDiagPattern));
+        painter.setPen(QPen(theme::kFalls, 1.5));
+        const QPointF m(c.center().x(), kMarks / 2);
+        painter.drawLine(m + QPointF(-3, -3), m + QPointF(3, 3));
+        painter.drawLine(m + QPointF(-3, 3), m + QPointF(3, -3));
+    }
+    if (mark.adapted) // a bar under the marks; pale where it is of other inputs
+        painter.fillRect(QRectF(c.left(), kMarks - 3, c.width(), 2),
+                         translucent(theme::kAccent, mark.stale ? 0.35 : 1));
+    if (mark.held) painter.fillRect(QRectF(c.left(), c.bottom() + 2, c.width(), kHeld - 1), theme::kFaint);
+}
+
+void TimeStrip::paintKeys(QPainter& painter, int frame) const {
+    const FrameMark& mark = m_marks[static_cast<std::size_t>(frame)];
+    const double x = rectOf(frame).center().x(), y = kMarks / 2 - 1;
+    painter.setPen(QPen(theme::kKnob, 1.2));
+    if (mark.tfKey) {
+        painter.setBrush(theme::kAccent);
+        painter.drawPolygon(QPolygonF{{x - 4, y}, {x, y - 4.5}, {x + 4, y}, {x, y + 4.5}});
+    }
+    if (mark.targetKey) {
+        painter.setBrush(Qt::NoBrush);
+        painter.drawEllipse(QPointF(x, y), 5.5, 5.5);
     }
 }
 
@@ -191,13 +181,8 @@ QString TimeStrip::tipAt(const QPointF& at) const {
 }
 
 bool TimeStrip::event(QEvent* event) {
-    if (event->type() == QEvent::ToolTip) {
-        const auto* help = static_cast<QHelpEvent*>(event);
-        QToolTip::showText(help->globalPos(), tipAt(help->pos()), this);
-        return true;
-    }
     if (event->type() == QEvent::PaletteChange) draw();
-    return QWidget::event(event);
+    return showsTip(*event, *this, [this](const QPoint& at) { return tipAt(at); }) || QWidget::event(event);
 }
 
 void TimeStrip::mousePressEvent(QMouseEvent* event) {

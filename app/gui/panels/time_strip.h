@@ -61,6 +61,8 @@ private:
     int count() const { return m_series ? m_series->size() : 0; }
     void draw();
     QString tipAt(const QPointF& at) const;
+    void paintState(QPainter& painter, int frame) const;
+    void paintKeys(QPainter& painter, int frame) const;
 
     std::shared_ptr<const TimeSeries> m_series;
     ValueRange m_window;

@@ -1,31 +1,30 @@
-#include "panels/variables_panel.h"
-
+// The variables of a session: what they are, what they drive, and the ground under them.
 #include <cmath>
+#include <map>
 
-#include <QHBoxLayout>
 #include <QHeaderView>
-#include <QLabel>
 #include <QLineEdit>
 #include <QLocale>
 #include <QMenu>
 #include <QPushButton>
-#include <QToolButton>
 #include <QTreeWidget>
-#include <QVBoxLayout>
 
 #include "controllers/controllers.h"
 #include "dialogs/series_files.h"
+#include "jobs/job.h"
+#include "jobs/rest_timer.h"
 #include "panels/channels_box.h"
 #include "panels/ground_box.h"
 #include "panels/panel.h"
+#include "panels/panel_parts.h"
 #include "panels/variable_words.h"
-#include "services/services.h"
 #include "session/scene_data.h"
+#include "session/variable_edits.h"
 #include "volume/file_contents.h"
 #include "volume/procedural.h"
-#include "widgets/named.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/number_text.h"
-#include "widgets/scrolled.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -48,6 +47,17 @@ QString formulaOf(const Derivation& d) {
     }
     return {};
 }
+
+/// What is known of a variable once its present frame has been read.
+struct VariableInfo {
+    Int3 dims{0, 0, 0};
+    int frames = 1;
+    ValueRange range;                ///< data units
+    bool wholeRange = false;         ///< of all frames, not of the present one alone
+    bool sameGrid = true;            ///< as the first variable
+    std::vector<std::string> arrays; ///< of its file, where that has several
+    std::string problem;             ///< why it cannot be read; empty: it can
+};
 
 /// Each variable as far as it can be read.
 std::map<std::string, VariableInfo> lookAt(const Scene& scene, const JobControl& job) {
@@ -87,47 +97,83 @@ bool sameVariables(const Session& a, const Session& b) {
                       });
 }
 
-} // namespace
+class VariablesPanel : public QWidget {
+public:
+    VariablesPanel(Services& services, OpenController& opening, QWidget* parent);
+
+    QSize sizeHint() const override { return sizeWithoutScrolling(*this); }
+    ChannelsBox& channels() { return *m_channels; }
+
+private:
+    void makeList();
+    void fillAddMenu();
+    std::string selected() const; ///< name of the variable in the list; empty: none
+    QTreeWidgetItem* addToList(const Variable& variable);
+    const VariableInfo* infoOf(const std::string& name) const; ///< null: it has not been read, or cannot be
+    void follow();
+    void lookAtVariables();
+    void showRange();
+    void add(const Variable& variable, const QString& text);
+    void addFrom(const VolumeSource& source);
+    void addSample(const std::string& name);
+    void rename(QTreeWidgetItem* item);
+    void remove();
+    void editRange();
+    void setWindow(const QString& text, const std::optional<ValueRange>& window); ///< empty: all values
+
+    Services& m_services;
+    OpenController& m_opening;
+    QTreeWidget* m_list = named(new QTreeWidget(this), "variablesList", tr("Double-click or F2: another name"));
+    ChannelsBox* m_channels = nullptr;
+    QToolButton* m_add = named(menuButton(tr("&Add"), this), "variableAdd",
+                               tr("Another variable: from files, a sample, or made of one that is there"));
+    QPushButton* m_remove = named(new QPushButton(tr("&Remove"), this), "variableRemove");
+    QPushButton* m_wholeRange = named(new QPushButton(tr("All values"), this), "variableWholeRange",
+                                      tr("From the smallest to the largest value of all frames"));
+    QLineEdit* m_lo =
+        named(new QLineEdit(this), "variableLo", tr("The value that becomes intensity 0, in the unit of the variable"));
+    QLineEdit* m_hi =
+        named(new QLineEdit(this), "variableHi", tr("The value that becomes intensity 1, in the unit of the variable"));
+    QLabel* m_notice = wrappedLabel("variablesNotice", this);
+    std::map<std::string, VariableInfo> m_infos;
+    Job<Scene, std::map<std::string, VariableInfo>> m_looking;
+};
 
 VariablesPanel::VariablesPanel(Services& services, OpenController& opening, QWidget* parent)
-    : QWidget(parent), m_services(services), m_opening(opening), m_list(new QTreeWidget(this)),
-      m_add(new QToolButton(this)), m_addMenu(new QMenu(m_add)), m_remove(new QPushButton(tr("&Remove"), this)),
-      m_wholeRange(new QPushButton(tr("All values"), this)), m_lo(new QLineEdit(this)), m_hi(new QLineEdit(this)),
-      m_notice(new QLabel(this)), m_looking(lookAt, [this](const Scene&, std::map<std::string, VariableInfo>& infos) {
+    : QWidget(parent), m_services(services), m_opening(opening),
+      m_looking(lookAt, [this](const Scene&, std::map<std::string, VariableInfo>& infos) {
           m_infos = std::move(infos);
           follow();
       }) {
     setObjectName("variablesPanel");
-    auto* content = new QWidget;
-    auto* column = new QVBoxLayout(content);
-    column->setContentsMargins(10, 8, 10, 8);
-    column->setSpacing(8);
-    column->addWidget(makeList());
-    column->addWidget(m_channels = new ChannelsBox(services, opening, content));
-    auto* line = new QFrame(content);
+    m_notice->setTextFormat(Qt::PlainText);
+    m_add->menu()->setObjectName("variableAddMenu");
+    for (QLineEdit* edit : {m_lo, m_hi}) {
+        edit->setMinimumWidth(60);
+        connect(edit, &QLineEdit::editingFinished, this, &VariablesPanel::editRange);
+    }
+    makeList();
+    auto* line = new QFrame;
     line->setFrameShape(QFrame::HLine);
-    column->addWidget(line);
-    column->addWidget(new GroundBox(services, opening, content));
-    column->addStretch(1);
-    fillScrolled(this, content);
+    QLayout* const list = columnOf({m_list, m_notice, rowOf({m_add, m_remove, Cell::rest()}),
+                                    rowOf({new QLabel(tr("Range")), {m_lo, 1}, {m_hi, 1}, m_wholeRange})},
+                                   6);
+    m_channels = new ChannelsBox(services, opening, this);
+    fillScrolled(this, columnOf({list, m_channels, line, makeGroundBox(services, opening), Cell::rest()}, 8));
 
+    connect(m_add->menu(), &QMenu::aboutToShow, this, &VariablesPanel::fillAddMenu);
+    connect(m_remove, &QPushButton::clicked, this, &VariablesPanel::remove);
+    connect(m_wholeRange, &QPushButton::clicked, this,
+            [this] { setWindow(tr("All values of %1").arg(textOf(selected())), {}); });
     connect(&services.store(), &SessionStore::changed, this, [this](const Scene& before, const Scene& after) {
         if (before.series != after.series || !sameVariables(before.session, after.session)) lookAtVariables();
-        if (before.volume != after.volume || !before.session.variables.isSame(after.session.variables) ||
-            !before.session.hsb.isSame(after.session.hsb))
-            follow();
     });
-    connect(&services, &Services::readOnlyChanged, this, &VariablesPanel::follow);
     lookAtVariables();
-    follow();
+    followParts(
+        services, this, [this] { follow(); }, &Session::variables, &Session::hsb);
 }
 
-QWidget* VariablesPanel::makeList() {
-    auto* box = new QWidget;
-    auto* column = new QVBoxLayout(box);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(6);
-    m_list->setObjectName("variablesList");
+void VariablesPanel::makeList() {
     m_list->setColumnCount(kColumns);
     m_list->setHeaderLabels({tr("Variable"), tr("Drives"), tr("From"), tr("Grid"), tr("Range")});
     m_list->setRootIsDecorated(false);
@@ -135,58 +181,12 @@ QWidget* VariablesPanel::makeList() {
     m_list->setEditTriggers(QAbstractItemView::EditKeyPressed | QAbstractItemView::DoubleClicked);
     m_list->setMinimumSize(120, 90);
     m_list->setMaximumHeight(150);
-    m_list->setToolTip(tr("Double-click or F2: another name"));
     m_list->header()->setStretchLastSection(true);
-    column->addWidget(m_list);
-    m_notice->setObjectName("variablesNotice");
-    m_notice->setWordWrap(true);
-    m_notice->setTextFormat(Qt::PlainText);
-    column->addWidget(m_notice);
-    m_add->setObjectName("variableAdd");
-    m_add->setText(tr("&Add"));
-    m_add->setPopupMode(QToolButton::InstantPopup);
-    m_add->setToolTip(tr("Another variable: of files, a sample, or made of one that is there"));
-    m_addMenu->setObjectName("variableAddMenu");
-    m_add->setMenu(m_addMenu);
-    m_remove->setObjectName("variableRemove");
-    m_lo->setObjectName("variableLo");
-    m_hi->setObjectName("variableHi");
-    for (QLineEdit* edit : {m_lo, m_hi}) {
-        edit->setMinimumWidth(60);
-        edit->setToolTip(tr("Values of the variable that are intensity 0 and 1, in its unit"));
-        connect(edit, &QLineEdit::editingFinished, this, &VariablesPanel::editRange);
-    }
-    named(m_wholeRange, "variableWholeRange", tr("From the smallest to the largest value of all frames"));
-    auto* row = new QHBoxLayout;
-    row->addWidget(m_add);
-    row->addWidget(m_remove);
-    row->addStretch(1);
-    column->addLayout(row);
-    auto* range = new QHBoxLayout;
-    range->addWidget(new QLabel(tr("Range"), box));
-    range->addWidget(m_lo, 1);
-    range->addWidget(m_hi, 1);
-    range->addWidget(m_wholeRange);
-    column->addLayout(range);
-
-    connect(m_addMenu, &QMenu::aboutToShow, this, &VariablesPanel::fillAddMenu);
-    connect(m_remove, &QPushButton::clicked, this, &VariablesPanel::remove);
     connect(m_list, &QTreeWidget::currentItemChanged, this, &VariablesPanel::showRange);
     connect(m_list, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item, int at) {
-        if (!m_showing && at == kName) rename(item);
+        if (at == kName) rename(item);
     });
-    connect(m_wholeRange, &QPushButton::clicked, this, [this] {
-        m_opening.editInJob(tr("All values of %1").arg(textOf(selected())), [name = selected()](Session& session) {
-            session.variables.edit([&](std::vector<Variable>& all) {
-                for (Variable& v : all)
-                    if (v.name == name) v.window.reset();
-            });
-        });
-    });
-    return box;
 }
-
-QSize VariablesPanel::sizeHint() const { return findChild<QScrollArea*>()->widget()->sizeHint() + QSize(24, 4); }
 
 std::string VariablesPanel::selected() const {
     const QTreeWidgetItem* item = m_list->currentItem();
@@ -203,67 +203,74 @@ void VariablesPanel::follow() {
     setEnabled(m_services.isEditable());
     const Session& session = m_services.store().session();
     const std::string chosen = selected();
-    m_showing = true;
-    m_list->clear();
-    QStringList resampled;
-    for (const Variable& v : *session.variables) {
-        auto* item = new QTreeWidgetItem(m_list);
-        const QString name = textOf(v.name);
-        item->setFlags(item->flags() | Qt::ItemIsEditable);
-        item->setText(kName, name);
-        item->setData(kName, Qt::UserRole, name);
-        item->setText(kOrigin, originText(v));
-        item->setToolTip(kOrigin, v.derivation ? formulaOf(*v.derivation) : textOf(v.source.path));
-        QStringList drives;
-        const std::pair<Channel, QString> channels[] = {{Channel::Opacity, tr("opacity")},
-                                                        {Channel::Saturation, tr("saturation")},
-                                                        {Channel::Brightness, tr("brightness")},
-                                                        {Channel::Hue, tr("hue")}};
-        for (const auto& [channel, title] : channels)
-            if (channelOf(session, channel) == v.name && (channel == Channel::Opacity || session.hsb->on))
-                drives << title;
-        item->setText(kDrives, drives.join(", "));
-        if (const auto found = m_infos.find(v.name); found != m_infos.end()) {
-            const VariableInfo& info = found->second;
-            if (!info.problem.empty()) {
-                item->setText(kGrid, tr("cannot be read"));
-                item->setToolTip(kGrid, textOf(info.problem));
-            } else {
-                const QString grid = QStringLiteral("%1×%2×%3").arg(info.dims.x).arg(info.dims.y).arg(info.dims.z);
-                item->setText(kGrid, info.frames > 1 ? tr("%1, %L2 frames").arg(grid).arg(info.frames) : grid);
-                item->setText(kRange, rangeText(info.range));
-                item->setToolTip(kRange, v.window          ? tr("Own range, in the unit of the variable")
-                                         : info.wholeRange ? tr("All values, in the unit of the variable")
-                                                           : tr("Values of this frame; other frames were not read"));
-                if (!info.sameGrid) {
-                    resampled << name;
-                    item->setToolTip(kGrid, tr("Resampled onto the grid of %1").arg(textOf(session.variable().name)));
-                }
-            }
+    {
+        const QSignalBlocker quiet(m_list); // it shows, and edits nothing
+        m_list->clear();
+        for (const Variable& v : *session.variables) {
+            QTreeWidgetItem* const item = addToList(v);
+            if (v.name == chosen) m_list->setCurrentItem(item);
         }
-        if (v.name == chosen) m_list->setCurrentItem(item);
+        if (m_list->currentItem() == nullptr) m_list->setCurrentItem(m_list->topLevelItem(0));
+        for (int c = 0; c < kColumns - 1; ++c) m_list->resizeColumnToContents(c);
     }
-    if (m_list->currentItem() == nullptr && m_list->topLevelItemCount() > 0)
-        m_list->setCurrentItem(m_list->topLevelItem(0));
-    for (int c = 0; c < kColumns - 1; ++c) m_list->resizeColumnToContents(c);
+    QStringList resampled;
+    for (const Variable& v : *session.variables)
+        if (const VariableInfo* info = infoOf(v.name); info != nullptr && !info->sameGrid) resampled << textOf(v.name);
     m_notice->setText(resampled.isEmpty() ? QString()
                                           : tr("Resampled onto the grid of %1 where colours come from it: %2.")
                                                 .arg(textOf(session.variable().name), resampled.join(", ")));
     m_notice->setVisible(!resampled.isEmpty());
-    m_showing = false;
     showRange();
 }
 
+QTreeWidgetItem* VariablesPanel::addToList(const Variable& v) {
+    const Session& session = m_services.store().session();
+    auto* item = new QTreeWidgetItem(m_list);
+    const QString name = textOf(v.name);
+    item->setFlags(item->flags() | Qt::ItemIsEditable);
+    item->setText(kName, name);
+    item->setData(kName, Qt::UserRole, name);
+    item->setText(kOrigin, originText(v));
+    item->setToolTip(kOrigin, v.derivation ? formulaOf(*v.derivation) : textOf(v.source.path));
+    QStringList drives;
+    const std::pair<Channel, QString> channels[] = {{Channel::Opacity, tr("opacity")},
+                                                    {Channel::Saturation, tr("saturation")},
+                                                    {Channel::Brightness, tr("brightness")},
+                                                    {Channel::Hue, tr("hue")}};
+    for (const auto& [channel, title] : channels)
+        if (channelOf(session, channel) == v.name && (channel == Channel::Opacity || session.hsb->on)) drives << title;
+    item->setText(kDrives, drives.join(", "));
+    if (const auto found = m_infos.find(v.name); found != m_infos.end() && !found->second.problem.empty()) {
+        item->setText(kGrid, tr("cannot be read"));
+        item->setToolTip(kGrid, textOf(found->second.problem));
+    }
+    const VariableInfo* const info = infoOf(v.name);
+    if (info == nullptr) return item;
+    const QString grid = QStringLiteral("%1×%2×%3").arg(info->dims.x).arg(info->dims.y).arg(info->dims.z);
+    item->setText(kGrid, info->frames > 1 ? tr("%1, %L2 frames").arg(grid).arg(info->frames) : grid);
+    item->setText(kRange, rangeText(info->range));
+    item->setToolTip(kRange, v.window           ? tr("Own range, in the unit of the variable")
+                             : info->wholeRange ? tr("All values, in the unit of the variable")
+                                                : tr("Values of this frame; other frames were not read"));
+    if (!info->sameGrid)
+        item->setToolTip(kGrid, tr("Resampled onto the grid of %1").arg(textOf(session.variable().name)));
+    return item;
+}
+
+const VariableInfo* VariablesPanel::infoOf(const std::string& name) const {
+    const auto found = m_infos.find(name);
+    return found == m_infos.end() || !found->second.problem.empty() ? nullptr : &found->second;
+}
+
 void VariablesPanel::showRange() {
-    if (m_showing) return;
     const Session& session = m_services.store().session();
     const std::string name = selected();
     const Variable* variable = session.variableNamed(name);
-    const auto info = m_infos.find(name);
-    const bool known = variable != nullptr && info != m_infos.end() && info->second.problem.empty();
+    const VariableInfo* const info = infoOf(name);
+    const bool known = variable != nullptr && info != nullptr;
     for (QWidget* widget : std::initializer_list<QWidget*>{m_lo, m_hi}) widget->setEnabled(known);
     m_wholeRange->setEnabled(known && variable->window);
-    const ValueRange range = known ? variable->window.value_or(info->second.range) : ValueRange{0, 0};
+    const ValueRange range = known ? variable->window.value_or(info->range) : ValueRange{0, 0};
     if (!m_lo->isModified()) m_lo->setText(known ? QLocale::c().toString(range.lo, 'g', 6) : QString());
     if (!m_hi->isModified()) m_hi->setText(known ? QLocale::c().toString(range.hi, 'g', 6) : QString());
     QString why;
@@ -288,13 +295,10 @@ void VariablesPanel::rename(QTreeWidgetItem* item) {
         renameVariable(renamed, from, to);
     } catch (const Error& error) {
         // The editor of the list is still open.
-        QMetaObject::invokeMethod(
-            this,
-            [this, error] {
-                follow();
-                m_services.showError(tr("Cannot rename the variable"), error);
-            },
-            Qt::QueuedConnection);
+        later(this, [this, error] {
+            follow();
+            m_services.showError(tr("Cannot rename the variable"), error);
+        });
         return;
     }
     m_opening.editInJob(tr("Rename %1").arg(textOf(from)), [from, to](Session& session) {
@@ -311,7 +315,7 @@ void VariablesPanel::remove() {
 }
 
 void VariablesPanel::editRange() {
-    if (m_showing || (!m_lo->isModified() && !m_hi->isModified())) return;
+    if (!m_lo->isModified() && !m_hi->isModified()) return;
     bool isLo = false, isHi = false;
     const ValueRange range{QLocale::c().toDouble(m_lo->text().trimmed(), &isLo),
                            QLocale::c().toDouble(m_hi->text().trimmed(), &isHi)};
@@ -322,74 +326,77 @@ void VariablesPanel::editRange() {
     m_lo->setModified(false);
     m_hi->setModified(false);
     if (!isLo || !isHi || !(range.lo < range.hi) || !std::isfinite(range.hi - range.lo)) return showRange();
-    m_opening.editInJob(tr("Range of %1").arg(textOf(selected())), [name = selected(), range](Session& s) {
-        s.variables.edit([&](std::vector<Variable>& all) {
-            for (Variable& v : all)
-                if (v.name == name) v.window = range;
-        });
-    });
+    setWindow(tr("Range of %1").arg(textOf(selected())), range);
+}
+
+void VariablesPanel::setWindow(const QString& text, const std::optional<ValueRange>& window) {
+    m_opening.editInJob(text, changing(&Session::variables, [name = selected(), window](std::vector<Variable>& all) {
+                            for (Variable& v : all)
+                                if (v.name == name) v.window = window;
+                        }));
 }
 
 // ---- adding
 
 void VariablesPanel::fillAddMenu() {
-    m_addMenu->clear();
+    QMenu& menu = *m_add->menu();
+    menu.clear();
     const Session& session = m_services.store().session();
     if (session.isEmpty()) return;
-    const auto action = [](QMenu& menu, const QString& text, const QString& name) {
-        QAction* made = menu.addAction(text);
+    const auto action = [this](QMenu& in, const QString& text, const QString& name, auto does) {
+        QAction* const made = in.addAction(text, this, does);
         made->setObjectName(name);
         return made;
     };
-    connect(action(*m_addMenu, tr("&Files…"), "addFiles"), &QAction::triggered, this, [this] {
+    action(menu, tr("&Files…"), "addFiles", [this] {
         if (const auto source = m_opening.askSource(tr("Add a variable"))) addFrom(*source);
     });
-    connect(action(*m_addMenu, tr("&Series…"), "addSeries"), &QAction::triggered, this, [this] {
+    action(menu, tr("&Series…"), "addSeries", [this] {
         if (const auto source = m_opening.askSeries()) addFrom(*source);
     });
-    QMenu* samplesMenu = m_addMenu->addMenu(tr("Sa&mple"));
-    for (const SampleInfo& sample : samples()) {
-        QAction* entry = action(*samplesMenu, textOf(sample.name), "addSample_" + textOf(sample.name));
-        entry->setToolTip(textOf(sample.description));
-        connect(entry, &QAction::triggered, this, [this, name = sample.name] {
-            VolumeSource source;
-            source.path = "sample:" + name;
-            const Variable& first = m_services.store().session().variable();
-            if (!first.derivation && first.source.isSample()) { // of the same make
-                source.sampleSize = first.source.sampleSize;
-                source.seed = first.source.seed;
-            }
-            addFrom(source);
-        });
-    }
+    QMenu& samplesMenu = *menu.addMenu(tr("Sa&mple"));
+    for (const SampleInfo& sample : samples())
+        action(samplesMenu, textOf(sample.name), "addSample_" + textOf(sample.name), [this, name = sample.name] {
+            addSample(name);
+        })->setToolTip(textOf(sample.description));
     for (const Variable& v : *session.variables) {
         const auto info = m_infos.find(v.name);
         if (info == m_infos.end() || info->second.arrays.size() < 2) continue;
-        QMenu* menu = m_addMenu->addMenu(tr("&Array of %1").arg(titleOf(v.source)));
+        QMenu& arrays = *menu.addMenu(tr("&Array of %1").arg(titleOf(v.source)));
         for (const std::string& array : info->second.arrays) {
             VolumeSource source = v.source;
             source.array = array;
-            connect(action(*menu, textOf(array), "addArray_" + textOf(array)), &QAction::triggered, this,
-                    [this, source] { addFrom(source); });
+            action(arrays, textOf(array), "addArray_" + textOf(array), [this, source] { addFrom(source); });
         }
     }
-    m_addMenu->addSeparator();
+    menu.addSeparator();
     const bool varies = m_services.scene().series && m_services.scene().series->varies();
     const std::tuple<Derivation::Kind, QString, const char*, QString> kinds[] = {
         {Derivation::Kind::Gradient, tr("&Gradient of"), "addGradient_", tr("gradient of %1")},
         {Derivation::Kind::Volatility, tr("&Volatility of"), "addVolatility_", tr("volatility of %1")},
         {Derivation::Kind::Difference, tr("&Difference to this frame of"), "addDifference_", tr("change of %1")}};
     for (const auto& [kind, text, name, title] : kinds) {
-        QMenu* menu = m_addMenu->addMenu(text);
-        menu->setEnabled(varies || kind == Derivation::Kind::Gradient);
+        QMenu& derived = *menu.addMenu(text);
+        derived.setEnabled(varies || kind == Derivation::Kind::Gradient);
         for (const Variable& v : *session.variables) {
             Variable made;
             made.name = title.arg(textOf(v.name)).toStdString();
             made.derivation = Derivation{kind, v.name, volatilityFrames(session).value_or(10), session.frame};
-            connect(action(*menu, textOf(v.name), name + textOf(v.name)), &QAction::triggered, this,
-                    [this, made, text = tr("Add %1").arg(textOf(made.name))] { add(made, text); });
+            action(derived, textOf(v.name), name + textOf(v.name),
+                   [this, made] { add(made, tr("Add %1").arg(textOf(made.name))); });
         }
     }
+}
+
+void VariablesPanel::addSample(const std::string& name) {
+    VolumeSource source;
+    source.path = "sample:" + name;
+    const Variable& first = m_services.store().session().variable();
+    if (!first.derivation && first.source.isSample()) { // of the same make
+        source.sampleSize = first.source.sampleSize;
+        source.seed = first.source.seed;
+    }
+    addFrom(source);
 }
 
 void VariablesPanel::addFrom(const VolumeSource& source) {
@@ -403,10 +410,11 @@ void VariablesPanel::add(const Variable& variable, const QString& text) {
     m_opening.editInJob(text, [variable](Session& session) { addVariable(session, variable); });
 }
 
+} // namespace
+
 PanelInfo variablesPanel() {
     return {.id = "variables",
             .title = QObject::tr("Variables"),
-            .area = Qt::RightDockWidgetArea,
             .visible = false,
             .tabOf = "display",
             .keys = QKeySequence("Ctrl+Shift+V"),
@@ -433,10 +441,6 @@ PanelInfo variablesPanel() {
                         return !s.isEmpty() && !services.isReadOnly() && !s.hsb->brightness.empty() &&
                                s.hsb->brightness != s.variable().name;
                     });
-                QObject::connect(&store, &SessionStore::changed, &services.actions(),
-                                 [&services](const Scene& before, const Scene& after) {
-                                     if (!before.session.hsb.isSame(after.session.hsb)) services.actions().refresh();
-                                 });
                 return panel;
             }};
 }

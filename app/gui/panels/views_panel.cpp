@@ -1,21 +1,16 @@
-#include "panels/views_panel.h"
-
+// The dock with the sphere of views.
 #include <algorithm>
 
-#include <QComboBox>
-#include <QHBoxLayout>
-#include <QLabel>
-#include <QProgressBar>
 #include <QPushButton>
 #include <QSignalBlocker>
-#include <QVBoxLayout>
 
 #include "controllers/controllers.h"
 #include "panels/panel.h"
 #include "render/view_direction.h"
 #include "services/services.h"
 #include "view/view_globe.h"
-#include "widgets/named.h"
+#include "widgets/controls.h"
+#include "widgets/layouts.h"
 #include "widgets/theme.h"
 
 namespace pellucid::gui {
@@ -37,59 +32,43 @@ QString figureText(const ViewMetric& metric, double value, bool about) {
                  : QStringLiteral("%1 = %2").arg(name, QString::number(value, 'f', 4));
 }
 
-} // namespace
+/// What is judged, the sphere in its colours, the best view in words, and the ways there.
+class ViewsPanel : public QWidget {
+public:
+    ViewsPanel(Services& services, ViewSearchController& search, QWidget* parent);
 
-PanelInfo viewsPanel() {
-    return {.id = "views",
-            .title = QObject::tr("Best view"),
-            .area = Qt::LeftDockWidgetArea,
-            .visible = false, // costs some hundred sweeps
-            .size = 240,
-            .keys = QKeySequence("Ctrl+B"),
-            .tip = QObject::tr("How good each view is, as a sphere beside the picture"),
-            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
-                const QString sphere = QObject::tr("Sphere of views");
-                services.actions().addGestures({{sphere, QObject::tr("Hover"), QObject::tr("look from there")},
-                                                {sphere, QObject::tr("Click"), QObject::tr("go there")},
-                                                {sphere, QObject::tr("Left drag"), QObject::tr("rotate")}});
-                return new ViewsPanel(services, controllers.views, parent);
-            }};
-}
+private:
+    void fillFigures();
+    void refresh();
+    QString words() const;
+    std::optional<double> measuredHere(const ViewMetric& metric) const; ///< empty: not of the present state
+
+    Services& m_services;
+    ViewSearchController& m_search;
+    QComboBox* m_figure =
+        named(new QComboBox(this), "viewsFigure",
+              tr("What a view is judged by: F, the distance of all shares of saliency from their targets\n"
+                 "(less is better), or the share (VWS, 0 to 1) of one feature (more is better)"));
+    ViewGlobe* m_globe = new ViewGlobe(this);
+    QLabel* m_words = wrappedLabel("viewsWords", this);
+    QProgressBar* m_progress = progressBar("viewsProgress", this);
+    QPushButton* m_look = named(new QPushButton(this), "viewsLook");
+    QPushButton* m_go = named(new QPushButton(tr("Go there"), this), "viewsGo",
+                              tr("Moves the camera to the best view; Alt+Left comes back"));
+    QPushButton* m_optimize = named(new QPushButton(this), "viewsOptimize",
+                                    tr("The view and the opacities that together come nearest to the targets;\n"
+                                       "opacities can be undone, and Alt+Left comes back to this view"));
+    int m_gesture = 0;
+};
 
 ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget* parent)
-    : QWidget(parent), m_services(services), m_search(search), m_figure(new QComboBox(this)),
-      m_globe(new ViewGlobe(this)), m_words(new QLabel(this)), m_progress(new QProgressBar(this)),
-      m_look(new QPushButton(this)), m_go(new QPushButton(tr("Go there"), this)),
-      m_optimize(new QPushButton(tr("Optimize view and opacities"), this)) {
+    : QWidget(parent), m_services(services), m_search(search) {
     setObjectName("viewsPanel");
-    named(m_figure, "viewsFigure",
-          tr("What a view is judged by: F, the distance of all shares of saliency from their targets\n"
-             "(less is better), or the share (VWS, 0 to 1) of one feature (more is better)"));
     m_figure->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    m_words->setObjectName("viewsWords");
-    m_words->setWordWrap(true);
     m_words->setTextInteractionFlags(Qt::TextSelectableByMouse);
-    m_progress->setObjectName("viewsProgress");
-    m_progress->setRange(0, 100);
-    m_progress->setTextVisible(false);
     m_progress->setFixedHeight(6);
-    m_look->setObjectName("viewsLook");
-    named(m_go, "viewsGo", tr("The camera goes to the best view; Alt+Left comes back"));
-    named(m_optimize, "viewsOptimize",
-          tr("The view and the opacities that together come nearest to the targets;\n"
-             "opacities can be undone, and Alt+Left comes back to this view"));
-
-    auto* buttons = new QHBoxLayout;
-    buttons->addWidget(m_look);
-    buttons->addWidget(m_go);
-    auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(8, 8, 8, 8);
-    column->addWidget(m_figure);
-    column->addWidget(m_globe, 1);
-    column->addWidget(m_progress);
-    column->addWidget(m_words);
-    column->addLayout(buttons);
-    column->addWidget(m_optimize);
+    setLayout(inset(columnOf({m_figure, {m_globe, 1}, m_progress, m_words, rowOf({m_look, m_go}), m_optimize}),
+                    {8, 8, 8, 8}));
 
     search.addActions();
     connect(&services.panels(), &Panels::visibilityChanged, &search, [&search](const QString& id, bool visible) {
@@ -187,7 +166,7 @@ void ViewsPanel::refresh() {
     std::optional<Vec3> best;
     if (search.best()) best = -search.best()->best.camera.forward();
     m_globe->setMap(search.map(), search.isCurrent() || search.isRunning(), best);
-    if (store.hasVolume()) m_globe->setCamera(store.scene().camera, store.scene().volume->geometry().frame);
+    if (store.hasVolume()) m_globe->setCamera(store.scene().camera, store.scene().volume->geometry().worldAxes);
     m_globe->setEnabled(store.hasVolume());
     m_progress->setValue(search.isRunning() || search.isOptimizing() ? static_cast<int>(100 * search.progress())
                          : current                                   ? 100
@@ -201,6 +180,25 @@ void ViewsPanel::refresh() {
     m_go->setEnabled(ready && current);
     m_optimize->setText(search.isOptimizing() ? tr("Stop") : tr("Optimize view and opacities"));
     m_optimize->setEnabled(ready);
+}
+
+} // namespace
+
+PanelInfo viewsPanel() {
+    return {.id = "views",
+            .title = QObject::tr("Best view"),
+            .area = Qt::LeftDockWidgetArea,
+            .visible = false, // costs some hundred sweeps
+            .size = 240,
+            .keys = QKeySequence("Ctrl+B"),
+            .tip = QObject::tr("How good each view is, as a sphere beside the picture"),
+            .make = [](Services& services, Controllers& controllers, QWidget* parent) {
+                const QString sphere = QObject::tr("Sphere of views");
+                services.actions().addGestures({{sphere, QObject::tr("Hover"), QObject::tr("look from there")},
+                                                {sphere, QObject::tr("Click"), QObject::tr("go there")},
+                                                {sphere, QObject::tr("Left drag"), QObject::tr("rotate")}});
+                return new ViewsPanel(services, controllers.views, parent);
+            }};
 }
 
 } // namespace pellucid::gui

@@ -1,0 +1,57 @@
+#include "panels/panel_parts.h"
+
+#include <QComboBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QSettings>
+
+#include "base/atomic_file.h"
+#include "widgets/controls.h"
+#include "widgets/plot_view.h"
+#include "widgets/theme.h"
+
+namespace pellucid::gui {
+
+void fillFeatures(QComboBox& box, const Scene& scene, const QString& all, int present) {
+    box.clear();
+    box.addItem(all, QVariant::fromValue<qulonglong>(0));
+    for (const Feature& f : scene.tf.features)
+        box.addItem(swatchOf(colorFromRgb(f.color), 12, 12), QString::fromStdString(f.name),
+                    QVariant::fromValue<qulonglong>(f.id));
+    box.setCurrentIndex(present + 1);
+}
+
+FeatureId chosenFeature(const QComboBox& box) { return static_cast<FeatureId>(box.currentData().toULongLong()); }
+
+QString askCurveFile(Services& services, const QString& title, const QString& name, const QString& suffix) {
+    const std::pair<QString, QString> kinds[] = {{"csv", QObject::tr("Table (*.csv)")},
+                                                 {"png", QObject::tr("Picture (*.png)")},
+                                                 {"svg", QObject::tr("Drawing (*.svg)")}};
+    QStringList filters;
+    for (const auto& [kind, filter] : kinds)
+        if (suffix.isEmpty() || suffix == kind) filters << filter;
+    const QString usual = "." + (suffix.isEmpty() ? kinds[0].first : suffix);
+    const QString folder = QSettings().value("curvesFolder", QDir::homePath()).toString();
+    QString path =
+        QFileDialog::getSaveFileName(services.window(), title, QDir(folder).filePath(name + usual), filters.join(";;"));
+    if (path.isEmpty()) return {};
+    if (QFileInfo(path).suffix().isEmpty()) path += usual;
+    QSettings().setValue("curvesFolder", QFileInfo(path).absolutePath());
+    return path;
+}
+
+void exportCurves(Services& services, const QString& path, const std::function<std::string()>& table,
+                  const std::function<std::vector<Plot>()>& plots) {
+    const QFileInfo file(path);
+    try {
+        if (file.suffix().toLower() == "csv")
+            writeTextAtomically(path.toStdString(), table());
+        else
+            writePlots(path.toStdString(), plots());
+        Q_EMIT services.message(QObject::tr("Saved %1").arg(file.fileName()));
+    } catch (const Error& error) {
+        services.showError(QObject::tr("Cannot export the curves"), error);
+    }
+}
+
+} // namespace pellucid::gui

@@ -1,0 +1,49 @@
+// What several panels do: edit a part of the session, follow it, offer its features, export curves.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include "services/services.h"
+
+class QComboBox;
+
+namespace pellucid {
+struct Plot;
+}
+
+namespace pellucid::gui {
+
+/// A change of one part of the session: `changing(&Session::display, [](DisplaySettings& d) { … })`.
+template <class T>
+SessionStore::Change changing(Part<T> Session::*part, std::type_identity_t<std::function<void(T&)>> change) {
+    return [=](Session& session) { (session.*part).edit(change); };
+}
+
+/// Calls `follow` now, where the volume or one of these parts becomes another one, and where editing begins or ends.
+template <class... T>
+void followParts(Services& services, QObject* context, const std::function<void()>& follow,
+                 Part<T> Session::*... parts) {
+    QObject::connect(&services.store(), &SessionStore::changed, context, [=](const Scene& before, const Scene& after) {
+        const bool same = ((before.session.*parts).isSame(after.session.*parts) && ...);
+        if (before.volume != after.volume || !same) follow();
+    });
+    QObject::connect(&services, &Services::readOnlyChanged, context, follow);
+    follow();
+}
+
+/// A row for all features, which says `all`, and one per feature; `present` is the index of the feature that is chosen,
+/// −1: all.
+void fillFeatures(QComboBox& box, const Scene& scene, const QString& all, int present);
+/// 0: all.
+FeatureId chosenFeature(const QComboBox& box);
+
+/// Where curves are to go, or empty. `suffix`, "csv", "png" or "svg": the only one offered; empty: any of them.
+QString askCurveFile(Services& services, const QString& title, const QString& name, const QString& suffix = {});
+/// Writes the table or the plots, by the suffix of `path`. Errors are shown.
+void exportCurves(Services& services, const QString& path, const std::function<std::string()>& table,
+                  const std::function<std::vector<Plot>()>& plots);
+
+} // namespace pellucid::gui
