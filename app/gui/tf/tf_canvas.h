@@ -147,19 +147,19 @@ private:
     void selectBand(const QRectF& band);
     void fillMenu(QMenu& menu, const QPointF& position);
 
-    struct Ink;
-    void paintJointHistogram(QPainter& painter, const Ink& ink);
-    void paintHistogram(QPainter& painter, const Ink& ink) const;
-    void paintVisibility(QPainter& painter, const Ink& ink) const;
-    void paintGradientAxis(QPainter& painter, const Ink& ink) const;
-    void paintAxes(QPainter& painter, const Ink& ink) const;
-    void paintOverview(QPainter& painter, const Ink& ink) const;
-    void paintFeatures(QPainter& painter, const Ink& ink) const;
-    void paintGhost(QPainter& painter, const Ink& ink) const;
-    void paintCurve(QPainter& painter, const Ink& ink) const;
-    void paintHair(QPainter& painter, const Ink& ink) const;
-    void paintPoints(QPainter& painter, const Ink& ink) const;
-    void paintTopLine(QPainter& painter, const Ink& ink) const;
+    QFont smallFont() const; ///< of all words but the features' names
+    void paintJointHistogram(QPainter& painter);
+    void paintHistogram(QPainter& painter) const;
+    void paintVisibility(QPainter& painter) const;
+    void paintGradientAxis(QPainter& painter) const;
+    void paintAxes(QPainter& painter) const;
+    void paintOverview(QPainter& painter) const;
+    void paintFeatures(QPainter& painter) const;
+    void paintGhost(QPainter& painter) const;
+    void paintCurve(QPainter& painter) const;
+    void paintHair(QPainter& painter) const;
+    void paintPoints(QPainter& painter) const;
+    void paintTopLine(QPainter& painter) const;
 
     SessionStore& m_store;
     Results& m_results;

@@ -18,11 +18,6 @@ constexpr double kHighest = 0.94;        // of the plot: a bar of height 1
 constexpr double kLegendFrom = 430;      // width of a plot that has room for the legend
 constexpr double kVisibleDecades = 1000; // of visibility that a logarithmic scale shows
 
-QColor translucent(QColor color, double alpha) {
-    color.setAlphaF(static_cast<float>(alpha));
-    return color;
-}
-
 QColor mixed(const QColor& a, const QColor& b, double share) { // of b
     const auto mix = [&](float x, float y) { return x + static_cast<float>(share) * (y - x); };
     return QColor::fromRgbF(mix(a.redF(), b.redF()), mix(a.greenF(), b.greenF()), mix(a.blueF(), b.blueF()));
@@ -32,6 +27,9 @@ QFont smaller(QFont font, double factor) {
     font.setPointSizeF(font.pointSizeF() * factor);
     return font;
 }
+
+/// Of what is visible: between that of the curve and that of what is active.
+QColor visibleColor() { return mixed(theme::kCurve, theme::kAccent, 0.6); }
 
 QColor readableOn(const QColor& ground) { return qGray(ground.rgb()) > 120 ? QColor(20, 20, 20) : QColor(Qt::white); }
 
@@ -53,24 +51,16 @@ QLinearGradient colorsAlong(const TransferFunction& tf, const IntensityAxis& axi
 
 } // namespace
 
-/// Colours of the theme, and what follows from them.
-struct TfCanvas::Ink {
-    QColor ground = theme::kWindow, plot = theme::kPanel, line = theme::kLine, text = theme::kText,
-           faint = theme::kFaint, accent = theme::kAccent;
-    QColor voxels = theme::kHistogram, curve = theme::kCurve, ring = theme::kKnob, visible = mixed(curve, accent, 0.6);
-    QFont small;
-};
+QFont TfCanvas::smallFont() const { return smaller(font(), 0.85); }
 
 void TfCanvas::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     painter.setRenderHint(QPainter::Antialiasing);
-    Ink ink;
-    ink.small = smaller(font(), 0.85);
-    painter.fillRect(rect(), ink.ground);
+    painter.fillRect(rect(), theme::kWindow);
     const QRectF r = plot();
-    painter.fillRect(r, ink.plot);
+    painter.fillRect(r, theme::kPanel);
     if (!m_store.hasVolume()) return;
-    painter.setFont(ink.small);
+    painter.setFont(smallFont());
     const auto clipped = [&](const auto& paint) {
         painter.save();
         painter.setClipRect(r.adjusted(-1, -1, 1, 1));
@@ -78,33 +68,33 @@ void TfCanvas::paintEvent(QPaintEvent*) {
         painter.restore();
     };
     clipped([&] {
-        paintJointHistogram(painter, ink);
-        paintHistogram(painter, ink);
-        paintVisibility(painter, ink);
+        paintJointHistogram(painter);
+        paintHistogram(painter);
+        paintVisibility(painter);
     });
-    paintAxes(painter, ink);
-    paintFeatures(painter, ink);
+    paintAxes(painter);
+    paintFeatures(painter);
     clipped([&] {
-        paintGhost(painter, ink);
-        paintCurve(painter, ink);
+        paintGhost(painter);
+        paintCurve(painter);
     });
-    paintHair(painter, ink);
-    paintPoints(painter, ink);
+    paintHair(painter);
+    paintPoints(painter);
     if (m_drag && m_drag->kind == Drag::Kind::Band && m_drag->moved) {
-        painter.setPen(QPen(ink.accent, 1, Qt::DashLine));
-        painter.setBrush(translucent(ink.accent, 0.12));
+        painter.setPen(QPen(theme::kAccent, 1, Qt::DashLine));
+        painter.setBrush(translucent(theme::kAccent, 0.12));
         painter.drawRect(QRectF(m_drag->pressed, m_drag->last).normalized().intersected(r));
     }
-    paintTopLine(painter, ink);
+    paintTopLine(painter);
 }
 
-void TfCanvas::paintJointHistogram(QPainter& painter, const Ink& ink) {
+void TfCanvas::paintJointHistogram(QPainter& painter) {
     if (!m_showJoint) return;
     const QRectF r = plot();
     const JointHistogram* const joint = m_counts.joint(true);
     if (joint == nullptr) {
         m_jointImage = {};
-        painter.setPen(ink.faint);
+        painter.setPen(theme::kFaint);
         if (m_counts.isBusy()) painter.drawText(r.adjusted(0, 4, -8, 0), Qt::AlignRight, tr("counting gradients…"));
         return;
     }
@@ -115,13 +105,13 @@ void TfCanvas::paintJointHistogram(QPainter& painter, const Ink& ink) {
                      [](std::uint32_t count) { return count > 0; });
         std::sort(filled.begin(), filled.end());
         const double most = filled.empty() ? 1 : std::log1p(filled[(filled.size() - 1) * 99 / 100]);
-        const QColor sparse = mixed(ink.plot, ink.faint, 0.7);
+        const QColor sparse = mixed(theme::kPanel, theme::kFaint, 0.7);
         QImage image(joint->bins, joint->gradientBins, QImage::Format_ARGB32_Premultiplied);
         for (int g = 0; g < joint->gradientBins; ++g) {
             auto* line = reinterpret_cast<QRgb*>(image.scanLine(joint->gradientBins - 1 - g));
             for (int b = 0; b < joint->bins; ++b) {
                 const double share = std::min(1.0, std::log1p(joint->at(b, g)) / most);
-                line[b] = qPremultiply(translucent(mixed(sparse, ink.accent, share), share).rgba());
+                line[b] = qPremultiply(translucent(mixed(sparse, theme::kAccent, share), share).rgba());
             }
         }
         m_jointImage = image;
@@ -129,19 +119,19 @@ void TfCanvas::paintJointHistogram(QPainter& painter, const Ink& ink) {
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
     const double n = joint->bins;
     painter.drawImage(r, m_jointImage, QRectF(m_axis.lo() * n, 0, m_axis.width() * n, joint->gradientBins));
-    paintGradientAxis(painter, ink);
+    paintGradientAxis(painter);
 }
 
-void TfCanvas::paintGradientAxis(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintGradientAxis(QPainter& painter) const {
     const JointHistogram* const joint = m_counts.joint(false);
     if (!m_showJoint || joint == nullptr) return;
     const QRectF r = plot();
     const ValueRange range = m_store.scene().volume->range();
     const double most = joint->mostGradient * (range.hi - range.lo);
-    const QFontMetricsF metrics(ink.small);
+    const QFontMetricsF metrics(smallFont());
     painter.save();
     painter.setClipping(false);
-    painter.setPen(ink.faint);
+    painter.setPen(theme::kFaint);
     const int wanted = std::max(1, static_cast<int>(r.height() / (2.2 * metrics.height())));
     for (const double value : axisTicks(0, most, wanted)) {
         const double y = r.bottom() - value / most * r.height();
@@ -154,7 +144,7 @@ void TfCanvas::paintGradientAxis(QPainter& painter, const Ink& ink) const {
     painter.restore();
 }
 
-void TfCanvas::paintHistogram(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintHistogram(QPainter& painter) const {
     const SeenBins bins = seenHistogram();
     if (bins.counts.empty()) return;
     const QRectF r = plot();
@@ -167,14 +157,14 @@ void TfCanvas::paintHistogram(QPainter& painter, const Ink& ink) const {
     }
     path.lineTo(path.currentPosition().x(), r.bottom());
     if (m_showJoint && m_counts.joint(false) != nullptr) { // over it, so that both are seen
-        painter.strokePath(path, QPen(mixed(ink.plot, ink.text, 0.45), 1));
+        painter.strokePath(path, QPen(mixed(theme::kPanel, theme::kText, 0.45), 1));
     } else {
         path.closeSubpath();
-        painter.fillPath(path, ink.voxels);
+        painter.fillPath(path, theme::kHistogram);
     }
 }
 
-void TfCanvas::paintVisibility(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintVisibility(QPainter& painter) const {
     const Measures* const measures = m_results.measures();
     if (measures == nullptr || measures->visibilityHistogram.empty()) return;
     std::vector<double> shares = measures->visibilityHistogram;
@@ -193,18 +183,18 @@ void TfCanvas::paintVisibility(QPainter& painter, const Ink& ink) const {
     QPolygonF area = line;
     area << QPointF(line.back().x(), r.bottom()) << QPointF(line.front().x(), r.bottom());
     painter.setPen(Qt::NoPen);
-    painter.setBrush(translucent(ink.visible, current ? 0.12 : 0.05));
+    painter.setBrush(translucent(visibleColor(), current ? 0.12 : 0.05));
     painter.drawPolygon(area);
-    painter.setPen(QPen(translucent(ink.visible, current ? 0.9 : 0.35), 1.2));
+    painter.setPen(QPen(translucent(visibleColor(), current ? 0.9 : 0.35), 1.2));
     painter.drawPolyline(line);
 }
 
-void TfCanvas::paintAxes(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintAxes(QPainter& painter) const {
     const QRectF r = plot();
-    const QFontMetricsF metrics(ink.small);
+    const QFontMetricsF metrics(smallFont());
     const Volume& volume = *m_store.scene().volume;
     const double lo = volume.valueOfIntensity(m_axis.lo()), hi = volume.valueOfIntensity(m_axis.hi());
-    painter.setPen(ink.faint);
+    painter.setPen(theme::kFaint);
     const double labelTop = r.bottom() + layout::kStrip + 7;
     if (hi > lo) {
         for (const double value : axisTicks(lo, hi, std::max(2, static_cast<int>(r.width() / 80)))) {
@@ -220,7 +210,7 @@ void TfCanvas::paintAxes(QPainter& painter, const Ink& ink) const {
     }
     if (!m_unit.isEmpty())
         painter.drawText(QRectF(0, labelTop, layout::kLeft - 16, metrics.height()), Qt::AlignRight, m_unit);
-    paintOverview(painter, ink);
+    paintOverview(painter);
 
     std::vector<double> taken; // heights of labels
     for (const double opacity : m_opacityAxis.labels()) {
@@ -229,9 +219,9 @@ void TfCanvas::paintAxes(QPainter& painter, const Ink& ink) const {
                                        [&](double other) { return std::abs(other - y) < 0.8 * metrics.height(); });
         if (!room) continue;
         taken.push_back(y);
-        painter.setPen(QPen(translucent(ink.line, 0.6), 1));
+        painter.setPen(QPen(translucent(theme::kLine, 0.6), 1));
         painter.drawLine(QPointF(r.left(), y), QPointF(r.right(), y));
-        painter.setPen(ink.faint);
+        painter.setPen(theme::kFaint);
         painter.drawText(QRectF(0, y - metrics.height() / 2, layout::kLeft - 6, metrics.height()),
                          Qt::AlignRight | Qt::AlignVCenter, QString::number(opacity));
     }
@@ -239,19 +229,19 @@ void TfCanvas::paintAxes(QPainter& painter, const Ink& ink) const {
                      tr("opacity"));
 }
 
-void TfCanvas::paintOverview(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintOverview(QPainter& painter) const {
     if (m_axis.isWhole()) return;
     const QRectF track = overviewTrack();
     painter.setPen(Qt::NoPen);
-    painter.setBrush(ink.line);
+    painter.setBrush(theme::kLine);
     painter.drawRoundedRect(track, 2, 2);
     const double left = track.left() + m_axis.lo() * track.width();
     const double width = std::max(6.0, m_axis.width() * track.width());
-    painter.setBrush(ink.accent);
+    painter.setBrush(theme::kAccent);
     painter.drawRoundedRect(QRectF(std::min(left, track.right() - width), track.top(), width, track.height()), 2, 2);
 }
 
-void TfCanvas::paintFeatures(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintFeatures(QPainter& painter) const {
     const QRectF r = plot();
     const QFont font = smaller(this->font(), 0.82);
     painter.setFont(font);
@@ -265,32 +255,32 @@ void TfCanvas::paintFeatures(QPainter& painter, const Ink& ink) const {
         const bool hovered = m_hoveredBar && m_hoveredBar->feature == static_cast<int>(i);
         const double strength = f.hidden ? 0.02 : selected ? 0.15 : 0.07;
         painter.fillRect(QRectF(bar.left(), r.top(), bar.width(), r.height()), translucent(color, strength));
-        painter.setPen(selected  ? QPen(ink.text, 1.8)
-                       : hovered ? QPen(ink.text, 1)
+        painter.setPen(selected  ? QPen(theme::kText, 1.8)
+                       : hovered ? QPen(theme::kText, 1)
                                  : (f.hidden ? QPen(color, 1, Qt::DashLine) : QPen(theme::kLine, 1)));
-        painter.setBrush(f.hidden ? translucent(color, 0.12) : mixed(ink.ground, color, 0.88));
+        painter.setBrush(f.hidden ? translucent(color, 0.12) : mixed(theme::kWindow, color, 0.88));
         painter.drawRoundedRect(bar.adjusted(0.5, 0.5, -0.5, -0.5), 3, 3);
-        painter.setPen(f.hidden ? ink.faint : readableOn(color));
+        painter.setPen(f.hidden ? theme::kFaint : readableOn(color));
         const QString name =
             QFontMetricsF(font).elidedText(QString::fromStdString(f.name), Qt::ElideRight, bar.width() - 6);
         painter.drawText(bar, Qt::AlignCenter, name);
         if (hovered && m_hoveredBar->part != Part::Middle) { // the end that would be grabbed
             const double x = m_axis.toPixel(m_hoveredBar->part == Part::Lower ? f.a : f.b, r);
-            painter.fillRect(QRectF(x - 1.5, bar.top() - 1, 3, bar.height() + 2), ink.accent);
+            painter.fillRect(QRectF(x - 1.5, bar.top() - 1, 3, bar.height() + 2), theme::kAccent);
         }
     }
-    painter.setFont(ink.small);
+    painter.setFont(smallFont());
 }
 
-void TfCanvas::paintGhost(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintGhost(QPainter& painter) const {
     const TransferFunction* const ghost = m_ghost ? m_ghost() : nullptr;
     if (ghost == nullptr) return;
-    QPen pen(ink.faint, 1.2);
+    QPen pen(theme::kFaint, 1.2);
     pen.setDashPattern({4, 3});
     painter.strokePath(curveOf(*ghost), pen);
 }
 
-void TfCanvas::paintCurve(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintCurve(QPainter& painter) const {
     const QRectF r = plot();
     const QPainterPath line = curveOf(tf());
     QPainterPath area = line;
@@ -298,24 +288,24 @@ void TfCanvas::paintCurve(QPainter& painter, const Ink& ink) const {
     area.lineTo(r.bottomLeft());
     area.closeSubpath();
     painter.fillPath(area, colorsAlong(tf(), m_axis, r, m_showJoint ? 0.15 : 0.3));
-    painter.strokePath(line, QPen(ink.curve, 1.6));
+    painter.strokePath(line, QPen(theme::kCurve, 1.6));
     painter.setClipping(false);
     painter.fillRect(QRectF(r.left(), r.bottom() + 3, r.width(), layout::kStrip - 2), colorsAlong(tf(), m_axis, r, 1));
 }
 
-void TfCanvas::paintHair(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintHair(QPainter& painter) const {
     const std::optional<double> x = m_selection.hoveredIntensity();
     if (!x || !m_axis.contains(*x)) return;
     const QRectF r = plot();
     const QPointF at = positionOf(*x, tf().opacity(*x));
-    painter.setPen(QPen(translucent(ink.text, 0.5), 1));
+    painter.setPen(QPen(translucent(theme::kText, 0.5), 1));
     painter.drawLine(QPointF(at.x(), r.top()), QPointF(at.x(), r.bottom() + layout::kStrip + 2));
     painter.setPen(Qt::NoPen);
-    painter.setBrush(ink.text);
+    painter.setBrush(theme::kText);
     painter.drawEllipse(at, 2.5, 2.5);
 }
 
-void TfCanvas::paintPoints(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintPoints(QPainter& painter) const {
     const auto paintOne = [&](int i) {
         const ControlPoint& p = point(i);
         if (!m_axis.contains(p.x)) return;
@@ -329,14 +319,14 @@ void TfCanvas::paintPoints(QPainter& painter, const Ink& ink) const {
         };
         if (selected || hovered) {
             painter.setPen(Qt::NoPen);
-            painter.setBrush(translucent(ink.accent, selected ? (current ? 0.75 : 0.5) : 0.3));
+            painter.setBrush(translucent(theme::kAccent, selected ? (current ? 0.75 : 0.5) : 0.3));
             shape(5);
         }
         const QColor color = colorFromRgb(p.color);
         painter.setPen(Qt::NoPen); // a rim of the ground: seen on the curve and on whatever lies under it
-        painter.setBrush(ink.plot);
+        painter.setBrush(theme::kPanel);
         shape(2);
-        painter.setPen(QPen(m_readOnly ? ink.faint : ink.ring, 1.6));
+        painter.setPen(QPen(m_readOnly ? theme::kFaint : theme::kKnob, 1.6));
         painter.setBrush(color);
         shape(0);
         if (p.fixed) { // and are nailed down
@@ -354,15 +344,15 @@ void TfCanvas::paintPoints(QPainter& painter, const Ink& ink) const {
     if (m_points.current() >= 0) paintOne(m_points.current());
 }
 
-void TfCanvas::paintTopLine(QPainter& painter, const Ink& ink) const {
+void TfCanvas::paintTopLine(QPainter& painter) const {
     const QRectF r = plot();
-    const QFontMetricsF metrics(ink.small);
+    const QFontMetricsF metrics(smallFont());
     double right = width() - layout::kRight;
     if (r.width() > kLegendFrom) {
         const auto entry = [&](const QString& text, const QBrush& brush, bool line) {
             const double w = metrics.horizontalAdvance(text);
             right -= w;
-            painter.setPen(ink.faint);
+            painter.setPen(theme::kFaint);
             painter.drawText(QRectF(right, 1, w + 2, layout::kTopLine), Qt::AlignLeft | Qt::AlignVCenter, text);
             right -= 18;
             painter.fillRect(QRectF(right, line ? 8 : 4, 14, line ? 2 : 9), brush);
@@ -371,17 +361,17 @@ void TfCanvas::paintTopLine(QPainter& painter, const Ink& ink) const {
         if (m_showJoint) {
             QLinearGradient heat(0, 0, 1, 0);
             heat.setCoordinateMode(QGradient::ObjectMode);
-            heat.setColorAt(0, ink.plot);
-            heat.setColorAt(1, ink.accent);
+            heat.setColorAt(0, theme::kPanel);
+            heat.setColorAt(1, theme::kAccent);
             entry(tr("value × gradient"), heat, false);
         }
         if (m_results.measures() != nullptr)
-            entry(tr("visible"), translucent(ink.visible, m_results.measuresAreCurrent() ? 1 : 0.4), true);
-        entry(tr("voxels"), ink.voxels, false);
+            entry(tr("visible"), translucent(visibleColor(), m_results.measuresAreCurrent() ? 1 : 0.4), true);
+        entry(tr("voxels"), theme::kHistogram, false);
     }
     const double left = layout::kLeft + 14;
     const QString told = readout();
-    painter.setPen(told.isEmpty() ? ink.faint : ink.text);
+    painter.setPen(told.isEmpty() ? theme::kFaint : theme::kText);
     const QString text =
         told.isEmpty() && m_points.isEmpty() ? tr("double-click: add a point  ·  drag: select  ·  wheel: zoom") : told;
     painter.drawText(QRectF(left, 1, std::max(0.0, right - left), layout::kTopLine), Qt::AlignLeft | Qt::AlignVCenter,

@@ -1,4 +1,4 @@
-// Annotations over the picture in the window.
+// What is only looked at over the picture: annotations, and where slices lie.
 #pragma once
 
 #include "view/view_overlay.h"
@@ -16,6 +16,12 @@ public:
 
 private:
     const FieldController* m_fields;
+};
+
+/// The outlines of the slices and the crosshair, while slices are shown; takes no clicks.
+class SliceLayer : public OverlayLayer {
+public:
+    void paint(QPainter& painter, const OverlayView& view) override;
 };
 
 } // namespace pellucid::gui

@@ -7,30 +7,60 @@
 #include <QDragEnterEvent>
 #include <QFileInfo>
 #include <QHBoxLayout>
+#include <QLineEdit>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
 #include <QPointer>
+#include <QScreen>
 #include <QSettings>
 #include <QStatusBar>
+#include <QTextBrowser>
 
 #include "controllers/controllers.h"
+#include "dialogs/closing_buttons.h"
 #include "panels/panel.h"
 #include "panels/probe_panel.h"
+#include "view/annotation_layer.h"
 #include "view/clip_layer.h"
 #include "view/light_layer.h"
 #include "view/picture_pair.h"
 #include "view/region_layer.h"
-#include "view/slice_layer.h"
 #include "widgets/layouts.h"
+#include "widgets/named.h"
 #include "widgets/scrolled.h"
 #include "window/dock_space.h"
-#include "window/keys_dialog.h"
 #include "window/notice_bar.h"
 #include "window/status_line.h"
 #include "window/welcome_card.h"
 
 namespace pellucid::gui {
+namespace {
+
+constexpr int kKeysWidth = 620;        // logical pixels
+constexpr double kKeysOfScreen = 0.85; // of its height
+
+/// All that mouse and keys do, as a table that can be searched: as high as the table where the screen has the room, and
+/// scrolled where it has not.
+void showKeys(const Actions& actions, QWidget* parent) {
+    QDialog dialog(parent);
+    dialog.setObjectName("keysBox");
+    dialog.setWindowTitle(QObject::tr("Mouse and keys"));
+    auto* find = named(new QLineEdit(&dialog), "keysFind");
+    find->setPlaceholderText(QObject::tr("Find a key or what it does"));
+    find->setClearButtonEnabled(true);
+    auto* table = named(new QTextBrowser(&dialog), "keysTable");
+    table->setHtml(actions.keyTable());
+    QObject::connect(find, &QLineEdit::textChanged, table,
+                     [table, &actions](const QString& text) { table->setHtml(actions.keyTable(text)); });
+    dialog.setLayout(columnOf({find, {table, 1}, closingButtons(dialog, QDialogButtonBox::Close)}));
+    const QSize screen = dialog.screen()->availableSize();
+    const QSize most(screen.width() * 9 / 10, static_cast<int>(kKeysOfScreen * screen.height()));
+    dialog.resize(QSize(kKeysWidth, most.height()).boundedTo(most));
+    dialog.exec();
+}
+
+} // namespace
 
 MainWindow::MainWindow(ViewRenderer renderer, QWidget* parent)
     : QMainWindow(parent), m_services(std::make_unique<Services>(this)),
