@@ -22,6 +22,7 @@
 
 #include "controllers/player_controller.h"
 #include "dialogs/series_files.h"
+#include "session/variable_edits.h"
 
 using namespace pellucid;
 using namespace pellucid::gui;
