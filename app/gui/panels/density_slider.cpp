@@ -216,7 +216,7 @@ void DensitySlider::rest() {
         m_slider->setValue(0);
         m_value->setText(QStringLiteral("× 1.00"));
         tip = tr("Multiplies the extinction: everything denser or thinner; the shares change, too.\n"
-                 "Drag it, let go, drag on; Escape gives it up");
+                 "Drag it, let go, drag again; Escape cancels a drag");
     } else {
         m_slider->setRange(0, kReach);
         m_slider->setSingleStep(20);
@@ -230,7 +230,7 @@ void DensitySlider::rest() {
             coverage = measures->coverage->coverage;
         showCoverage(coverage);
         tip = tr("Stronger or fainter with the same shares of saliency (VWS), from this camera.\n"
-                 "Escape gives a drag up");
+                 "Escape cancels a drag");
         if (m_job.isRunning())
             tip += tr("\nFinding the opacities of equal shares …");
         else if (m_curve && m_curve->curve.isPoint())

@@ -202,7 +202,7 @@ void InfluencePanel::refresh() {
             const double value = (*values)[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
             const double share = largest > 0 ? std::abs(value) / largest : 0;
             cell->setText(cellText(value));
-            cell->setToolTip(current ? cellTip(i, j, value) : tr("Of an older state; being measured"));
+            cell->setToolTip(current ? cellTip(i, j, value) : tr("Of an earlier state; being measured"));
             cell->setBackground(
                 between(theme::kPanel, value < 0 ? theme::kFalls : theme::kAccent, (current ? 0.6 : 0.15) * share));
             cell->setForeground(current ? theme::kText : theme::kFaint);

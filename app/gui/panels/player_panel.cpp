@@ -325,8 +325,8 @@ void PlayerPanel::followSurvey() {
         widget->setVisible(open);
     m_survey.text->setText(tr("%L1 of %L2 frames known").arg(known).arg(count));
     m_survey.show(static_cast<double>(known) / std::max(1, count), m_player.isSurveying(),
-                  m_player.isSurveying() ? tr("Look at no more frames than are shown")
-                                         : tr("Look at all frames, so that the strip shows them"));
+                  m_player.isSurveying() ? tr("Read no frames but those that are shown")
+                                         : tr("Read all frames, so that the strip shows their histograms"));
     m_strip->refresh();
     followMarks();
 }

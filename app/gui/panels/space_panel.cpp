@@ -281,8 +281,8 @@ void SpacePanel::refresh() {
     m_save->setEnabled(current && !m_saving.isRunning());
     m_canvas->setPickable(mayEdit);
     m_words->setText(words(hasTwo, running, current));
-    m_canvas->setOutdated(m_space != nullptr && !current ? tr("Of an older state or other settings.\nCompute it again.")
-                                                         : QString());
+    m_canvas->setOutdated(
+        m_space != nullptr && !current ? tr("Of an earlier state or other settings.\nCompute it again.") : QString());
     m_canvas->setSpace(m_space, m_space == nullptr ? SpaceView{} : view());
 }
 

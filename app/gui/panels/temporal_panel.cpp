@@ -281,7 +281,7 @@ void TemporalPanel::refresh() {
     const int count = m_player.frameCount(), known = series ? knownCount() : 0;
     m_measure->setEnabled(series && (m_asked || known < count));
     m_measure->setText(m_asked ? tr("Stop") : tr("Measure all frames"));
-    m_measure->setToolTip(m_asked ? tr("What is known so far stays")
+    m_measure->setToolTip(m_asked ? tr("Stop measuring; the frames measured so far are kept")
                                   : tr("VWS, visibility and flicker of every frame that is not known as it is now,\n"
                                        "from the present camera"));
     m_progress->setVisible(m_asked);

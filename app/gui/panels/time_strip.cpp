@@ -169,7 +169,7 @@ QString TimeStrip::tipAt(const QPointF& at) const {
                      .arg(static_cast<qint64>(std::llround(counts[bin])))
                      .arg(numberText(m_window.lo + s * span, span));
     } else if (counts.empty() && mark.problem.isEmpty()) {
-        lines << tr("not looked at yet");
+        lines << tr("not read yet");
     }
     if (!mark.problem.isEmpty()) lines << tr("left out: %1").arg(mark.problem);
     if (mark.tfKey) lines << tr("key: a transfer function made by hand");

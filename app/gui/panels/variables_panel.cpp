@@ -283,7 +283,7 @@ void VariablesPanel::showRange() {
         }
     }
     m_remove->setEnabled(variable != nullptr && why.isEmpty());
-    m_remove->setToolTip(why.isEmpty() ? tr("The variable goes; channels that it drives are constant then") : why);
+    m_remove->setToolTip(why.isEmpty() ? tr("Remove the variable; channels that it drives become constant") : why);
 }
 
 void VariablesPanel::rename(QTreeWidgetItem* item) {

@@ -100,7 +100,7 @@ ViewsPanel::ViewsPanel(Services& services, ViewSearchController& search, QWidget
         if (views.map().isEmpty()) return anglesText(toward);
         const QString figure = figureText(views.map().metric, views.map().interpolated(toward), true);
         return tr("From %1: %2").arg(anglesText(toward), figure) +
-               (views.isCurrent() ? QString() : tr("\nof an older state"));
+               (views.isCurrent() ? QString() : tr("\nin an earlier state"));
     });
     connect(&search, &ViewSearchController::changed, this, &ViewsPanel::refresh);
     connect(&services, &Services::readOnlyChanged, this, &ViewsPanel::refresh);
@@ -133,9 +133,9 @@ QString ViewsPanel::words() const {
     if (store.scene().tf.features.empty()) return tr("The transfer function has no features to judge views by.");
     if (search.isOptimizing()) return tr("Looking for the view and the opacities…");
     if (search.isRunning()) return tr("Trying views from all sides…");
-    if (search.map().isEmpty()) return tr("Nothing has been looked for yet.");
-    if (!search.isCurrent()) return tr("Of an older state.");
-    if (!search.best()) return tr("The best view was not looked for to the end.");
+    if (search.map().isEmpty()) return tr("No views have been tried yet.");
+    if (!search.isCurrent()) return tr("The views were tried in an earlier state.");
+    if (!search.best()) return tr("The search for the best view was stopped.");
     const ViewMetric& metric = search.map().metric;
     const BestView& best = *search.best();
     const Camera& camera = store.scene().camera;
@@ -173,7 +173,7 @@ void ViewsPanel::refresh() {
                                                                      : 0);
     m_words->setText(words());
     m_look->setText(search.isRunning() ? tr("Stop") : tr("Look"));
-    m_look->setToolTip(search.isRunning() ? tr("Stops looking; nothing else changes")
+    m_look->setToolTip(search.isRunning() ? tr("Stops the search; nothing else changes")
                                           : tr("Tries some hundred views from all sides on a coarser copy of "
                                                "the volume,\nthe best of them at full resolution"));
     m_look->setEnabled(search.isRunning() || (ready && !current));
