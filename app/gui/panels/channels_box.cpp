@@ -2,16 +2,10 @@
 
 #include <cmath>
 
-#include <QCheckBox>
-#include <QPushButton>
-#include <QSlider>
-#include <QSpinBox>
-
 #include "controllers/open_controller.h"
 #include "panels/panel_parts.h"
 #include "panels/setting_rows.h"
 #include "panels/variable_words.h"
-#include "widgets/controls.h"
 #include "widgets/layouts.h"
 #include "widgets/number_box.h"
 
@@ -36,21 +30,7 @@ const std::array kTitles{QT_TR_NOOP("Opacity"), QT_TR_NOOP("Saturation"), QT_TR_
 } // namespace
 
 ChannelsBox::ChannelsBox(Services& services, OpenController& opening, QWidget* parent)
-    : QWidget(parent), m_services(services), m_opening(opening),
-      m_on(named(new QCheckBox(tr("&Colours from variables"), this), "hsbCheck",
-                 tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer "
-                    "function. Figures are measured with these colours."))),
-      m_frames(named(new QSpinBox(this), "hsbFrames",
-                     tr("Volatility is the standard deviation of a voxel over the latest n frames"))),
-      m_swap(named(new QPushButton(tr("S&wap opacity and brightness"), this), "hsbSwap",
-                   tr("The variable of brightness drives opacity, with its own transfer function, and the other way "
-                      "round; pressed again, everything is as before"))),
-      m_hueSlider(
-          named(new QSlider(Qt::Horizontal, this), "hsbHueSlider", tr("The hue, degrees: 0 red, 120 green, 240 blue"))),
-      m_hueFrom(
-          named(new QDoubleSpinBox(this), "hsbHueFrom", tr("Hue, degrees; with a variable, that of its least value"))),
-      m_hueTo(named(new QDoubleSpinBox(this), "hsbHueTo", tr("Hue of the variable's largest value, degrees"))),
-      m_hueSwatch(named(new QLabel(this), "hsbHueSwatch")), m_note(wrappedLabel("hsbNote", this)) {
+    : QWidget(parent), m_services(services), m_opening(opening) {
     setObjectName("channelsBox");
     auto* form = inset(new QFormLayout(this), {});
     form->setVerticalSpacing(6);

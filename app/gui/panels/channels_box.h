@@ -3,19 +3,16 @@
 
 #include <array>
 
-#include <QWidget>
+#include <QCheckBox>
+#include <QPushButton>
+#include <QSlider>
+#include <QSpinBox>
 
 #include "session/variable_edits.h"
 #include "store/session_store.h"
+#include "widgets/controls.h"
 
-class QCheckBox;
-class QComboBox;
-class QDoubleSpinBox;
 class QFormLayout;
-class QLabel;
-class QPushButton;
-class QSlider;
-class QSpinBox;
 
 namespace pellucid::gui {
 
@@ -43,13 +40,25 @@ private:
 
     Services& m_services;
     OpenController& m_opening;
-    QCheckBox* m_on;
+    QCheckBox* m_on = named(
+        new QCheckBox(tr("&Colours from variables"), this), "hsbCheck",
+        tr("Saturation, brightness and hue of each voxel from variables; opacity stays with the transfer function. "
+           "Figures are measured with these colours."));
     std::array<QComboBox*, 4> m_channels{}; ///< by Channel
-    QSpinBox* m_frames;
-    QPushButton* m_swap;
-    QSlider* m_hueSlider;
-    QDoubleSpinBox *m_hueFrom, *m_hueTo;
-    QLabel *m_hueSwatch, *m_note;
+    QSpinBox* m_frames = named(new QSpinBox(this), "hsbFrames",
+                               tr("Volatility is the standard deviation of a voxel over the latest n frames"));
+    QPushButton* m_swap =
+        named(new QPushButton(tr("S&wap opacity and brightness"), this), "hsbSwap",
+              tr("The variable of brightness drives opacity, with its own transfer function, and the other way round; "
+                 "pressed again, everything is as before"));
+    QSlider* m_hueSlider =
+        named(new QSlider(Qt::Horizontal, this), "hsbHueSlider", tr("The hue, degrees: 0 red, 120 green, 240 blue"));
+    QDoubleSpinBox* m_hueFrom =
+        named(new QDoubleSpinBox(this), "hsbHueFrom", tr("Hue, degrees; with a variable, that of its least value"));
+    QDoubleSpinBox* m_hueTo =
+        named(new QDoubleSpinBox(this), "hsbHueTo", tr("Hue of the variable's largest value, degrees"));
+    QLabel* m_hueSwatch = named(new QLabel(this), "hsbHueSwatch");
+    QLabel* m_note = wrappedLabel("hsbNote", this);
 };
 
 } // namespace pellucid::gui
