@@ -81,14 +81,14 @@ DisplayPanel::DisplayPanel(Services& services, OpenController& opening, QWidget*
     addRows(*scrolledForm(this, 7));
 
     connect(m_feature, &QComboBox::activated, this, [this] {
-        m_services.store().edit(tr("Feature alone"), {}, changing(&Session::display, [this](DisplaySettings& d) {
-                                    d.onlyFeature = chosenFeature(*m_feature);
-                                }));
+        const FeatureId id = chosenFeature(*m_feature);
+        m_services.store().edit(tr("Feature alone"), {},
+                                changing(&Session::display, [id](DisplaySettings& d) { d.onlyFeature = id; }));
     });
     connect(m_finest, &QComboBox::activated, this, [this] {
-        m_services.store().edit(tr("Finest step"), {}, changing(&Session::display, [this](DisplaySettings& d) {
-                                    d.finestStep = m_finest->currentData().toDouble();
-                                }));
+        const double step = m_finest->currentData().toDouble();
+        m_services.store().edit(tr("Finest step"), {},
+                                changing(&Session::display, [step](DisplaySettings& d) { d.finestStep = step; }));
     });
     connect(m_lo, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);
     connect(m_hi, &QDoubleSpinBox::valueChanged, this, &DisplayPanel::editWindow);

@@ -85,11 +85,11 @@ FieldsPanel::FieldsPanel(Services& services, FieldController& fields, QWidget* p
         m_fields.show(kind < 0 ? std::nullopt : std::optional(static_cast<FieldKind>(kind)));
     });
     connect(m_feature, &QComboBox::activated, this, [this] {
-        edit(tr("Field of a feature"), [this](FieldView& f) { f.feature = chosenFeature(*m_feature); });
+        edit(tr("Field of a feature"), [id = chosenFeature(*m_feature)](FieldView& f) { f.feature = id; });
     });
     connect(m_colorMap, &QComboBox::activated, this, [this] {
         edit(tr("Colours of the field"),
-             [this](FieldView& f) { f.colorMap = m_colorMap->currentData().toString().toStdString(); });
+             [name = m_colorMap->currentData().toString().toStdString()](FieldView& f) { f.colorMap = name; });
     });
     connect(m_top, &QLineEdit::editingFinished, this, &FieldsPanel::editTop);
     connect(m_usualTop, &QPushButton::clicked, this,
