@@ -8,10 +8,10 @@
 #include <type_traits>
 
 #include "base/check.h"
-#include "base/error.h"
 #include "base/parallel.h"
 #include "tf/lch.h"
 #include "volume/memory_use.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -81,21 +81,19 @@ AppearanceReader::Pair AppearanceReader::pairAt(double s, Latest& latest) const 
 }
 
 void AppearanceReader::tabulateSamples() {
-    std::visit(
-        [&](const auto& values) {
-            using T = typename std::decay_t<decltype(values)>::value_type;
-            if constexpr (kTabulated<T>) {
-                constexpr int kLowest = std::numeric_limits<T>::min(), kHighest = std::numeric_limits<T>::max();
-                m_ofSample.resize(static_cast<std::size_t>(kHighest - kLowest + 1));
-                constexpr int kPiece = 256;
-                parallelFor(m_ofSample.size() / kPiece, [&](std::size_t piece) {
-                    Latest latest;
-                    for (std::size_t i = piece * kPiece; i < (piece + 1) * kPiece; ++i)
-                        m_ofSample[i] = pairAt(m_volume.intensityOfValue(kLowest + static_cast<int>(i)), latest);
-                });
-            }
-        },
-        m_volume.samples());
+    withSamples(m_volume, [&](const auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (kTabulated<T>) {
+            constexpr int kLowest = std::numeric_limits<T>::min(), kHighest = std::numeric_limits<T>::max();
+            m_ofSample.resize(static_cast<std::size_t>(kHighest - kLowest + 1));
+            constexpr int kPiece = 256;
+            parallelFor(m_ofSample.size() / kPiece, [&](std::size_t piece) {
+                Latest latest;
+                for (std::size_t i = piece * kPiece; i < (piece + 1) * kPiece; ++i)
+                    m_ofSample[i] = pairAt(m_volume.intensityOfValue(kLowest + static_cast<int>(i)), latest);
+            });
+        }
+    });
 }
 
 /// The bin [index, index + 1) / kBins. Whether its colours lie on a line is asked at a few points, and on both sides of
@@ -138,22 +136,20 @@ void AppearanceReader::readColoredRow(std::size_t first, int count, Pair* out) c
     constexpr std::uint32_t kKnown = 1024;
     thread_local std::array<Known, kKnown> s_known;
     const Pair background = pairOf(m_background);
-    std::visit(
-        [&](const auto& values) {
-            for (int x = 0; x < count; ++x) {
-                const std::size_t voxel = first + static_cast<std::size_t>(x);
-                const double s = m_volume.intensityOfValue(static_cast<double>(values[voxel]));
-                if (featureAt(m_features, s) < 0) {
-                    out[x] = background;
-                    continue;
-                }
-                const std::uint32_t color = m_colors->rgba[voxel];
-                Known& known = s_known[(color * 2654435761u) >> 22];
-                if (known.color != color) known = {color, pairOf(appearanceOf(rgbOf(color)))};
-                out[x] = known.pair;
+    withSamples(m_volume, [&](const auto& values) {
+        for (int x = 0; x < count; ++x) {
+            const std::size_t voxel = first + static_cast<std::size_t>(x);
+            const double s = m_volume.intensityOfValue(static_cast<double>(values[voxel]));
+            if (featureAt(m_features, s) < 0) {
+                out[x] = background;
+                continue;
             }
-        },
-        m_volume.samples());
+            const std::uint32_t color = m_colors->rgba[voxel];
+            Known& known = s_known[(color * 2654435761u) >> 22];
+            if (known.color != color) known = {color, pairOf(appearanceOf(rgbOf(color)))};
+            out[x] = known.pair;
+        }
+    });
 }
 
 Appearance AppearanceReader::at(std::size_t voxel) const {
@@ -164,36 +160,34 @@ Appearance AppearanceReader::at(std::size_t voxel) const {
 
 void AppearanceReader::readRow(std::size_t first, int count, Pair* out) const {
     if (m_colors != nullptr) return readColoredRow(first, count, out);
-    std::visit(
-        [&](const auto& values) {
-            using T = typename std::decay_t<decltype(values)>::value_type;
-            const T* row = values.data() + first;
-            if constexpr (kTabulated<T>) {
-                const Pair* table = m_ofSample.data();
-                constexpr int kLowest = std::numeric_limits<T>::min();
-                for (int x = 0; x < count; ++x) out[x] = table[row[x] - kLowest];
-            } else {
-                Latest latest;
-                for (int x = 0; x < count; ++x) {
-                    const double s = m_volume.intensityOfValue(static_cast<double>(row[x]));
-                    if (m_ofIntensity.empty() || std::isnan(s)) {
-                        out[x] = pairAt(s, latest);
-                        continue;
-                    }
-                    const double scaled = s * kBins;
-                    const int index = std::min(static_cast<int>(scaled), kBins - 1);
-                    const Bin& bin = m_ofIntensity[static_cast<std::size_t>(index)];
-                    if (std::isnan(bin.brightnessStep)) {
-                        out[x] = pairAt(s, latest);
-                        continue;
-                    }
-                    const float t = static_cast<float>(scaled - index);
-                    out[x] = std::bit_cast<Pair>(std::array<float, 2>{bin.brightness + t * bin.brightnessStep,
-                                                                      bin.saturation + t * bin.saturationStep});
+    withSamples(m_volume, [&](const auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        const T* row = values.data() + first;
+        if constexpr (kTabulated<T>) {
+            const Pair* table = m_ofSample.data();
+            constexpr int kLowest = std::numeric_limits<T>::min();
+            for (int x = 0; x < count; ++x) out[x] = table[row[x] - kLowest];
+        } else {
+            Latest latest;
+            for (int x = 0; x < count; ++x) {
+                const double s = m_volume.intensityOfValue(static_cast<double>(row[x]));
+                if (m_ofIntensity.empty() || std::isnan(s)) {
+                    out[x] = pairAt(s, latest);
+                    continue;
                 }
+                const double scaled = s * kBins;
+                const int index = std::min(static_cast<int>(scaled), kBins - 1);
+                const Bin& bin = m_ofIntensity[static_cast<std::size_t>(index)];
+                if (std::isnan(bin.brightnessStep)) {
+                    out[x] = pairAt(s, latest);
+                    continue;
+                }
+                const float t = static_cast<float>(scaled - index);
+                out[x] = std::bit_cast<Pair>(std::array<float, 2>{bin.brightness + t * bin.brightnessStep,
+                                                                  bin.saturation + t * bin.saturationStep});
             }
-        },
-        m_volume.samples());
+        }
+    });
 }
 
 BallKernel::BallKernel(const Geometry& geometry, double radiusInD0, SaliencyKernel kernel) {

@@ -7,29 +7,16 @@ namespace pellucid {
 
 namespace {
 
-/// Half-heights of a ball: the voxels (dx, dy, dz), |dz| ≤ h, of it; −1 where there are none.
-class HalfHeights {
-public:
-    explicit HalfHeights(const BallKernel& ball) : m_rows(ball.reach(1) + 1) {
-        m_half.assign(static_cast<std::size_t>((ball.reach(0) + 1) * m_rows), -1);
-        for (const KernelRun& run : ball.runs)
-            if (run.dy >= 0 && run.dz >= 0)
-                for (int dx = 0; dx <= run.halfWidth; ++dx) {
-                    int& half = m_half[index(dx, run.dy)];
-                    half = std::max(half, run.dz);
-                }
-    }
-    /// Half-heights by dy at one dx.
-    std::vector<int> profile(int dx) const {
-        const auto first = m_half.begin() + static_cast<std::ptrdiff_t>(index(dx, 0));
-        return {first, first + m_rows};
-    }
-
-private:
-    std::size_t index(int dx, int dy) const { return static_cast<std::size_t>(dx * m_rows + dy); }
-    int m_rows;
-    std::vector<int> m_half;
-};
+/// Half-heights h of a ball, [|dx|][|dy|]: its voxels there are those of |dz| ≤ h; −1 where there are none.
+std::vector<std::vector<int>> halfHeights(const BallKernel& ball) {
+    std::vector<std::vector<int>> heights(ball.weights[0].size(), std::vector<int>(ball.weights[1].size(), -1));
+    for (const KernelRun& run : ball.runs)
+        for (int dx = 0; dx <= run.halfWidth && run.dy >= 0; ++dx) {
+            int& height = heights[static_cast<std::size_t>(dx)][static_cast<std::size_t>(run.dy)];
+            height = std::max(height, run.dz);
+        }
+    return heights;
+}
 
 } // namespace
 
@@ -47,7 +34,7 @@ BallPlan::BallPlan(const BallPair& balls, std::ptrdiff_t stride) {
     int zSums = 0;
     for (std::size_t b = 0; b < 2; ++b) {
         const BallKernel& ball = balls[b];
-        const HalfHeights halves(ball);
+        const std::vector<std::vector<int>> heights = halfHeights(ball);
         for (int dz = 0; dz <= ball.reach(2); ++dz) m_zSteps[static_cast<std::size_t>(dz)].weight[b] = weight(b, 2, dz);
         const auto sumOffset = [&](int half) {
             int& sum = m_zSteps[static_cast<std::size_t>(half)].sum[b];
@@ -56,7 +43,7 @@ BallPlan::BallPlan(const BallPair& balls, std::ptrdiff_t stride) {
         };
         std::map<std::vector<int>, std::ptrdiff_t> offsetOf;
         for (int dx = 0; dx <= ball.reach(0); ++dx) {
-            const std::vector<int> profile = halves.profile(dx);
+            const std::vector<int>& profile = heights[static_cast<std::size_t>(dx)];
             const auto [known, isNew] =
                 offsetOf.try_emplace(profile, static_cast<std::ptrdiff_t>(m_profiles.size()) * stride);
             if (isNew) {

@@ -1,8 +1,5 @@
 #include "saliency/saliency_direct.h"
 
-#include <atomic>
-
-#include "base/parallel.h"
 #include "saliency/slice_ring.h"
 
 namespace pellucid {
@@ -24,14 +21,12 @@ void sweepTile(const BallPair& balls, const std::array<std::vector<std::vector<f
                const AppearanceReader& reader, const SaliencyOptions& options, const Tile& tile, std::ptrdiff_t stride,
                WeightFields& fields) {
     const Int3 dims = fields.dims();
-    const int reach = balls[1].reach(2), width = tile.x1 - tile.x0;
+    const int width = tile.x1 - tile.x0;
     SliceRing ring(reader, dims, tile, balls[1], stride);
     RowScaler scaler(balls, dims, tile, stride, options, fields);
     const AlignedArray<std::uint32_t> packed(static_cast<std::size_t>(stride / 2));
     std::array<std::vector<DirectRun>, 2> runs;
-    for (int z = std::max(0, tile.z0 - reach); z < std::min(dims.z, tile.z0 + reach); ++z) ring.load(z);
-    for (int z = tile.z0; z < tile.z1; ++z) {
-        if (z + reach < dims.z) ring.load(z + reach);
+    ring.sweep([&](int z) {
         for (int y = tile.y0; y < tile.y1; ++y) {
             for (std::size_t b = 0; b < 2; ++b) {
                 runs[b].clear();
@@ -47,7 +42,7 @@ void sweepTile(const BallPair& balls, const std::array<std::vector<std::vector<f
                                            2 * (kHaloVoxels + blocks * kBlockVoxels), packed.get());
             fields.store(voxelIndex(dims, tile.x0, y, z), packed.get() + kHaloVoxels, static_cast<std::size_t>(width));
         }
-    }
+    });
 }
 
 } // namespace
@@ -60,12 +55,8 @@ void updateSaliencyFieldsDirect(WeightFields& fields, const Volume& volume, cons
     const std::array weights{runWeights(balls[0]), runWeights(balls[1])};
     const AppearanceReader reader(volume, tf, options.background, colors);
     keepWeightFields(fields, volume.dims(), options); // every voxel is written
-    std::atomic<std::size_t> done = 0;
-    parallelFor(tiling.count(), [&](std::size_t i) {
-        job.throwIfStopped();
-        sweepTile(balls, weights, reader, options, tiling.tile(i), tiling.stride(), fields);
-        job.report(static_cast<double>(++done) / static_cast<double>(tiling.count()));
-    });
+    tiling.forEach(
+        job, [&](const Tile& tile) { sweepTile(balls, weights, reader, options, tile, tiling.stride(), fields); });
 }
 
 } // namespace pellucid

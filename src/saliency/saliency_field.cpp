@@ -2,12 +2,10 @@
 // slices; what lies within one colour, as half of a scan does, is |w1 − w2|·O and is not computed.
 #include "saliency/saliency_field.h"
 
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
 
-#include "base/parallel.h"
 #include "saliency/slice_ring.h"
 
 namespace pellucid {
@@ -40,12 +38,7 @@ public:
           m_rows(static_cast<std::size_t>(2 * std::max(m_reachY, m_reachZ) + 1)) {}
 
     void run() {
-        for (int z = std::max(0, m_tile.z0 - m_reachZ); z < std::min(m_dims.z, m_tile.z0 + m_reachZ); ++z)
-            m_ring.load(z);
-        for (int z = m_tile.z0; z < m_tile.z1; ++z) {
-            if (z + m_reachZ < m_dims.z) m_ring.load(z + m_reachZ);
-            makeSlice(z);
-        }
+        m_ring.sweep([&](int z) { makeSlice(z); });
     }
 
 private:
@@ -143,12 +136,7 @@ void updateSaliencyFields(WeightFields& fields, const Volume& volume, const Tran
     const BallPlan plan(balls, tiling.stride());
     const AppearanceReader reader(volume, tf, options.background, colors);
     const bool used = keepWeightFields(fields, volume.dims(), options);
-    std::atomic<std::size_t> done = 0;
-    parallelFor(tiling.count(), [&](std::size_t i) {
-        job.throwIfStopped();
-        TileSweep(balls, plan, reader, options, tiling.tile(i), fields, used).run();
-        job.report(static_cast<double>(++done) / static_cast<double>(tiling.count()));
-    });
+    tiling.forEach(job, [&](const Tile& tile) { TileSweep(balls, plan, reader, options, tile, fields, used).run(); });
 }
 
 } // namespace pellucid

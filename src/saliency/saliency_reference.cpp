@@ -1,8 +1,8 @@
 // Saliency by the book: each voxel, each neighbour, double precision.
 #include <cmath>
 
-#include "base/parallel.h"
 #include "saliency/appearance.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -40,16 +40,10 @@ WeightFields saliencyFieldsReference(const Volume& volume, const TransferFunctio
     const BallKernel surround(volume.geometry(), 2 * options.sigma, options.kernel);
 
     WeightFields fields = emptyWeightFields(volume.dims(), options);
-    parallelFor(static_cast<std::size_t>(volume.dims().z), [&](std::size_t slice) {
-        job.throwIfStopped();
-        const int k = static_cast<int>(slice);
-        for (int j = 0; j < volume.dims().y; ++j)
-            for (int i = 0; i < volume.dims().x; ++i) {
-                const Appearance c = meanOver(centre, o, {i, j, k}), s = meanOver(surround, o, {i, j, k});
-                fields.set(o.index(i, j, k),
-                           static_cast<float>(std::abs(options.w1 * c.brightness - options.w2 * s.brightness)),
-                           static_cast<float>(std::abs(options.w1 * c.saturation - options.w2 * s.saturation)));
-            }
+    forEachPlace(volume.dims(), job, [&](const Int3& place, std::size_t index) {
+        const Appearance c = meanOver(centre, o, place), s = meanOver(surround, o, place);
+        fields.set(index, static_cast<float>(std::abs(options.w1 * c.brightness - options.w2 * s.brightness)),
+                   static_cast<float>(std::abs(options.w1 * c.saturation - options.w2 * s.saturation)));
     });
     return fields;
 }

@@ -1,8 +1,12 @@
 #include "saliency/slice_ring.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include <glm/common.hpp>
+
+#include "base/parallel.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -44,10 +48,19 @@ Tiling::Tiling(const Int3& dims, const BallPair& balls) : m_dims(dims) {
 }
 
 Tile Tiling::tile(std::size_t index) const {
-    const int i = static_cast<int>(index);
-    const Int3 first = Int3(i % m_count.x, i / m_count.x % m_count.y, i / (m_count.x * m_count.y)) * m_size;
+    const Int3 first = voxelAt(m_count, index) * m_size;
     const Int3 end = glm::min(first + m_size, m_dims);
     return {first.x, end.x, first.y, end.y, first.z, end.z};
+}
+
+void Tiling::forEach(const JobControl& job, const std::function<void(const Tile&)>& body) const {
+    const std::size_t count = voxelCount(m_count);
+    std::atomic<std::size_t> done = 0;
+    parallelFor(count, [&](std::size_t i) {
+        job.throwIfStopped();
+        body(tile(i));
+        job.report(static_cast<double>(++done) / static_cast<double>(count));
+    });
 }
 
 SliceRing::SliceRing(const AppearanceReader& reader, const Int3& dims, const Tile& tile, const BallKernel& surround,
@@ -104,6 +117,14 @@ void SliceRing::load(int z) {
         std::fill(row + m_voxels.end, row + m_rowVoxels, 0);
         m_agreements[rowIndex(y, z)] =
             agreementOf(row, y > m_firstRow ? pairs(y - 1, z) : nullptr, z > m_firstSlice ? pairs(y, z - 1) : nullptr);
+    }
+}
+
+void SliceRing::sweep(const std::function<void(int z)>& body) {
+    int next = std::max(0, m_tile.z0 - m_reach[2]); // slice to be loaded
+    for (int z = m_tile.z0; z < m_tile.z1; ++z) {
+        for (; next <= std::min(z + m_reach[2], m_dims.z - 1); ++next) load(next);
+        body(z);
     }
 }
 

@@ -1,6 +1,7 @@
 // The appearance of a tile of a volume, slice by slice, as the sums over balls read it (ball_sums.h).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <new>
 #include <vector>
@@ -25,12 +26,13 @@ struct Tile {
 class Tiling {
 public:
     Tiling(const Int3& dims, const BallPair& balls);
-    std::size_t count() const { return voxelCount(m_count); }
-    Tile tile(std::size_t index) const;
+    /// Calls body(tile) for each, on any thread. Throws Cancelled.
+    void forEach(const JobControl& job, const std::function<void(const Tile&)>& body) const;
     /// Floats of a row with its halos.
     std::ptrdiff_t stride() const { return 2 * (m_size.x + 2 * kHaloVoxels); }
 
 private:
+    Tile tile(std::size_t index) const;
     Int3 m_dims, m_size, m_count;
 };
 
@@ -49,14 +51,14 @@ private:
     std::unique_ptr<T, Free> m_data;
 };
 
-/// The last 2·reachZ + 1 slices of a tile with the rows and voxels around it that its balls reach; 0 outside the
-/// volume.
+/// The last 2·reachZ + 1 slices of a tile, with all that its balls reach around it; 0 outside the volume.
 class SliceRing {
 public:
     SliceRing(const AppearanceReader& reader, const Int3& dims, const Tile& tile, const BallKernel& surround,
               std::ptrdiff_t stride);
 
-    void load(int z); ///< in ascending order, inside the volume
+    /// Calls body(z) for the slices of the tile, in ascending order, with all in the ring that its balls reach.
+    void sweep(const std::function<void(int z)>& body);
     /// One row's floats; halo first. Zeros where (y, z) lies outside the volume.
     const float* row(int y, int z) const;
 
@@ -66,8 +68,7 @@ public:
 
 private:
     using Pair = AppearanceReader::Pair;
-    /// Blocks as bits: 0 the halo in front, 1 … the blocks, then the halo behind. Voxels outside the volume never
-    /// disagree.
+    /// Blocks as bits: first the halo in front, last the halo behind. Voxels outside the volume never disagree.
     struct Agreement {
         std::uint64_t inside; ///< all voxels of the block have one colour
         std::uint64_t next;   ///< the first voxels of this block and the next agree
@@ -81,6 +82,7 @@ private:
         return static_cast<std::size_t>(z % m_slots) * static_cast<std::size_t>(m_endRow - m_firstRow) +
                static_cast<std::size_t>(y - m_firstRow);
     }
+    void load(int z); ///< in ascending order, inside the volume
     const Pair* pairs(int y, int z) const { return m_pairs.get() + rowIndex(y, z) * m_rowVoxels; }
     Agreement agreementOf(const Pair* row, const Pair* above, const Pair* before) const;
 

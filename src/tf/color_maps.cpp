@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "tf/edit.h"
 #include "tf/lch.h"
 #include "tf/shapes.h"
 
@@ -61,6 +62,21 @@ double safeDifference(const Rgb& a, const Rgb& b) {
                      colorDifference(seen(a, kDeuteranopia), seen(b, kDeuteranopia))});
 }
 
+/// The candidate whose least difference from all of `present` is largest.
+template <class Difference>
+Rgb farthestFrom(const std::vector<Rgb>& present, const std::vector<Rgb>& candidates, const Difference& difference) {
+    double most = -1;
+    Rgb best;
+    for (const Rgb& candidate : candidates) {
+        double least = 1e9;
+        for (const Rgb& other : present) least = std::min(least, difference(candidate, other));
+        if (least <= most) continue;
+        most = least;
+        best = candidate;
+    }
+    return best;
+}
+
 constexpr std::size_t kCategories = 8;
 constexpr double kWholeEyes = 0.5;
 
@@ -76,20 +92,10 @@ const std::vector<Rgb>& categories() {
                 if (lchFromSrgb(color).chroma > 0.9 * kChroma) candidates.push_back(color); // sRGB has it
             }
         std::vector<Rgb> chosen{srgbFromLch({53, kChroma, 270})};
-        while (chosen.size() < kCategories) {
-            double most = -1;
-            Rgb best;
-            for (const Rgb& candidate : candidates) {
-                double least = 1e9;
-                for (const Rgb& other : chosen)
-                    least = std::min(
-                        {least, safeDifference(candidate, other), kWholeEyes * colorDifference(candidate, other)});
-                if (least <= most) continue;
-                most = least;
-                best = candidate;
-            }
-            chosen.push_back(best);
-        }
+        const auto difference = [](const Rgb& a, const Rgb& b) {
+            return std::min(safeDifference(a, b), kWholeEyes * colorDifference(a, b));
+        };
+        while (chosen.size() < kCategories) chosen.push_back(farthestFrom(chosen, candidates, difference));
         return chosen;
     }();
     return kColors;
@@ -110,23 +116,18 @@ Rgb inverted(const Rgb& color) {
 std::vector<int> ascending(const TransferFunction& tf) {
     std::vector<int> order(tf.features.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int p, int q) {
-        return tf.features[static_cast<std::size_t>(p)].a < tf.features[static_cast<std::size_t>(q)].a;
-    });
+    std::ranges::sort(order, {}, [&](int f) { return tf.features[static_cast<std::size_t>(f)].a; });
     return order;
 }
 
 void colorFeaturesByPeaks(TransferFunction& tf) {
+    const auto opacityOf = [&](int i) { return tf.points[static_cast<std::size_t>(i)].opacity; };
     for (std::size_t f = 0; f < tf.features.size(); ++f) {
-        double highest = -1;
         Feature& feature = tf.features[f];
-        for (const int i : pointsOfFeature(tf, static_cast<int>(f))) {
-            const ControlPoint& p = tf.points[static_cast<std::size_t>(i)];
-            if (p.opacity <= highest) continue;
-            highest = p.opacity;
-            feature.color = p.color;
-        }
-        if (highest < 0) feature.color = tf.color((feature.a + feature.b) / 2);
+        const std::vector<int> own = pointsOfFeature(tf, static_cast<int>(f));
+        const auto peak = std::ranges::max_element(own, {}, opacityOf);
+        feature.color = peak == own.end() ? tf.color((feature.a + feature.b) / 2)
+                                          : tf.points[static_cast<std::size_t>(*peak)].color;
     }
 }
 
@@ -174,12 +175,10 @@ std::span<const ColorMap> colorMaps() {
 }
 
 const ColorMap& colorMapNamed(const std::string& name) {
-    std::string known;
-    for (const ColorMap& map : colorMaps()) {
-        if (map.name == name) return map;
-        known += (known.empty() ? "" : ", ") + map.name;
-    }
-    throw UsageError("there is no colour map '" + name + "'", "", "choose one of " + known);
+    const std::span<const ColorMap> maps = colorMaps();
+    if (const auto map = std::ranges::find(maps, name, &ColorMap::name); map != maps.end()) return *map;
+    throw UsageError("there is no colour map '" + name + "'", "",
+                     "choose one of " + joined(maps, ", ", &ColorMap::name));
 }
 
 Rgb colorOf(const ColorMap& map, double t, const ColorMapOptions& options) {
@@ -206,8 +205,7 @@ TransferFunction withColorMap(const TransferFunction& tf, const ColorMap& map, c
             const double n = categories ? static_cast<double>(kCategories) : static_cast<double>(order.size());
             const double place = static_cast<double>(categories ? k % kCategories : k);
             const Rgb color = colorOf(map, (place + 0.5) / n, options);
-            result.features[static_cast<std::size_t>(order[k])].color = color;
-            for (const int i : pointsOfFeature(tf, order[k])) result.points[static_cast<std::size_t>(i)].color = color;
+            result = withFeatureColor(result, order[k], color);
         }
         return result;
     }
@@ -242,17 +240,6 @@ TransferFunction withColorsInverted(const TransferFunction& tf) {
     return result;
 }
 
-Rgb colorApartFrom(const std::vector<Rgb>& present) {
-    Rgb best = categories().front();
-    double most = -1;
-    for (const Rgb& candidate : categories()) {
-        double least = 1e9;
-        for (const Rgb& other : present) least = std::min(least, safeDifference(candidate, other));
-        if (least <= most) continue;
-        most = least;
-        best = candidate;
-    }
-    return best;
-}
+Rgb colorApartFrom(const std::vector<Rgb>& present) { return farthestFrom(present, categories(), safeDifference); }
 
 } // namespace pellucid

@@ -27,8 +27,8 @@ const ColorMap& colorMapNamed(const std::string& name);
 struct ColorMapOptions {
     bool reversed = false; ///< from its end to its start
     bool inverted = false; ///< lightness L* becomes 100 − L*; hue and, as far as sRGB reaches, chroma stay
-    /// One colour per feature, that of the middle of its place in their order; else every point has the colour of its
-    /// intensity. Categorical maps are always over features.
+    /// One colour per feature, evenly by their order; else every point has the colour of its intensity. Categorical
+    /// maps are always over features.
     bool overFeatures = false;
 };
 

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "volume/robust_range.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -20,13 +21,11 @@ template <class T>
 Values valuesOf(const T* samples, std::size_t begin, std::size_t end, std::size_t stride,
                 std::optional<double> missing) {
     Values values;
-    T last{};
-    bool first = true;
+    std::optional<T> last;
     for (std::size_t i = begin; i < end && values.size() <= kMostValues; i += stride) {
-        if (!first && samples[i] == last) continue;
+        if (last == samples[i]) continue;
         last = samples[i];
-        first = false;
-        const auto v = static_cast<double>(last);
+        const auto v = static_cast<double>(*last);
         if (std::isfinite(v) && v != missing) values.insert(v);
     }
     return values;
@@ -43,31 +42,30 @@ Values fewValues(const Volume& data, const VoxelSurvey& survey, const JobControl
     constexpr std::size_t kMostVoxels = std::size_t{1} << 26, kPieces = 64;
     const std::size_t stride = (data.size() + kMostVoxels - 1) / kMostVoxels;
     std::vector<Values> found(kPieces);
-    std::visit(
-        [&](const auto& samples) {
-            parallelFor(kPieces, [&](std::size_t p) {
-                job.throwIfStopped();
-                found[p] = valuesOf(samples.data(), data.size() * p / kPieces, data.size() * (p + 1) / kPieces, stride,
-                                    data.missing());
-            });
-        },
-        data.samples());
+    withSamples(data, [&](const auto& samples) {
+        parallelFor(kPieces, [&](std::size_t p) {
+            job.throwIfStopped();
+            found[p] = valuesOf(samples.data(), data.size() * p / kPieces, data.size() * (p + 1) / kPieces, stride,
+                                data.missing());
+        });
+    });
     for (Values& piece : found) values.merge(piece);
     return values.size() <= kMostValues ? values : Values{};
 }
 
-/// Share of the voxels that equal all their neighbours, of those that are not of the most common value.
-double flatShare(const VoxelSurvey& survey) {
+/// The valid ones, ascending.
+std::vector<double> sortedValues(const VoxelSurvey& survey) {
     std::vector<double> sorted;
     for (const double v : survey.values)
         if (!std::isnan(v)) sorted.push_back(v);
-    std::sort(sorted.begin(), sorted.end());
-    double common = 0;
-    std::size_t longest = 0;
-    for (std::size_t i = 0, j = 0; i < sorted.size(); i = j) {
-        while (j < sorted.size() && sorted[j] == sorted[i]) ++j;
-        if (j - i > longest) longest = j - i, common = sorted[i];
-    }
+    std::ranges::sort(sorted);
+    return sorted;
+}
+
+/// Share of the voxels that equal all their neighbours, of those that are not of the most common value.
+double flatShare(const VoxelSurvey& survey) {
+    const std::vector<double> sorted = sortedValues(survey);
+    const double common = sorted.empty() ? 0 : sorted[longestRun(sorted).begin];
     std::size_t others = 0, flat = 0;
     for (std::size_t i = 0; i < survey.size(); ++i) {
         if (std::isnan(survey.values[i]) || survey.values[i] == common) continue;
@@ -125,11 +123,8 @@ RecognisedKind recogniseKind(const Volume& data, const VoxelSurvey& survey, cons
     const Values few = fewValues(data, survey, job);
     if (few.size() == 2) return {DataKind::Binary, {few.begin(), few.end()}, 0};
     if (areLabels(few, survey)) return {DataKind::Labels, {few.begin(), few.end()}, 0};
-    std::vector<double> sorted;
-    for (const double v : survey.values)
-        if (!std::isnan(v)) sorted.push_back(v);
+    const std::vector<double> sorted = sortedValues(survey);
     if (sorted.empty()) return {};
-    std::sort(sorted.begin(), sorted.end());
     if (isCt(sorted)) return {DataKind::Ct, {}, 0};
     if (const double sigma = signedSpread(sorted); sigma > 0) return {DataKind::Signed, {}, sigma};
     return {};

@@ -62,8 +62,7 @@ AddedPoint withPointAdded(const TransferFunction& tf, double x, double opacity) 
     point.opacity = std::clamp(opacity, 0.0, 1.0);
     point.color = tf.points.empty() ? Rgb{1, 1, 1} : tf.color(point.x);
     auto& points = added.tf.points;
-    const auto place = std::upper_bound(points.begin(), points.end(), point.x,
-                                        [](double value, const ControlPoint& p) { return value < p.x; });
+    const auto place = std::ranges::upper_bound(points, point.x, {}, &ControlPoint::x);
     added.index = static_cast<int>(place - points.begin());
     points.insert(place, point);
     return added;
@@ -84,10 +83,10 @@ TransferFunction withPointColor(const TransferFunction& tf, int index, const Rgb
     const int feature = featureAt(tf.features, point.x);
     if (feature < 0) return result;
     const auto f = static_cast<std::size_t>(feature);
-    const std::vector<int> own = pointsOfFeature(tf, feature);
-    const bool highest = std::none_of(
-        own.begin(), own.end(), [&](int i) { return tf.points[static_cast<std::size_t>(i)].opacity > point.opacity; });
-    if (highest) result.features[f].color = color;
+    const bool isHighest = std::ranges::none_of(pointsOfFeature(tf, feature), [&](int i) {
+        return tf.points[static_cast<std::size_t>(i)].opacity > point.opacity;
+    });
+    if (isHighest) result.features[f].color = color;
     return result;
 }
 

@@ -6,8 +6,7 @@ namespace pellucid {
 
 bool hasVoxel(const Feature& feature, const Histogram& histogram) {
     const auto intensity = [&](std::uint16_t code) { return static_cast<double>(code) / histogram.maxCode; };
-    const auto first = std::partition_point(histogram.codes.begin(), histogram.codes.end(),
-                                            [&](std::uint16_t code) { return intensity(code) < feature.a; });
+    const auto first = std::ranges::lower_bound(histogram.codes, feature.a, {}, intensity);
     return first != histogram.codes.end() && feature.contains(intensity(*first));
 }
 

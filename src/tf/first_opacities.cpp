@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volume/voxel_loops.h"
+
 namespace pellucid {
 
 namespace {
@@ -29,9 +31,9 @@ std::vector<float> depthOfCells(const VoxelSurvey& survey, const std::vector<int
     const std::size_t strides[3] = {1, static_cast<std::size_t>(d.x), layerSize(d)};
     std::vector<float> depth(of.size());
     for (std::size_t i = 0; i < of.size(); ++i) depth[i] = of[i] >= 0 ? kUnknown : 0;
-    const auto relax = [&](const Int3& c, int towards) {
-        const std::size_t i = voxelIndex(d, c.x, c.y, c.z);
+    const auto relax = [&](std::size_t i, int towards) {
         if (of[i] < 0) return;
+        const Int3 c = voxelAt(d, i);
         for (int a = 0; a < 3; ++a) {
             if (d[a] == 1) continue; // no way out along this axis
             const bool edge = towards < 0 ? c[a] == 0 : c[a] == d[a] - 1;
@@ -39,12 +41,8 @@ std::vector<float> depthOfCells(const VoxelSurvey& survey, const std::vector<int
             depth[i] = std::min(depth[i], next + static_cast<float>(survey.pathPerCell[a]));
         }
     };
-    for (int z = 0; z < d.z; ++z)
-        for (int y = 0; y < d.y; ++y)
-            for (int x = 0; x < d.x; ++x) relax({x, y, z}, -1);
-    for (int z = d.z - 1; z >= 0; --z)
-        for (int y = d.y - 1; y >= 0; --y)
-            for (int x = d.x - 1; x >= 0; --x) relax({x, y, z}, 1);
+    for (std::size_t i = 0; i < of.size(); ++i) relax(i, -1);
+    for (std::size_t i = of.size(); i-- > 0;) relax(i, 1);
     return depth;
 }
 
@@ -91,9 +89,7 @@ double opacityFor(double cover, const FeatureExtent& extent) {
 }
 
 std::vector<double> insideOf(const std::vector<FeatureExtent>& extents) {
-    const auto [least, most] =
-        std::minmax_element(extents.begin(), extents.end(),
-                            [](const FeatureExtent& a, const FeatureExtent& b) { return a.depth < b.depth; });
+    const auto [least, most] = std::ranges::minmax_element(extents, {}, &FeatureExtent::depth);
     std::vector<double> inside;
     for (const FeatureExtent& x : extents)
         inside.push_back(most->depth > least->depth ? (x.depth - least->depth) / (most->depth - least->depth) : 0);

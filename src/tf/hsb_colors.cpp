@@ -6,6 +6,8 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "tf/eight_bit.h"
+#include "volume/voxel_loops.h"
 
 namespace pellucid {
 
@@ -25,17 +27,13 @@ std::array<double, 3> pureColor(double degrees) {
 void readRow(const Volume& volume, std::size_t first, std::vector<double>& row) {
     const double lo = volume.range().lo, span = volume.range().hi - lo, scale = span > 0 ? 1 / span : 0;
     const bool allValid = volume.invalidCount() == 0;
-    std::visit(
-        [&](const auto& values) {
-            for (std::size_t i = 0; i < row.size(); ++i)
-                row[i] = allValid || volume.isValid(first + i)
-                             ? std::clamp((static_cast<double>(values[first + i]) - lo) * scale, 0.0, 1.0)
-                             : 0.0;
-        },
-        volume.samples());
+    withSamples(volume, [&](const auto& values) {
+        for (std::size_t i = 0; i < row.size(); ++i)
+            row[i] = allValid || volume.isValid(first + i)
+                         ? std::clamp((static_cast<double>(values[first + i]) - lo) * scale, 0.0, 1.0)
+                         : 0.0;
+    });
 }
-
-std::uint8_t eightBits(double channel) { return static_cast<std::uint8_t>(255 * channel + 0.5); }
 
 } // namespace
 
@@ -59,7 +57,8 @@ VoxelColors hsbColors(const HsbInput& input, const JobControl& job) {
                 const std::array<double, 3> pure =
                     input.hue ? pureColor(input.hueFrom + h[i] * (input.hueTo - input.hueFrom)) : constant;
                 std::array<std::uint8_t, 3> rgb{};
-                for (std::size_t c = 0; c < 3; ++c) rgb[c] = eightBits(brightness * (1 - saturation * (1 - pure[c])));
+                for (std::size_t c = 0; c < 3; ++c)
+                    rgb[c] = static_cast<std::uint8_t>(eightBit(brightness * (1 - saturation * (1 - pure[c]))));
                 colors.rgba[first + i] = VoxelColors::pack(rgb[0], rgb[1], rgb[2]);
             }
         }

@@ -1,5 +1,7 @@
 #include "tf/palette.h"
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "base/check.h"
@@ -10,8 +12,7 @@ namespace {
 
 std::vector<Rgb> colors(const std::vector<std::string>& hex) {
     std::vector<Rgb> result;
-    result.reserve(hex.size());
-    for (const std::string& h : hex) result.push_back(rgbFromHex(h));
+    std::ranges::transform(hex, std::back_inserter(result), rgbFromHex);
     return result;
 }
 
@@ -19,23 +20,18 @@ std::vector<Rgb> colors(const std::vector<std::string>& hex) {
 
 std::vector<Rgb> classColors(int count) {
     PELLUCID_CHECK(count >= 1);
-    switch (count) {
-    case 1:
-        return colors({"#efc265"});
-    case 2:
-        return colors({"#e58a55", "#fbf6e6"});
-    case 3:
-        return colors({"#6f97d8", "#e58a55", "#fbf6e6"});
-    case 4:
-        return colors({"#6f97d8", "#d9734e", "#efc265", "#fbf6e6"});
-    case 5:
-        return colors({"#6f97d8", "#62c0b0", "#d9734e", "#efc265", "#fbf6e6"});
-    default:
-        break;
-    }
+    static const std::vector<std::vector<Rgb>> kFew{
+        colors({"#efc265"}),
+        colors({"#e58a55", "#fbf6e6"}),
+        colors({"#6f97d8", "#e58a55", "#fbf6e6"}),
+        colors({"#6f97d8", "#d9734e", "#efc265", "#fbf6e6"}),
+        colors({"#6f97d8", "#62c0b0", "#d9734e", "#efc265", "#fbf6e6"}),
+    };
+    const auto n = static_cast<std::size_t>(count);
+    if (n <= kFew.size()) return kFew[n - 1];
     static const std::vector<Rgb> kCycle = colors({"#6f97d8", "#efc265", "#b8608a", "#8fd3b0", "#d9734e", "#fbf6e6"});
     std::vector<Rgb> result;
-    for (int i = 0; i < count; ++i) result.push_back(kCycle[static_cast<std::size_t>(i) % kCycle.size()]);
+    for (std::size_t i = 0; i < n; ++i) result.push_back(kCycle[i % kCycle.size()]);
     return result;
 }
 

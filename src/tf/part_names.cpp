@@ -1,7 +1,9 @@
 #include "tf/part_names.h"
 
-#include <charconv>
+#include <ranges>
 #include <vector>
+
+#include "base/text.h"
 
 namespace pellucid {
 
@@ -21,17 +23,12 @@ struct PartName {
 
 bool isNumber(const std::string& word) {
     double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size();
+    return !word.starts_with('+') && parseNumber(word, value);
 }
 
 PartName read(const std::string& name) {
-    std::vector<std::string> words{""};
-    for (const char c : name)
-        if (c == ' ')
-            words.emplace_back();
-        else
-            words.back().push_back(c);
+    std::vector<std::string> words;
+    for (const auto word : std::views::split(name, ' ')) words.emplace_back(word.begin(), word.end());
     const std::size_t n = words.size();
     const auto word = [&](std::size_t fromEnd) { return fromEnd <= n ? words[n - fromEnd] : std::string(); };
     PartName part;

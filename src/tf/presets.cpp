@@ -43,8 +43,7 @@ const std::vector<TfPreset>& tfPresets() {
             const std::string name = stemOf(preset.name);
             all.push_back(presetOf(json::parse(preset.text), name, kPrefix + name));
         }
-        std::stable_sort(all.begin(), all.end(),
-                         [](const TfPreset& a, const TfPreset& b) { return a.group < b.group; });
+        std::ranges::stable_sort(all, {}, &TfPreset::group);
         return all;
     }();
     return presets;
@@ -53,12 +52,11 @@ const std::vector<TfPreset>& tfPresets() {
 std::optional<TransferFunction> tfFromPresetSpec(const std::string& text) {
     if (!text.starts_with(kPrefix)) return {};
     const std::string name = text.substr(std::string(kPrefix).size());
-    std::string known;
-    for (const TfPreset& preset : tfPresets()) {
-        if (preset.name == name) return preset.tf;
-        known += (known.empty() ? "" : ", ") + preset.name;
-    }
-    throw UsageError("there is no preset '" + name + "'", "transfer function '" + text + "'", "known: " + known);
+    const std::vector<TfPreset>& presets = tfPresets();
+    if (const auto preset = std::ranges::find(presets, name, &TfPreset::name); preset != presets.end())
+        return preset->tf;
+    throw UsageError("there is no preset '" + name + "'", "transfer function '" + text + "'",
+                     "choose one of " + joined(presets, ", ", &TfPreset::name));
 }
 
 TfPreset readPreset(const std::string& path) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "base/round_numbers.h"
 #include "tf/empty_features.h"
@@ -77,10 +79,10 @@ std::optional<Background> findBackground(const Evidence& e) {
     const double peak = (static_cast<double>(top) + 0.5) / kClassBins;
     const auto isNear = [&](double x) { return std::abs(x - peak) <= kNear; };
     std::vector<double> near;
-    std::copy_if(faces.begin(), faces.end(), std::back_inserter(near), isNear);
+    std::ranges::copy_if(faces, std::back_inserter(near), isNear);
     Background b;
     b.faces = static_cast<double>(near.size()) / static_cast<double>(faces.size());
-    b.share = static_cast<double>(std::count_if(all.begin(), all.end(), isNear)) / static_cast<double>(all.size());
+    b.share = static_cast<double>(std::ranges::count_if(all, isNear)) / static_cast<double>(all.size());
     if (b.faces < kLeastOfFaces || b.share < kLeastOfAll) return {};
     b.values.mode = median(near);
     std::vector<double> deviations;
@@ -104,20 +106,20 @@ ClassEvidence classEvidence(const Evidence& e, const std::optional<Background>& 
     };
     const double span = e.window.hi - e.window.lo;
     std::vector<double> gradients;
-    for (std::size_t i = 0; i < e.survey.size(); ++i)
-        if (!std::isnan(e.survey.values[i]) && !isBackground(e.survey.values[i]))
-            gradients.push_back(e.survey.gradients[i] / span);
     ClassEvidence evidence{std::vector<double>(kClassBins, 0), std::vector<double>(kClassBins, 0)};
-    for (const double v : e.survey.values)
-        if (!std::isnan(v)) ++evidence.all[e.bin(v)];
+    for (std::size_t i = 0; i < e.survey.size(); ++i) {
+        const double v = e.survey.values[i];
+        if (std::isnan(v)) continue;
+        ++evidence.all[e.bin(v)];
+        if (!isBackground(v)) gradients.push_back(e.survey.gradients[i] / span);
+    }
     if (gradients.empty()) return evidence;
     const auto calm = gradients.begin() + static_cast<std::ptrdiff_t>(kCalm * static_cast<double>(gradients.size()));
     std::nth_element(gradients.begin(), calm, gradients.end());
     const double noise = *calm;
 
-    const auto addShares = [&](std::vector<double> counts) {
-        double sum = 0;
-        for (const double c : counts) sum += c;
+    const auto addShares = [&](const std::vector<double>& counts) {
+        const double sum = std::accumulate(counts.begin(), counts.end(), 0.0);
         for (std::size_t b = 0; sum > 0 && b < counts.size(); ++b) evidence.matter[b] += counts[b] / sum;
     };
     std::vector<double> flat(kClassBins, 0), ends(kClassBins, 0);
@@ -127,12 +129,12 @@ ClassEvidence classEvidence(const Evidence& e, const std::optional<Background>& 
         const double q = e.survey.gradients[i] / span / (noise + kLeastNoise);
         flat[e.bin(v)] += 1 / (1 + q * q * q * q);
     }
-    addShares(std::move(flat));
+    addShares(flat);
     for (const BoundaryEnds& b : boundaryEnds(e.data, e.survey, std::max(kSteep * noise, kLeastSteep) * span,
                                               std::max(noise, kLeastNoise) * span, job))
         for (const double v : {b.low, b.high})
             if (!isBackground(v)) ++ends[e.bin(v)];
-    addShares(std::move(ends));
+    addShares(ends);
     return evidence;
 }
 
@@ -149,7 +151,7 @@ ValueRange rangeOf(const Part& p) { return {p.feature.lo, p.feature.hi}; }
 
 std::vector<ValueRange> rangesOf(const std::vector<Part>& parts) {
     std::vector<ValueRange> ranges;
-    for (const Part& p : parts) ranges.push_back(rangeOf(p));
+    std::ranges::transform(parts, std::back_inserter(ranges), rangeOf);
     return ranges;
 }
 
@@ -184,12 +186,11 @@ TransferFunction trapezoids(const Evidence& e, const std::vector<Part>& parts, c
     return tf;
 }
 
-/// Parts that no voxel belongs to are nothing to look at: the part below reaches over them, so that no hole is left. A
-/// survey that saw something of each has told; else all voxels
-/// are asked. Where nothing is valid all parts stay.
+/// Drops the parts that no voxel belongs to; the part below reaches over them, so that no hole is left. Where the
+/// survey has not seen something of each part, all voxels are asked. Where nothing is valid all parts stay.
 void dropEmpty(std::vector<Part>& parts, const Evidence& e) {
     const std::vector<FeatureExtent> seen = extentsOf(e.survey, e.window, rangesOf(parts));
-    if (std::all_of(seen.begin(), seen.end(), [](const FeatureExtent& extent) { return extent.share > 0; })) return;
+    if (std::ranges::all_of(seen, [](const FeatureExtent& extent) { return extent.share > 0; })) return;
     if (!e.data.hasValidVoxels()) return;
     const Histogram histogram = makeHistogram(e.data.withRange(e.window));
     std::vector<Part> kept;
@@ -247,10 +248,11 @@ Proposal proposeUniform(const Volume& data, VoxelSurvey survey, DataKind kind) {
     return result;
 }
 
+/// Those that lie in the window, which NaN does not.
 std::vector<double> valuesIn(const std::vector<double>& values, const ValueRange& window) {
     std::vector<double> inside;
-    std::copy_if(values.begin(), values.end(), std::back_inserter(inside),
-                 [&](double v) { return v >= window.lo && v <= window.hi; });
+    std::ranges::copy_if(values, std::back_inserter(inside),
+                         [&](double v) { return window.lo <= v && v <= window.hi; });
     return inside;
 }
 
@@ -422,10 +424,7 @@ ValueRange windowFor(const Volume& data, const VoxelSurvey& survey, const Recogn
     if (data.range() != whole) return data.range();
     if (kind.kind == DataKind::Binary || (kind.kind == DataKind::Labels && canTellApart(kind.values, whole)))
         return whole;
-    std::vector<double> valid;
-    for (const double v : survey.values)
-        if (!std::isnan(v)) valid.push_back(v);
-    const RobustRange robust = robustRange(std::move(valid), whole);
+    const RobustRange robust = robustRange(valuesIn(survey.values, whole), whole);
     if (kind.kind == DataKind::Labels) {
         const std::vector<double> inside = valuesIn(kind.values, robust.range);
         return inside.size() < 2 ? whole : ValueRange{inside.front(), inside.back()};

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/round_numbers.h"
 #include "tf/color_maps.h"
+#include "tf/edit.h"
 #include "tf/part_names.h"
 
 namespace pellucid {
@@ -20,10 +21,10 @@ const Feature& at(const TransferFunction& tf, int feature) { return tf.features.
 Feature& at(TransferFunction& tf, int feature) { return tf.features.at(static_cast<std::size_t>(feature)); }
 
 bool anyEndsAt(const TransferFunction& tf, double x) {
-    return std::any_of(tf.features.begin(), tf.features.end(), [x](const Feature& f) { return f.b == x; });
+    return std::ranges::find(tf.features, x, &Feature::b) != tf.features.end();
 }
 bool anyStartsAt(const TransferFunction& tf, double x) {
-    return std::any_of(tf.features.begin(), tf.features.end(), [x](const Feature& f) { return f.a == x; });
+    return std::ranges::find(tf.features, x, &Feature::a) != tf.features.end();
 }
 
 /// The points that share x, [first, last).
@@ -32,25 +33,25 @@ struct Group {
     bool empty() const { return first == last; }
 };
 Group pointsAt(const std::vector<ControlPoint>& points, double x) {
-    const auto lower = std::lower_bound(points.begin(), points.end(), x,
-                                        [](const ControlPoint& p, double value) { return p.x < value; });
-    const auto upper =
-        std::upper_bound(lower, points.end(), x, [](double value, const ControlPoint& p) { return value < p.x; });
-    return {static_cast<std::size_t>(lower - points.begin()), static_cast<std::size_t>(upper - points.begin())};
+    const auto group = std::ranges::equal_range(points, x, {}, &ControlPoint::x);
+    return {static_cast<std::size_t>(group.begin() - points.begin()),
+            static_cast<std::size_t>(group.end() - points.begin())};
+}
+
+/// A point on the curve.
+ControlPoint curveAt(const TransferFunction& tf, double x) {
+    const double opacity = tf.opacity(x);
+    return {x, opacity, tf.color(x), opacity == 0, {}};
 }
 
 /// What the function is just below x: that of the first point at x, where there is one.
 ControlPoint leftOf(const TransferFunction& tf, double x) {
     const Group group = pointsAt(tf.points, x);
-    if (!group.empty()) return tf.points[group.first];
-    const double opacity = tf.opacity(x);
-    return {x, opacity, tf.color(x), opacity == 0, {}};
+    return group.empty() ? curveAt(tf, x) : tf.points[group.first];
 }
 ControlPoint rightOf(const TransferFunction& tf, double x) {
     const Group group = pointsAt(tf.points, x);
-    if (!group.empty()) return tf.points[group.last - 1];
-    const double opacity = tf.opacity(x);
-    return {x, opacity, tf.color(x), opacity == 0, {}};
+    return group.empty() ? curveAt(tf, x) : tf.points[group.last - 1];
 }
 
 ControlPoint bottomAt(const ControlPoint& point) { return {point.x, 0.0, point.color, true, {}}; }
@@ -134,24 +135,22 @@ TransferFunction withoutShape(const TransferFunction& tf, int feature) {
     const Feature& f = at(tf, feature);
     TransferFunction others = tf;
     others.features.erase(others.features.begin() + feature);
-    TransferFunction rest = cleared(others, f.a, f.b);
-    return rest;
+    return cleared(others, f.a, f.b);
 }
 
-TransferFunction withFeaturePlaced(const TransferFunction& tf, int feature, double a, double b) {
-    const Feature f = at(tf, feature);
-    if (a == f.a && b == f.b) return tf;
+/// The feature's own points, mapped affinely to [a, b].
+std::vector<ControlPoint> liftedTo(const TransferFunction& tf, int feature, double a, double b) {
+    const Feature& f = at(tf, feature);
     std::vector<ControlPoint> shape = lifted(tf, feature);
-    for (ControlPoint& p : shape) {
-        if (p.x == f.a)
-            p.x = a;
-        else if (p.x == f.b)
-            p.x = b;
-        else
-            p.x = std::clamp(a + (p.x - f.a) * ((b - a) / (f.b - f.a)), a, b);
-    }
+    for (ControlPoint& p : shape) p.x = p.x == f.b ? b : std::clamp(a + (p.x - f.a) * ((b - a) / (f.b - f.a)), a, b);
+    return shape;
+}
+
+/// The feature with `shape` in place of its own, and the interval [a, b).
+TransferFunction withFeatureReplaced(const TransferFunction& tf, int feature, std::vector<ControlPoint> shape, double a,
+                                     double b) {
     TransferFunction result = withSetIn(withoutShape(tf, feature), std::move(shape), a, b);
-    Feature placed = f;
+    Feature placed = at(tf, feature);
     placed.a = a;
     placed.b = b;
     result.features.insert(result.features.begin() + feature, placed);
@@ -159,9 +158,14 @@ TransferFunction withFeaturePlaced(const TransferFunction& tf, int feature, doub
     return result;
 }
 
+TransferFunction withFeaturePlaced(const TransferFunction& tf, int feature, double a, double b) {
+    if (a == at(tf, feature).a && b == at(tf, feature).b) return tf;
+    return withFeatureReplaced(tf, feature, liftedTo(tf, feature, a, b), a, b);
+}
+
 std::string freshName(const TransferFunction& tf, const std::string& base) {
     const auto taken = [&](const std::string& text) {
-        return std::any_of(tf.features.begin(), tf.features.end(), [&](const Feature& f) { return f.name == text; });
+        return std::ranges::find(tf.features, text, &Feature::name) != tf.features.end();
     };
     if (!taken(base)) return base;
     for (int i = 2;; ++i)
@@ -180,19 +184,22 @@ double countedIn(std::span<const std::uint64_t> counts, double a, double b) {
     return sum;
 }
 
-int insertSorted(TransferFunction& tf, const Feature& feature) {
-    const auto place =
-        std::find_if(tf.features.begin(), tf.features.end(), [&](const Feature& other) { return other.a > feature.a; });
-    const auto index = static_cast<int>(place - tf.features.begin());
-    tf.features.insert(place, feature);
-    return index;
+/// `tf`, which has the feature's shape, with the feature in its place among the others.
+AddedFeature withFeatureListed(const TransferFunction& tf, const Feature& feature) {
+    AddedFeature added{tf, 0};
+    std::vector<Feature>& features = added.tf.features;
+    const auto place = std::ranges::find_if(features, [&](const Feature& other) { return other.a > feature.a; });
+    added.index = static_cast<int>(place - features.begin());
+    features.insert(place, feature);
+    added.tf.validate();
+    return added;
 }
 
 /// The intervals that no feature has, ascending.
 std::vector<ValueRange> gaps(const TransferFunction& tf) {
     std::vector<ValueRange> taken;
     for (const Feature& f : tf.features) taken.push_back({f.a, f.b});
-    std::sort(taken.begin(), taken.end(), [](const ValueRange& p, const ValueRange& q) { return p.lo < q.lo; });
+    std::ranges::sort(taken, {}, &ValueRange::lo);
     std::vector<ValueRange> free;
     double from = 0;
     for (const ValueRange& t : taken) {
@@ -225,22 +232,6 @@ void halve(double u, double v, std::vector<double>& ends) {
 }
 
 } // namespace
-
-std::string name(ShapeKind kind) {
-    switch (kind) {
-    case ShapeKind::Tent:
-        return "tent";
-    case ShapeKind::Trapezoid:
-        return "trapezoid";
-    case ShapeKind::Gaussian:
-        return "Gaussian";
-    case ShapeKind::Ramp:
-        return "ramp";
-    case ShapeKind::Step:
-        return "step";
-    }
-    return {};
-}
 
 std::vector<ControlPoint> pointsOfShape(const Shape& shape) {
     const double mode = shape.a + std::clamp(shape.top, 0.0, 1.0) * (shape.b - shape.a);
@@ -286,15 +277,12 @@ AddedFeature withShapeAdded(const TransferFunction& tf, const Shape& shape) {
     for (const Feature& f : tf.features)
         if (std::max(f.a, shape.a) < std::min(f.b, shape.b))
             throw Error("the shape would overlap the feature '" + f.name + "'", "", "narrow one of them");
-    AddedFeature added{withSetIn(tf, pointsOfShape(shape), shape.a, shape.b), 0};
     Feature feature;
     feature.name = shape.name.empty() ? freshName(tf, name(shape.kind)) : shape.name;
     feature.a = shape.a;
     feature.b = shape.b;
     feature.color = shape.color;
-    added.index = insertSorted(added.tf, feature);
-    added.tf.validate();
-    return added;
+    return withFeatureListed(withSetIn(tf, pointsOfShape(shape), shape.a, shape.b), feature);
 }
 
 std::vector<int> pointsOfFeature(const TransferFunction& tf, int feature) {
@@ -312,25 +300,21 @@ std::vector<int> pointsOfFeature(const TransferFunction& tf, int feature) {
 }
 
 int featureWithId(const TransferFunction& tf, FeatureId id) {
-    if (id == 0) return -1;
-    for (std::size_t i = 0; i < tf.features.size(); ++i)
-        if (tf.features[i].id == id) return static_cast<int>(i);
-    return -1;
+    const auto found = std::ranges::find(tf.features, id, &Feature::id);
+    return id == 0 || found == tf.features.end() ? -1 : static_cast<int>(found - tf.features.begin());
 }
 
 int nextFeature(const TransferFunction& tf, int feature) {
     int next = -1;
-    for (std::size_t i = 0; i < tf.features.size(); ++i)
-        if (tf.features[i].a >= at(tf, feature).b && (next < 0 || tf.features[i].a < at(tf, next).a))
-            next = static_cast<int>(i);
+    for (int i = 0; i < static_cast<int>(tf.features.size()); ++i)
+        if (at(tf, i).a >= at(tf, feature).b && (next < 0 || at(tf, i).a < at(tf, next).a)) next = i;
     return next;
 }
 
 int previousFeature(const TransferFunction& tf, int feature) {
     int previous = -1;
-    for (std::size_t i = 0; i < tf.features.size(); ++i)
-        if (tf.features[i].b <= at(tf, feature).a && (previous < 0 || tf.features[i].b > at(tf, previous).b))
-            previous = static_cast<int>(i);
+    for (int i = 0; i < static_cast<int>(tf.features.size()); ++i)
+        if (at(tf, i).b <= at(tf, feature).a && (previous < 0 || at(tf, i).b > at(tf, previous).b)) previous = i;
     return previous;
 }
 
@@ -382,10 +366,7 @@ TransferFunction withFeatureKind(const TransferFunction& tf, int feature, ShapeK
     }
     if (last > f.a && first < f.b && first < 2) shape.top = ((first + last) / 2 - f.a) / (f.b - f.a);
     if (shape.top <= 0 || shape.top >= 1) shape.top = 0.5;
-    TransferFunction result = withSetIn(withoutShape(tf, feature), pointsOfShape(shape), f.a, f.b);
-    result.features.insert(result.features.begin() + feature, f);
-    result.validate();
-    return result;
+    return withFeatureReplaced(tf, feature, pointsOfShape(shape), f.a, f.b);
 }
 
 ValueRange roomFor(const TransferFunction& tf, double width, double near) {
@@ -412,13 +393,8 @@ AddedFeature withFeatureDuplicated(const TransferFunction& tf, int feature) {
     const Feature f = at(tf, feature);
     const double width = f.b - f.a;
     const ValueRange room = roomFor(tf, width, f.b + width / 2); // beside it, rather above
-    std::vector<ControlPoint> shape = lifted(tf, feature);
-    for (ControlPoint& p : shape) {
-        p.x =
-            p.x == f.b ? room.hi : std::clamp(room.lo + (p.x - f.a) * ((room.hi - room.lo) / width), room.lo, room.hi);
-        p.extraJson.clear();
-    }
-    AddedFeature added{withSetIn(tf, std::move(shape), room.lo, room.hi), 0};
+    std::vector<ControlPoint> shape = liftedTo(tf, feature, room.lo, room.hi);
+    for (ControlPoint& p : shape) p.extraJson.clear();
     Feature copy = f;
     copy.id = 0;
     copy.hidden = false; // one wants to see what one has made
@@ -426,9 +402,7 @@ AddedFeature withFeatureDuplicated(const TransferFunction& tf, int feature) {
     copy.name = freshName(tf, f.name);
     copy.a = room.lo;
     copy.b = room.hi;
-    added.index = insertSorted(added.tf, copy);
-    added.tf.validate();
-    return added;
+    return withFeatureListed(withSetIn(tf, std::move(shape), room.lo, room.hi), copy);
 }
 
 TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, double place,
@@ -440,7 +414,7 @@ TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, doubl
         throw Error("the feature '" + f.name + "' cannot be split at " + border, "", "choose a value well inside it");
     const double below = countedIn(counts, f.a, place), above = countedIn(counts, place, f.b);
     if (!counts.empty() && !(std::min(below, above) >= kSmallestPart * (below + above)))
-        throw Error("hardly a voxel of '" + f.name + "' would lie " + (below < above ? "below " : "above ") + border,
+        throw Error("almost no voxel of '" + f.name + "' would lie " + (below < above ? "below " : "above ") + border,
                     "", "choose another value");
     TransferFunction result = tf;
     const Group group = pointsAt(result.points, place);
@@ -452,9 +426,8 @@ TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, doubl
                      points.begin() + static_cast<std::ptrdiff_t>(group.last));
         points.insert(points.begin() + static_cast<std::ptrdiff_t>(group.first), {left, right});
     }
-    bool ofOneColor = true;
-    for (const int i : pointsOfFeature(tf, feature))
-        ofOneColor = ofOneColor && tf.points[static_cast<std::size_t>(i)].color == f.color;
+    const bool ofOneColor = std::ranges::all_of(
+        pointsOfFeature(tf, feature), [&](int i) { return tf.points[static_cast<std::size_t>(i)].color == f.color; });
     const auto [lowerName, upperName] = namesOfParts(f.name, border);
     at(result, feature).b = place;
     at(result, feature).name = freshName(tf, lowerName);
@@ -467,10 +440,7 @@ TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, doubl
     if (ofOneColor) {
         std::vector<Rgb> present;
         for (const Feature& other : tf.features) present.push_back(other.color);
-        const Rgb color = colorApartFrom(present);
-        at(result, feature + 1).color = color;
-        for (const int i : pointsOfFeature(result, feature + 1))
-            result.points[static_cast<std::size_t>(i)].color = color;
+        result = withFeatureColor(result, feature + 1, colorApartFrom(present));
     }
     result.validate();
     return result;

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "tf/transfer_function.h"
 
 namespace pellucid {
 
 enum class ShapeKind { Tent, Trapezoid, Gaussian, Ramp, Step };
-inline constexpr ShapeKind kShapeKinds[] = {ShapeKind::Tent, ShapeKind::Trapezoid, ShapeKind::Gaussian, ShapeKind::Ramp,
-                                            ShapeKind::Step};
-std::string name(ShapeKind kind); ///< "tent", "trapezoid", "Gaussian", "ramp", "step"
+template <>
+inline constexpr auto kNamesOf<ShapeKind> = enumNames("shape", "tent", "trapezoid", "Gaussian", "ramp", "step");
 
 /// Opacity over [a, b), 0 at both ends but for a step and the upper end of a ramp.
 struct Shape {
@@ -39,8 +39,8 @@ struct AddedFeature {
     TransferFunction tf;
     int index = 0; ///< of the feature, in tf.features
 };
-/// The shape as a feature of its own. What lies in [a, b) without belonging to a feature gives way. Throws Error where
-/// the interval is none or meets a feature.
+/// The shape as a feature of its own; points of no feature in [a, b) are dropped. Throws Error where that is not an
+/// interval, or meets a feature.
 AddedFeature withShapeAdded(const TransferFunction& tf, const Shape& shape);
 
 /// Points that make up the feature: those in (a, b), and at its ends those on its side where a neighbour touches it.
@@ -51,10 +51,10 @@ int featureWithId(const TransferFunction& tf, FeatureId id);
 int nextFeature(const TransferFunction& tf, int feature);
 int previousFeature(const TransferFunction& tf, int feature);
 
-/// Its points and its interval go along, as far as [0,1] and its neighbours let them. Nothing else moves; α of its
-/// shape stays. What lies there without belonging to a feature gives way.
+/// Moves interval and points of the feature, as far as [0,1] and its neighbours allow; its opacities stay. Points of no
+/// feature that are in the way are dropped.
 TransferFunction withFeatureMoved(const TransferFunction& tf, int feature, double dx);
-/// Its interval becomes [a, b), clamped as above and at least kSmallestFeature wide; its points are mapped affinely.
+/// Its interval becomes [a, b), clamped likewise and at least kSmallestFeature wide; its points are mapped affinely.
 TransferFunction withFeatureWidened(const TransferFunction& tf, int feature, double a, double b);
 /// The shape `kind` in place of the feature's own: same interval, peak, place of the peak, colour.
 TransferFunction withFeatureKind(const TransferFunction& tf, int feature, ShapeKind kind);
@@ -62,8 +62,8 @@ TransferFunction withFeatureKind(const TransferFunction& tf, int feature, ShapeK
 /// A copy of the same shape, shown, in the nearest gap that is as wide, else narrowed to the widest gap. Throws Error
 /// where there is none of at least 1/64.
 AddedFeature withFeatureDuplicated(const TransferFunction& tf, int feature);
-/// A gap between features in which a new one of `width` would stand, centred as near as can be to `near`; where none is
-/// as wide, the widest whole. Throws Error where there is none of at least 1/64.
+/// Where a new feature of `width` fits between the others, centred as near to `near` as can be; where none fits, the
+/// widest gap. Throws Error where that is less than 1/64.
 ValueRange roomFor(const TransferFunction& tf, double width, double near);
 
 /// The smallest part of a feature's voxels that a half may have after a split.
@@ -74,12 +74,12 @@ inline constexpr double kSmallestPart = 0.02;
 /// knows. Throws Error where `at` leaves either too narrow, or with less than kSmallestPart of the voxels.
 TransferFunction withFeatureSplit(const TransferFunction& tf, int feature, double at,
                                   std::span<const std::uint64_t> counts = {});
-/// Where to split: the bottom of the deepest valley of `counts` (a histogram over [0,1]) between two peaks inside the
-/// feature that leaves each side kSmallestPart of its voxels; where there is none its middle, and where that leaves
-/// less, the border between bins that comes nearest to halving the voxels.
+/// Where to split: in the deepest valley of `counts` (a histogram over [0,1]) between two peaks of the feature that
+/// leaves each side kSmallestPart of its voxels; else in its middle; where that leaves less, at the border between bins
+/// that comes nearest to halving the voxels.
 double splitPlace(const Feature& feature, std::span<const std::uint64_t> counts);
-/// The feature and the next one by intensity as one, with what lies between; α and points stay. The wider one's colour,
-/// identity and eye, both names (those of parts become that of the whole). Throws Error where there is no next one.
+/// The feature and the next one by intensity as one, with what lies between; points stay. Colour, identity and eye are
+/// the wider one's, the name is made of both. Throws Error where there is no next one.
 AddedFeature withFeaturesMerged(const TransferFunction& tf, int feature);
 /// The feature and its shape.
 TransferFunction withFeatureRemoved(const TransferFunction& tf, int feature);

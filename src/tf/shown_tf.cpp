@@ -8,9 +8,7 @@ namespace pellucid {
 
 namespace {
 
-bool anyHidden(const TransferFunction& tf) {
-    return std::any_of(tf.features.begin(), tf.features.end(), [](const Feature& f) { return f.hidden; });
-}
+bool anyHidden(const TransferFunction& tf) { return std::ranges::any_of(tf.features, &Feature::hidden); }
 
 } // namespace
 

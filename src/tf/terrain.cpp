@@ -42,9 +42,8 @@ ColorAt groundColors(const std::string& name) {
     if (name == kTerrainMap) return terrainColor;
     for (const ColorMap& map : colorMaps())
         if (map.name == name && map.kind != ColorMap::Kind::Categorical) return map.colorAt;
-    std::string names;
-    for (const std::string& known : groundColorNames()) names += (names.empty() ? "" : ", ") + known;
-    throw UsageError("'" + name + "' is no colour map of a ground", "ground", "give one of " + names);
+    throw UsageError("'" + name + "' is not a colour map for a ground", "ground",
+                     "give one of " + joined(groundColorNames()));
 }
 
 std::vector<std::string> groundColorNames() {

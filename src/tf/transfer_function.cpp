@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <ranges>
 
 #include "base/error.h"
 #include "tf/change_opacities.h"
@@ -19,14 +20,9 @@ bool inUnit(double v) { return v >= 0.0 && v <= 1.0; } // false for NaN too
 
 /// α just left of x (the first of the points that share x).
 double opacityBefore(const TransferFunction& tf, double x) {
-    const auto points = tf.pointsWithEnds();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (points[i].x < x) continue;
-        if (points[i].x == x || i == 0) return points[i].opacity;
-        const ControlPoint &p = points[i - 1], &q = points[i];
-        return p.opacity + (q.opacity - p.opacity) * (x - p.x) / (q.x - p.x);
-    }
-    return 0.0;
+    const std::vector<ControlPoint> points = tf.pointsWithEnds();
+    const auto first = std::ranges::find(points, x, &ControlPoint::x);
+    return first != points.end() ? first->opacity : tf.opacity(x);
 }
 
 double peakOf(const TransferFunction& tf, const Feature& f) {
@@ -37,34 +33,21 @@ double peakOf(const TransferFunction& tf, const Feature& f) {
     return peak;
 }
 
-std::size_t pointsAt(const TransferFunction& tf, double x) {
-    return static_cast<std::size_t>(
-        std::count_if(tf.points.begin(), tf.points.end(), [x](const ControlPoint& p) { return p.x == x; }));
-}
-
 /// Makes x a step (two points that share it), so that its two sides can be scaled apart. α(·) stays as it is.
 void splitAt(TransferFunction& tf, double x) {
-    const std::size_t there = pointsAt(tf, x);
-    if (there >= 2) return;
-    ControlPoint p{x, tf.opacity(x), tf.color(x), false, {}};
-    const auto at = std::lower_bound(tf.points.begin(), tf.points.end(), x,
-                                     [](const ControlPoint& q, double v) { return q.x < v; });
-    if (there == 1) {
-        p = *at;
-        tf.points.insert(at, p);
-    } else {
-        tf.points.insert(at, 2, p);
-    }
+    const auto [first, last] = std::ranges::equal_range(tf.points, x, {}, &ControlPoint::x);
+    if (last - first >= 2) return;
+    const bool any = first != last;
+    const ControlPoint p = any ? *first : ControlPoint{x, tf.opacity(x), tf.color(x), false, {}};
+    tf.points.insert(first, any ? 1 : 2, p);
 }
 
-void scaleFeature(TransferFunction& tf, const Feature& f, double factor) {
-    changeOpacities(tf, f, [factor](const ControlPoint& p) { return std::min(1.0, p.opacity * factor); });
-}
+bool isMovableInside(const ControlPoint& p, const Feature& f) { return p.x > f.a && p.x < f.b && !p.fixed; }
 
 void raiseFlatFeature(TransferFunction& tf, const Feature& f, double opacity) {
     bool any = false;
     for (ControlPoint& p : tf.points)
-        if (p.x > f.a && p.x < f.b && !p.fixed) {
+        if (isMovableInside(p, f)) {
             p.opacity = opacity;
             any = true;
         }
@@ -84,6 +67,11 @@ Number parseNumber(const std::string& text, const std::string& spec) {
 }
 
 } // namespace
+
+int featureAt(std::span<const Feature> features, double s) {
+    const auto found = std::ranges::find_if(features, [s](const Feature& f) { return f.contains(s); });
+    return found == features.end() ? -1 : static_cast<int>(found - features.begin());
+}
 
 std::vector<ControlPoint> TransferFunction::pointsWithEnds() const {
     std::vector<ControlPoint> all;
@@ -123,12 +111,11 @@ void TransferFunction::validate() const {
                             "make them disjoint");
     }
     if (range && (!std::isfinite(range->hi - range->lo) || !(range->lo < range->hi)))
-        throw Error("the range needs lo < hi, both finite and so their distance", "/range", "correct it");
+        throw Error("the range needs lo < hi, both finite, a finite distance apart", "/range", "correct it");
 }
 
 std::size_t TfSampler::segment(double s) const {
-    const auto next =
-        std::upper_bound(m_points.begin(), m_points.end(), s, [](double v, const ControlPoint& p) { return v < p.x; });
+    const auto next = std::ranges::upper_bound(m_points, s, {}, &ControlPoint::x);
     return next == m_points.begin() ? 0 : static_cast<std::size_t>(next - m_points.begin()) - 1;
 }
 
@@ -149,8 +136,9 @@ Rgb TfSampler::color(double s) const {
 }
 
 TransferFunction tents(int count, double peak) {
-    if (count < 1 || count > 64) throw UsageError("a transfer function has 1 to 64 tents", "tents:N", "give such an N");
-    if (!inUnit(peak)) throw UsageError("a peak opacity lies in [0,1]", "tents:N:PEAK", "give such a PEAK");
+    if (count < 1 || count > 64)
+        throw UsageError("a transfer function has 1 to 64 tents", "tents:N", "give N in this range");
+    if (!inUnit(peak)) throw UsageError("a peak opacity lies in [0,1]", "tents:N:PEAK", "give PEAK in this range");
     TransferFunction tf;
     for (int i = 0; i < count; ++i) {
         const double centre = (i + 0.5) / count;
@@ -165,7 +153,7 @@ TransferFunction tents(int count, double peak) {
 }
 
 TransferFunction ramp(int count) {
-    if (count < 1 || count > 256) throw UsageError("a ramp has 1 to 256 points", "ramp:N", "give such an N");
+    if (count < 1 || count > 256) throw UsageError("a ramp has 1 to 256 points", "ramp:N", "give N in this range");
     TransferFunction tf;
     for (int i = 0; i < count; ++i) {
         const double x = (i + 0.5) / count;
@@ -177,14 +165,10 @@ TransferFunction ramp(int count) {
 
 std::optional<TransferFunction> tfFromSpec(const std::string& text) {
     std::vector<std::string> parts;
-    for (std::size_t start = 0;;) {
-        const std::size_t colon = text.find(':', start);
-        parts.push_back(text.substr(start, colon - start));
-        if (colon == std::string::npos) break;
-        start = colon + 1;
-    }
+    for (const auto part : std::views::split(text, ':')) parts.emplace_back(part.begin(), part.end());
+    if (parts.size() < 2) return {};
     const bool isTents = parts[0] == "tents", isRamp = parts[0] == "ramp";
-    if (parts.size() < 2 || (!isTents && !isRamp)) return {};
+    if (!isTents && !isRamp) return {};
     if (parts.size() > (isTents ? 3u : 2u))
         throw UsageError("too many parts", "transfer function '" + text + "'", "write tents:N[:PEAK] or ramp:N");
     const int count = parseNumber<int>(parts[1], text);
@@ -246,7 +230,9 @@ TransferFunction withFeatureOpacities(const TransferFunction& tf, const std::vec
         const double peak = peakOf(result, f);
         if (peak == target) continue;
         if (peak > 0)
-            scaleFeature(result, f, target / peak);
+            changeOpacities(result, f, [factor = target / peak](const ControlPoint& p) {
+                return std::min(1.0, p.opacity * factor);
+            });
         else
             raiseFlatFeature(result, f, target);
     }
@@ -255,9 +241,8 @@ TransferFunction withFeatureOpacities(const TransferFunction& tf, const std::vec
 
 TransferFunction withFullPeaks(const TransferFunction& tf) {
     const auto raisable = [&](const Feature& f) {
-        return peakOf(tf, f) > 0 || std::any_of(tf.points.begin(), tf.points.end(), [&](const ControlPoint& p) {
-                   return p.x > f.a && p.x < f.b && !p.fixed;
-               });
+        return peakOf(tf, f) > 0 ||
+               std::ranges::any_of(tf.points, [&](const ControlPoint& p) { return isMovableInside(p, f); });
     };
     std::vector<double> peaks;
     for (const Feature& f : tf.features) peaks.push_back(raisable(f) ? 1.0 : 0.0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "base/check.h"
@@ -137,6 +138,12 @@ std::vector<int> materialPeaks(const std::vector<double>& matter, const std::opt
     return peaks;
 }
 
+std::vector<double> modesOf(const std::vector<int>& peaks) {
+    std::vector<double> modes;
+    std::ranges::transform(peaks, std::back_inserter(modes), middle);
+    return modes;
+}
+
 /// Share of matter beyond the background that lies near a peak.
 double fitOf(const std::vector<double>& matter, const std::vector<int>& peaks,
              const std::optional<BackgroundValues>& background) {
@@ -246,9 +253,7 @@ bool coverMatter(const ValueClasses& found, const ClassEvidence& evidence, const
 } // namespace
 
 std::vector<double> materialModes(const ClassEvidence& evidence, const std::optional<BackgroundValues>& background) {
-    std::vector<double> modes;
-    for (const int p : materialPeaks(smoothed(evidence.matter, kBandwidth), background)) modes.push_back(middle(p));
-    return modes;
+    return modesOf(materialPeaks(smoothed(evidence.matter, kBandwidth), background));
 }
 
 ValueClasses findClasses(const ClassEvidence& evidence, const std::optional<BackgroundValues>& background) {
@@ -256,9 +261,7 @@ ValueClasses findClasses(const ClassEvidence& evidence, const std::optional<Back
     const std::vector<int> peaks = materialPeaks(matter, background);
     const double fit = fitOf(matter, peaks, background);
     if ((peaks.size() >= 2 || (background && peaks.size() == 1 && fit >= 0.75)) && fit >= kLeastFit) {
-        std::vector<double> modes;
-        for (const int p : peaks) modes.push_back(middle(p));
-        ValueClasses result = classesAbout(modes, background);
+        ValueClasses result = classesAbout(modesOf(peaks), background);
         result.byPeaks = true;
         result.fit = fit;
         if (!background || coverMatter(result, evidence, *background)) return result;

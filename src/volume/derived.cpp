@@ -11,10 +11,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "base/check.h"
 #include "base/enum_names.h"
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/text.h"
 #include "volume/voxel_loops.h"
 
@@ -52,7 +50,7 @@ std::optional<Derivation> parseDerivation(const std::string& text) {
         (volatility ? d.frames : d.reference) = static_cast<int>(number);
         d.of.resize(last);
     }
-    if (d.of.empty()) throw fail("it does not say of which variable");
+    if (d.of.empty()) throw fail("it names no variable");
     return d;
 }
 
@@ -181,21 +179,14 @@ private:
         const Normaliser normalised(m_range);
         const bool allValid = volume->invalidCount() == 0;
         if (!allValid && m_invalid.empty()) m_invalid.assign(volume->size(), 0);
-        constexpr std::size_t kPiece = 1 << 16;
-        withSamples(*volume, [&](const auto& values) {
-            parallelFor((values.size() + kPiece - 1) / kPiece, [&](std::size_t piece) {
-                const std::size_t end = std::min(values.size(), (piece + 1) * kPiece);
-                for (std::size_t i = piece * kPiece; i < end; ++i) {
-                    if (!allValid && !volume->isValid(i)) {
-                        m_invalid[i] = static_cast<std::uint16_t>(m_invalid[i] + sign);
-                        continue;
-                    }
-                    const auto q =
-                        static_cast<std::int64_t>(normalised(static_cast<double>(values[i])) * m_units + 0.5);
-                    m_sums[i].sum += sign * q;
-                    m_sums[i].squares += sign * q * q;
-                }
-            });
+        forEachVoxel(*volume, {}, [&](const auto& values, std::size_t i) {
+            if (!allValid && !volume->isValid(i)) {
+                m_invalid[i] = static_cast<std::uint16_t>(m_invalid[i] + sign);
+                return;
+            }
+            const auto q = static_cast<std::int64_t>(normalised(static_cast<double>(values[i])) * m_units + 0.5);
+            m_sums[i].sum += sign * q;
+            m_sums[i].squares += sign * q * q;
         });
         if (sign > 0)
             m_in.insert(frame);
@@ -207,16 +198,11 @@ private:
         std::vector<float> out(m_sums.size());
         const auto n = static_cast<std::int64_t>(m_in.size());
         const double scale = 1.0 / (static_cast<double>(n) * m_units);
-        const std::size_t plane = m_sums.size() / static_cast<std::size_t>(dims.z);
-        parallelFor(static_cast<std::size_t>(dims.z), [&](std::size_t k) {
-            for (std::size_t i = k * plane; i < (k + 1) * plane; ++i) {
-                const Sums& s = m_sums[i];
-                // n·Σq² and (Σq)² are below n²·2⁴⁸ (n²·2⁴⁰): they fit.
-                out[i] =
-                    !m_invalid.empty() && m_invalid[i] > 0
-                        ? kInvalid
-                        : static_cast<float>(std::sqrt(static_cast<double>(n * s.squares - s.sum * s.sum)) * scale);
-            }
+        forEachPlace(dims, {}, [&](const Int3&, std::size_t i) {
+            const Sums& s = m_sums[i];
+            // n·Σq² and (Σq)² are below n²·2⁴⁸ (n²·2⁴⁰): they fit.
+            const double deviation = std::sqrt(static_cast<double>(n * s.squares - s.sum * s.sum)) * scale;
+            out[i] = !m_invalid.empty() && m_invalid[i] > 0 ? kInvalid : static_cast<float>(deviation);
         });
         return out;
     }

@@ -62,8 +62,7 @@ ExcerptPlan planExcerpt(const VolumeSource& source, const Int3& full, SampleType
             throw UsageError("the region " + std::to_string(region.lo[a]) + ":" + std::to_string(region.hi[a]) +
                                  " along " + "xyz"[a] + " does not lie in " + dimsText(full) + " voxels",
                              source.path, "give 0 <= first < end <= the number of voxels, along each axis");
-    if (source.downsample < 0)
-        throw UsageError("the factor of downsampling is not positive", source.path, "give 1 or more");
+    if (source.downsample < 0) throw UsageError("the downsampling factor is negative", source.path, "give 1 or more");
     // Samples in their file take no memory, but are of use only where all of them have room at a time.
     const auto samplesOf = [&](const ExcerptPlan& plan) { return voxelCount(plan.dims) * bytesPerSample(type); };
     const auto keptOf = [&](const ExcerptPlan& plan) { return inFile && plan.isWhole() ? 0 : samplesOf(plan); };
@@ -205,25 +204,18 @@ VoxelColors coarserColors(const VoxelColors& colors, int factor) {
     VoxelColors coarse{(n - 1) / glm::min(Int3(factor), n) + 1, {}};
     const Int3 d = coarse.dims, step = glm::min(Int3(factor), n);
     coarse.rgba.resize(voxelCount(d));
-    parallelFor(static_cast<std::size_t>(d.z), [&](std::size_t slice) {
-        std::size_t out = slice * layerSize(d);
-        const int k0 = static_cast<int>(slice) * step.z;
-        for (int j0 = 0; j0 < d.y * step.y; j0 += step.y)
-            for (int i0 = 0; i0 < d.x * step.x; i0 += step.x) {
-                std::array<std::uint32_t, 3> sum{};
-                std::uint32_t count = 0;
-                for (int k = k0; k < std::min(k0 + step.z, n.z); ++k)
-                    for (int j = j0; j < std::min(j0 + step.y, n.y); ++j)
-                        for (int i = i0; i < std::min(i0 + step.x, n.x); ++i) {
-                            const std::uint32_t c = colors.rgba[voxelIndex(n, i, j, k)];
-                            for (std::size_t a = 0; a < 3; ++a) sum[a] += c >> (8 * a) & 255u;
-                            ++count;
-                        }
-                const auto mean = [&](std::size_t a) {
-                    return static_cast<std::uint8_t>((sum[a] + count / 2) / count);
-                };
-                coarse.rgba[out++] = VoxelColors::pack(mean(0), mean(1), mean(2));
-            }
+    forEachPlace(d, {}, [&](const Int3& place, std::size_t out) {
+        const Int3 lo = place * step, hi = glm::min(lo + step, n);
+        std::array<std::uint32_t, 3> sum{};
+        std::uint32_t count = 0;
+        for (int k = lo.z; k < hi.z; ++k)
+            for (int j = lo.y; j < hi.y; ++j)
+                for (int i = lo.x; i < hi.x; ++i, ++count) {
+                    const std::uint32_t c = colors.rgba[voxelIndex(n, i, j, k)];
+                    for (std::size_t a = 0; a < 3; ++a) sum[a] += c >> (8 * a) & 255u;
+                }
+        const auto mean = [&](std::size_t a) { return static_cast<std::uint8_t>((sum[a] + count / 2) / count); };
+        coarse.rgba[out] = VoxelColors::pack(mean(0), mean(1), mean(2));
     });
     return coarse;
 }

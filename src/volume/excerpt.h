@@ -1,10 +1,9 @@
 // Volumes that are a part of their data, or coarser than they are.
 //
-// Voxel (i,j,k) of a volume downsampled by N is the mean over the valid ones of the voxels N·(i,j,k) … N·(i,j,k) + N −
-// 1 of the data, invalid where none is; of integers the mean is rounded, halves up. Spacing is N times as large, and
-// the first centre lies (N−1)/2 voxels further in, so that the data stay where they are: the box is the same where N
-// divides the size; elsewhere it reaches up to N − 1 voxels further, and the last voxel is the mean of those that there
-// are. An axis shorter than N becomes one voxel of its own length.
+// Voxel (i,j,k) of a volume downsampled by N is the mean of the valid voxels N·(i,j,k) … N·(i,j,k) + N − 1 of the data,
+// invalid where there are none; means of integers are rounded, halves up. Spacing is N times as large, and the first
+// centre lies (N−1)/2 voxels further in, so that the data stay where they are. Where N does not divide the size, the
+// box grows by up to N − 1 voxels, and the last voxel is the mean of fewer. An axis shorter than N becomes one voxel.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -67,8 +66,8 @@ private:
 /// Throws Cancelled.
 Volume excerptOf(const Volume& whole, const ExcerptPlan& plan, const JobControl& job = {});
 
-/// Means over blocks of `factor`³ voxels (≥ 1) of all of it, which keeps the reference length: opacities, saliency and
-/// figures mean what they do in `whole`, and differ by what the finer voxels say.
+/// The whole volume downsampled by `factor` ≥ 1, with the reference length of `whole`, so that opacities, saliency and
+/// figures mean the same in both.
 Volume coarserCopy(const Volume& whole, int factor);
 /// Colours by voxel on the grid of coarserCopy(): each the mean over `factor` (≥ 1) voxels along each axis, fewer at
 /// the far ends.

@@ -19,12 +19,11 @@ struct NumberedName {
 /// "f%03d.raw": one conversion d, i or u, with a width or none; "%%" is a percent sign. Empty for everything else.
 std::optional<NumberedName> numberedName(const std::string& path);
 
-/// Whether there is a wildcard in a path: * (any characters), ? (one), [abc], [a-z], [!a-z] (one of these, or none).
+/// Whether a path has a wildcard: * (any characters), ? (one), [abc], [a-z] (one of these), [!a-z] (none of these).
 bool isGlob(const std::string& path);
 bool matchesGlob(const std::string& pattern, const std::string& name);
 
-/// The files, in no order, that are there. Hidden ones only where the pattern begins with a dot. Empty where a folder
-/// cannot be read.
+/// The files that exist, in no order; none where the folder cannot be read. Hidden ones only for a pattern with a dot.
 std::vector<std::string> filesNumbered(const NumberedName& pattern);
 std::vector<std::string> filesMatching(const std::string& glob);
 std::vector<std::string> filesIn(const std::string& folder);

@@ -37,7 +37,7 @@ const VolumeFormat& formatOf(const std::string& path) {
     const bool named = lowerCase(path).ends_with(".raw");
     const auto suffixes = [](const VolumeFormat& format) { return joined(format.suffixes, " "); };
     throw FileError(named ? "headerless data needs its layout" : "the suffix names no known volume format", path,
-                    named ? "say how its bytes lie" : "give one of " + joined(formats(), " ", suffixes),
+                    named ? "describe how its bytes are laid out" : "give one of " + joined(formats(), " ", suffixes),
                     Remedy::GiveRawLayout);
 }
 
@@ -55,9 +55,9 @@ Volume readFile(const VolumeSource& source, const JobControl& job) {
 }
 
 Volume sample(const VolumeSource& source, const JobControl& job) {
-    if (source.raw) throw UsageError("a sample has no raw layout", source.path, "ask for none");
+    if (source.raw) throw UsageError("a sample has no raw layout", source.path, "leave it out");
     if (source.component != 0)
-        throw UsageError("a sample has one component", source.path, "ask for none", Remedy::NoComponent);
+        throw UsageError("a sample has one component", source.path, "leave the component out", Remedy::NoComponent);
     Volume volume = makeSample(source.path.substr(kSamplePrefix.size()), source.sampleSize, source.seed, job,
                                source.downsample > 1 || source.region ? MemoryUse{} : source.then, source.step);
     if (source.missing) {

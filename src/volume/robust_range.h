@@ -20,14 +20,13 @@ Run longestRun(const std::vector<double>& sorted);
 
 struct RobustRange {
     ValueRange range; ///< lo < hi where the values differ
-    /// A value that many voxels share, far from all others: a filler that the file does not declare as missing. It lies
-    /// outside `range`.
+    /// A value outside `range` that many voxels share: a filler that the file does not declare as missing.
     std::optional<double> filler;
 };
 
-/// The part of `data` (smallest and largest value) that the values fill: the range from the 0.05th to the 99.95th
-/// percentile of what is not the most common value; an end of `data` that lies less than half of that width beyond is
-/// taken whole, else a tenth of it. `values`: finite, a sample of the data, in any order.
+/// The part of `data` (smallest and largest value) that the values fill: from the 0.05th to the 99.95th percentile of
+/// what is not the most common value, and further at each end: to the end of `data` where that is less than half of
+/// this width away, else by a tenth of it. `values`: finite, a sample of the data, in any order.
 RobustRange robustRange(std::vector<double> values, const ValueRange& data);
 
 } // namespace pellucid

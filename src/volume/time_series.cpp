@@ -117,7 +117,9 @@ bool TimeSeries::mustWait(int frame) const {
 }
 
 void TimeSeries::note(int frame, const Volume& volume) {
-    FrameSummary summary;
+    FrameSummary summary = this->summary(frame);
+    if (summary.isKnown && summary.problem.empty()) return;
+    summary = {}; // a file may have come back
     summary.isKnown = true;
     summary.range = volume.dataRange();
     summary.validCount = volume.size() - volume.invalidCount();
@@ -168,20 +170,17 @@ std::shared_ptr<const Volume> TimeSeries::load(int frame, const JobControl& job)
     try {
         auto volume = std::make_shared<Volume>(m_make(frame, job));
         std::optional<Geometry> grid;
-        bool known = false;
         {
             const std::lock_guard lock(m_mutex);
             if (!m_geometry) m_geometry = volume->geometry();
             grid = m_geometry;
-            const FrameSummary& summary = m_summaries[static_cast<std::size_t>(frame)];
-            known = summary.isKnown && summary.problem.empty(); // a file may have come back
         }
         if (!onSameGrid(*grid, volume->geometry()))
             throw FileError("its grid (" + dimsText(volume->dims()) + ") is not that of the series (" +
                                 dimsText(grid->dims) + ")",
                             path, "leave it out");
         if (varies()) volume->title = m_listing.title;
-        if (!known) note(frame, *volume);
+        note(frame, *volume);
         finish(volume);
         return volume;
     } catch (const Error& error) {

@@ -86,7 +86,7 @@ TEST_CASE("frames are chosen by number", "[cli][series]") {
     refused({"--cache", "0"}, 2, "--cache");
     const Outcome none = w.run({"info", "e_*.nrrd"});
     CHECK(none.status == 1);
-    CHECK(none.err.find("no file of this name pattern") != std::string::npos);
+    CHECK(none.err.find("no file with a name of this pattern") != std::string::npos);
 }
 
 TEST_CASE("a headerless file holds as many steps as are asked for", "[cli][series]") {

@@ -134,7 +134,7 @@ TEST_CASE("files of formats that cannot be read yet are told what they are", "[b
             try {
                 loadVolume(source);
             } catch (const FileError& e) {
-                CHECK(e.remedy() == Remedy::AsSaid); // not "say how its bytes lie"
+                CHECK(e.remedy() == Remedy::AsSaid); // not "describe how its bytes are laid out"
             }
             // Those who know how they lie may still say so.
             source.raw = parseRawLayout("10,10,1,u8");

@@ -131,13 +131,13 @@ TEST_CASE("VTK files that are something else are refused in words", "[vtk][bad-i
     };
     CHECK(changed("UInt8", "UInt8") == "no error");
     CHECK_THAT(changed("type=\"ImageData\"", "type=\"UnstructuredGrid\""), Contains("UnstructuredGrid"));
-    CHECK_THAT(changed("PointData", "CellDatum"), Contains("no values of points"));
+    CHECK_THAT(changed("PointData", "CellDatum"), Contains("no values for points"));
     CHECK_THAT(
         errorOf(sourceOf(folder.write(
             "c.vti",
             "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece><CellData>"
             "<DataArray type=\"UInt8\" format=\"ascii\">1</DataArray></CellData></Piece></ImageData></VTKFile>"))),
-        Contains("of cells, not of points"));
+        Contains("for cells, not for points"));
     CHECK_THAT(changed("LittleEndian", "MiddleEndian"), Contains("MiddleEndian"));
     CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" header_type=\"UInt16\""), Contains("UInt16"));
     CHECK_THAT(changed("LittleEndian\"", "LittleEndian\" compressor=\"vtkLZ4DataCompressor\""), Contains("vtkLZ4"));
@@ -161,7 +161,7 @@ TEST_CASE("VTK files that are something else are refused in words", "[vtk][bad-i
     CHECK_THAT(changed("1 2 3 4 5 6", "1 2 3 4 5"), Contains("5 of 6 values"));
     CHECK_THAT(changed("1 2 3 4 5 6", "1 2 three 4 5 6"), Contains("three"));
     CHECK_THAT(changed("1 2 3 4 5 6", "1 2 3 4 5 256"), Contains("does not fit"));
-    CHECK_THAT(changed("</Piece>", "</Place>"), Contains("ends what has not begun"));
+    CHECK_THAT(changed("</Piece>", "</Place>"), Contains("closes an element that is not open"));
     CHECK_THAT(changed("</VTKFile>", ""), Contains("ends within"));
     CHECK_THAT(changed(" Name=\"a\"", " Name=a"), Contains("has no value"));
     CHECK_THAT(changed(" Name=\"a\"", " Name=\"a"), Contains("not valid XML"));
@@ -188,7 +188,7 @@ TEST_CASE("VTK data that are cut off or damaged are refused before anything is a
             const std::string good = file(style, values);
             CHECK(errorOf(sourceOf(folder.write("a.vti", good))) == "no error");
             CHECK_THAT(errorOf(sourceOf(folder.write("a.vti", file(style, values.substr(1))))),
-                       Contains("5999 bytes where its extent and type make 6000"));
+                       Contains("5999 bytes, but its extent and type need 6000"));
             // Cut off in the middle of the data: of inline data the element does not end.
             std::string cut = good.substr(0, good.size() / 2);
             CHECK(errorOf(sourceOf(folder.write("a.vti", cut))) != "no error");
@@ -280,7 +280,7 @@ TEST_CASE("a collection lists its files by time", "[vtk]") {
     CHECK_THAT(refused(collection("<DataSet file=\"b.pvd\"/>")), Contains("another collection"));
     CHECK_THAT(refused(collection("<DataSet timestep=\"1\" part=\"0\" file=\"f_a.vti\"/>"
                                   "<DataSet timestep=\"1\" part=\"1\" file=\"f_b.vti\"/>")),
-               Contains("one time step"));
+               Contains("same time step"));
     CHECK_THAT(refused("<VTKFile type=\"Collection\"><Collection><DataSet file=\"f_a.vti\"/>"),
                Contains("ends within"));
     CHECK_THAT(refused(vti({}, twoArrays({}))), Contains("not Collection"));

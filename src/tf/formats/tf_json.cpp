@@ -29,11 +29,10 @@ ControlPoint pointFromJson(const JsonValue& j) {
 }
 
 ValueRange rangeFromJson(const JsonValue& j) {
-    if (!j.json().is_array() || j.json().size() != 2) j.fail("two numbers [a,b] are expected");
-    const auto ends = j.items();
-    for (const JsonValue& end : ends)
-        if (!end.json().is_number()) j.fail("two numbers [a,b] are expected");
-    return {ends[0].json().get<double>(), ends[1].json().get<double>()};
+    const json& ends = j.json();
+    if (!ends.is_array() || ends.size() != 2 || !ends[0].is_number() || !ends[1].is_number())
+        j.fail("two numbers [a,b] are expected");
+    return {ends[0].get<double>(), ends[1].get<double>()};
 }
 
 Feature featureFromJson(const JsonValue& j, Identities identities) {

@@ -102,7 +102,7 @@ std::vector<ControlPoint> keysOf(const Reader& reader, const Element& keys) {
         if (split && reader.flag(split)) points.push_back(pointOf(reader, x, reader.child(key, "colorR")));
     }
     if (points.empty()) reader.fail("there are no keys", keys);
-    std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    std::ranges::stable_sort(points, {}, &ControlPoint::x);
     return points;
 }
 
@@ -140,16 +140,14 @@ void applyThreshold(std::vector<ControlPoint>& points, double lo, double hi) {
     };
     std::vector<ControlPoint> kept;
     for (const ControlPoint& p : points) kept.push_back(p.x < lo || p.x > hi ? transparent(p) : p);
-    const auto below = [](const ControlPoint& p, double x) { return p.x < x; };
-    const auto above = [](double x, const ControlPoint& p) { return x < p.x; };
     if (lo > 0) {
-        const auto place = std::lower_bound(kept.begin(), kept.end(), lo, below);
+        const auto place = std::ranges::lower_bound(kept, lo, {}, &ControlPoint::x);
         const bool there = place != kept.end() && place->x == lo;
         const auto step = kept.insert(place, transparent(at(lo)));
         if (!there) kept.insert(step + 1, at(lo));
     }
     if (hi < 1) {
-        auto place = std::upper_bound(kept.begin(), kept.end(), hi, above);
+        auto place = std::ranges::upper_bound(kept, hi, {}, &ControlPoint::x);
         if (place == kept.begin() || (place - 1)->x != hi) place = kept.insert(place, at(hi)) + 1;
         kept.insert(place, transparent(at(hi)));
     }

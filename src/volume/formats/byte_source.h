@@ -35,8 +35,8 @@ private:
     const JobControl& m_job;
 };
 
-/// What the deflate stream that begins at byte `start` of a file unpacks to: gzip, several members too; of zlib or gzip
-/// where `zlib`. What read() hands out may be damaged until the member that it lies in has ended: see soundBytes().
+/// The unpacked bytes of the deflate stream at byte `start` of a file: gzip, also of several members; with `zlib` it
+/// may be a zlib stream. Bytes may be damaged until the member that holds them has ended: see soundBytes().
 class InflatedBytes final : public ByteSource {
 public:
     enum class End {
@@ -65,7 +65,7 @@ public:
     InflatedBytes(const std::string& path, const Place& place, const JobControl& job);
     Place place() const;
     std::uint64_t decoded() const { return m_decoded; } ///< bytes that have come out
-    /// Of those, how many from the first one on lie in members that have ended with the right checksum and length.
+    /// How many of them lie in members that have ended with the right checksum and length.
     std::uint64_t soundBytes() const { return m_sound; }
 
     /// How the stream ended; None before read() has returned fewer bytes than it was asked for.
@@ -104,7 +104,7 @@ private:
     std::uint64_t m_before = 0; // characters before m_piece
 };
 
-/// The bytes that hexadecimal digits stand for, blanks and line ends left out. Anything else ends the data.
+/// The bytes of hexadecimal digits; blanks and line ends are skipped, anything else ends the data.
 class HexBytes final : public ByteSource {
 public:
     HexBytes(const std::string& path, std::uint64_t start, const JobControl& job) : m_digits(path, start, job) {}
@@ -114,7 +114,7 @@ private:
     FileCharacters m_digits;
 };
 
-/// The words of a text, between blanks, line ends or commas, up to its end or a "<": there markup begins.
+/// The words of a text, separated by blanks, line ends or commas, up to its end or to markup ("<").
 class TextWords {
 public:
     TextWords(const std::string& path, std::uint64_t start, const JobControl& job) : m_text(path, start, job) {}

@@ -160,7 +160,7 @@ std::uint64_t valueCount(const std::string& path, std::span<const std::int64_t> 
                             "correct the header");
         const auto factor = static_cast<std::uint64_t>(size);
         if (size > std::numeric_limits<std::int32_t>::max() || count > kMost / bytesPerValue / factor)
-            throw FileError("the header gives dimensions " + product + ", more than any memory holds", path,
+            throw FileError("the header gives dimensions " + product + ", more than any memory can hold", path,
                             "correct the header");
         count *= factor;
     }
@@ -220,20 +220,12 @@ void failToInflate(const std::string& path, const InflatedBytes& bytes, std::uin
     const std::uint64_t yield = bytes.decoded();
     const std::string after =
         " after " + std::to_string(yield) + (yield < wanted ? " of " + std::to_string(wanted) + " bytes" : " bytes");
-    switch (bytes.end()) {
-    case End::WrongSum:
-        throw FileError("the checksum of the compressed data is wrong", path, "copy or write the file again");
-    case End::Damaged:
-        throw FileError("the compressed data is damaged" + after, path, "copy or write the file again");
-    case End::CutOff:
-        if (yield >= wanted)
-            throw FileError("the compressed data is cut off" + after + ", before its checksum", path,
-                            "copy the file again");
-        break;
-    default:
-        break;
-    }
-    throw FileError("the compressed data ends" + after, path, "copy or write the file again");
+    std::string what = "the compressed data ends" + after;
+    if (bytes.end() == End::WrongSum) what = "the checksum of the compressed data is wrong";
+    if (bytes.end() == End::Damaged) what = "the compressed data is damaged" + after;
+    if (bytes.end() == End::CutOff && yield >= wanted)
+        what = "the compressed data is cut off" + after + ", before its checksum";
+    throw FileError(what, path, "copy or write the file again");
 }
 
 void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job) {

@@ -20,8 +20,8 @@ std::uint64_t readableFileBytes(const std::string& path);
 /// The first `limit` bytes, fewer where the file is shorter. Throws FileError.
 std::string fileHead(const std::string& path, std::size_t limit);
 
-/// Size of the file that holds the samples, `data`, which the header `header` names; they may be one. Throws FileError
-/// as readableFileBytes(), and one that names both where `data` is missing.
+/// Size of the file `data`, which holds the samples and is named in the file `header`, or is that file. Throws
+/// FileError as readableFileBytes() does; where `data` is missing, it names both.
 std::uint64_t dataFileBytes(const std::string& data, const std::string& header);
 
 /// Throws UsageError unless `index` is that of one of the `count` things called `what` ("time step") in a file.
@@ -30,8 +30,7 @@ void requireIndex(const std::string& what, int index, std::uint64_t count, const
 /// What a file seems to be, for error messages: "a PNG image", "text", "binary data", …
 std::string describeContent(std::string_view head);
 
-/// What is wrong with a file of volume data in a format that no reader knows yet (DICOM, TIFF), by its content; none of
-/// all others, and of those that cannot be read.
+/// The error for a file that is DICOM or TIFF by its content, which no reader knows yet; empty for all others.
 std::optional<FileError> unreadFormat(const std::string& path);
 
 /// What is wrong with a file that is not `expected` ("an NRRD file"), by its first 1024 bytes.
@@ -48,22 +47,19 @@ enum class Encoding { Raw, Deflate, Text, Hex };
 void requireStored(const std::string& where, Encoding encoding, std::uint64_t values, std::uint64_t bytesPerValue,
                    std::uint64_t stored, const std::string& toDo);
 
-/// Unpacks the deflate stream that begins at byte `start` of a file (gzip, several members too; of zlib or gzip where
-/// `zlib`) without keeping it. Throws FileError unless it yields at least `wanted` bytes whose members have the right
-/// checksum and length, however much longer they are. Throws Cancelled.
+/// Unpacks the stream that InflatedBytes reads, without keeping it. Throws FileError unless it yields `wanted` bytes or
+/// more in members with the right checksum and length. Throws Cancelled.
 void requireInflates(const std::string& path, std::uint64_t start, bool zlib, std::uint64_t wanted,
                      const JobControl& job);
 
-/// Likewise of all that a gzip stream unpacks to, `wanted` bytes or more, behind which nothing may stand in the file
-/// but zeros. Returns how many there are.
+/// The same for a whole gzip stream, which only zeros may follow in the file. Returns how many bytes it yields.
 std::uint64_t requireInflatesToEnd(const std::string& path, std::uint64_t start, std::uint64_t wanted,
                                    const JobControl& job);
 
 /// Throws a FileError that says why a stream, read as far as it goes, does not hold `wanted` sound bytes.
 [[noreturn]] void failToInflate(const std::string& path, const InflatedBytes& bytes, std::uint64_t wanted);
 
-/// Throws FileError unless the text that begins at byte `start` of a file holds `wanted` numbers, between blanks or
-/// commas.
+/// Throws FileError unless the text at byte `start` of a file holds `wanted` numbers, separated by blanks or commas.
 void requireNumbers(const std::string& path, std::uint64_t start, std::uint64_t wanted, const JobControl& job);
 
 } // namespace pellucid

@@ -52,15 +52,13 @@ std::shared_ptr<InflateIndex> InflateIndex::of(const std::string& path, std::uin
     const std::uintmax_t bytes = std::filesystem::file_size(path, ec);
     const auto time = std::filesystem::last_write_time(path, ec);
     const std::lock_guard lock(s_mutex);
-    for (auto known = s_known.begin(); known != s_known.end(); ++known) {
-        if (known->path != path || known->start != start || known->zlib != zlib) continue;
-        if (known->bytes == bytes && known->time == time) {
-            s_known.splice(s_known.begin(), s_known, known);
-            return s_known.front().index;
-        }
-        s_known.erase(known);
-        break;
+    const auto known = std::ranges::find_if(
+        s_known, [&](const Known& k) { return k.path == path && k.start == start && k.zlib == zlib; });
+    if (known != s_known.end() && known->bytes == bytes && known->time == time) {
+        s_known.splice(s_known.begin(), s_known, known);
+        return s_known.front().index;
     }
+    if (known != s_known.end()) s_known.erase(known);
     s_known.push_front({path, start, zlib, bytes, time, std::make_shared<InflateIndex>(path, start, zlib)});
     if (s_known.size() > kMostFiles) s_known.pop_back();
     return s_known.front().index;

@@ -1,4 +1,4 @@
-// Places in a deflate stream from which it can be read on, so that its parts can be read in any order.
+// Places in a deflate stream where reading can resume, so that its parts can be read in any order.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,13 @@
 
 namespace pellucid {
 
-/// Of one stream. Whether it is sound is known once the checksum of each of its members has been compared, which is
-/// done once, up to the end of the member that is asked for: the whole stream, where it is one member, as it mostly is.
-/// After that any byte can be reached from one of at most 64 places (40 kB each): reading a step of a series costs that
-/// step and at most 1/32 of the stream. Any thread may call anything; unpacking for the first time is done by one at a
-/// time.
+/// The index of one stream. The stream is unpacked once, up to the end of the member that holds the wanted bytes, to
+/// compare checksums. Then any byte can be reached from one of at most 64 places (40 kB each): reading a step of a
+/// series costs that step and at most 1/32 of the stream. Thread-safe; one thread at a time unpacks.
 class InflateIndex {
 public:
-    /// Of the stream that begins at byte `start` of a file: the same as before, as long as size and time of the file
-    /// are the same. Those of the latest 16 files are kept.
+    /// The index of the stream at byte `start` of a file; the same one as long as the file keeps its size and time. The
+    /// latest 16 are kept.
     static std::shared_ptr<InflateIndex> of(const std::string& path, std::uint64_t start, bool zlib);
 
     InflateIndex(std::string path, std::uint64_t start, bool zlib);

@@ -47,7 +47,7 @@ ValueType typeIn(const TextHeader& header) {
     if (type.size() > 6 && type.ends_with("_ARRAY")) type.resize(type.size() - 6);
     if (const auto it = kTypes.find(type); it != kTypes.end()) return it->second;
     header.fail("the ElementType " + inQuotes(given) + " is not supported",
-                "it is one of MET_CHAR, MET_UCHAR, … MET_FLOAT, MET_DOUBLE");
+                "use one of MET_CHAR, MET_UCHAR, … MET_FLOAT, MET_DOUBLE");
 }
 
 /// The numbers of the first of `names` that the header has; empty where it has none. Throws FileError unless they are

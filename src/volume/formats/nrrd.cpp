@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <initializer_list>
 #include <limits>
 #include <map>
 #include <optional>
@@ -68,21 +67,14 @@ bool isBigEndian(const TextHeader& header, const FileLayout& layout) {
 
 /// "none (1,0,0) (0,1,0)": one word per axis; blanks inside the brackets are allowed.
 std::vector<std::string> splitVectors(const std::string& text) {
-    std::vector<std::string> words;
+    std::string spaced;
     bool inside = false;
-    std::string word;
-    for (const char c : text + " ") {
-        const bool blank = c == ' ' || c == '\t';
-        if (!blank) word += c;
-        if (c == '(') inside = true;
-        if (c == ')') inside = false;
-        if ((blank || c == ')') && !inside && !word.empty()) {
-            words.push_back(word);
-            word.clear();
-        }
+    for (const char c : text) {
+        inside = c == '(' || (inside && c != ')');
+        if (!inside || (c != ' ' && c != '\t')) spaced += c;
+        if (c == ')') spaced += ' ';
     }
-    if (!word.empty()) words.push_back(word); // a bracket that is not closed
-    return words;
+    return splitWords(spaced);
 }
 
 /// The numbers of "(x,y,z)". Throws FileError where they cannot be read or are not finite.

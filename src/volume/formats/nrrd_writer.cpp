@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "volume/formats/text_header.h"
 #include "volume/loader.h"
 #include "volume/voxel_loops.h"

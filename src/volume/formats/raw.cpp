@@ -44,7 +44,8 @@ Volume readRaw(const VolumeSource& source, const JobControl& job) {
     const RawLayout& layout = *source.raw;
     const std::uint64_t bytes = stepBytes(source);
     if (source.component != 0)
-        throw UsageError("headerless data has one component, number 0", path, "ask for none", Remedy::NoComponent);
+        throw UsageError("headerless data has one component, number 0", path, "leave the component out",
+                         Remedy::NoComponent);
     const std::uint64_t fileBytes = readableFileBytes(path);
     const int steps = rawSteps(source);
     if (steps == 1 && (layout.skipBytes > fileBytes || fileBytes - layout.skipBytes != bytes)) {

@@ -15,10 +15,9 @@ struct VolumeFormat {
     std::vector<std::string> suffixes; ///< lower case, with the dot: ".nrrd"
     /// What source.path holds, by its header alone. Throws FileError.
     FileContents (*describe)(const VolumeSource& source, const JobControl& job);
-    /// Reads source.path (an existing file that is not empty): samples of source.step and source.array, geometry,
-    /// source.missing and source.component. The window, title and format are left to the caller. Of a file with several
-    /// steps, nothing behind the one that is read need be there, unless it is compressed: the checksum stands at the
-    /// end.
+    /// Reads source.path (an existing file that is not empty): samples of source.step, source.array and
+    /// source.component, geometry, and source.missing. The caller sets window, title and format. What follows the step
+    /// in the file need not be there, unless the data are compressed: their checksum stands at the end.
     Volume (*read)(const VolumeSource& source, const JobControl& job);
     /// The files that hold the samples, where the header names others. Throws FileError. Null: they are in the file.
     std::vector<std::string> (*dataFiles)(const std::string& path) = nullptr;

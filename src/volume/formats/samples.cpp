@@ -14,7 +14,6 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "base/check.h"
 #include "base/error.h"
 #include "volume/excerpt.h"
 #include "volume/formats/byte_source.h"
@@ -406,8 +405,7 @@ std::uint64_t valuesIn(const FileLayout& layout, const std::string& path) {
 
 std::uint64_t valuesUpTo(const FileLayout& layout, int step) {
     const Selection selection = selectionOf(layout, 0, 0);
-    std::uint64_t all = 1;
-    for (const FileAxis& axis : layout.axes) all *= static_cast<std::uint64_t>(axis.size);
+    const std::uint64_t all = valuesIn(layout, layout.dataPath);
     if (!selection.stepsAreApart) return all;
     return all / selection.steps *
            std::min<std::uint64_t>(static_cast<std::uint64_t>(std::max(step, 0)) + 1, selection.steps);
@@ -473,7 +471,8 @@ Volume readSamples(const VolumeSource& source, const FileLayout& layout, const J
     requireIndex("component", source.component, selection.components, path);
     requireIndex("time step", source.step, selection.steps, path);
     if (!source.array.empty() && layout.array != source.array)
-        throw UsageError("there is no array " + inQuotes(source.array), path, "the file's data has no name: give none");
+        throw UsageError("there is no array " + inQuotes(source.array), path,
+                         "the file does not name its arrays: leave the name out");
 
     std::vector<std::string> notices = layout.notices;
     if (selection.components > 1)

@@ -1,5 +1,5 @@
-// From what a header says to a volume: the part that every format shares. No format library takes part, so that each
-// byte of a file passes through code that checks it.
+// From what a header says to a volume: the part that all formats share. No format library takes part, so that our own
+// code checks each byte of a file.
 #pragma once
 
 #include <cstdint>
@@ -63,15 +63,15 @@ struct FileLayout {
     std::vector<std::string> notices;
 };
 
-/// A direction as headers have it, made a unit vector; rounding of the header's numbers, up to 1e-6, is taken out, so
-/// that axes along the world's are exactly that. Zero, and so refused later, where it is no direction.
+/// The unit vector of a direction in a header. Within 1e-6 of an axis of the world it is that axis, since headers round
+/// their numbers. Zero, and so refused later, where it is not a direction.
 Vec3 cleanDirection(const Vec3& direction);
 
 /// Number of values along all axes together, which fits into 2^63 bytes. Throws FileError at `path`.
 std::uint64_t valuesIn(const FileLayout& layout, const std::string& path);
 
-/// Number of values from the first one that reading `step` has to go through: those of all steps up to it where steps
-/// lie one behind the other, otherwise all.
+/// How many values have to be gone through to read `step`: those of all steps up to it where steps follow each other,
+/// otherwise all.
 std::uint64_t valuesUpTo(const FileLayout& layout, int step);
 
 /// Throws FileError unless the data file holds `wanted` values, `stored` bytes of it beginning at layout.start. Unpacks
@@ -83,13 +83,13 @@ void requireData(FileLayout& layout, std::uint64_t stored, std::uint64_t wanted,
 /// What the layout says that can be chosen of.
 FileContents contentsOf(const FileLayout& layout);
 
-/// Samples of so many bytes and more are not read but mapped (MappedFile), where the file has them as memory would:
-/// raw, in this machine's byte order, unscaled. Smaller files are read, so that they may change while they are in use.
+/// Samples of this many bytes or more are mapped (MappedFile) rather than read, where the file has them as memory
+/// would: raw, in this machine's byte order, unscaled. Smaller files are read, so that they may change while they are
+/// in use.
 inline constexpr std::uint64_t kMapBytes = 16u << 20;
 
-/// Reads time step source.step, component source.component. The caller has seen to it that the data are long enough
-/// (file_check.h); whatever is wrong nonetheless is a FileError. Throws UsageError for a component or a step that is
-/// not there, or a named array.
+/// Reads component source.component of time step source.step, after requireData(); what is still wrong is a FileError.
+/// Throws UsageError for a component, a step or an array that is not there.
 Volume readSamples(const VolumeSource& source, const FileLayout& layout, const JobControl& job);
 
 } // namespace pellucid

@@ -191,7 +191,7 @@ std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const Jo
     auto from = encodedBytes(data, job);
     const Header header = readHeader(*from, data, stored);
     if (header.bytes != bytes)
-        throw FileError("the array has " + std::to_string(header.bytes) + " bytes where its extent and type make " +
+        throw FileError("the array has " + std::to_string(header.bytes) + " bytes, but its extent and type need " +
                             std::to_string(bytes),
                         data.path, toDo);
     if (!data.base64 && !data.compressed) {
@@ -199,10 +199,8 @@ std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const Jo
         requireStored(data.path, Encoding::Raw, bytes, 1, stored - before, toDo);
         return data.start + before;
     }
-    if (data.compressed)
-        requireStored(data.path, Encoding::Deflate, bytes, 1, stored, toDo);
-    else
-        requireStored(data.path, Encoding::Raw, bytes, 1, stored / 4 * 3 + 3, toDo);
+    requireStored(data.path, data.compressed ? Encoding::Deflate : Encoding::Raw, bytes, 1,
+                  data.compressed ? stored : stored / 4 * 3 + 3, toDo);
     // Unpacked once without keeping it: nothing is allocated for what is not there.
     const auto unpacked = openVtkData(data, job);
     std::vector<char> piece(1u << 18);

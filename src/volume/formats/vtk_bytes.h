@@ -1,5 +1,4 @@
-// The data of arrays as VTK's XML files hold them: after a header of their own, as they are or in base64, packed in
-// blocks or not.
+// The data of arrays in VTK's XML files: behind a header of their own, plain or in base64, packed in blocks or not.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +10,7 @@
 
 namespace pellucid {
 
-/// The bytes that base64 digits stand for, blanks left out; what is padded may go on behind its padding. Anything else
-/// ends the data.
+/// The bytes of base64 digits; blanks are skipped, digits may follow padding, anything else ends the data.
 class Base64Bytes final : public ByteSource {
 public:
     Base64Bytes(const std::string& path, std::uint64_t start, const JobControl& job) : m_digits(path, start, job) {}
@@ -59,8 +57,8 @@ struct VtkData {
     int headerBytes = 4; ///< of a number in the header: 4 or 8
 };
 
-/// Throws FileError unless the header says that there are `bytes` bytes, and the file can hold them. Returns the place
-/// of the data of VtkData that are neither base64 nor compressed.
+/// Throws FileError unless the header announces `bytes` bytes and the file holds them. Returns where the data begin
+/// that are neither base64 nor compressed.
 std::uint64_t requireVtkBytes(const VtkData& data, std::uint64_t bytes, const JobControl& job);
 
 /// The bytes behind the header. The caller has looked at it by requireVtkBytes(). `job` must outlive it.

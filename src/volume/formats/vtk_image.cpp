@@ -1,6 +1,7 @@
 // VTK's XML files of image data (.vti), and collections of files over time (.pvd).
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -87,14 +88,10 @@ void checkIsXml(const std::string& path) {
 
 /// The byte behind the "_" that appended data begin with.
 std::uint64_t appendedStart(const std::string& path, std::uint64_t from, const JobControl& job) {
-    FileBytes bytes(path, from, job);
-    std::array<char, 4096> head{};
-    const std::size_t count = bytes.read(head.data(), head.size());
-    for (std::size_t i = 0; i < count; ++i) {
-        if (head[i] == '_') return from + i + 1;
-        if (std::string_view(" \t\r\n").find(head[i]) == std::string_view::npos) break;
-    }
-    failAt(path, "the appended data do not begin with an underscore");
+    FileCharacters text(path, from, job);
+    while (std::isspace(text.peek()) != 0) text.pass();
+    if (text.peek() != '_') failAt(path, "the appended data do not begin with an underscore");
+    return from + text.passed() + 1;
 }
 
 VtkArray arrayOf(const XmlTag& tag, const std::string& path) {
@@ -176,14 +173,14 @@ VtkImage readHeader(const std::string& path, const JobControl& job) {
             ended = image.appendedStart.has_value(); // no XML from here on
         } else {
             if (inside.empty() || inside.back() != tag.name)
-                failAt(path, "this is not valid XML: </" + tag.name + "> ends what has not begun");
+                failAt(path, "this is not valid XML: </" + tag.name + "> closes an element that is not open");
             inside.pop_back();
             ended = inside.empty();
         }
     }
     if (!ended && !inside.empty())
         failAt(path, "the file ends within its element " + inQuotes(inside.back()), "copy it again");
-    if (!image.wholeExtent) failAt(path, "there is no ImageData in it");
+    if (!image.wholeExtent) failAt(path, "the file has no ImageData");
     if (image.pieceExtent && !image.pieceExtent->empty() &&
         splitWords(*image.pieceExtent) != splitWords(*image.wholeExtent))
         failAt(path, "its piece is not the whole image", "write the whole image in one piece");
@@ -198,7 +195,7 @@ ValueType typeOf(const VtkArray& array, const std::string& path) {
     const auto it = kTypes.find(array.type);
     if (it != kTypes.end()) return it->second;
     failAt(path, "the type " + inQuotes(array.type) + " is not supported",
-           "it is one of Int8, UInt8, … Float32, Float64");
+           "use one of Int8, UInt8, … Float32, Float64");
 }
 
 /// Where the data of an array are, checked against the file where `whole`.
@@ -236,8 +233,8 @@ void placeData(FileLayout& layout, const VtkImage& image, const VtkArray& array,
 const VtkArray& chosenArray(const VtkImage& image, const std::string& name) {
     if (image.arrays.empty()) {
         if (image.cellArrays > 0)
-            failAt(image.path, "its values are of cells, not of points", "convert its cell data to point data");
-        failAt(image.path, "there are no values of points in it");
+            failAt(image.path, "the file has values for cells, not for points", "convert its cell data to point data");
+        failAt(image.path, "the file has no values for points");
     }
     const auto found = std::ranges::find(image.arrays, name.empty() ? image.activeScalars : name, &VtkArray::name);
     if (!name.empty() && found == image.arrays.end()) {
@@ -342,7 +339,7 @@ std::vector<CollectionEntry> readCollection(const std::string& path, const JobCo
     if (!std::ranges::all_of(entries, [](const CollectionEntry& e) { return e.time.has_value(); })) return entries;
     std::ranges::stable_sort(entries, {}, &CollectionEntry::time);
     if (std::ranges::adjacent_find(entries, {}, &CollectionEntry::time) != entries.end())
-        failAt(path, "two files of the collection are of one time step", "write each step in one piece");
+        failAt(path, "two files of the collection have the same time step", "write each step in one piece");
     return entries;
 }
 
@@ -369,7 +366,6 @@ FileContents describeCollection(const VolumeSource& source, const JobControl& jo
     contents.steps = static_cast<int>(entries.size());
     contents.times.clear();
     contents.timeUnit.clear();
-    contents.stepFiles.clear();
     for (const CollectionEntry& entry : entries) {
         contents.stepFiles.push_back(entry.path);
         if (entry.time) contents.times.push_back(*entry.time);

@@ -1,5 +1,4 @@
-// The tags of an XML file, one after the other, without keeping what stands between them: that may be gigabytes of
-// data.
+// The tags of an XML file, one after the other; the data between them, perhaps gigabytes, are skipped.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +21,7 @@ struct XmlTag {
     std::string get(const std::string& attribute) const;
 };
 
-/// Comments, instructions and what stands between tags are passed over. A tag is shorter than 64 KiB.
+/// Skips comments, instructions and what stands between tags. A tag is shorter than 64 KiB.
 class XmlTags {
 public:
     XmlTags(const std::string& path, const JobControl& job) : m_path(path), m_text(path, 0, job) {}

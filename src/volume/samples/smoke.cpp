@@ -1,6 +1,5 @@
 // Smoke by Stam's stable fluids with vorticity confinement (Fedkiw et al. 2001): semi-Lagrangian transport, buoyancy,
 // and a projection that leaves a flow without sources.
-#include <array>
 #include <cmath>
 #include <mutex>
 #include <optional>
@@ -19,7 +18,9 @@ namespace pellucid {
 namespace {
 
 constexpr Int3 kCells{36, 36, 72};
-constexpr std::array<Int3, 3> kAxes{Int3(1, 0, 0), Int3(0, 1, 0), Int3(0, 0, 1)};
+
+/// One cell along an axis.
+Int3 stepAlong(int axis) { return {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0}; }
 
 /// A closed box of air, open at the top. Lengths are cells, times frames.
 class SmokeSolver {
@@ -85,8 +86,8 @@ private:
         Grid<glm::vec3> curl(kCells);
         Grid<float> size(kCells);
         forEachCell([&](const Int3& c, std::size_t n) {
-            const auto slope = [&](std::size_t axis) {
-                return 0.5f * (at(m_velocity, c + kAxes[axis]) - at(m_velocity, c - kAxes[axis]));
+            const auto slope = [&](int axis) {
+                return 0.5f * (at(m_velocity, c + stepAlong(axis)) - at(m_velocity, c - stepAlong(axis)));
             };
             const glm::vec3 alongX = slope(0), alongY = slope(1), alongZ = slope(2);
             curl[n] = {alongY.z - alongZ.y, alongZ.x - alongX.z, alongX.y - alongY.x};
@@ -96,10 +97,7 @@ private:
         forEachCell([&](const Int3& c, std::size_t n) {
             m_velocity[n].z += kBuoyancy * m_heat[n] - kWeight * m_density[n];
             glm::vec3 rise;
-            for (int a = 0; a < 3; ++a) {
-                const Int3& axis = kAxes[static_cast<std::size_t>(a)];
-                rise[a] = at(size, c + axis) - at(size, c - axis);
-            }
+            for (int a = 0; a < 3; ++a) rise[a] = at(size, c + stepAlong(a)) - at(size, c - stepAlong(a));
             const float length = glm::length(rise);
             if (length >= 1e-6f) m_velocity[n] += kConfinement / length * glm::cross(rise, curl[n]);
         });
@@ -114,10 +112,7 @@ private:
         };
         forEachCell([&](const Int3& c, std::size_t n) {
             float sum = 0;
-            for (int a = 0; a < 3; ++a) {
-                const Int3& axis = kAxes[static_cast<std::size_t>(a)];
-                sum = sum + flow(c + axis)[a] - flow(c - axis)[a];
-            }
+            for (int a = 0; a < 3; ++a) sum = sum + flow(c + stepAlong(a))[a] - flow(c - stepAlong(a))[a];
             m_divergence[n] = 0.5f * sum;
         });
         const auto pressure = [&](const Int3& c) { // 0 above the top
@@ -128,16 +123,14 @@ private:
         for (int step = 0; step < kSteps; ++step) {
             forEachCell([&](const Int3& c, std::size_t n) {
                 float sum = 0;
-                for (const Int3& axis : kAxes) sum = sum + pressure(c + axis) + pressure(c - axis);
+                for (int a = 0; a < 3; ++a) sum = sum + pressure(c + stepAlong(a)) + pressure(c - stepAlong(a));
                 next[n] = (sum - m_divergence[n]) / 6;
             });
             std::swap(next, m_pressure);
         }
         forEachCell([&](const Int3& c, std::size_t n) {
-            for (int a = 0; a < 3; ++a) {
-                const Int3& axis = kAxes[static_cast<std::size_t>(a)];
-                m_velocity[n][a] -= 0.5f * (pressure(c + axis) - pressure(c - axis));
-            }
+            for (int a = 0; a < 3; ++a)
+                m_velocity[n][a] -= 0.5f * (pressure(c + stepAlong(a)) - pressure(c - stepAlong(a)));
         });
     }
 
