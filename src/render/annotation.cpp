@@ -24,6 +24,10 @@ Rgb groundOf(const RenderSettings& picture) {
     return picture.background && picture.backgroundTop ? mixed(bottom, *picture.backgroundTop, 0.5) : bottom;
 }
 
+PixelBox joined(const PixelBox& a, const PixelBox& b) {
+    return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right), std::max(a.bottom, b.bottom)};
+}
+
 /// The sheet that everything is laid out on.
 class Sheet : private MarkMaker {
 public:
@@ -33,12 +37,12 @@ public:
           m_cap(capHeight), m_margin(margin), m_box(box) {}
 
     std::vector<Mark> marks() {
-        const FrameOfReference& show = m_in.show;
+        const AnnotationChoice& show = m_in.show;
         if (!show.on) return {};
         if (show.cube) addCube();
         if (show.scale) addScale();
         if (show.legend) addLegend();
-        if (show.letters && m_in.geometry.frame == Frame::Patient) addLetters();
+        if (show.letters && m_in.geometry.worldAxes == WorldAxes::Patient) addLetters();
         for (Mark& name : m_names) place({std::move(name)}); // where they fit
         if (show.title) addTitle();
         if (!show.axes) return std::move(m_marks);
@@ -54,17 +58,13 @@ private:
 
     bool isFree(const PixelBox& box) const {
         if (box.left < 0 || box.top < 0 || box.right > m_width || box.bottom > m_height) return false;
-        return std::none_of(m_taken.begin(), m_taken.end(), [&](const PixelBox& t) { return t.meets(box); });
+        return std::ranges::none_of(m_taken, [&](const PixelBox& t) { return t.meets(box); });
     }
     /// Adds marks that belong together, and keeps others away from them; false: there is no room.
     bool place(std::vector<Mark> group) {
         if (group.empty()) return false;
         PixelBox box = extentOf(group.front());
-        for (const Mark& mark : group) {
-            const PixelBox one = extentOf(mark);
-            box = {std::min(box.left, one.left), std::min(box.top, one.top), std::max(box.right, one.right),
-                   std::max(box.bottom, one.bottom)};
-        }
+        for (const Mark& mark : group) box = joined(box, extentOf(mark));
         if (!isFree(box)) return false;
         m_taken.push_back(box);
         std::move(group.begin(), group.end(), std::back_inserter(m_marks));
@@ -77,16 +77,13 @@ private:
         const double radius = std::max(18 * m_in.density, 0.055 * std::min(m_width, m_height)); // to a corner
         const double half = radius / std::sqrt(3.0);
         const Vec2 middle{m_margin + radius, m_height - m_margin - radius};
-        const auto at = [&](const Vec3& p) { // p in half edges
-            const Vec3 t = m_project.turned(p);
-            return middle + Vec2(t.x, -t.y) * half;
-        };
-        const auto onPicture = [&](const Vec3& d) {
+        const auto onPicture = [&](const Vec3& d) { // d in half edges
             const Vec3 t = m_project.turned(d);
             return Vec2(t.x, -t.y) * half;
         };
+        const auto at = [&](const Vec3& p) { return middle + onPicture(p); };
         constexpr std::array<Rgb, 3> kColors{Rgb{0.72, 0.33, 0.31}, Rgb{0.36, 0.56, 0.33}, Rgb{0.30, 0.45, 0.74}};
-        const bool patient = m_in.geometry.frame == Frame::Patient;
+        const bool patient = m_in.geometry.worldAxes == WorldAxes::Patient;
         std::vector<Mark> cube;
         for (int axis = 0; axis < 3; ++axis)
             for (const double sign : {1.0, -1.0}) {
@@ -100,8 +97,8 @@ private:
                 const std::vector<Vec2> corners{at(normal - right - up), at(normal + right - up),
                                                 at(normal + right + up), at(normal - right + up)};
                 const Rgb color = mixed(kDarkInk, kColors[static_cast<std::size_t>(axis)], 0.45 + 0.55 * facing);
-                cube.push_back(areaMark(FramePart::Cube, corners, color));
-                Mark edges = lineMark(FramePart::Cube, corners, std::max(m_in.density, 0.09 * m_cap));
+                cube.push_back(areaMark(AnnotationPart::Cube, corners, color));
+                Mark edges = lineMark(AnnotationPart::Cube, corners, std::max(m_in.density, 0.09 * m_cap));
                 edges.points.push_back(corners.front());
                 edges.color = mixed(kLightInk, color, 0.35);
                 edges.halo = 0;
@@ -109,7 +106,7 @@ private:
                 std::string text(1, patient ? patientLetter(axis, sign > 0) : "XYZ"[axis]);
                 if (!patient && sign < 0) text = "−" + text;
                 const double cap = text.size() == 1 ? 1.15 : 0.85; // in half edges
-                Mark letter = textMark(FramePart::Cube, text, {}, Align::Start, Align::Start, m_cap);
+                Mark letter = textMark(AnnotationPart::Cube, text, {}, Align::Start, Align::Start, m_cap);
                 const Vec3 start = normal - right * (0.5 * cap * textWidth(text)) - up * (0.5 * cap);
                 letter.points = {at(start)};
                 letter.across = onPicture(right * cap);
@@ -129,13 +126,13 @@ private:
         const double length = roundNumberBelow(0.22 * m_width * units), pixels = length / units;
         if (!std::isfinite(pixels)) return;
         const std::string text =
-            numberText(length, length) + (m_in.geometry.frame == Frame::Patient ? " mm" : " units");
+            numberText(length, length) + (m_in.geometry.worldAxes == WorldAxes::Patient ? " mm" : " units");
         const double stroke = std::max(1.2 * m_in.density, 0.17 * m_cap), end = 0.45 * m_cap;
         const double block = std::max(pixels, m_cap * textWidth(text));
         const double right = m_width - m_margin - (block - pixels) / 2, y = m_height - m_margin - end / 2;
-        Mark bar = lineMark(FramePart::Scale,
+        Mark bar = lineMark(AnnotationPart::Scale,
                             {{right - pixels, y - end}, {right - pixels, y}, {right, y}, {right, y - end}}, stroke);
-        place({bar, textMark(FramePart::Scale, text, {right - pixels / 2, y - end - 0.4 * m_cap}, Align::Middle,
+        place({bar, textMark(AnnotationPart::Scale, text, {right - pixels / 2, y - end - 0.4 * m_cap}, Align::Middle,
                              Align::End, m_cap)});
     }
 
@@ -178,9 +175,9 @@ private:
         const double line = std::max(m_in.density, 0.09 * m_cap);
         for (const double tick : ticks) {
             const double y = yOf((tick - lo) / span);
-            legend.push_back(lineMark(FramePart::Legend, {{right, y}, {right + 0.45 * m_cap, y}}, line));
-            legend.push_back(textMark(FramePart::Legend, numberText(tick, span), {right + 0.9 * m_cap, y}, Align::Start,
-                                      Align::Middle, m_cap));
+            legend.push_back(lineMark(AnnotationPart::Legend, {{right, y}, {right + 0.45 * m_cap, y}}, line));
+            legend.push_back(textMark(AnnotationPart::Legend, numberText(tick, span), {right + 0.9 * m_cap, y},
+                                      Align::Start, Align::Middle, m_cap));
         }
 
         // From the bottom up, each row a little into the next: no seams.
@@ -193,7 +190,7 @@ private:
             all.push_back(legendRow(tf, peaks, (i + 0.5) / std::floor(rows)));
             most = std::max(most, all.back().opacity);
         }
-        legend.push_back(boxMark(FramePart::Legend, {left, top, right, top + height}, kDarkInk, 0.55));
+        legend.push_back(boxMark(AnnotationPart::Legend, {left, top, right, top + height}, kDarkInk, 0.55));
         for (std::size_t i = 0; i < all.size(); ++i) {
             const LegendRow& row = all[i];
             if (!(row.opacity > 0)) continue;
@@ -201,20 +198,19 @@ private:
             const double low = yOf(static_cast<double>(i) / n);
             const double high = std::max(top, yOf(static_cast<double>(i + 1) / n) - (i + 1 < all.size() ? 0.6 : 0));
             // The strip tells the colour of all that is drawn; the curve, by the square root, how opaque it is.
-            legend.push_back(boxMark(FramePart::Legend, {right - strip, high, right, low}, row.color));
+            legend.push_back(boxMark(AnnotationPart::Legend, {right - strip, high, right, low}, row.color));
             const double reach = (right - strip - left) * std::sqrt(row.opacity / most);
             legend.push_back(
-                boxMark(FramePart::Legend, {right - strip - reach, high, right - strip, low}, row.color, 0.75));
+                boxMark(AnnotationPart::Legend, {right - strip - reach, high, right - strip, low}, row.color, 0.75));
         }
-        Mark frame =
-            lineMark(FramePart::Legend,
+        Mark border =
+            lineMark(AnnotationPart::Legend,
                      {{left, top}, {right, top}, {right, top + height}, {left, top + height}, {left, top}}, line);
-        frame.alpha = 0.8;
-        frame.halo = 0;
-        legend.push_back(frame);
+        border.alpha = 0.8;
+        border.halo = 0;
+        legend.push_back(border);
 
-        if (m_in.picture.mode == RenderMode::Composite || m_in.picture.mode == RenderMode::Surface)
-            addFeatureNames(left, yOf);
+        if (isColored(m_in.picture.mode)) addFeatureNames(left, yOf);
         if (!place(std::move(legend))) m_names.clear();
     }
 
@@ -225,15 +221,15 @@ private:
         double lowest = m_height; // text goes upward; features are ordered by their lower ends
         std::vector<std::size_t> order(m_in.tf.features.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-        std::sort(order.begin(), order.end(),
-                  [&](std::size_t a, std::size_t b) { return m_in.tf.features[a].a < m_in.tf.features[b].a; });
+        std::ranges::sort(order, {}, [&](std::size_t i) { return m_in.tf.features[i].a; });
         for (const std::size_t i : order) {
             const Feature& f = m_in.tf.features[i];
             if (!(peaks[i] > 0) || (alone != nullptr && alone != &f) || f.name.empty()) continue;
             const double y = yOf((f.a + f.b) / 2);
             if (y + 0.5 * m_cap > lowest) continue;
             const std::string name = shortenedText(f.name, 0.2 * m_width / m_cap);
-            Mark text = textMark(FramePart::Legend, name, {left - 0.7 * m_cap, y}, Align::End, Align::Middle, m_cap);
+            Mark text =
+                textMark(AnnotationPart::Legend, name, {left - 0.7 * m_cap, y}, Align::End, Align::Middle, m_cap);
             text.color = mixed(f.color, ink, 0.35);
             m_names.push_back(text);
             lowest = y - 0.9 * m_cap;
@@ -243,7 +239,7 @@ private:
     void addLetters() {
         const double cap = 1.5 * m_cap;
         const auto letter = [&](const Vec3& direction, const Vec2& at, Align horizontal, Align vertical) {
-            Mark mark = textMark(FramePart::Letters, directionLetters(direction), at, horizontal, vertical, cap);
+            Mark mark = textMark(AnnotationPart::Letters, directionLetters(direction), at, horizontal, vertical, cap);
             mark.color = onDark ? kAmber : kBrown;
             mark.width = 0.15 * cap;
             return mark;
@@ -273,7 +269,7 @@ private:
             if (t.top < m_margin + 2 * cap) room = std::min(room, t.left - 2 * m_margin);
         const std::string text = shortenedText(m_in.title, room / cap);
         if (text.empty() || text == "…") return;
-        place({textMark(FramePart::Title, text, {m_margin, m_margin}, Align::Start, Align::Start, cap)});
+        place({textMark(AnnotationPart::Title, text, {m_margin, m_margin}, Align::Start, Align::Start, cap)});
     }
 
     // ---- axes
@@ -330,8 +326,8 @@ private:
         for (const double side : {1.0, -1.0}) {
             const Vec2 way = outward * side;
             const double support = std::abs(way.x) * halfWidth + std::abs(way.y) * 0.5 * m_cap;
-            if (place({textMark(FramePart::Axes, text, at + way * (distance + support), Align::Middle, Align::Middle,
-                                m_cap)}))
+            if (place({textMark(AnnotationPart::Axes, text, at + way * (distance + support), Align::Middle,
+                                Align::Middle, m_cap)}))
                 return true;
             if (!otherSideToo) break;
         }
@@ -345,7 +341,7 @@ private:
         for (int axis = 0; axis < 3; ++axis)
             for (const Edge& edge : edgesAlong(axis, lo, hi))
                 if (const auto part = visiblePart(edge.from, edge.to)) {
-                    Mark mark = lineMark(FramePart::Axes, {(*part)[0], (*part)[1]}, line);
+                    Mark mark = lineMark(AnnotationPart::Axes, {(*part)[0], (*part)[1]}, line);
                     mark.alpha = edge.seen == 1 ? 0.9 : edge.seen == 2 ? 0.5 : 0.2; // outline, in front, behind
                     if (edge.seen != 1) mark.halo = 0;
                     m_marks.push_back(mark);
@@ -392,14 +388,14 @@ private:
             const Vec2 at = m_project(p);
             if (at.x < 0 || at.y < 0 || at.x > m_width || at.y > m_height) continue;
             m_marks.push_back(
-                lineMark(FramePart::Axes, {at, at + outward * tick}, std::max(m_in.density, 0.1 * m_cap)));
+                lineMark(AnnotationPart::Axes, {at, at + outward * tick}, std::max(m_in.density, 0.1 * m_cap)));
             if (placeLabel(t.text, at, outward, tick + 0.5 * m_cap, true))
                 widest =
                     std::max(widest, std::abs(outward.x) * m_cap * textWidth(t.text) + std::abs(outward.y) * m_cap);
         }
         const std::string caption =
             m_box ? m_box->captions[static_cast<std::size_t>(axis)]
-            : m_in.geometry.frame == Frame::Patient
+            : m_in.geometry.worldAxes == WorldAxes::Patient
                 ? std::string(1, patientLetter(axis, false)) + "→" + patientLetter(axis, true) + "  mm"
                 : std::string(1, "xyz"[axis]);
         for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8})
@@ -428,16 +424,17 @@ std::vector<Polyline> strokesOf(const Mark& mark) {
     return strokes;
 }
 
-PixelBox extentOf(const Mark& mark) {
-    const std::vector<Polyline> strokes = strokesOf(mark);
+PixelBox boxAround(const std::vector<Vec2>& points) {
     constexpr double kFar = 1e300;
     PixelBox box{kFar, kFar, -kFar, -kFar};
-    for (const Polyline& stroke : strokes)
-        for (const Vec2& p : stroke)
-            box = {std::min(box.left, p.x), std::min(box.top, p.y), std::max(box.right, p.x),
-                   std::max(box.bottom, p.y)};
-    const double rim = mark.kind == Mark::Kind::Area ? 0 : mark.width / 2 + mark.halo;
-    return {box.left - rim, box.top - rim, box.right + rim, box.bottom + rim};
+    for (const Vec2& p : points) box = joined(box, {p.x, p.y, p.x, p.y});
+    return box;
+}
+
+PixelBox extentOf(const Mark& mark) {
+    std::vector<Vec2> points;
+    for (const Polyline& stroke : strokesOf(mark)) points.insert(points.end(), stroke.begin(), stroke.end());
+    return boxAround(points).widened(mark.kind == Mark::Kind::Area ? 0 : mark.width / 2 + mark.halo);
 }
 
 std::vector<Mark> annotationMarks(const AnnotationInput& input) { return Sheet(input).marks(); }

@@ -60,13 +60,13 @@ struct Mark {
     enum class Kind { Line, Area, Text };
     AnnotationPart part = AnnotationPart::Cube;
     Kind kind = Kind::Line;
-    std::vector<Vec2> points; ///< of a line; corners of a convex area; of a text: where its baseline begins
-    Rgb color;
+    std::vector<Vec2> points = {}; ///< of a line; corners of a convex area; of a text: where its baseline begins
+    Rgb color = {};
     double alpha = 1;
     double width = 1; ///< of lines and of the strokes of a text; they have round ends
     double halo = 0;  ///< how far a rim of `haloColor` reaches around them; 0: none
-    Rgb haloColor;
-    std::string text;             ///< UTF-8
+    Rgb haloColor = {};
+    std::string text = {};        ///< UTF-8
     Vec2 across{1, 0}, up{0, -1}; ///< of a text: as far along the line and upward as a capital is high
 };
 inline constexpr double kHaloAlpha = 0.6; ///< of the alpha of its mark
@@ -80,7 +80,7 @@ struct PixelBox {
     /// Wider by this much on all sides.
     PixelBox widened(double by) const { return {left - by, top - by, right + by, bottom + by}; }
 };
-/// Around points, at least one.
+/// The smallest box that holds all points.
 PixelBox boxAround(const std::vector<Vec2>& points);
 /// Around all that is drawn of a mark, its halo too.
 PixelBox extentOf(const Mark& mark);

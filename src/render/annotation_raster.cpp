@@ -31,15 +31,12 @@ public:
     void addConvex(const std::vector<Vec2>& corners) {
         const std::size_t n = corners.size();
         double area = 0;
-        PixelBox box{corners[0].x, corners[0].y, corners[0].x, corners[0].y};
         for (std::size_t i = 0; i < n; ++i) {
             const Vec2 &a = corners[i], &b = corners[(i + 1) % n];
             area += a.x * b.y - a.y * b.x;
-            box = {std::min(box.left, a.x), std::min(box.top, a.y), std::max(box.right, a.x),
-                   std::max(box.bottom, a.y)};
         }
         const double turn = area < 0 ? -1 : 1;
-        forEach({box.left - 1, box.top - 1, box.right + 1, box.bottom + 1}, [&](const Vec2& p) {
+        forEach(boxAround(corners).widened(1), [&](const Vec2& p) {
             double inside = 1;
             for (std::size_t i = 0; i < n && inside > 0; ++i) {
                 const Vec2 &a = corners[i], way = corners[(i + 1) % n] - a;
@@ -71,15 +68,13 @@ public:
 private:
     void addPiece(const Vec2& a, const Vec2& b, double radius) {
         const Vec2 way = b - a;
-        const double length2 = glm::dot(way, way), reach = radius + 1;
-        forEach({std::min(a.x, b.x) - reach, std::min(a.y, b.y) - reach, std::max(a.x, b.x) + reach,
-                 std::max(a.y, b.y) + reach},
-                [&](const Vec2& p) {
-                    const double t = length2 > 0 ? std::clamp(glm::dot(p - a, way) / length2, 0.0, 1.0) : 0;
-                    const double distance = glm::length(p - a - way * t);
-                    // A line thinner than a pixel covers no more of it than it is thick.
-                    return std::clamp(radius + 0.5 - distance, 0.0, 1.0) * std::min(1.0, 2 * radius);
-                });
+        const double length2 = glm::dot(way, way);
+        forEach(boxAround({a, b}).widened(radius + 1), [&](const Vec2& p) {
+            const double t = length2 > 0 ? std::clamp(glm::dot(p - a, way) / length2, 0.0, 1.0) : 0;
+            const double distance = glm::length(p - a - way * t);
+            // A line thinner than a pixel covers no more of it than it is thick.
+            return std::clamp(radius + 0.5 - distance, 0.0, 1.0) * std::min(1.0, 2 * radius);
+        });
     }
 
     static int clamped(double v, int limit) { return static_cast<int>(std::clamp(std::floor(v), 0.0, double(limit))); }
@@ -87,10 +82,11 @@ private:
     /// Where several pieces of a shape meet in a pixel, the larger share counts: they are one shape.
     template <class Share>
     void forEach(const PixelBox& box, const Share& share) {
-        const int left = std::max(m_left, static_cast<int>(std::clamp(std::floor(box.left), -1.0, 1e6)));
-        const int top = std::max(m_top, static_cast<int>(std::clamp(std::floor(box.top), -1.0, 1e6)));
-        const int right = std::min(m_right, static_cast<int>(std::clamp(std::ceil(box.right), -1.0, 1e6)));
-        const int bottom = std::min(m_bottom, static_cast<int>(std::clamp(std::ceil(box.bottom), -1.0, 1e6)));
+        const auto pixel = [](double v) { return static_cast<int>(std::clamp(v, -1.0, 1e6)); };
+        const int left = std::max(m_left, pixel(std::floor(box.left))),
+                  top = std::max(m_top, pixel(std::floor(box.top))),
+                  right = std::min(m_right, pixel(std::ceil(box.right))),
+                  bottom = std::min(m_bottom, pixel(std::ceil(box.bottom)));
         for (int y = top; y < bottom; ++y)
             for (int x = left; x < right; ++x) {
                 float& value =

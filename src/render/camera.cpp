@@ -34,6 +34,10 @@ Vec3 Camera::forward() const { return glm::normalize(center - eye); }
 Vec3 Camera::right() const { return glm::normalize(glm::cross(forward(), up)); }
 Vec3 Camera::trueUp() const { return glm::cross(right(), forward()); }
 
+double Camera::halfHeight() const {
+    return projection == Projection::Perspective ? std::tan(fovY * std::numbers::pi / 360) : height / 2;
+}
+
 Vec3 Camera::towardEye(const Vec3& point) const {
     return projection == Projection::Orthographic ? -forward() : glm::normalize(eye - point);
 }
@@ -49,7 +53,7 @@ void Camera::validate(const std::string& where) const {
         if (!(height > 0) || !std::isfinite(height)) throw Error("height must be positive", where, correct);
         return;
     }
-    if (!(fovY > 0 && fovY < 180)) throw Error("fov_y lies between 0 and 180 degrees", where, correct);
+    if (!(fovY > 0 && fovY < 180)) throw Error("fov_y must lie between 0 and 180 degrees", where, correct);
 }
 
 void Camera::validate(const Geometry& geometry, const std::string& where) const {
@@ -71,8 +75,8 @@ Ray pixelRay(const Camera& camera, double x, double y, int width, int height) {
 
 Camera cameraFromView(const Geometry& geometry, double azimuth, double elevation, double zoom, Projection projection) {
     if (!std::isfinite(azimuth) || !std::isfinite(elevation))
-        throw UsageError("azimuth and elevation are finite degrees", "view", "correct them");
-    if (!(zoom > 0) || !std::isfinite(zoom)) throw UsageError("zoom is a positive factor", "view", "correct it");
+        throw UsageError("azimuth and elevation must be finite numbers of degrees", "view", "correct them");
+    if (!(zoom > 0) || !std::isfinite(zoom)) throw UsageError("zoom must be a positive factor", "view", "correct it");
     const double az = azimuth * kRadians, el = elevation * kRadians;
     const Vec3 toEye{std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el), std::sin(el)};
     const double radius = geometry.radius();
@@ -92,21 +96,16 @@ Camera cameraFromView(const Geometry& geometry, double azimuth, double elevation
 Camera cameraFromJson(const JsonValue& j) {
     j.requireObject();
     const json& projection = j["projection"].json();
+    const bool perspective = projection == "perspective";
+    if (!perspective && projection != "orthographic")
+        j["projection"].fail("the projection is neither \"perspective\" nor \"orthographic\"");
     Camera camera;
     camera.eye = vec3FromJson(j["eye"]);
     camera.center = vec3FromJson(j["center"]);
     camera.up = vec3FromJson(j["up"]);
-    if (projection == "perspective") {
-        camera.projection = Projection::Perspective;
-        camera.fovY = j["fov_y"].number();
-        if (j.has("height")) camera.height = j["height"].number();
-    } else if (projection == "orthographic") {
-        camera.projection = Projection::Orthographic;
-        camera.height = j["height"].number();
-        if (j.has("fov_y")) camera.fovY = j["fov_y"].number();
-    } else {
-        j["projection"].fail("the projection is neither \"perspective\" nor \"orthographic\"");
-    }
+    camera.projection = perspective ? Projection::Perspective : Projection::Orthographic;
+    if (perspective || j.has("fov_y")) camera.fovY = j["fov_y"].number();
+    if (!perspective || j.has("height")) camera.height = j["height"].number();
     camera.validate(j.place());
     return camera;
 }

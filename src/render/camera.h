@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include <glm/mat4x4.hpp>
 #include <nlohmann/json_fwd.hpp>
 
 #include "base/json_value.h"
@@ -27,6 +26,8 @@ struct Camera {
     Vec3 forward() const; ///< unit vector, center − eye
     Vec3 right() const;   ///< unit vector
     Vec3 trueUp() const;  ///< unit vector, perpendicular to forward and right
+    /// Half of the image's height, world units; perspective: at depth 1.
+    double halfHeight() const;
     /// Unit direction from `point` toward the eye: the way light of a voxel goes.
     Vec3 towardEye(const Vec3& point) const;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -14,8 +13,7 @@ namespace {
 constexpr double kEndOn = 0.15;
 
 double halfHeightAt(const Camera& camera, double depth) {
-    if (camera.projection == Projection::Orthographic) return camera.height / 2;
-    return depth * std::tan(camera.fovY * std::numbers::pi / 360);
+    return camera.projection == Projection::Perspective ? depth * camera.halfHeight() : camera.halfHeight();
 }
 
 /// The parameter on the line at + s·along nearest to the ray through a pixel.
@@ -26,6 +24,12 @@ double nearestOnLine(const PictureView& view, const Vec3& at, const Vec3& along,
     const double a = glm::dot(along, along), b = glm::dot(along, ray.direction);
     const double denominator = a - b * b;
     return (glm::dot(along, between) - b * glm::dot(ray.direction, between)) / denominator;
+}
+
+Vec3 middleOf(const std::vector<Vec3>& points) {
+    Vec3 middle(0);
+    for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
+    return middle;
 }
 
 } // namespace
@@ -104,14 +108,13 @@ std::vector<Vec3> planeInBox(const ClipPlane& plane, const Geometry& geometry) {
             points.push_back(a + (b - a) * (beyondA / (beyondA - beyondB)));
         }
     if (points.size() < 3) return {};
-    Vec3 middle(0);
-    for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
+    const Vec3 middle = middleOf(points);
     // Two directions in the plane, by which angle the corners come.
     const Vec3 normal = glm::normalize(plane.normal);
     const Vec3 other = std::abs(normal.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
     const Vec3 u = glm::normalize(glm::cross(normal, other)), v = glm::cross(normal, u);
     const auto angle = [&](const Vec3& p) { return std::atan2(glm::dot(p - middle, v), glm::dot(p - middle, u)); };
-    std::sort(points.begin(), points.end(), [&](const Vec3& a, const Vec3& b) { return angle(a) < angle(b); });
+    std::ranges::sort(points, {}, angle);
     return points;
 }
 
@@ -122,9 +125,7 @@ Vec3 planeAnchor(const ClipPlane& plane, const Geometry& geometry) {
         const double beyond = glm::dot(plane.normal, center) - plane.offset;
         return center - plane.normal * (beyond / glm::dot(plane.normal, plane.normal));
     }
-    Vec3 middle(0);
-    for (const Vec3& p : polygon) middle += p / static_cast<double>(polygon.size());
-    return middle;
+    return middleOf(polygon);
 }
 
 ClipPlane planeFacing(const Camera& camera, const Geometry& geometry) {

@@ -59,7 +59,7 @@ double deltaE(const Rgb& a, const Rgb& b) {
 
 double meanDeltaE(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height)
-        throw Error("two pictures of different sizes", "colour difference", "draw them in one size");
+        throw Error("the pictures differ in size", "colour difference", "draw them in one size");
     if (a.rgba.empty()) return 0;
     const auto& light = screenLight();
     std::vector<double> rows(static_cast<std::size_t>(a.height), 0.0);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -25,6 +24,11 @@ constexpr double kSharpest = 0.75; ///< pixels: cells are not drawn smaller than
 constexpr double kHair = 1e-6;     ///< of a triangle: what neighbours may overlap, so that no pixel is missed
 constexpr float kInTheShade = 0.4f, kUnderside = 0.45f;
 
+/// Of (x, y) among rows of `width`.
+std::size_t indexOf(int x, int y, int width) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
 /// A vertex on the screen. `near` grows toward the eye and goes linearly over the screen: the inverse of the depth in
 /// perspective, the negative depth otherwise.
 struct Vertex {
@@ -39,8 +43,7 @@ class Raster {
 public:
     Raster(const Ground& ground, const Camera& camera, const GroundWindow& window)
         : m_ground(ground), m_window(window), m_perspective(camera.projection == Projection::Perspective) {
-        const double half = m_perspective ? std::tan(camera.fovY * std::numbers::pi / 360) : camera.height / 2;
-        m_perPixel = 2 * half / window.pictureHeight;
+        m_perPixel = 2 * camera.halfHeight() / window.pictureHeight;
         m_perColumn = m_perPixel * window.pixelAspect;
         const Vec3 axes[3] = {camera.right(), camera.trueUp(), camera.forward()};
         const auto inView = [&](const Vec3& v) {
@@ -61,11 +64,11 @@ public:
         chooseStride();
         m_nx = (ground.nx - 2) / m_stride + 2;
         m_ny = (ground.ny - 2) / m_stride + 2;
-        m_vertices.resize(static_cast<std::size_t>(m_nx) * static_cast<std::size_t>(m_ny));
+        m_vertices.resize(indexOf(0, m_ny, m_nx));
         m_kinds.resize(m_vertices.size());
         m_blocksX = (m_nx - 2) / kBlock + 1;
         m_blocksY = (m_ny - 2) / kBlock + 1;
-        m_blockRows.resize(static_cast<std::size_t>(m_blocksX) * static_cast<std::size_t>(m_blocksY));
+        m_blockRows.resize(indexOf(0, m_blocksY, m_blocksX));
     }
 
     void project(const JobControl& job) {
@@ -76,7 +79,7 @@ public:
         parallelFor(static_cast<std::size_t>(m_blocksY), [&](std::size_t by) {
             for (int bx = 0; bx < m_blocksX; ++bx) {
                 const int row = static_cast<int>(by);
-                m_blockRows[blockIndex(bx, row)] = rowsOfBlock(bx, row);
+                m_blockRows[indexOf(bx, row, m_blocksX)] = rowsOfBlock(bx, row);
             }
         });
     }
@@ -88,12 +91,12 @@ public:
         std::vector<float> height, shade;
     };
     Band drawBand(int y0, int y1) const {
-        const std::size_t pixels = static_cast<std::size_t>(m_window.width) * static_cast<std::size_t>(y1 - y0);
+        const std::size_t pixels = indexOf(0, y1 - y0, m_window.width);
         Band band{y0, y1, std::vector<double>(pixels, kNothing), std::vector<float>(pixels),
                   std::vector<float>(pixels)};
         for (int by = 0; by < m_blocksY; ++by)
             for (int bx = 0; bx < m_blocksX; ++bx) {
-                const Rows& rows = m_blockRows[blockIndex(bx, by)];
+                const Rows& rows = m_blockRows[indexOf(bx, by, m_blocksX)];
                 if (rows.low > static_cast<float>(y1) || rows.high < static_cast<float>(y0)) continue;
                 const int endX = std::min((bx + 1) * kBlock, m_nx - 1), endY = std::min((by + 1) * kBlock, m_ny - 1);
                 for (int j = by * kBlock; j < endY; ++j)
@@ -114,18 +117,10 @@ private:
         }
     };
 
-    std::size_t index(int i, int j) const {
-        return static_cast<std::size_t>(j) * static_cast<std::size_t>(m_nx) + static_cast<std::size_t>(i);
-    }
-    std::size_t blockIndex(int bx, int by) const {
-        return static_cast<std::size_t>(by) * static_cast<std::size_t>(m_blocksX) + static_cast<std::size_t>(bx);
-    }
+    std::size_t index(int i, int j) const { return indexOf(i, j, m_nx); }
     int sampleX(int i) const { return std::min(i * m_stride, m_ground.nx - 1); }
     int sampleY(int j) const { return std::min(j * m_stride, m_ground.ny - 1); }
-    float heightAt(int x, int y) const {
-        return m_ground
-            .heights[static_cast<std::size_t>(y) * static_cast<std::size_t>(m_ground.nx) + static_cast<std::size_t>(x)];
-    }
+    float heightAt(int x, int y) const { return m_ground.heights[indexOf(x, y, m_ground.nx)]; }
 
     /// Every so many samples are drawn, where their cells would be less than a pixel wide.
     void chooseStride() {
@@ -289,9 +284,7 @@ private:
                 const double ofC = 1 - ofA - ofB;
                 if (ofA < -kHair || ofB < -kHair || ofC < -kHair) continue;
                 const double near = ofA * a.near + ofB * b.near + ofC * c.near;
-                const std::size_t at =
-                    static_cast<std::size_t>(y - band.y0) * static_cast<std::size_t>(m_window.width) +
-                    static_cast<std::size_t>(x);
+                const std::size_t at = indexOf(x, y - band.y0, m_window.width);
                 if (!(near > band.near[at])) continue;
                 band.near[at] = near;
                 double wa = ofA, wb = ofB, wc = ofC;
@@ -300,12 +293,11 @@ private:
                     wb *= b.near / near;
                     wc *= c.near / near;
                 }
-                band.height[at] =
-                    static_cast<float>(wa * static_cast<double>(a.height) + wb * static_cast<double>(b.height) +
-                                       wc * static_cast<double>(c.height));
-                band.shade[at] =
-                    side * static_cast<float>(wa * static_cast<double>(a.shade) + wb * static_cast<double>(b.shade) +
-                                              wc * static_cast<double>(c.shade));
+                const auto mean = [&](double first, double second, double third) {
+                    return static_cast<float>(wa * first + wb * second + wc * third);
+                };
+                band.height[at] = mean(a.height, b.height, c.height);
+                band.shade[at] = side * mean(a.shade, b.shade, c.shade);
             }
         }
     }
@@ -348,13 +340,12 @@ std::uint32_t packed(const Rgb& color, double shade, double depth, const DepthFa
 GroundPicture rasterizeGround(const Ground& ground, const Camera& camera, double depthOfZero,
                               const GroundWindow& window, const DepthFade& fade, const JobControl& job) {
     PELLUCID_CHECK(ground.nx >= 2 && ground.ny >= 2 && window.width > 0 && window.height > 0 &&
-                   ground.heights.size() == static_cast<std::size_t>(ground.nx) * static_cast<std::size_t>(ground.ny) &&
-                   ground.lo < ground.hi);
+                   ground.heights.size() == indexOf(0, ground.ny, ground.nx) && ground.lo < ground.hi);
     const std::vector<Rgb> colors = tableOf(groundColors(ground.colorMap));
     GroundPicture picture;
     picture.width = window.width;
     picture.height = window.height;
-    const std::size_t pixels = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
+    const std::size_t pixels = indexOf(0, window.height, window.width);
     picture.rgba.assign(pixels, 0);
     picture.depth.assign(pixels, GroundPicture::kNone);
 
@@ -365,7 +356,7 @@ GroundPicture rasterizeGround(const Ground& ground, const Camera& camera, double
         job.throwIfStopped();
         const int y0 = static_cast<int>(n) * kBand;
         const Raster::Band band = raster.drawBand(y0, std::min(y0 + kBand, window.height));
-        const std::size_t first = static_cast<std::size_t>(y0) * static_cast<std::size_t>(window.width);
+        const std::size_t first = indexOf(0, y0, window.width);
         for (std::size_t i = 0; i < band.near.size(); ++i) {
             if (band.near[i] == Raster::kNothing) continue;
             const double depth = raster.depthOf(band.near[i]) - depthOfZero;
@@ -378,29 +369,7 @@ GroundPicture rasterizeGround(const Ground& ground, const Camera& camera, double
     return picture;
 }
 
-GroundImage drawGround(const Ground& ground, const Camera& camera, int width, int height, const JobControl& job) {
-    camera.validate("camera");
-    const GroundPicture drawn = rasterizeGround(
-        ground, camera, 0, {static_cast<double>(width), static_cast<double>(height), 0, 0, width, height}, {}, job);
-    GroundImage image{Image(width, height), drawn.depth};
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const std::size_t i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            if (drawn.rgba[i] == 0) continue;
-            float* pixel = image.color.pixel(x, y);
-            for (int c = 0; c < 4; ++c) pixel[c] = static_cast<float>(drawn.rgba[i] >> (8 * c) & 255u) / 255;
-            // From along the view to along the ray.
-            const Vec3 ray = pixelRay(camera, x + 0.5, y + 0.5, width, height).direction;
-            image.depth[i] /= static_cast<float>(glm::dot(ray, camera.forward()));
-        }
-    return image;
-}
-
-bool showsGround(const RenderSettings& settings) {
-    return settings.ground != nullptr &&
-           (settings.mode == RenderMode::Composite || settings.mode == RenderMode::Surface);
-}
+bool showsGround(const RenderSettings& settings) { return settings.ground != nullptr && isColored(settings.mode); }
 
 GroundPicture groundOf(const RenderSettings& settings, const Camera& camera, const Geometry& geometry,
                        const GroundWindow& window, const JobControl& job) {

@@ -6,7 +6,6 @@
 
 #include "base/job.h"
 #include "render/camera.h"
-#include "render/image.h"
 #include "volume/grid.h"
 #include "volume/volume.h"
 
@@ -25,13 +24,5 @@ struct Ground {
     double lo = 0, hi = 1; ///< heights of the colour map's ends
     double relief = 1;     ///< strength of the shading, [0, 1]
 };
-
-/// A picture of the ground alone. A pixel's depth is the distance from the plane (perspective: the eye) from which the
-/// rays of `camera` start to the first hit, in world units along the ray; infinity where there is none.
-struct GroundImage {
-    Image color; ///< opaque where there is ground
-    std::vector<float> depth;
-};
-GroundImage drawGround(const Ground& ground, const Camera& camera, int width, int height, const JobControl& job = {});
 
 } // namespace pellucid

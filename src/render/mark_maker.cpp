@@ -22,33 +22,25 @@ MarkMaker::MarkMaker(double width, double height, double density, const Rgb& bac
       onDark(0.3 * background.r + 0.59 * background.g + 0.11 * background.b < 0.5), ink(onDark ? kLightInk : kDarkInk),
       haloInk(onDark ? kDarkInk : kLightInk) {}
 
-Mark MarkMaker::lineMark(FramePart part, std::vector<Vec2> points, double width) const {
-    Mark mark;
-    mark.part = part;
-    mark.points = std::move(points);
-    mark.color = ink;
-    mark.width = width;
-    mark.halo = 0.14 * capHeight;
-    mark.haloColor = haloInk;
-    return mark;
+Mark MarkMaker::lineMark(AnnotationPart part, std::vector<Vec2> points, double width) const {
+    return {.part = part,
+            .points = std::move(points),
+            .color = ink,
+            .width = width,
+            .halo = 0.14 * capHeight,
+            .haloColor = haloInk};
 }
 
-Mark MarkMaker::areaMark(FramePart part, std::vector<Vec2> corners, const Rgb& color, double alpha) const {
-    Mark mark;
-    mark.part = part;
-    mark.kind = Mark::Kind::Area;
-    mark.points = std::move(corners);
-    mark.color = color;
-    mark.alpha = alpha;
-    return mark;
+Mark MarkMaker::areaMark(AnnotationPart part, std::vector<Vec2> corners, const Rgb& color, double alpha) const {
+    return {.part = part, .kind = Mark::Kind::Area, .points = std::move(corners), .color = color, .alpha = alpha};
 }
 
-Mark MarkMaker::boxMark(FramePart part, const PixelBox& b, const Rgb& color, double alpha) const {
+Mark MarkMaker::boxMark(AnnotationPart part, const PixelBox& b, const Rgb& color, double alpha) const {
     return areaMark(part, {{b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}}, color, alpha);
 }
 
-Mark MarkMaker::textMark(FramePart part, const std::string& words, const Vec2& at, Align horizontal, Align vertical,
-                         double capital) const {
+Mark MarkMaker::textMark(AnnotationPart part, const std::string& words, const Vec2& at, Align horizontal,
+                         Align vertical, double capital) const {
     Mark mark = lineMark(part, {}, 0.14 * capital);
     mark.kind = Mark::Kind::Text;
     mark.points = {{at.x - shareOf(horizontal) * capital * textWidth(words), at.y + (1 - shareOf(vertical)) * capital}};

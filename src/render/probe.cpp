@@ -41,7 +41,7 @@ public:
         : m_tf(tf), m_sampler(tf), m_d0(d0), m_only(only), m_result(result), m_most(tf.features.size() + 1) {
         for (const ControlPoint& p : tf.points) m_cuts.push_back(p.x);
         for (const Feature& f : tf.features) m_cuts.insert(m_cuts.end(), {f.a, f.b});
-        std::sort(m_cuts.begin(), m_cuts.end());
+        std::ranges::sort(m_cuts);
         m_cuts.erase(std::unique(m_cuts.begin(), m_cuts.end()), m_cuts.end());
         m_result.shares.assign(tf.features.size(), 0);
     }
@@ -68,7 +68,8 @@ public:
     void finish() {
         m_result.alpha = -std::expm1(-m_depth);
         if (m_result.alpha > 0) {
-            m_result.color = {m_color[0] / m_result.alpha, m_color[1] / m_result.alpha, m_color[2] / m_result.alpha};
+            const Vec3 straight = m_color / m_result.alpha;
+            m_result.color = {straight.r, straight.g, straight.b};
         }
         double largest = 0;
         for (std::size_t f = 0; f < m_result.shares.size(); ++f) {
@@ -93,7 +94,7 @@ private:
         if (to.validShare == 0) to.value = from.value;
         // Pieces that no control point and no border of a feature divides.
         const double lo = std::min(from.value, to.value), hi = std::max(from.value, to.value);
-        auto first = std::upper_bound(m_cuts.begin(), m_cuts.end(), lo);
+        auto first = std::ranges::upper_bound(m_cuts, lo);
         auto last = std::lower_bound(first, m_cuts.end(), hi);
         double begin = 0;
         const auto until = [&](double cut) {
@@ -114,7 +115,7 @@ private:
         const double middle = mix(from.value, to.value, (begin + end) / 2);
         const int feature = featureAt(m_tf.features, middle);
         double tau = 0, valid = 0; // τ·d0, and the same where voxels are valid
-        std::array<double, 3> emitted{};
+        Vec3 emitted(0);
         if (m_only < 0 || feature == m_only)
             for (const auto& [node, weight] : kGauss) {
                 const double u = mix(begin, end, node), s = mix(from.value, to.value, u);
@@ -124,9 +125,7 @@ private:
                 const double there = here * mix(from.validShare, to.validShare, u);
                 valid += there;
                 const Rgb c = m_sampler.color(s);
-                emitted[0] += there * c.r;
-                emitted[1] += there * c.g;
-                emitted[2] += there * c.b;
+                emitted += there * Vec3(c.r, c.g, c.b);
             }
         const double own = (end - begin) * length;
         double opticalDepth = 0;
@@ -137,8 +136,7 @@ private:
             opticalDepth = valid / tau * meanDepth(a + (a - b) / 2, b + (b - a) / 2).value_or(tau) * own / m_d0;
         }
         const double share = std::exp(-m_depth) * -std::expm1(-opticalDepth);
-        if (share > 0)
-            for (std::size_t c = 0; c < 3; ++c) m_color[c] += share * emitted[c] / valid;
+        if (share > 0) m_color += share * emitted / valid;
         m_depth += opticalDepth;
 
         if (m_result.runs.empty() || m_result.runs.back().feature != feature)
@@ -159,7 +157,7 @@ private:
     RayProbe& m_result;
     std::vector<double> m_cuts; ///< intensities where α or the feature changes its ways, ascending
     double m_depth = 0;
-    std::array<double, 3> m_color{};
+    Vec3 m_color{0};
     std::vector<Most> m_most; ///< the rest, then each feature
 };
 

@@ -1,9 +1,6 @@
 // Where points of the world lie in a picture: pixelRay() the other way round.
 #pragma once
 
-#include <cmath>
-#include <numbers>
-
 #include <glm/geometric.hpp>
 
 #include "render/camera.h"
@@ -16,14 +13,14 @@ class Projected {
 public:
     Projected(const Camera& camera, double width, double height)
         : m_camera(camera), m_forward(camera.forward()), m_right(camera.right()), m_up(camera.trueUp()), m_width(width),
-          m_height(height), m_tangent(std::tan(camera.fovY * std::numbers::pi / 360)) {}
+          m_height(height), m_halfHeight(camera.halfHeight()) {}
 
     bool isPerspective() const { return m_camera.projection == Projection::Perspective; }
     /// Along the view, from the plane through the eye; world units.
     double depth(const Vec3& p) const { return glm::dot(p - m_camera.eye, m_forward); }
     /// World units per pixel at a depth.
     double unitsPerPixel(double depth) const {
-        return (isPerspective() ? 2 * depth * m_tangent : m_camera.height) / m_height;
+        return (isPerspective() ? 2 * depth * m_halfHeight : m_camera.height) / m_height;
     }
     /// Pixels from the top left corner, y down; depth(p) > 0 where perspective.
     Vec2 operator()(const Vec3& p) const {
@@ -44,7 +41,7 @@ public:
 private:
     Camera m_camera;
     Vec3 m_forward, m_right, m_up;
-    double m_width, m_height, m_tangent;
+    double m_width, m_height, m_halfHeight;
 };
 
 } // namespace pellucid

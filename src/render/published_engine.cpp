@@ -4,8 +4,6 @@
 #include <atomic>
 #include <cstdint>
 
-#include <glm/common.hpp>
-
 #include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -280,23 +278,8 @@ private:
 } // namespace
 
 Camera cameraAlong(const Geometry& geometry, Along along) {
-    const auto [axis, sign] = [along]() -> std::pair<int, double> {
-        switch (along) {
-        case Along::Top:
-            return {2, -1};
-        case Along::Bottom:
-            return {2, 1};
-        case Along::Front:
-            return {1, -1};
-        case Along::Back:
-            return {1, 1};
-        case Along::Left:
-            return {0, 1};
-        case Along::Right:
-            return {0, -1};
-        }
-        return {1, -1};
-    }();
+    constexpr std::pair<int, double> kViews[] = {{2, -1}, {2, 1}, {1, -1}, {1, 1}, {0, 1}, {0, -1}}; // as in Along
+    const auto [axis, sign] = kViews[static_cast<std::size_t>(along)];
     Camera camera;
     camera.projection = Projection::Orthographic;
     camera.center = geometry.boxCenter();

@@ -28,6 +28,9 @@ template <>
 inline constexpr auto kNamesOf<RenderMode> = enumNames("way to draw", "composite", "mip", "minip", "average",
                                                        "surface");
 
+/// Colours are those of the transfer function; in the other modes they are grey.
+constexpr bool isColored(RenderMode mode) { return mode == RenderMode::Composite || mode == RenderMode::Surface; }
+
 /// Light and what helps to see depth (docs/method.md, "Light"). It changes colours; measures, and the alpha of pixels
 /// but for `gradientOpacity`, are those of the unlit transfer function. Ranges are those of settingsOf<Light>().
 struct Light {
@@ -40,6 +43,8 @@ struct Light {
     double depthCue = 0;        ///< how far the farthest fades into the background
     double silhouettes = 0;     ///< how dark surfaces get that are seen edge-on
     bool operator==(const Light&) const = default;
+    /// Whether anything that is drawn depends on it.
+    bool changesColors() const { return on || gradientOpacity > 0 || occlusion > 0 || depthCue > 0 || silhouettes > 0; }
 };
 /// All but the direction.
 template <>
@@ -57,8 +62,8 @@ struct RenderSettings {
     Clipping clipping;
     bool jitter = false;  ///< shifts the samples of each pixel by a part of a step, against banding
     int onlyFeature = -1; ///< index: draw the voxels of this feature alone; −1: all
-    std::shared_ptr<const VoxelColors>
-        colors; ///< in place of those of the transfer function, on the volume's grid; null: none
+    /// In place of the colours of the transfer function, on the volume's grid; null: none.
+    std::shared_ptr<const VoxelColors> colors;
     std::shared_ptr<const Ground> ground; ///< what lies under the volume, opaque; null: nothing
 
     void validate() const; ///< throws UsageError

@@ -41,7 +41,7 @@ struct Across {
 
 /// The index axis nearest to a world axis, in the direction `positive` of it.
 Across across(const Geometry& g, const std::array<int, 3>& world, int worldAxis, bool positive) {
-    const int a = static_cast<int>(std::find(world.begin(), world.end(), worldAxis) - world.begin());
+    const int a = static_cast<int>(std::ranges::find(world, worldAxis) - world.begin());
     return {a, (g.directions[a][worldAxis] > 0) != positive};
 }
 
@@ -70,6 +70,23 @@ Between between(double at, int count, std::size_t stride, bool linear) {
     return b;
 }
 
+/// Calls take(index, value, weight) for those of up to eight voxels that are valid and have a weight.
+template <class Values, class Take>
+void forEachCorner(const Values& values, std::optional<double> missing, const Between (&b)[3], const Take& take) {
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        double w = 1;
+        std::size_t at = 0;
+        for (unsigned a = 0; a < 3; ++a) {
+            const bool high = corner >> a & 1;
+            w *= static_cast<double>(high ? b[a].weight : 1.0f - b[a].weight);
+            at += high ? b[a].high : b[a].low;
+        }
+        if (w == 0) continue;
+        const auto v = static_cast<double>(values[at]);
+        if (std::isfinite(v) && !(missing && v == *missing)) take(at, v, w);
+    }
+}
+
 /// The mean over the valid of up to eight voxels.
 template <class Values>
 bool mean(const Values& values, bool allValid, std::optional<double> missing, const Between (&b)[3], double& result) {
@@ -88,20 +105,10 @@ bool mean(const Values& values, bool allValid, std::optional<double> missing, co
         return true;
     }
     double sum = 0, share = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        double w = 1;
-        std::size_t at = 0;
-        for (int a = 0; a < 3; ++a) {
-            const bool high = (corner >> a) & 1;
-            w *= static_cast<double>(high ? b[a].weight : 1.0f - b[a].weight);
-            at += high ? b[a].high : b[a].low;
-        }
-        if (w == 0) continue;
-        const auto v = static_cast<double>(values[at]);
-        if (!std::isfinite(v) || (missing && v == *missing)) continue;
+    forEachCorner(values, missing, b, [&](std::size_t, double v, double w) {
         sum += w * v;
         share += w;
-    }
+    });
     if (share < 0.5) return false;
     result = sum / share;
     return true;
@@ -109,29 +116,16 @@ bool mean(const Values& values, bool allValid, std::optional<double> missing, co
 
 /// The colour between up to eight voxels, over the valid ones as the value is.
 template <class Values>
-Rgb meanColor(const VoxelColors& colors, const Values& values, bool allValid, std::optional<double> missing,
-              const Between (&b)[3]) {
+Rgb meanColor(const VoxelColors& colors, const Values& values, std::optional<double> missing, const Between (&b)[3]) {
     double sum[3]{}, share = 0;
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        double w = 1;
-        std::size_t at = 0;
-        for (unsigned a = 0; a < 3; ++a) {
-            const bool high = corner >> a & 1;
-            w *= static_cast<double>(high ? b[a].weight : 1.0f - b[a].weight);
-            at += high ? b[a].high : b[a].low;
-        }
-        if (w == 0) continue;
-        const auto v = static_cast<double>(values[at]);
-        if (!allValid && (!std::isfinite(v) || (missing && v == *missing))) continue;
+    forEachCorner(values, missing, b, [&](std::size_t at, double, double w) {
         for (unsigned c = 0; c < 3; ++c) sum[c] += w * (colors.rgba[at] >> (8 * c) & 255u) / 255;
         share += w;
-    }
+    });
     return {sum[0] / share, sum[1] / share, sum[2] / share};
 }
 
-std::array<std::size_t, 3> strides(const Int3& dims) {
-    return {1, static_cast<std::size_t>(dims.x), static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y)};
-}
+std::array<std::size_t, 3> strides(const Int3& dims) { return {1, static_cast<std::size_t>(dims.x), layerSize(dims)}; }
 
 /// Where in a window values lie, [0, 1]. In halves, since its ends may lie further apart than the largest double.
 struct Window {
@@ -167,20 +161,9 @@ SliceView sliceView(const Geometry& geometry, int axis) {
     PELLUCID_CHECK(axis >= 0 && axis < 3);
     const auto world = worldAxes(geometry);
     const bool patient = geometry.worldAxes == WorldAxes::Patient; // L, P, S are positive
-    Across right{}, down{};
-    switch (world[static_cast<std::size_t>(axis)]) {
-    case 0:
-        right = across(geometry, world, 1, true);
-        down = across(geometry, world, 2, false);
-        break;
-    case 1:
-        right = across(geometry, world, 0, true);
-        down = across(geometry, world, 2, false);
-        break;
-    default:
-        right = across(geometry, world, 0, true);
-        down = across(geometry, world, 1, patient);
-    }
+    const int through = world[static_cast<std::size_t>(axis)];
+    const Across right = across(geometry, world, through == 0 ? 1 : 0, true);
+    const Across down = through == 2 ? across(geometry, world, 1, patient) : across(geometry, world, 2, false);
     return {right.axis, down.axis, right.flip, down.flip};
 }
 
@@ -250,7 +233,7 @@ void SliceSettings::validate() const {
     if (!std::isfinite(window.lo) || !std::isfinite(window.hi) || !(window.lo <= window.hi))
         throw UsageError("the window of grey needs LO <= HI, both finite", "window", "give two such numbers");
     if (!(tfStrength >= 0 && tfStrength <= 1))
-        throw UsageError("the strength of the colours lies in [0,1]", "slice", "give such a number");
+        throw UsageError("the strength of the colours must lie in [0,1]", "slice", "give such a number");
     clipping.validate();
 }
 
@@ -292,7 +275,7 @@ Image renderSlice(const Volume& volume, const TransferFunction& tf, const SliceP
             const double grey = greyOf(value), s = intensityOf(value);
             Overlay over = overlay[static_cast<std::size_t>(s * (kTableSize - 1) + 0.5)];
             if (settings.colors && over.weight > 0) {
-                const Rgb color = meanColor(*settings.colors, values, allValid, volume.missing(), corners);
+                const Rgb color = meanColor(*settings.colors, values, volume.missing(), corners);
                 over.r = static_cast<float>(color.r);
                 over.g = static_cast<float>(color.g);
                 over.b = static_cast<float>(color.b);

@@ -23,16 +23,16 @@ struct SliceView {
     bool operator==(const SliceView&) const = default;
 };
 
-/// Of the slice perpendicular to the index axis `axis` (0, 1, 2). In the patient's frame as radiologists are used to:
+/// Of the slice perpendicular to the index axis `axis` (0, 1, 2). In the patient's axes as radiologists are used to:
 /// axial as seen from the feet (left at the picture's right, anterior up), coronal from the front (left at the right,
-/// superior up), sagittal from the left (anterior at the left, superior up). In the file's own frame x and y run to the
+/// superior up), sagittal from the left (anterior at the left, superior up). In the file's own axes x and y run to the
 /// right, y (below z) and z upward. Axes count by the world axis that they are nearest to, each to another one.
 SliceView sliceView(const Geometry& geometry, int axis);
 
 /// The world axis (0, 1, 2) that an index axis counts by, above.
 int sliceWorldAxis(const Geometry& geometry, int axis);
 
-/// "axial", "coronal", "sagittal" in the patient's frame, else the world axis that it is perpendicular to: "x", "y",
+/// "axial", "coronal", "sagittal" in the patient's axes, else the world axis that it is perpendicular to: "x", "y",
 /// "z".
 const char* sliceName(const Geometry& geometry, int axis);
 
@@ -61,12 +61,6 @@ SliceRect fittedSlice(const Geometry& geometry, int axis, int width, int height)
 Vec3 voxelAtPixel(const Geometry& geometry, const SlicePlane& plane, const Vec2& pixel);
 /// Of the voxel's projection on the plane.
 Vec2 pixelOfVoxel(const Geometry& geometry, const SlicePlane& plane, const Vec3& voxel);
-inline Vec3 worldAtPixel(const Geometry& geometry, const SlicePlane& plane, const Vec2& pixel) {
-    return geometry.worldFromVoxel(voxelAtPixel(geometry, plane, pixel));
-}
-inline Vec2 pixelOfWorld(const Geometry& geometry, const SlicePlane& plane, const Vec3& world) {
-    return pixelOfVoxel(geometry, plane, geometry.voxelFromWorld(world));
-}
 
 /// A fraction of the box along an index axis, as clipping takes it, as voxel coordinate: 0 and 1 are the box's sides.
 inline double slicePosition(const Geometry& geometry, int axis, double fraction) {

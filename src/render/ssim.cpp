@@ -50,7 +50,7 @@ struct Moments {
 
 double ssim(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height || a.rgba.empty() || b.rgba.empty())
-        throw UsageError("the pictures differ in size, or have none", "structural similarity",
+        throw UsageError("the pictures differ in size, or are empty", "structural similarity",
                          "compare pictures of one size");
     const std::vector<double> across = window(a.width), down = window(a.height);
     const auto columns = static_cast<std::size_t>(a.width) - across.size() + 1,

@@ -12,22 +12,10 @@ constexpr std::array<const char*, 6> kAnatomy{"anterior", "posterior", "left", "
 } // namespace
 
 ViewAngles anglesOf(StandardView view, WorldAxes axes) {
-    const bool patient = axes == WorldAxes::Patient;
-    switch (view) {
-    case StandardView::Front:
-        return {0, 0, 1};
-    case StandardView::Back:
-        return {180, 0, 1};
-    case StandardView::Left: // the patient's left is at +x
-        return {patient ? 90.0 : -90.0, 0, 1};
-    case StandardView::Right:
-        return {patient ? -90.0 : 90.0, 0, 1};
-    case StandardView::Top: // up is +y at azimuth 0, which is posterior
-        return {patient ? 180.0 : 0.0, 90, 1};
-    case StandardView::Bottom: // up is -y at azimuth 0
-        return {0, -90, 1};
-    }
-    return {};
+    // The patient's left is at +x. Up is +y at azimuth 0 from the top, which is posterior, and −y from the bottom.
+    constexpr ViewAngles kOfFile[] = {{0, 0}, {180, 0}, {-90, 0}, {90, 0}, {0, 90}, {0, -90}};
+    constexpr ViewAngles kOfPatient[] = {{0, 0}, {180, 0}, {90, 0}, {-90, 0}, {180, 90}, {0, -90}};
+    return (axes == WorldAxes::Patient ? kOfPatient : kOfFile)[static_cast<std::size_t>(view)];
 }
 
 const char* name(StandardView view, WorldAxes axes) {

@@ -159,22 +159,14 @@ constexpr Marked kMarked[] = {
 
 /// Around the middle of a letter, from 0 upward; a cedilla from the baseline down.
 const char* pathOfMark(char mark) {
-    switch (mark) {
-    case '`':
-        return "M-1.2 2 L0.6 0.2";
-    case '\'':
-        return "M1.2 2 L-0.6 0.2";
-    case '^':
-        return "M-1.6 0.2 L0 2 L1.6 0.2";
-    case '~':
-        return "A-1 0.8 1 0.9 180 0 A1 0.8 1 0.9 180 360";
-    case ':':
-        return "M-1.4 1.1 L-1.4 1 M1.4 1.1 L1.4 1";
-    case 'o':
-        return "E0 1 1.1 1.1";
-    default:
-        return "M0.4 0 L-0.4 -2.2";
-    }
+    static constexpr std::pair<char, const char*> kPaths[] = {{'`', "M-1.2 2 L0.6 0.2"},
+                                                              {'\'', "M1.2 2 L-0.6 0.2"},
+                                                              {'^', "M-1.6 0.2 L0 2 L1.6 0.2"},
+                                                              {'~', "A-1 0.8 1 0.9 180 0 A1 0.8 1 0.9 180 360"},
+                                                              {':', "M-1.4 1.1 L-1.4 1 M1.4 1.1 L1.4 1"},
+                                                              {'o', "E0 1 1.1 1.1"},
+                                                              {',', "M0.4 0 L-0.4 -2.2"}};
+    return std::ranges::find(kPaths, mark, &std::pair<char, const char*>::first)->second;
 }
 
 struct Glyph {

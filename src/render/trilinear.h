@@ -25,8 +25,7 @@ struct TrilinearCell {
     double fraction[3];  ///< of the way to it
 
     /// `at` is in voxels of a grid of `n`; clamped to the outer centres.
-    TrilinearCell(const Int3& n, const Vec3& at)
-        : step{1, static_cast<std::size_t>(n.x), static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y)} {
+    TrilinearCell(const Int3& n, const Vec3& at) : step{1, static_cast<std::size_t>(n.x), layerSize(n)} {
         for (int a = 0; a < 3; ++a) {
             const double p = std::clamp(at[a], 0.0, static_cast<double>(n[a] - 1));
             const int base = std::min(static_cast<int>(p), std::max(0, n[a] - 2));
@@ -61,6 +60,21 @@ Interpolated interpolateValid(const ValueAt& valueAt, const Int3& n, const Vec3&
     return result;
 }
 
+/// The same where all values are valid.
+template <class ValueAt>
+double interpolateAll(const ValueAt& valueAt, const TrilinearCell& cell) {
+    const auto alongX = [&](std::size_t i) {
+        const double low = valueAt(i), high = valueAt(i + cell.step[0]);
+        return low + cell.fraction[0] * (high - low);
+    };
+    const auto alongY = [&](std::size_t i) {
+        const double low = alongX(i), high = alongX(i + cell.step[1]);
+        return low + cell.fraction[1] * (high - low);
+    };
+    const double low = alongY(cell.corner), high = alongY(cell.corner + cell.step[2]);
+    return low + cell.fraction[2] * (high - low);
+}
+
 /// The same of a grid in memory. `valid` may be empty.
 template <class T>
 Interpolated interpolate(const T* grid, const Int3& n, const std::vector<std::uint8_t>& valid, const Vec3& at) {
@@ -70,17 +84,8 @@ Interpolated interpolate(const T* grid, const Int3& n, const std::vector<std::ui
                 return valid[i] ? static_cast<double>(grid[i]) : std::numeric_limits<double>::quiet_NaN();
             },
             n, at);
-    const TrilinearCell cell(n, at); // nearly always: no weights to keep
-    const auto alongX = [&](std::size_t i) {
-        const auto low = static_cast<double>(grid[i]), high = static_cast<double>(grid[i + cell.step[0]]);
-        return low + cell.fraction[0] * (high - low);
-    };
-    const auto alongY = [&](std::size_t i) {
-        const double low = alongX(i), high = alongX(i + cell.step[1]);
-        return low + cell.fraction[1] * (high - low);
-    };
-    const double low = alongY(cell.corner), high = alongY(cell.corner + cell.step[2]);
-    return {low + cell.fraction[2] * (high - low), 1.0};
+    // Nearly always: no weights to keep.
+    return {interpolateAll([&](std::size_t i) { return static_cast<double>(grid[i]); }, TrilinearCell(n, at)), 1.0};
 }
 
 template <class T>

@@ -5,7 +5,7 @@
 #include "render/gl/gl_resources.h"
 #include "render/gl/kept_region.h"
 #include "render/gl/layered_view.h"
-#include "render/gl/slices_engine.h"
+#include "render/gl/engine_budgets.h"
 #include "support/engine_checks.h"
 #include "support/field_sums.h"
 

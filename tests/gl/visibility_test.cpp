@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "render/gl/gl_engines.h"
 #include "render/gl/gl_resources.h"
-#include "render/gl/visibility_gl.h"
+#include "render/gl/engine_budgets.h"
 #include "support/engine_checks.h"
 #include "support/field_sums.h"
 

@@ -169,7 +169,7 @@ TEST_CASE("left drag moves the crosshair, and the other slices follow", "[slices
     const Geometry& g = w.services().scene().volume->geometry();
     for (int a = 0; a < 3; ++a) {
         const QPointF p = w.pixelOf(a, w.crosshair());
-        const Vec3 world = worldAtPixel(g, w.pane(a).plane(), {p.x(), p.y()});
+        const Vec3 world = g.worldFromVoxel(voxelAtPixel(g, w.pane(a).plane(), {p.x(), p.y()}));
         CHECK(glm::length(world - g.worldFromVoxel({6, 17, 12})) < 1e-9);
     }
     // Esc gives up.

@@ -36,6 +36,29 @@ Camera above(double height) {
     return camera;
 }
 
+/// A picture of the ground alone. A pixel's depth is the distance from the plane (perspective: the eye) from which the
+/// rays of `camera` start to the first hit, in world units along the ray; infinity where there is none.
+struct GroundImage {
+    Image color; ///< opaque where there is ground
+    std::vector<float> depth;
+};
+GroundImage drawGround(const Ground& ground, const Camera& camera, int width, int height) {
+    camera.validate("camera");
+    const GroundWindow whole{static_cast<double>(width), static_cast<double>(height), 0, 0, width, height};
+    const GroundPicture drawn = rasterizeGround(ground, camera, 0, whole);
+    GroundImage image{Image(width, height), drawn.depth};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            float* pixel = image.color.pixel(x, y);
+            const auto i = static_cast<std::size_t>((pixel - image.color.rgba.data()) / 4);
+            for (int c = 0; c < 4; ++c) pixel[c] = static_cast<float>(drawn.rgba[i] >> (8 * c) & 255u) / 255;
+            // From along the view to along the ray.
+            const Vec3 ray = pixelRay(camera, x + 0.5, y + 0.5, width, height).direction;
+            image.depth[i] /= static_cast<float>(glm::dot(ray, camera.forward()));
+        }
+    return image;
+}
+
 float depthAt(const GroundImage& image, int x, int y) {
     return image
         .depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.color.width) + static_cast<std::size_t>(x)];

@@ -262,27 +262,12 @@ private:
         bool flipped; ///< the nearest slice is the one of the highest index
     };
 
-    /// Of a whole sweep: [features + 1][3][lanes], the last feature being "in none".
+    /// Of a whole sweep, as featureSumsOf() takes them.
     struct Sums {
         std::vector<double> values;
         std::size_t features = 0, lanes = 0;
-        std::array<double, 3> units; ///< what 1 stands for in Σv and the two weighted sums
-
-        FeatureSums ofLane(std::size_t lane) const {
-            FeatureSums sums;
-            sums.visibility.assign(features, 0.0);
-            for (auto& w : sums.weighted) w.assign(features, 0.0);
-            for (std::size_t f = 0; f <= features; ++f) {
-                const double* v = &values[f * 3 * lanes + lane];
-                const double part[3] = {v[0] * units[0], v[lanes] * units[1], v[2 * lanes] * units[2]};
-                sums.allVisibility += part[0];
-                for (std::size_t w = 0; w < 2; ++w) sums.allWeighted[w] += part[w + 1];
-                if (f == features) continue;
-                sums.visibility[f] = part[0];
-                for (std::size_t w = 0; w < 2; ++w) sums.weighted[w][f] = part[w + 1];
-            }
-            return sums;
-        }
+        const WeightFields* weights = nullptr;
+        FeatureSums ofLane(std::size_t lane) const { return featureSumsOf(values, features, lane, lanes, weights); }
     };
 
     void makeOwnCodes(const IntensityGrid& grid) {
@@ -309,18 +294,14 @@ private:
         parallelFor(asSize(m_blocks.z), [&](std::size_t bz) {
             const int z0 = static_cast<int>(bz) * kBlockSize;
             for (int by = 0; by < m_blocks.y; ++by) {
-                auto* row = &m_ranges[asSize(m_blocks.x) * (asSize(by) + asSize(m_blocks.y) * bz)];
+                auto* row = &m_ranges[voxelIndex(m_blocks, 0, by, static_cast<int>(bz))];
                 for (int z = std::max(0, z0 - 1); z <= std::min(n.z - 1, z0 + kBlockSize); ++z)
-                    for (int y = std::max(0, by * kBlockSize - 1); y <= std::min(n.y - 1, (by + 1) * kBlockSize); ++y)
-                        widenBy(row, asSize(n.x) * (asSize(y) + asSize(n.y) * asSize(z)));
+                    for (int y = std::max(0, by * kBlockSize - 1); y <= std::min(n.y - 1, (by + 1) * kBlockSize); ++y) {
+                        const std::size_t first = voxelIndex(n, 0, y, z);
+                        narrowCodes() ? widen(row, narrowCodes() + first) : widen(row, wideCodes() + first);
+                    }
             }
         });
-    }
-    void widenBy(std::array<std::uint16_t, 2>* ranges, std::size_t firstVoxel) const {
-        if (narrowCodes())
-            widen(ranges, narrowCodes() + firstVoxel);
-        else
-            widen(ranges, wideCodes() + firstVoxel);
     }
     template <class Code>
     void widen(std::array<std::uint16_t, 2>* ranges, const Code* codes) const {
@@ -444,7 +425,7 @@ private:
     void clearClipped(std::vector<std::uint8_t>& opaque, std::span<const VoxelPlane> planes) const {
         for (const VoxelPlane& plane : planes)
             parallelFor(asSize(m_blocks.z), [&](std::size_t z) {
-                std::uint8_t* block = &opaque[z * asSize(m_blocks.x) * asSize(m_blocks.y)];
+                std::uint8_t* block = &opaque[z * layerSize(m_blocks)];
                 for (int y = 0; y < m_blocks.y; ++y)
                     for (int x = 0; x < m_blocks.x; ++x, ++block) {
                         // The corner that is least beyond.
@@ -559,7 +540,6 @@ private:
             in.fieldStrides.w = -in.fieldStrides.w;
             in.codeStrides.w = -in.codeStrides.w;
         }
-        std::array<double, 3> units{1, 1, 1};
         if (weights) {
             PELLUCID_CHECK(weights->dims() == g.dims);
             if (weights->isCompact()) {
@@ -568,7 +548,6 @@ private:
             } else {
                 in.weights = weights->data() + start;
             }
-            for (int a = 0; a < 2; ++a) units[asSize(a + 1)] = weights->scale(a);
         }
         if (field) in.field = field->data() + start;
         setRays(in, camera, pass);
@@ -576,7 +555,7 @@ private:
         in.exhaustedDepth = static_cast<float>(m_quality == Quality::High || isSmall() ? kExhaustedExact
                                                : in.mode == SweepMode::Jacobian        ? kExhaustedDerivative
                                                                                        : kExhausted);
-        return {run(in, job), asSize(in.features), asSize(lanesOf(in.mode)), units};
+        return {run(in, job), asSize(in.features), asSize(lanesOf(in.mode)), weights};
     }
 
     std::vector<double> run(const SweepInput& in, const JobControl& job) {
@@ -633,6 +612,23 @@ std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> vo
 std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> volume, Quality quality,
                                                 SweepKernel kernel) {
     return std::make_unique<CpuEngine>(std::move(volume), quality, kernel);
+}
+
+FeatureSums featureSumsOf(std::span<const double> totals, std::size_t features, std::size_t lane, std::size_t lanes,
+                          const WeightFields* weights) {
+    FeatureSums sums = emptySums(features);
+    for (std::size_t f = 0; f <= features; ++f) {
+        const double* item = &totals[f * 3 * lanes + lane];
+        sums.allVisibility += item[0];
+        if (f < features) sums.visibility[f] = item[0];
+        for (std::size_t w = 0; w < 2; ++w) {
+            const double scale = weights != nullptr ? static_cast<double>(weights->scale(static_cast<int>(w))) : 0;
+            const double weighted = item[(w + 1) * lanes] * scale;
+            sums.allWeighted[w] += weighted;
+            if (f < features) sums.weighted[w][f] = weighted;
+        }
+    }
+    return sums;
 }
 
 std::unique_ptr<VisibilityEngine> makeDraftEngine(std::shared_ptr<const Volume> volume) {

@@ -13,4 +13,9 @@ std::unique_ptr<VisibilityEngine> makeCpuEngine(std::shared_ptr<const Volume> vo
 /// several times faster and their figures less exact (docs/method.md, "The best view").
 std::unique_ptr<VisibilityEngine> makeDraftEngine(std::shared_ptr<const Volume> volume);
 
+/// The sums of one lane of totals [features + 1][3][lanes], the last feature being "in none"; the three are Σv and
+/// Σ v times the two `weights` in units of their 16 bits (null: no weights). What engines on the device have, too.
+FeatureSums featureSumsOf(std::span<const double> totals, std::size_t features, std::size_t lane, std::size_t lanes,
+                          const WeightFields* weights);
+
 } // namespace pellucid

@@ -28,21 +28,11 @@ void copy(const Vec3& from, float (&to)[3]) {
 }
 Vec3 vector(const Rgb& c) { return {c.r, c.g, c.b}; }
 
-PacketMode packetMode(RenderMode mode) {
-    switch (mode) {
-    case RenderMode::Mip:
-        return PacketMode::Mip;
-    case RenderMode::MinIp:
-        return PacketMode::MinIp;
-    case RenderMode::Average:
-        return PacketMode::Average;
-    case RenderMode::Surface:
-        return PacketMode::Surface;
-    case RenderMode::Composite:
-        break;
-    }
-    return PacketMode::Composite;
-}
+static_assert(int(PacketMode::Composite) == int(RenderMode::Composite) &&
+              int(PacketMode::Mip) == int(RenderMode::Mip) && int(PacketMode::MinIp) == int(RenderMode::MinIp) &&
+              int(PacketMode::Average) == int(RenderMode::Average) &&
+              int(PacketMode::Surface) == int(RenderMode::Surface));
+PacketMode packetMode(RenderMode mode) { return static_cast<PacketMode>(mode); }
 
 class CpuRenderer final : public TileRenderer {
 public:
@@ -75,8 +65,7 @@ public:
             const std::int64_t dx = t.x0 + kTile / 2 - x, dy = t.y0 + kTile / 2 - y;
             return dx * dx + dy * dy;
         };
-        std::stable_sort(tiles.begin(), tiles.end(),
-                         [&](const ImagePart& a, const ImagePart& b) { return distance(a) < distance(b); });
+        std::ranges::stable_sort(tiles, {}, distance);
         draw(camera, tf, settings, 1, image, tiles, done, job);
     }
 
@@ -146,8 +135,8 @@ private:
             m_table.emplace(
                 [&](double s) {
                     const float code = static_cast<float>(s * m_grid->maxCode);
-                    return std::any_of(m_features.begin(), m_features.end(),
-                                       [&](const auto& f) { return code >= f.low && code < f.high; });
+                    return std::ranges::any_of(m_features,
+                                               [&](const auto& f) { return code >= f.low && code < f.high; });
                 },
                 *m_grid);
         } else {
@@ -263,7 +252,7 @@ private:
         const Light& from = settings.light;
         PacketLight& l = s.light;
         l.shaded = from.on;
-        l.any = from.on || from.gradientOpacity > 0 || from.occlusion > 0 || from.depthCue > 0 || from.silhouettes > 0;
+        l.any = from.changesColors();
         if (!l.any) return;
         l.ambient = static_cast<float>(from.ambient);
         l.diffuse = static_cast<float>(from.diffuse);

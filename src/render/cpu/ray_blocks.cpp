@@ -78,12 +78,10 @@ void RayBlocks::joinAcrossInvalid(const IntensityGrid& grid) {
             for (int i = 0; i < n.x; ++i)
                 if (!grid.valid[grid.codes.index(i, j, k)]) {
                     const Int3 b = glm::min(Int3(i, j, k) / kRayBlock, m_dims - 1);
-                    touched[asSize(b.x) + asSize(m_dims.x) * (asSize(b.y) + asSize(m_dims.y) * asSize(b.z))] = 1;
+                    touched[voxelIndex(m_dims, b.x, b.y, b.z)] = 1;
                 }
     const std::vector<std::int32_t> before = m_ranges;
-    const auto at = [&](int x, int y, int z) {
-        return asSize(x) + asSize(m_dims.x) * (asSize(y) + asSize(m_dims.y) * asSize(z));
-    };
+    const auto at = [&](int x, int y, int z) { return voxelIndex(m_dims, x, y, z); };
     for (int z = 0; z < m_dims.z; ++z)
         for (int y = 0; y < m_dims.y; ++y)
             for (int x = 0; x < m_dims.x; ++x) {
@@ -102,7 +100,7 @@ void RayBlocks::joinAcrossInvalid(const IntensityGrid& grid) {
 
 std::vector<std::uint8_t> RayBlocks::distances(const std::function<bool(int, int)>& isOpaque) const {
     constexpr std::size_t kPad = 3;
-    const std::size_t size = m_ranges.size(), layer = asSize(m_dims.x) * asSize(m_dims.y);
+    const std::size_t size = m_ranges.size(), layer = layerSize(m_dims);
     std::vector<std::uint8_t> distance(size + kPad, 0);
     parallelFor(asSize(m_dims.z), [&](std::size_t z) {
         for (std::size_t i = z * layer; i < (z + 1) * layer; ++i) {

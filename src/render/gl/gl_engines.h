@@ -22,7 +22,7 @@ std::unique_ptr<VisibilityEngine> makeSlicesEngine(std::shared_ptr<const Volume>
 std::unique_ptr<ImageRenderer> makeGlRenderer(std::shared_ptr<const Volume> volume);
 
 /// Whether GL_RENDERER names a software rasterizer: llvmpipe, softpipe, SwiftShader or the like.
-bool isSoftwareRenderer(std::string renderer);
+bool isSoftwareRenderer(const std::string& renderer);
 
 /// What a headless context finds here; empty where none can be made.
 struct GlInfo {

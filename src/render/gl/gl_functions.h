@@ -14,9 +14,9 @@
     X(glGenBuffers) X(glGenFramebuffers) X(glGenTextures) X(glGenVertexArrays) X(glGetBufferSubData) X(glGetError)    \
     X(glGetIntegerv) X(glGetProgramInfoLog) X(glGetProgramiv) X(glGetShaderInfoLog) X(glGetShaderiv) X(glGetString)   \
     X(glIsEnabled) X(glIsShader) X(glLinkProgram) X(glMapBufferRange) X(glMemoryBarrier) X(glPixelStorei)             \
-    X(glProgramUniform1f) X(glProgramUniform1i) X(glProgramUniform2f) X(glProgramUniform2fv) X(glProgramUniform2i)    \
-    X(glProgramUniform2iv) X(glProgramUniform3fv) X(glProgramUniform3i) X(glProgramUniform3iv) X(glProgramUniform4f)  \
-    X(glProgramUniform4fv) X(glProgramUniform4i) X(glProgramUniformMatrix3fv) X(glReadPixels) X(glScissor)            \
+    X(glProgramUniform1f) X(glProgramUniform1i) X(glProgramUniform2fv) X(glProgramUniform2iv) X(glProgramUniform3fv)  \
+    X(glProgramUniform3iv) X(glProgramUniform4fv) X(glProgramUniform4iv) X(glProgramUniformMatrix3fv) X(glReadPixels) \
+    X(glScissor)                                                                                                      \
     X(glShaderSource) X(glTexParameteri) X(glTexStorage2D) X(glTexStorage3D) X(glTexSubImage2D) X(glTexSubImage3D)    \
     X(glUnmapBuffer) X(glUseProgram) X(glViewport)
 #define PELLUCID_EGL_FUNCTIONS(X)                                                                                     \

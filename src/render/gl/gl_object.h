@@ -8,14 +8,14 @@
 
 namespace pellucid::gl {
 
-/// Kind: static GLuint create(); static void destroy(GLuint).
+/// Kind: static void create(GLuint&); static void destroy(GLuint).
 template <class Kind>
 class GlObject {
 public:
     GlObject() noexcept = default; ///< empty, calls no GL
     static GlObject make() {
         GlObject object;
-        object.m_id = Kind::create();
+        Kind::create(object.m_id);
         return object;
     }
     GlObject(GlObject&& other) noexcept : m_id(std::exchange(other.m_id, 0)) {}
@@ -34,39 +34,23 @@ private:
 };
 
 struct TextureKind {
-    static GLuint create() {
-        GLuint id = 0;
-        glGenTextures(1, &id);
-        return id;
-    }
+    static void create(GLuint& id) { glGenTextures(1, &id); }
     static void destroy(GLuint id) { glDeleteTextures(1, &id); }
 };
 struct FramebufferKind {
-    static GLuint create() {
-        GLuint id = 0;
-        glGenFramebuffers(1, &id);
-        return id;
-    }
+    static void create(GLuint& id) { glGenFramebuffers(1, &id); }
     static void destroy(GLuint id) { glDeleteFramebuffers(1, &id); }
 };
 struct BufferKind {
-    static GLuint create() {
-        GLuint id = 0;
-        glGenBuffers(1, &id);
-        return id;
-    }
+    static void create(GLuint& id) { glGenBuffers(1, &id); }
     static void destroy(GLuint id) { glDeleteBuffers(1, &id); }
 };
 struct VertexArrayKind {
-    static GLuint create() {
-        GLuint id = 0;
-        glGenVertexArrays(1, &id);
-        return id;
-    }
+    static void create(GLuint& id) { glGenVertexArrays(1, &id); }
     static void destroy(GLuint id) { glDeleteVertexArrays(1, &id); }
 };
 struct ProgramKind {
-    static GLuint create() { return glCreateProgram(); }
+    static void create(GLuint& id) { id = glCreateProgram(); }
     static void destroy(GLuint id) { glDeleteProgram(id); }
 };
 

@@ -1,4 +1,4 @@
-// makeGlRenderer: the slice ray caster on a context of its own, tile by tile into memory.
+// makeGlRenderer: the ray caster on a context of its own, tile by tile into memory.
 #include <algorithm>
 
 #include "render/gl/gl_engines.h"

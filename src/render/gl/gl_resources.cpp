@@ -1,27 +1,24 @@
 #include "render/gl/gl_resources.h"
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
+#include <utility>
 
 namespace pellucid::gl {
 
 namespace {
 
 const char* errorName(GLenum error) {
-    switch (error) {
-    case GL_INVALID_ENUM:
-        return "GL_INVALID_ENUM";
-    case GL_INVALID_VALUE:
-        return "GL_INVALID_VALUE";
-    case GL_INVALID_OPERATION:
-        return "GL_INVALID_OPERATION";
-    case GL_INVALID_FRAMEBUFFER_OPERATION:
-        return "GL_INVALID_FRAMEBUFFER_OPERATION";
-    case GL_OUT_OF_MEMORY:
-        return "GL_OUT_OF_MEMORY";
-    default:
-        return "unknown error";
-    }
+    static constexpr std::pair<GLenum, const char*> kNames[] = {
+        {GL_INVALID_ENUM, "GL_INVALID_ENUM"},
+        {GL_INVALID_VALUE, "GL_INVALID_VALUE"},
+        {GL_INVALID_OPERATION, "GL_INVALID_OPERATION"},
+        {GL_INVALID_FRAMEBUFFER_OPERATION, "GL_INVALID_FRAMEBUFFER_OPERATION"},
+        {GL_OUT_OF_MEMORY, "GL_OUT_OF_MEMORY"}};
+    for (const auto& [number, name] : kNames)
+        if (error == number) return name;
+    return "unknown error";
 }
 
 const char* kOutOfMemory = "the graphics device is out of memory while ";
@@ -34,29 +31,26 @@ void throwIfTooMuch(double bytes, const std::string& what) {
 }
 
 double bytesPerTexel(GLenum format) {
-    switch (format) {
-    case GL_R8:
-    case GL_R8UI:
-        return 1;
-    case GL_R16:
-        return 2;
-    case GL_RGBA32F:
-    case GL_RGBA32UI:
-        return 16;
-    default:
-        return 4;
-    }
+    if (format == GL_R8 || format == GL_R8UI) return 1;
+    if (format == GL_R16) return 2;
+    return format == GL_RGBA32F || format == GL_RGBA32UI ? 16 : 4;
 }
 
-void checkSize(int largest, GLenum limitName, const std::string& what) {
-    const int limit = glInteger(limitName);
-    if (largest > limit)
+/// A texture of two dimensions has size.z = 1.
+TextureName makeTexture(GLenum target, const glm::ivec3& size, GLenum format, GLenum filter, const std::string& what) {
+    const int limit = glInteger(target == GL_TEXTURE_3D ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE);
+    if (const int largest = std::max({size.x, size.y, size.z}); largest > limit)
         throw Error(what + " needs a texture of " + std::to_string(largest) + " along one axis, the device takes " +
                         std::to_string(limit),
                     "OpenGL", "", Remedy::OtherEngine);
-}
-
-void clampToEdge(GLenum target, GLenum filter) {
+    throwIfTooMuch(bytesPerTexel(format) * size.x * size.y * size.z, what);
+    throwOnGlError("preparing " + what);
+    TextureName name = TextureName::make();
+    glBindTexture(target, name.id());
+    if (target == GL_TEXTURE_3D)
+        glTexStorage3D(target, 1, format, size.x, size.y, size.z);
+    else
+        glTexStorage2D(target, 1, format, size.x, size.y);
     const auto set = [&](GLenum parameter, GLenum value) {
         glTexParameteri(target, parameter, static_cast<GLint>(value));
     };
@@ -65,6 +59,9 @@ void clampToEdge(GLenum target, GLenum filter) {
     set(GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     set(GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     if (target == GL_TEXTURE_3D) set(GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+    glBindTexture(target, 0);
+    throwOnGlError("making room for " + what);
+    return name;
 }
 
 } // namespace
@@ -89,29 +86,28 @@ int glInteger(GLenum parameter) {
 }
 
 Texture2d makeTexture2d(glm::ivec2 size, GLenum format, GLenum filter, const std::string& what) {
-    checkSize(std::max(size.x, size.y), GL_MAX_TEXTURE_SIZE, what);
-    throwIfTooMuch(bytesPerTexel(format) * size.x * size.y, what);
-    throwOnGlError("preparing " + what);
-    Texture2d texture{TextureName::make(), size, format};
-    glBindTexture(GL_TEXTURE_2D, texture.name.id());
-    glTexStorage2D(GL_TEXTURE_2D, 1, format, size.x, size.y);
-    clampToEdge(GL_TEXTURE_2D, filter);
-    glBindTexture(GL_TEXTURE_2D, 0);
-    throwOnGlError("making room for " + what);
-    return texture;
+    return {makeTexture(GL_TEXTURE_2D, {size, 1}, format, filter, what), size, format};
 }
 
 Texture3d makeTexture3d(glm::ivec3 size, GLenum format, GLenum filter, const std::string& what) {
-    checkSize(std::max(size.x, std::max(size.y, size.z)), GL_MAX_3D_TEXTURE_SIZE, what);
-    throwIfTooMuch(bytesPerTexel(format) * size.x * size.y * size.z, what);
-    throwOnGlError("preparing " + what);
-    Texture3d texture{TextureName::make(), size, format};
+    return {makeTexture(GL_TEXTURE_3D, size, format, filter, what), size, format};
+}
+
+void upload(const Texture2d& texture, GLenum format, GLenum type, const void* pixels, const std::string& doing) {
+    glBindTexture(GL_TEXTURE_2D, texture.name.id());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, texture.size.x, texture.size.y, format, type, pixels);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    throwOnGlError(doing);
+}
+
+void upload(const Texture3d& texture, GLenum format, GLenum type, const void* pixels, const std::string& doing) {
+    const glm::ivec3& size = texture.size;
     glBindTexture(GL_TEXTURE_3D, texture.name.id());
-    glTexStorage3D(GL_TEXTURE_3D, 1, format, size.x, size.y, size.z);
-    clampToEdge(GL_TEXTURE_3D, filter);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, size.x, size.y, size.z, format, type, pixels);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glBindTexture(GL_TEXTURE_3D, 0);
-    throwOnGlError("making room for " + what);
-    return texture;
+    throwOnGlError(doing);
 }
 
 ColorTarget makeColorTarget(glm::ivec2 size, GLenum format, GLenum filter, const std::string& what) {

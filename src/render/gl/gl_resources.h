@@ -42,6 +42,11 @@ struct Texture3d {
 Texture2d makeTexture2d(glm::ivec2 size, GLenum format, GLenum filter, const std::string& what);
 Texture3d makeTexture3d(glm::ivec3 size, GLenum format, GLenum filter, const std::string& what);
 
+/// Fills the whole texture with pixels that lie in memory row after row, without gaps. `doing` as throwOnGlError()
+/// takes it.
+void upload(const Texture2d& texture, GLenum format, GLenum type, const void* pixels, const std::string& doing);
+void upload(const Texture3d& texture, GLenum format, GLenum type, const void* pixels, const std::string& doing);
+
 /// A framebuffer with one colour texture.
 struct ColorTarget {
     Texture2d color;

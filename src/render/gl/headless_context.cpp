@@ -12,6 +12,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "render/gl/gl.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/osmesa.h"
@@ -117,26 +118,19 @@ void watchErrors() {
 
 /// Makes a surfaceless context current; null, with the reason in `why`, where this display gives none.
 std::unique_ptr<EglContext> makeCurrentOn(EGLDisplay display, std::string& why) {
+    const auto failed = [&](const char* reason) {
+        why = reason;
+        return nullptr;
+    };
     EGLint major = 0, minor = 0;
-    if (display == EGL_NO_DISPLAY || eglInitialize(display, &major, &minor) != EGL_TRUE) {
-        why = "no display";
-        return {};
-    }
-    if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) {
-        why = "no surfaceless contexts";
-        return {};
-    }
-    if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) {
-        why = "no desktop OpenGL";
-        return {};
-    }
+    if (display == EGL_NO_DISPLAY || eglInitialize(display, &major, &minor) != EGL_TRUE) return failed("no display");
+    if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) return failed("no surfaceless contexts");
+    if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) return failed("no desktop OpenGL");
     const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
-    if (eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count < 1) {
-        why = "no configuration";
-        return {};
-    }
+    if (eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count < 1)
+        return failed("no configuration");
     for (const int version : {45, 43}) {
         const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
                                                version / 10,
@@ -152,8 +146,7 @@ std::unique_ptr<EglContext> makeCurrentOn(EGLDisplay display, std::string& why) 
         auto owner = std::make_unique<EglContext>(display, context);
         if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) return owner;
     }
-    why = "no OpenGL 4.3";
-    return {};
+    return failed("no OpenGL 4.3");
 }
 
 /// What the thread holds while it lives.
@@ -262,3 +255,22 @@ void HeadlessContext::threadMain() {
 }
 
 } // namespace pellucid::gl
+
+namespace pellucid {
+
+bool isSoftwareRenderer(const std::string& renderer) {
+    const std::string lower = lowerCase(renderer);
+    for (const char* name : {"llvmpipe", "softpipe", "swrast", "software", "swiftshader", "swr"})
+        if (lower.find(name) != std::string::npos) return true;
+    return false;
+}
+
+std::optional<GlInfo> probeGl() {
+    try {
+        return gl::HeadlessContext().info();
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+} // namespace pellucid

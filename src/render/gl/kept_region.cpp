@@ -38,7 +38,7 @@ std::vector<Vec3> keptCorners(const Geometry& geometry, std::span<const VoxelPla
                 const auto holds = [&](const VoxelPlane& plane) {
                     return plane.beyond(p) <= 1e-9 * size * glm::length(plane.normal);
                 };
-                if (std::all_of(all.begin(), all.end(), holds)) corners.push_back(p);
+                if (std::ranges::all_of(all, holds)) corners.push_back(p);
             }
     return corners;
 }

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "render/gl/shader_program.h"
 #include "render/gl/volume_texture.h"
 
 namespace pellucid::gl {
@@ -50,10 +49,35 @@ void TableBuffers::upload(const DepthTables& tables) {
     throwOnGlError("uploading the transfer functions");
 }
 
-void TableBuffers::describe(GLuint program, const DepthTables& tables, int maxCode) {
-    glProgramUniform1f(program, 0, static_cast<float>(65535.0 / maxCode * tables.cells));
-    glProgramUniform1f(program, 12, static_cast<float>(tables.unit));
-    glProgramUniform1i(program, 13, tables.cells - 1);
+void TableBuffers::describe(const Program& program, const DepthTables& tables, int maxCode) {
+    program.set(0, 65535.0 / maxCode * tables.cells);
+    program.set(12, tables.unit);
+    program.set(13, tables.cells - 1);
+}
+
+void describeVolume(const Program& program, const ResidentVolume& volume, const Mat3& voxelFrom, const Vec3& offset) {
+    program.set(10, voxelFrom);
+    program.set(11, offset);
+    program.set(14, volume.size() - 1);
+    program.set(15, Vec3(volume.codes().size));
+    const Folding& f = volume.folding();
+    if (!f.folded()) return;
+    program.set(16, f.brick);
+    program.set(17, f.bricks);
+    program.set(18, f.slots);
+    program.set(19, f.tile);
+}
+
+void readVisibility(const Buffer& buffer, std::size_t count, const std::function<void(std::span<const float>)>& use) {
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.name.id());
+    const void* data =
+        glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(count * sizeof(float)), GL_MAP_READ_BIT);
+    throwOnGlError("reading the visibility");
+    if (data == nullptr) throw Error("the visibility cannot be read back", "OpenGL", "", Remedy::OtherEngine);
+    const struct Unmap {
+        ~Unmap() { glUnmapBuffer(GL_SHADER_STORAGE_BUFFER); }
+    } unmap;
+    use({static_cast<const float*>(data), count});
 }
 
 int slotsFor(int features) {
@@ -99,7 +123,7 @@ std::vector<std::uint16_t> slotsOfCodes(const IntensityGrid& grid, const std::ve
     return slots;
 }
 
-FeatureTotals::FeatureTotals() : m_reduce(makeProgram({"visibility_reduce.comp"})) {}
+FeatureTotals::FeatureTotals() : m_reduce({"visibility_reduce.comp"}) {}
 
 void FeatureTotals::begin(const std::vector<std::uint16_t>& slotOfCode, int entries) {
     if (m_uploadedSlots != slotOfCode) {
@@ -117,10 +141,10 @@ void FeatureTotals::begin(const std::vector<std::uint16_t>& slotOfCode, int entr
 }
 
 void FeatureTotals::add(GLuint workGroups) {
-    glProgramUniform1i(m_reduce.id(), 0, m_entries);
-    glProgramUniform1i(m_reduce.id(), 1, static_cast<GLint>(workGroups));
-    glProgramUniform1i(m_reduce.id(), 2, m_first ? 1 : 0);
-    glUseProgram(m_reduce.id());
+    m_reduce.set(0, m_entries);
+    m_reduce.set(1, static_cast<GLint>(workGroups));
+    m_reduce.set(2, m_first);
+    m_reduce.use();
     glDispatchCompute(groups(m_entries, kReduceColumns), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     m_first = false;
@@ -136,21 +160,21 @@ std::vector<double> FeatureTotals::read() const {
     return totals;
 }
 
-FeatureSums featureSumsOf(std::span<const double> totals, std::size_t features, std::size_t lane, std::size_t lanes,
-                          const WeightFields* weights) {
-    FeatureSums r = emptySums(features);
-    for (std::size_t f = 0; f <= features; ++f) {
-        const double* item = &totals[f * 3 * lanes + lane];
-        r.allVisibility += item[0];
-        if (f < features) r.visibility[f] = item[0];
-        for (std::size_t n = 0; n < 2; ++n) {
-            const double scale = weights != nullptr ? static_cast<double>(weights->scale(static_cast<int>(n))) : 0;
-            const double weighted = item[(n + 1) * lanes] * scale;
-            r.allWeighted[n] += weighted;
-            if (f < features) r.weighted[n][f] = weighted;
-        }
-    }
-    return r;
+DeviceEngine::DeviceEngine(std::shared_ptr<const Volume> volume, Quality quality)
+    : m_volume(std::move(volume)), m_quality(quality), m_codes(sharedIntensityGrid(*m_volume)),
+      m_cells(tableCells(*m_volume, quality)) {}
+
+SumsJacobian DeviceEngine::jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
+                                    const JobControl& job) {
+    if (!m_cpu) m_cpu = makeCpuEngine(m_volume, m_quality);
+    return m_cpu->jacobian(view, tf, weights, job);
+}
+
+void DeviceEngine::check(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights) const {
+    view.camera.validate(m_volume->geometry(), "camera");
+    view.clipping.validate();
+    for (const TransferFunction& tf : tfs) PELLUCID_CHECK(tf.features == tfs.front().features);
+    if (weights != nullptr) PELLUCID_CHECK(weights->dims() == m_volume->dims());
 }
 
 std::uint64_t keyOf(const WeightFields& weights) {

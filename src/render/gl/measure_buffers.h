@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "render/gl/depth_tables.h"
 #include "render/gl/gl_resources.h"
 #include "render/gl/resident_volume.h"
+#include "render/gl/shader_program.h"
 #include "volume/intensity_grid.h"
 
 namespace pellucid::gl {
@@ -29,11 +31,16 @@ class TableBuffers {
 public:
     void upload(const DepthTables& tables); ///< and binds them
     /// Sets the uniforms of a program that reads them.
-    static void describe(GLuint program, const DepthTables& tables, int maxCode);
+    static void describe(const Program& program, const DepthTables& tables, int maxCode);
 
 private:
     Buffer m_integral, m_tau, m_opaque;
 };
+
+/// Sets what shaders/include/resident.glsl reads: voxel of the resident box = voxelFrom·p + offset.
+void describeVolume(const Program& program, const ResidentVolume& volume, const Mat3& voxelFrom, const Vec3& offset);
+/// Calls use(the first `count` visibilities in the buffer). Throws Error where it cannot be read.
+void readVisibility(const Buffer& buffer, std::size_t count, const std::function<void(std::span<const float>)>& use);
 
 /// Slots come in powers of two, so that a feature more rarely means another program.
 int slotsFor(int features);
@@ -56,16 +63,35 @@ public:
     std::vector<double> read() const;
 
 private:
-    ProgramName m_reduce;
+    Program m_reduce;
     Buffer m_slotOfCode, m_totals;
     std::vector<std::uint16_t> m_uploadedSlots;
     int m_entries = 0;
     bool m_first = true;
 };
 
-/// Totals of one candidate, [slot][item][lane] with `lanes` of them, as FeatureSums; `weights` may be null.
-FeatureSums featureSumsOf(std::span<const double> totals, std::size_t features, std::size_t lane, std::size_t lanes,
-                          const WeightFields* weights);
+/// What the engines on the device have in common: the volume, and derivatives, for which the device has no sweep, so
+/// that the cpu engine answers, on the same volume.
+class DeviceEngine : public VisibilityEngine {
+public:
+    const Volume& volume() const override { return *m_volume; }
+    SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
+                          const JobControl& job) override;
+
+protected:
+    DeviceEngine(std::shared_ptr<const Volume> volume, Quality quality);
+    /// Throws as VisibilityEngine::sums() does of an input that is not valid.
+    void check(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights) const;
+
+    std::shared_ptr<const Volume> m_volume;
+    Quality m_quality;
+    std::shared_ptr<const IntensityGrid> m_codes;
+    int m_cells; ///< tableCells()
+
+private:
+    std::unique_ptr<VisibilityEngine> m_cpu; ///< made when first needed
+};
+
 /// A number that tells weights apart: they come as plain memory, which may be filled anew between two calls.
 std::uint64_t keyOf(const WeightFields& weights);
 

@@ -51,17 +51,15 @@ std::unique_ptr<OsMesaContext> OsMesaContext::tryMake(std::string& why) {
     std::unique_ptr<OsMesaContext> made(new OsMesaContext);
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
         if (made->m_library == nullptr) made->m_library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
-    if (made->m_library == nullptr) {
-        why = "libOSMesa is missing";
+    const auto failed = [&](const std::string& reason) {
+        why = reason;
         return nullptr;
-    }
+    };
+    if (made->m_library == nullptr) return failed("libOSMesa is missing");
     const auto create = symbol<CreateContextAttribs>(made->m_library, "OSMesaCreateContextAttribs");
     const auto makeCurrent = symbol<MakeCurrent>(made->m_library, "OSMesaMakeCurrent");
     const auto address = symbol<GetProcAddress>(made->m_library, "OSMesaGetProcAddress");
-    if (create == nullptr || makeCurrent == nullptr || address == nullptr) {
-        why = "libOSMesa is too old";
-        return nullptr;
-    }
+    if (create == nullptr || makeCurrent == nullptr || address == nullptr) return failed("libOSMesa is too old");
     const std::array<int, 11> wanted{kOsMesaFormat,
                                      kOsMesaRgba,
                                      kOsMesaDepthBits,
@@ -77,15 +75,10 @@ std::unique_ptr<OsMesaContext> OsMesaContext::tryMake(std::string& why) {
     constexpr int kSide = 16;
     made->m_pixels.assign(4 * kSide * kSide, 0);
     if (made->m_context == nullptr ||
-        makeCurrent(made->m_context, made->m_pixels.data(), GL_UNSIGNED_BYTE, kSide, kSide) == 0) {
-        why = "no OpenGL 4.3";
-        return nullptr;
-    }
+        makeCurrent(made->m_context, made->m_pixels.data(), GL_UNSIGNED_BYTE, kSide, kSide) == 0)
+        return failed("no OpenGL 4.3");
     std::string missing;
-    if (!leadEpoxyTo(address, missing)) {
-        why = "no " + missing;
-        return nullptr;
-    }
+    if (!leadEpoxyTo(address, missing)) return failed("no " + missing);
     return made;
 }
 

@@ -1,16 +1,12 @@
 #include "render/gl/picture_rays.h"
 
-#include <cmath>
-#include <numbers>
-
 #include <glm/geometric.hpp>
 
 namespace pellucid::gl {
 
 PictureRays::PictureRays(const Camera& camera, const Geometry& geometry, double aspect) {
     const bool perspective = camera.projection == Projection::Perspective;
-    const double half = perspective ? std::tan(camera.fovY * std::numbers::pi / 360) : 0.5 * camera.height;
-    const glm::dvec2 extent(half * aspect, half);
+    const glm::dvec2 extent(camera.halfHeight() * aspect, camera.halfHeight());
     const double ahead = glm::dot(geometry.boxCenter() - camera.eye, camera.forward());
     const Mat3 indexFromWorld = geometry.indexFromWorld();
     const Vec3 right = indexFromWorld * camera.right() * extent.x, up = indexFromWorld * camera.trueUp() * extent.y;

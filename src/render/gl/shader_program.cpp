@@ -24,6 +24,15 @@ struct ShaderName {
     GLuint id;
 };
 
+/// What a compiler or linker said; `read` has room for `length` characters.
+template <class Read>
+std::string logOf(GLint length, const Read& read) {
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    read(log.data());
+    log.resize(std::strlen(log.c_str())); // drivers count the 0 at the end
+    return log;
+}
+
 void compileInto(GLuint program, const std::string& file, const std::vector<std::string>& defines,
                  const ShaderLookup& lookup) {
     const ShaderSource source = expandShader(file, defines, lookup);
@@ -35,9 +44,8 @@ void compileInto(GLuint program, const std::string& file, const std::vector<std:
     glGetShaderiv(shader.id, GL_COMPILE_STATUS, &done);
     if (done != GL_TRUE) {
         glGetShaderiv(shader.id, GL_INFO_LOG_LENGTH, &length);
-        std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-        glGetShaderInfoLog(shader.id, length, nullptr, log.data());
-        log.resize(std::strlen(log.c_str())); // drivers count the 0 at the end
+        const std::string log =
+            logOf(length, [&](char* into) { glGetShaderInfoLog(shader.id, length, nullptr, into); });
         throw Error("a shader does not compile: " + mapShaderLog(log, source), file,
                     "report this with your driver's version", Remedy::OtherEngine);
     }
@@ -55,13 +63,18 @@ ProgramName makeProgram(const std::vector<std::string>& files, const std::vector
     glGetProgramiv(program.id(), GL_LINK_STATUS, &done);
     if (done != GL_TRUE) {
         glGetProgramiv(program.id(), GL_INFO_LOG_LENGTH, &length);
-        std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-        glGetProgramInfoLog(program.id(), length, nullptr, log.data());
-        log.resize(std::strlen(log.c_str())); // drivers count the 0 at the end
-        throw Error(std::string("a shader program does not link: ") + log, files.front(),
-                    "report this with your driver's version", Remedy::OtherEngine);
+        const std::string log =
+            logOf(length, [&](char* into) { glGetProgramInfoLog(program.id(), length, nullptr, into); });
+        throw Error("a shader program does not link: " + log, files.front(), "report this with your driver's version",
+                    Remedy::OtherEngine);
     }
     return program;
+}
+
+void Program::setPlanes(GLint count, GLint first, const std::vector<VoxelPlane>& planes) const {
+    set(count, static_cast<int>(planes.size()));
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        set(first + static_cast<GLint>(i), glm::dvec4(planes[i].normal, planes[i].offset));
 }
 
 void requireGl43() {

@@ -108,7 +108,7 @@ struct Expansion {
 
 std::optional<std::string> embeddedShaderSource(const std::string& name) {
     const auto& all = embeddedShaders();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const EmbeddedShader& s) { return name == s.name; });
+    const auto found = std::ranges::find(all, name, &EmbeddedShader::name);
     if (found == all.end()) return {};
     return std::string(found->source);
 }

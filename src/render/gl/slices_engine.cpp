@@ -1,18 +1,15 @@
 // makeSlicesEngine: the VisibilityEngine that measures with the slices of a picture (docs/method.md, "The slices
 // engine"). Slices parallel to the picture are drawn front to back; what has accumulated in front of each goes into a
 // layer of a 3D texture, from which a second pass gathers the light of every voxel.
-#include "render/gl/slices_engine.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
-
-#include <glm/gtc/type_ptr.hpp>
 
 #include "base/error.h"
+#include "render/cpu/cpu_engine.h"
+#include "render/gl/engine_budgets.h"
 #include "render/gl/gl_engines.h"
 #include "render/gl/headless_context.h"
 #include "render/gl/layered_view.h"
@@ -27,8 +24,6 @@ namespace gl {
 
 namespace {
 
-using glm::value_ptr;
-
 struct Sampling {
     double piecesPerVoxel; ///< samples per voxel that a ray crosses sideways, besides those on voxel planes
     glm::ivec2 ownLayers;  ///< in front of a voxel that its own line is followed through: at least, at most
@@ -38,12 +33,6 @@ Sampling samplingOf(Quality quality) {
     if (quality == Quality::High) return {2.5, {4, 24}, 0.01f};
     return {1.5, {1, 16}, 0.04f};
 }
-
-/// The voxels of some planes along z.
-struct GatheredPlanes {
-    int first, end;
-    std::span<const float> values;
-};
 
 /// Lives in one OpenGL context.
 class SlicesDevice {
@@ -78,23 +67,15 @@ public:
         return m_totals.read();
     }
 
+    /// `sink` takes the visibilities of some planes across z at a time.
     void field(const std::vector<LayeredView>& views, const DepthTables& tables, const JobControl& job,
-               const std::function<void(const GatheredPlanes&)>& sink) {
+               const std::function<void(int firstPlane, std::span<const float>)>& sink) {
         m_volume.setWeights(nullptr, 0);
         requireVolume();
-        const Int3 dims = m_grid.codes.dims();
-        const std::size_t plane = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
+        const std::size_t plane = layerSize(m_grid.codes.dims());
         run(views, tables, 0, false, 4.0 * static_cast<double>(plane), job, [&](int first, int end) {
-            const std::size_t count = plane * static_cast<std::size_t>(end - first);
-            glBindBuffer(GL_SHADER_STORAGE_BUFFER, m_output.name.id());
-            const void* data = glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0,
-                                                static_cast<GLsizeiptr>(count * sizeof(float)), GL_MAP_READ_BIT);
-            throwOnGlError("reading the visibility");
-            if (data == nullptr) throw Error("the visibility cannot be read back", "OpenGL", "", Remedy::OtherEngine);
-            const struct Unmap {
-                ~Unmap() { glUnmapBuffer(GL_SHADER_STORAGE_BUFFER); }
-            } unmap;
-            sink({first, end, {static_cast<const float*>(data), count}});
+            readVisibility(m_output, plane * static_cast<std::size_t>(end - first),
+                           [&](std::span<const float> values) { sink(first, values); });
         });
     }
 
@@ -102,55 +83,34 @@ private:
     /// slices_depth.frag and slices_gather.comp, one permutation; locations as written there.
     struct Programs {
         explicit Programs(const std::vector<std::string>& defines)
-            : draw(makeProgram({"composite.vert", "slices_depth.frag"}, defines)),
-              gather(makeProgram({"slices_gather.comp"}, defines)) {}
-        ProgramName draw, gather;
+            : draw({"composite.vert", "slices_depth.frag"}, defines), gather({"slices_gather.comp"}, defines) {}
+        Program draw, gather;
     };
     using AfterGather = std::function<void(int first, int end)>;
 
     void requireVolume() { m_volume.require({2, 0, m_grid.codes.dims().z, true}); }
 
-    const Programs& programsFor(int slots, bool clipped) {
-        const std::vector<std::string> defines = definesFor(m_volume, 1, slots, clipped);
-        auto& programs = m_programs[defines];
-        if (!programs) programs = std::make_unique<Programs>(defines);
-        return *programs;
-    }
-
     void describe(const Programs& programs, const LayeredView& view, const DepthTables& tables, int ring) const {
-        const Folding& f = m_volume.folding();
-        for (const GLuint p : {programs.draw.id(), programs.gather.id()}) {
-            TableBuffers::describe(p, tables, textureMaxCode(m_grid));
-            glProgramUniformMatrix3fv(p, 1, 1, GL_FALSE, value_ptr(glm::mat3(view.voxelFromLocal)));
-            glProgramUniform3fv(p, 2, 1, value_ptr(glm::vec3(view.origin)));
-            glProgramUniform1f(p, 3, static_cast<float>(view.inverseDistance));
-            glProgramUniform4fv(p, 4, 1, value_ptr(glm::vec4(view.firstPixel, view.pixelsPerD0)));
-            glProgramUniform3fv(p, 5, 1, value_ptr(glm::vec3(view.front, view.step, view.slabs)));
-            glProgramUniform1f(p, 9,
-                               static_cast<float>(std::ceil(1 + m_sampling.piecesPerVoxel * view.crossed - 1e-6)));
-            glProgramUniform1i(p, 28, static_cast<GLint>(view.sides.size()));
-            for (std::size_t i = 0; i < view.sides.size(); ++i)
-                glProgramUniform4fv(p, 29 + static_cast<GLint>(i), 1,
-                                    value_ptr(glm::vec4(glm::vec3(view.sides[i].normal), view.sides[i].offset)));
-            glProgramUniformMatrix3fv(p, 10, 1, GL_FALSE, value_ptr(glm::mat3(1.0f)));
-            glProgramUniform3fv(p, 11, 1, value_ptr(glm::vec3(0.0f)));
-            glProgramUniform3iv(p, 14, 1, value_ptr(m_volume.size() - 1));
-            glProgramUniform3fv(p, 15, 1, value_ptr(glm::vec3(m_volume.codes().size)));
-            if (!f.folded()) continue;
-            glProgramUniform3iv(p, 16, 1, value_ptr(f.brick));
-            glProgramUniform3iv(p, 17, 1, value_ptr(f.bricks));
-            glProgramUniform3iv(p, 18, 1, value_ptr(f.slots));
-            glProgramUniform3iv(p, 19, 1, value_ptr(f.tile));
+        for (const Program* p : {&programs.draw, &programs.gather}) {
+            TableBuffers::describe(*p, tables, textureMaxCode(m_grid));
+            describeVolume(*p, m_volume, Mat3(1), Vec3(0));
+            p->set(1, view.voxelFromLocal);
+            p->set(2, view.origin);
+            p->set(3, view.inverseDistance);
+            p->set(4, glm::dvec4(view.firstPixel, view.pixelsPerD0));
+            p->set(5, Vec3(view.front, view.step, view.slabs));
+            p->set(9, std::ceil(1 + m_sampling.piecesPerVoxel * view.crossed - 1e-6));
+            p->setPlanes(28, 29, view.sides);
         }
-        const GLuint p = programs.gather.id();
-        glProgramUniformMatrix3fv(p, 6, 1, GL_FALSE, value_ptr(glm::mat3(view.localFromVoxel)));
-        glProgramUniform3iv(p, 7, 1, value_ptr(m_volume.size()));
-        glProgramUniform1i(p, 21, ring);
-        glProgramUniform2iv(p, 23, 1, value_ptr(m_sampling.ownLayers));
-        glProgramUniform1f(p, 24, m_sampling.tolerance);
-        glProgramUniform2i(p, 25, view.faceAxis, view.faceSign);
-        glProgramUniformMatrix3fv(p, 26, 1, GL_FALSE, value_ptr(glm::mat3(view.faceFromVoxel)));
-        glProgramUniform3fv(p, 8, 1, value_ptr(glm::vec3(view.faceOffset)));
+        const Program& p = programs.gather;
+        p.set(6, view.localFromVoxel);
+        p.set(7, m_volume.size());
+        p.set(8, view.faceOffset);
+        p.set(21, ring);
+        p.set(23, m_sampling.ownLayers);
+        p.set(24, m_sampling.tolerance);
+        p.set(25, glm::ivec2(view.faceAxis, view.faceSign));
+        p.set(26, view.faceFromVoxel);
     }
 
     /// Makes room for the layers of a picture, and says how many there are.
@@ -200,9 +160,9 @@ private:
             const LayeredView& view = views[v];
             const JobControl part = job.part(v, views.size());
             const int ring = makeLayers(view);
-            const Programs& programs = programsFor(slots, view.sides.size() > 6);
+            const Programs& programs = m_programs.of(definesFor(m_volume, 1, slots, view.sides.size() > 6));
             describe(programs, view, tables, ring);
-            if (slots > 0) glProgramUniform1i(programs.gather.id(), 27, weighted ? 1 : 0);
+            if (slots > 0) programs.gather.set(27, weighted);
 
             beginPicture(view);
             const int perBatch = std::min(ring - m_sampling.ownLayers.y - 1, view.slabs);
@@ -240,7 +200,7 @@ private:
                    const JobControl& job) {
         glBindFramebuffer(GL_FRAMEBUFFER, m_accumulated.framebuffer.id());
         glBindVertexArray(m_vertices.id());
-        glUseProgram(programs.draw.id());
+        programs.draw.use();
         glEnable(GL_BLEND);
         glBlendEquation(GL_FUNC_ADD);
         glBlendFunc(GL_ONE, GL_ONE);
@@ -255,7 +215,7 @@ private:
             if (from.x < to.x && from.y < to.y) {
                 bindTexture(0, GL_TEXTURE_3D, m_volume.codes().name);
                 glScissor(from.x, from.y, to.x - from.x, to.y - from.y);
-                glProgramUniform1i(programs.draw.id(), 20, slab);
+                programs.draw.set(20, slab);
                 glDrawArrays(GL_TRIANGLES, 0, 3);
             }
             copyToLayer((slab + 1) % ring);
@@ -269,9 +229,9 @@ private:
         bindTexture(2, GL_TEXTURE_3D, m_volume.weights().name);
         bindTexture(3, GL_TEXTURE_3D, m_layers.name);
         bindStorage(5, m_output);
-        glProgramUniform2i(programs.gather.id(), 20, plane, end);
-        glProgramUniform2i(programs.gather.id(), 22, firstSlab, endSlab);
-        glUseProgram(programs.gather.id());
+        programs.gather.set(20, glm::ivec2(plane, end));
+        programs.gather.set(22, glm::ivec2(firstSlab, endSlab));
+        programs.gather.use();
         glDispatchCompute(groups(dims.x, kGroupSide), groups(dims.y, kGroupSide), groups(end - plane, kPlanesPerGroup));
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                         GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
@@ -283,35 +243,32 @@ private:
     ResidentVolume m_volume;
     TableBuffers m_tables;
     FeatureTotals m_totals;
-    std::map<std::vector<std::string>, std::unique_ptr<Programs>> m_programs;
+    Permutations<Programs> m_programs;
     VertexArrayName m_vertices; ///< empty: composite.vert needs none
     ColorTarget m_accumulated;
     Texture3d m_layers;
     Buffer m_output;
 };
 
-class SlicesEngine final : public VisibilityEngine {
+class SlicesEngine final : public DeviceEngine {
 public:
     SlicesEngine(std::shared_ptr<const Volume> volume, Quality quality, const SlicesBudget& budget)
-        : m_volume(std::move(volume)), m_quality(quality), m_codes(sharedIntensityGrid(*m_volume)),
-          m_cells(tableCells(*m_volume, quality)) {
+        : DeviceEngine(std::move(volume), quality) {
         m_device.emplace([&] { return std::make_unique<SlicesDevice>(*m_codes, quality, budget); });
         m_device.run([&](SlicesDevice& device) { m_mostPixels = device.mostTexels(); });
     }
 
     std::string name() const override { return "slices"; }
-    const Volume& volume() const override { return *m_volume; }
 
     std::vector<FeatureSums> sums(const View& view, std::span<const TransferFunction> tfs, const WeightFields* weights,
                                   const JobControl& job) override {
         if (tfs.empty()) return {};
+        check(view, tfs, weights);
         const std::vector<LayeredView> views = viewsOf(view);
         const std::vector<Feature>& features = tfs.front().features;
-        if (weights != nullptr) PELLUCID_CHECK(weights->dims() == m_volume->dims());
         const std::vector<std::uint16_t> slots = slotsOfCodes(*m_codes, features);
         std::vector<FeatureSums> results;
         for (std::size_t n = 0; n < tfs.size(); ++n) {
-            PELLUCID_CHECK(tfs[n].features == features);
             const DepthTables tables = makeDepthTables(tfs.subspan(n, 1), 1, m_cells);
             std::vector<double> totals;
             m_device.run([&](SlicesDevice& device) {
@@ -324,20 +281,14 @@ public:
         return results;
     }
 
-    /// Slices have no derivatives: the cpu engine answers, on the same volume.
-    SumsJacobian jacobian(const View& view, const TransferFunction& tf, const WeightFields* weights,
-                          const JobControl& job) override {
-        if (!m_cpu) m_cpu = makeCpuEngine(m_volume, m_quality);
-        return m_cpu->jacobian(view, tf, weights, job);
-    }
-
     VisibilityField field(const View& view, const TransferFunction& tf, const JobControl& job) override {
+        check(view, {&tf, 1}, nullptr);
         const std::vector<LayeredView> views = viewsOf(view);
         const DepthTables tables = makeDepthTables({&tf, 1}, 1, m_cells);
         VisibilityField result{Grid<float>(m_volume->dims())};
-        const auto store = [&](const GatheredPlanes& planes) {
-            float* to = &result.values.at(0, 0, planes.first);
-            for (const float v : planes.values) *to++ += v; // 0 but between the slices that the voxel belongs to
+        const auto store = [&](int firstPlane, std::span<const float> values) {
+            float* to = &result.values.at(0, 0, firstPlane);
+            for (const float v : values) *to++ += v; // 0 but between the slices that the voxel belongs to
         };
         m_device.run([&](SlicesDevice& device) { device.field(views, tables, job, store); });
         job.report(1.0);
@@ -346,17 +297,11 @@ public:
 
 private:
     std::vector<LayeredView> viewsOf(const View& view) const {
-        view.camera.validate(m_volume->geometry(), "camera");
-        view.clipping.validate();
         return makeLayeredViews(view, m_volume->geometry(), m_quality, m_mostPixels);
     }
 
-    std::shared_ptr<const Volume> m_volume;
-    Quality m_quality;
-    std::shared_ptr<const IntensityGrid> m_codes;
-    int m_cells, m_mostPixels = 0;
+    int m_mostPixels = 0;
     InContext<SlicesDevice> m_device;
-    std::unique_ptr<VisibilityEngine> m_cpu; ///< made when first needed
 };
 
 } // namespace

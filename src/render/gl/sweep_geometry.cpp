@@ -84,18 +84,13 @@ Vec3 withoutRounding(Vec3 direction) {
 glm::dvec2 extentOnReference(const Sweep& s, int lateral) {
     const double first = s.first[lateral], last = s.last[lateral];
     double lo = first, hi = last;
-    const auto include = [&](double c) {
-        for (const double x : {first, last}) {
-            double at = 0;
-            if (s.perspective)
-                at = s.eye[lateral] + (x - s.eye[lateral]) * (s.reference - s.eye.z) / (c - s.eye.z);
-            else
-                at = x + s.shear[lateral] * (s.reference - c);
-            lo = std::min(lo, at);
-            hi = std::max(hi, at);
-        }
-    };
-    include(s.firstPlane);
+    for (const double x : {first, last}) { // of the first plane; those between lie between
+        const double at =
+            s.perspective ? s.eye[lateral] + (x - s.eye[lateral]) * (s.reference - s.eye.z) / (s.firstPlane - s.eye.z)
+                          : x + s.shear[lateral] * (s.reference - s.firstPlane);
+        lo = std::min(lo, at);
+        hi = std::max(hi, at);
+    }
     if (s.pyramid) {
         const double reach = s.reference - s.eye.z;
         lo = std::max(lo, s.eye[lateral] - reach);

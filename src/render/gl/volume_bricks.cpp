@@ -120,7 +120,7 @@ std::vector<std::size_t> BrickedVolume::frontToBack(const Camera& camera) const 
     };
     std::vector<std::size_t> order(m_bricks.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return faces(a) < faces(b); });
+    std::ranges::stable_sort(order, {}, faces);
     return order;
 }
 

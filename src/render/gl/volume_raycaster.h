@@ -34,8 +34,6 @@ public:
     /// Compiles the shaders. Throws Error where the context is older than 4.3 or a shader does not compile.
     VolumeRaycaster();
     ~VolumeRaycaster();
-    VolumeRaycaster(VolumeRaycaster&&) noexcept;
-    VolumeRaycaster& operator=(VolumeRaycaster&&) noexcept;
 
     /// Uploads the intensities: in bricks where the volume is longer than the device's textures, and brick by brick at
     /// every drawing, which takes its time, where the device has not the memory for all. Throws Error (not even memory

@@ -1,37 +1,61 @@
 #include "render/gl/volume_texture.h"
 
+#include <array>
+
 #include "base/check.h"
 
 namespace pellucid::gl {
 
 namespace {
 
-/// Lets glTexSubImage3D read a box out of a larger array; GL's defaults afterwards.
-class UnpackBox {
+/// Copies a box of voxels, [first, first + size), into a texture, where it begins at `to`.
+class BoxUpload {
 public:
-    explicit UnpackBox(const Int3& dims) {
+    BoxUpload(const Texture3d& texture, const Int3& dims, const Int3& first, const Int3& size, const Int3& to)
+        : m_dims(dims), m_first(first), m_size(size), m_to(to) {
+        glBindTexture(GL_TEXTURE_3D, texture.name.id());
+    }
+    void finish(const std::string& doing) const {
+        glBindTexture(GL_TEXTURE_3D, 0);
+        throwOnGlError(doing);
+    }
+
+    /// `data`: a value per voxel of the whole volume.
+    template <class T>
+    void copy(const T* data, GLenum format, GLenum type) const {
+        copyPart(data + voxelIndex(m_dims, m_first.x, m_first.y, m_first.z), m_dims, m_size, m_to, format, type);
+    }
+
+    /// valueOf(index of a voxel), layer by layer.
+    template <class ValueOf>
+    void copyMade(const ValueOf& valueOf, GLenum format, GLenum type) const {
+        const Int3 layer(m_size.x, m_size.y, 1);
+        std::vector<decltype(valueOf(std::size_t{}))> values(voxelCount(layer));
+        for (int k = 0; k < m_size.z; ++k) {
+            auto next = values.begin();
+            for (int j = 0; j < m_size.y; ++j) {
+                const std::size_t row = voxelIndex(m_dims, m_first.x, m_first.y + j, m_first.z + k);
+                for (std::size_t i = 0; i < static_cast<std::size_t>(m_size.x); ++i) *next++ = valueOf(row + i);
+            }
+            copyPart(values.data(), layer, layer, m_to + Int3(0, 0, k), format, type);
+        }
+    }
+
+private:
+    /// The voxels from `data` on, of an array of `dims`.
+    static void copyPart(const void* data, const Int3& dims, const Int3& size, const Int3& to, GLenum format,
+                         GLenum type) {
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         glPixelStorei(GL_UNPACK_ROW_LENGTH, dims.x);
         glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, dims.y);
-    }
-    ~UnpackBox() {
-        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        glTexSubImage3D(GL_TEXTURE_3D, 0, to.x, to.y, to.z, size.x, size.y, size.z, format, type, data);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4); // GL's defaults again
         glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
         glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
     }
-    UnpackBox(const UnpackBox&) = delete;
-    UnpackBox& operator=(const UnpackBox&) = delete;
-};
 
-template <class T>
-void copyBox(const T* data, const Int3& dims, const Int3& first, const Int3& size, const Int3& to, GLenum format,
-             GLenum type, std::size_t perVoxel) {
-    const auto row = static_cast<std::size_t>(dims.x), plane = row * static_cast<std::size_t>(dims.y);
-    const std::size_t start = static_cast<std::size_t>(first.z) * plane + static_cast<std::size_t>(first.y) * row +
-                              static_cast<std::size_t>(first.x);
-    const UnpackBox unpack(dims);
-    glTexSubImage3D(GL_TEXTURE_3D, 0, to.x, to.y, to.z, size.x, size.y, size.z, format, type, data + start * perVoxel);
-}
+    Int3 m_dims, m_first, m_size, m_to;
+};
 
 } // namespace
 
@@ -47,94 +71,51 @@ int textureMaxCode(const IntensityGrid& grid) {
 
 void uploadCodes(const Texture3d& texture, const IntensityGrid& grid, const Int3& first, const Int3& size,
                  const Int3& to) {
-    const Int3 dims = grid.codes.dims();
-    glBindTexture(GL_TEXTURE_3D, texture.name.id());
-    if (grid.codes.isNarrow()) {
-        copyBox(grid.codes.narrow(), dims, first, size, to, GL_RED, GL_UNSIGNED_BYTE, 1);
-    } else if (grid.valid.empty()) {
-        copyBox(grid.codes.wide(), dims, first, size, to, GL_RED, GL_UNSIGNED_SHORT, 1);
-    } else {
-        const Int3 layer(size.x, size.y, 1);
-        std::vector<std::uint16_t> pairs(2 * voxelCount(layer));
-        for (int k = 0; k < size.z; ++k) {
-            auto pair = pairs.begin();
-            for (int j = 0; j < size.y; ++j)
-                for (int i = 0; i < size.x; ++i) {
-                    const std::size_t voxel = grid.codes.index(first.x + i, first.y + j, first.z + k);
-                    const bool valid = grid.valid[voxel] != 0;
-                    *pair++ = valid ? grid.codes[voxel] : std::uint16_t{0};
-                    *pair++ = valid ? std::uint16_t{65535} : std::uint16_t{0};
-                }
-            copyBox(pairs.data(), layer, Int3(0), layer, to + Int3(0, 0, k), GL_RG, GL_UNSIGNED_SHORT, 2);
-        }
-    }
-    glBindTexture(GL_TEXTURE_3D, 0);
-    throwOnGlError("uploading the volume");
+    const BoxUpload upload(texture, grid.codes.dims(), first, size, to);
+    using CodeAndValid = std::array<std::uint16_t, 2>;
+    const auto codeAndValid = [&](std::size_t voxel) {
+        return grid.valid[voxel] != 0 ? CodeAndValid{grid.codes[voxel], 65535} : CodeAndValid{0, 0};
+    };
+    if (grid.codes.isNarrow())
+        upload.copy(grid.codes.narrow(), GL_RED, GL_UNSIGNED_BYTE);
+    else if (grid.valid.empty())
+        upload.copy(grid.codes.wide(), GL_RED, GL_UNSIGNED_SHORT);
+    else
+        upload.copyMade(codeAndValid, GL_RG, GL_UNSIGNED_SHORT);
+    upload.finish("uploading the volume");
 }
 
 void uploadWeights(const Texture3d& texture, const WeightFields& weights, const Int3& first, const Int3& size,
                    const Int3& to) {
-    const Int3 dims = weights.dims();
-    glBindTexture(GL_TEXTURE_3D, texture.name.id());
-    if (!weights.isCompact()) {
-        copyBox(weights.data(), dims, first, size, to, GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
-    } else {
-        const Int3 layer(size.x, size.y, 1);
-        std::vector<std::uint32_t> units(voxelCount(layer));
-        const auto nx = static_cast<std::size_t>(dims.x), ny = static_cast<std::size_t>(dims.y);
-        for (int k = 0; k < size.z; ++k) {
-            auto next = units.begin();
-            for (int j = 0; j < size.y; ++j) {
-                const std::size_t row =
-                    static_cast<std::size_t>(first.x) +
-                    nx * (static_cast<std::size_t>(first.y + j) + ny * static_cast<std::size_t>(first.z + k));
-                for (int i = 0; i < size.x; ++i) *next++ = weights.units(row + static_cast<std::size_t>(i));
-            }
-            copyBox(units.data(), layer, Int3(0), layer, to + Int3(0, 0, k), GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
-        }
-    }
-    glBindTexture(GL_TEXTURE_3D, 0);
-    throwOnGlError("uploading the saliency");
+    const BoxUpload upload(texture, weights.dims(), first, size, to);
+    const auto units = [&](std::size_t voxel) { return weights.units(voxel); };
+    if (weights.isCompact())
+        upload.copyMade(units, GL_RED_INTEGER, GL_UNSIGNED_INT);
+    else
+        upload.copy(weights.data(), GL_RED_INTEGER, GL_UNSIGNED_INT);
+    upload.finish("uploading the saliency");
 }
 
 void uploadColors(const Texture3d& texture, const VoxelColors& colors, const IntensityGrid& grid, const Int3& first,
                   const Int3& size) {
-    glBindTexture(GL_TEXTURE_3D, texture.name.id());
-    if (grid.valid.empty()) {
-        copyBox(colors.rgba.data(), colors.dims, first, size, Int3(0), GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, 1);
-    } else {
-        const Int3 layer(size.x, size.y, 1);
-        std::vector<std::uint32_t> shown(voxelCount(layer));
-        for (int k = 0; k < size.z; ++k) {
-            auto next = shown.begin();
-            for (int j = 0; j < size.y; ++j)
-                for (int i = 0; i < size.x; ++i) {
-                    const std::size_t voxel = grid.codes.index(first.x + i, first.y + j, first.z + k);
-                    *next++ = grid.valid[voxel] != 0 ? colors.rgba[voxel] : 0u;
-                }
-            copyBox(shown.data(), layer, Int3(0), layer, Int3(0, 0, k), GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, 1);
-        }
-    }
-    glBindTexture(GL_TEXTURE_3D, 0);
-    throwOnGlError("uploading the colours of voxels");
+    const BoxUpload upload(texture, colors.dims, first, size, Int3(0));
+    const auto shown = [&](std::size_t voxel) { return grid.valid[voxel] != 0 ? colors.rgba[voxel] : 0u; };
+    if (grid.valid.empty())
+        upload.copy(colors.rgba.data(), GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV);
+    else
+        upload.copyMade(shown, GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV);
+    upload.finish("uploading the colours of voxels");
 }
 
-void TableTexture::fill(std::span<const float> values, int channels) {
-    PELLUCID_CHECK((channels == 1 || channels == 4) && !values.empty());
+void TableTexture::fill(std::vector<float> values) {
+    PELLUCID_CHECK(!values.empty());
     constexpr int kRow = 256;
-    const int entries = static_cast<int>(values.size()) / channels;
+    const int entries = static_cast<int>(values.size()) / 4;
     const glm::ivec2 size{kRow, (entries + kRow - 1) / kRow};
-    const GLenum format = channels == 4 ? GL_RGBA32F : GL_R32F;
-    if (m_texture.size != size || m_texture.format != format)
-        m_texture = makeTexture2d(size, format, GL_NEAREST, "the transfer function's table");
-    std::vector<float> padded(values.begin(), values.end());
-    padded.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
-                  static_cast<std::size_t>(channels));
-    glBindTexture(GL_TEXTURE_2D, m_texture.name.id());
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, channels == 4 ? GL_RGBA : GL_RED, GL_FLOAT, padded.data());
-    glBindTexture(GL_TEXTURE_2D, 0);
-    throwOnGlError("uploading the transfer function");
-    m_entries = entries;
+    if (m_texture.size != size)
+        m_texture = makeTexture2d(size, GL_RGBA32F, GL_NEAREST, "the transfer function's table");
+    values.resize(4 * static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+    upload(m_texture, GL_RGBA, GL_FLOAT, values.data(), "uploading the transfer function");
 }
 
 } // namespace pellucid::gl

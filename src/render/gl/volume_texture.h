@@ -1,7 +1,7 @@
 // A volume's intensities, and tables of transfer functions, as textures.
 #pragma once
 
-#include <span>
+#include <vector>
 
 #include "render/gl/gl_resources.h"
 #include "saliency/weight_fields.h"
@@ -31,14 +31,12 @@ void uploadColors(const Texture3d& texture, const VoxelColors& colors, const Int
 /// stays.
 class TableTexture {
 public:
-    /// `values`: entries × channels floats; channels 1 or 4.
-    void fill(std::span<const float> values, int channels);
-    int entries() const noexcept { return m_entries; }
+    /// `values`: four floats for each entry.
+    void fill(std::vector<float> values);
     const TextureName& name() const noexcept { return m_texture.name; }
 
 private:
     Texture2d m_texture;
-    int m_entries = 0;
 };
 
 } // namespace pellucid::gl
