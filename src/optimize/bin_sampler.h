@@ -5,8 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "base/job.h"
+#include "base/parallel.h"
+#include "render/ray_box.h"
 #include "render/trilinear.h"
+#include "render/view.h"
 #include "tf/transfer_function.h"
+#include "volume/noise.h"
 #include "volume/volume.h"
 
 namespace pellucid {
@@ -56,19 +61,10 @@ public:
                 voxel);
             return met.validShare < 0.5 ? -1 : binOfIntensity(met.value);
         }
-        const TrilinearCell cell(m_dims, voxel);
-        const std::size_t sx = cell.step[0], sy = cell.step[1], sz = cell.step[2];
-        const double fx = cell.fraction[0], fy = cell.fraction[1], fz = cell.fraction[2];
-        const auto value = [&](std::size_t offset) {
-            return std::clamp((static_cast<double>(m_values[cell.corner + offset]) - m_lo) * m_perSpan, 0.0, 1.0);
+        const auto intensity = [&](std::size_t i) {
+            return std::clamp((static_cast<double>(m_values[i]) - m_lo) * m_perSpan, 0.0, 1.0);
         };
-        const auto along = [&](std::size_t o) {
-            const double first = value(o);
-            return first + fx * (value(o + sx) - first);
-        };
-        const double lower = along(0), higher = along(sz);
-        const double near = lower + fy * (along(sy) - lower), far = higher + fy * (along(sz + sy) - higher);
-        return binOfIntensity(near + fz * (far - near));
+        return binOfIntensity(interpolateAll(intensity, TrilinearCell(m_dims, voxel)));
     }
 
 private:
@@ -78,5 +74,41 @@ private:
     double m_lo, m_perSpan;
     bool m_simple; ///< all are valid, and the range is one that can be divided by
 };
+
+/// A ray of a picture on its way through what is left of a volume; t is the length in the world.
+struct PixelRay {
+    Vec3 direction;     ///< world, unit vector
+    Ray ray;            ///< voxels
+    double first, exit; ///< t of the first step, and where it leaves
+};
+
+/// Calls take(pixel, ray, sampler, samples) for the rays through a picture of `side` × `side` pixels that meet
+/// anything; rows on different threads. Each ray begins elsewhere, by `seed`, so that steps of several voxels hit thin
+/// things on average as often as their thickness says. Throws Cancelled.
+template <class Take>
+void forEachRay(const Volume& volume, const View& view, int side, double step, int seed, const JobControl& job,
+                const Take& take) {
+    const Geometry& geometry = volume.geometry();
+    const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, geometry);
+    const auto follow = [&](const auto& samples) {
+        const BinSampler sampler(volume, samples);
+        parallelFor(static_cast<std::size_t>(side), [&](std::size_t row) {
+            job.throwIfStopped();
+            const int y = static_cast<int>(row);
+            for (int x = 0; x < side; ++x) {
+                const Ray world = pixelRay(view.camera, x + 0.5, y + 0.5, side, side);
+                const Ray ray = inVoxels(world, geometry);
+                RayInterval inside = intersectBox(ray, geometry);
+                inside.enter = std::max(inside.enter, 0.0);
+                cut(inside, ray, planes);
+                if (inside.empty()) continue;
+                const double begin = static_cast<double>(hashOf(x, y, 0, seed) % 1024) / 1024;
+                take(row * static_cast<std::size_t>(side) + static_cast<std::size_t>(x),
+                     PixelRay{world.direction, ray, inside.enter + begin * step, inside.exit}, sampler, samples);
+            }
+        });
+    };
+    std::visit(follow, volume.samples());
+}
 
 } // namespace pellucid

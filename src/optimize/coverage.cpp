@@ -8,7 +8,7 @@ std::vector<char> drawnFeatures(const TransferFunction& tf) {
     const std::vector<double> opacity = featureOpacities(tf);
     std::vector<char> drawn;
     for (std::size_t f = 0; f < opacity.size(); ++f) drawn.push_back(!tf.features[f].hidden && opacity[f] > 0);
-    if (std::none_of(drawn.begin(), drawn.end(), [](char d) { return d; })) drawn.assign(drawn.size(), 1);
+    if (std::ranges::none_of(drawn, [](char d) { return d; })) drawn.assign(drawn.size(), 1);
     return drawn;
 }
 

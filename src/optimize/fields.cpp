@@ -53,7 +53,7 @@ const char* title(FieldKind kind) {
 
 std::string fileStem(FieldKind kind) {
     std::string stem = name(kind);
-    std::replace(stem.begin(), stem.end(), '-', '_');
+    std::ranges::replace(stem, '-', '_');
     return stem;
 }
 
@@ -106,7 +106,7 @@ double usualTop(const Grid<float>& field) {
     for (std::size_t i = 0; i < field.size(); i += stride)
         if (field[i] > 0) positive.push_back(field[i]);
     if (positive.empty()) {
-        const auto largest = std::max_element(field.begin(), field.end());
+        const auto largest = std::ranges::max_element(field);
         return largest != field.end() && *largest > 0 ? static_cast<double>(*largest) : 1.0;
     }
     const auto at = static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(positive.size() - 1) + 0.5);

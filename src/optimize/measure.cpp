@@ -19,7 +19,7 @@ std::vector<Feature> intervalsWithin(const std::vector<Feature>& features) {
         borders.push_back(f.a);
         borders.push_back(f.b);
     }
-    std::sort(borders.begin(), borders.end());
+    std::ranges::sort(borders);
     borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
     std::vector<Feature> intervals;
     for (std::size_t i = 0; i + 1 < borders.size(); ++i) intervals.push_back({{}, borders[i], borders[i + 1], {}, {}});

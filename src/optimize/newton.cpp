@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -56,7 +57,7 @@ void mendBySeen(Matrix& d, const NewtonSearch::Place& at, const std::vector<Newt
         const double distance = (logs(place.state) - logs(at.state)).abs().maxCoeff();
         if (distance > 0 && distance < kFar) near.emplace_back(distance, &place.state);
     }
-    std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::ranges::stable_sort(near, std::greater{}, &std::pair<double, const OptimizeState*>::first);
     for (const auto& [distance, state] : near) mend(d, at.state, *state);
 }
 
@@ -145,14 +146,11 @@ bool NewtonSearch::mayMove(std::size_t level) const {
     return level == 0 ? m_moves < m_options.maxIterations : m_coarseMoves < kMostCoarseMoves;
 }
 
-double NewtonSearch::goalOf(std::size_t level) const { return level == 0 ? m_goalDistance : kCoarseGoal; }
+double NewtonSearch::goalOf(const Place& place) const { return place.state.level == 0 ? m_goalDistance : kCoarseGoal; }
 
 double NewtonSearch::score(const Place& place, const Weights& weights) const {
-    // What is good enough is not paid for with strength.
-    const double f =
-        std::isnan(place.state.objective)
-            ? place.state.objective
-            : std::max(place.state.objective, kContent * goalOf(static_cast<std::size_t>(place.state.level)));
+    // What is good enough is not paid for with strength. NaN stays.
+    const double f = std::max(place.state.objective, kContent * goalOf(place));
     return f * f + weights.floor * weights.floor * place.shortfall +
            weights.strength * weights.strength * place.miss * place.miss;
 }
@@ -162,9 +160,13 @@ bool NewtonSearch::isBetter(const Place& a, const Place& b, const Weights& weigh
     return here < there || (std::isnan(there) && !std::isnan(here));
 }
 
+const NewtonSearch::Place& NewtonSearch::bestIn(const std::vector<Place>& places, const Weights& weights) const {
+    return *std::ranges::min_element(places, [&](const Place& a, const Place& b) { return isBetter(a, b, weights); });
+}
+
 bool NewtonSearch::isThere(const Place& place, const Weights& weights) const {
-    return place.state.objective < goalOf(static_cast<std::size_t>(place.state.level)) &&
-           (weights.floor == 0 || place.lack < kShownLack) && (weights.strength == 0 || place.miss < kNearStrength);
+    return place.state.objective < goalOf(place) && (weights.floor == 0 || place.lack < kShownLack) &&
+           (weights.strength == 0 || place.miss < kNearStrength);
 }
 
 bool NewtonSearch::isGood(const Place& place) const { return isThere(place, {0, m_goal ? 1.0 : 0.0}); }
@@ -173,15 +175,14 @@ bool NewtonSearch::isGood(const Place& place) const { return isThere(place, {0, 
 /// are alike, and the one nearest to the wanted strength is taken.
 double NewtonSearch::rank(const Place& place, bool floors) const {
     const double f = std::isnan(place.state.objective) ? 1e9 : place.state.objective;
-    const double goal = goalOf(static_cast<std::size_t>(place.state.level));
+    const double goal = goalOf(place);
     return 100 * (floors && place.lack > kShownLack ? place.lack : 0) + std::max(f, goal) +
            (m_goal ? 1e-4 * std::min(place.miss, 5.0) : 0.1 * std::min(f, goal));
 }
 
 /// Of the places on the volume.
 NewtonSearch::Place NewtonSearch::bestOf(bool floors) const {
-    return *std::min_element(m_places.begin(), m_places.end(),
-                             [&](const Place& a, const Place& b) { return rank(a, floors) < rank(b, floors); });
+    return *std::ranges::min_element(m_places, {}, [&](const Place& place) { return rank(place, floors); });
 }
 
 NewtonSearch::Place NewtonSearch::nearest() const {
@@ -258,7 +259,7 @@ std::vector<NewtonSearch::Point> NewtonSearch::candidates(const Linear& at, cons
             for (const Residual residual : {Residual::Ratio, Residual::Difference}) {
                 const Point next = stepped(at, rows, {*unknowns, residual, damping / caution, reach * caution});
                 if (points.size() < kBatch && next != x &&
-                    std::none_of(points.begin(), points.end(), [&](const Point& p) { return same(p, next); }))
+                    std::ranges::none_of(points, [&](const Point& p) { return same(p, next); }))
                     points.push_back(next);
             }
     // What a straight line over- or undershoots: lanes that are left cost nothing.
@@ -310,10 +311,8 @@ NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, boo
         if (points.empty()) break;
         if (isThere(at.place, {weights.floor, 0}) && !strengthens(at.place, points, kStronger)) break;
         std::vector<Place> places = evaluate(level, points);
-        places.reserve(places.size() + 1);
-        const auto best = std::min_element(places.begin(), places.end(),
-                                           [&](const auto& a, const auto& b) { return isBetter(a, b, weights); });
-        if (!isBetter(*best, at.place, weights)) {
+        const Place best = bestIn(places, weights);
+        if (!isBetter(best, at.place, weights)) {
             if (borrowed) {
                 known = borrowed = false;
                 continue;
@@ -322,16 +321,16 @@ NewtonSearch::Place NewtonSearch::descend(Linear at, const Weights& weights, boo
             ++failures;
             continue;
         }
-        const double left = score(*best, weights) / score(at.place, weights);
+        const double left = score(best, weights) / score(at.place, weights);
         borrowed = borrowed && left < kFast;
         slow = left > kSlow ? slow + 1 : 0;
         failures = 0;
         caution = std::min(1.0, caution * 3);
         if (borrowed) {
             places.push_back(at.place);
-            mendBySeen(at.derivative, *best, places);
+            mendBySeen(at.derivative, best, places);
         }
-        at.place = *best;
+        at.place = best;
         known = borrowed;
         arrive(at.place.state);
     }
@@ -373,7 +372,7 @@ NewtonSearch::Place NewtonSearch::byEstimates(const std::vector<Point>& starts, 
         ends.push_back(down(linearize(level, x), false));
         if (isThere(ends.back(), weights[0])) break;
     }
-    Place best = *std::min_element(ends.begin(), ends.end(), better);
+    Place best = *std::ranges::min_element(ends, better);
     if (!isThere(best, {weights.back().floor, 0}) && m_options.restarts)
         for (const Place& p : spread(level, best.state.opacity, weights[0]))
             if (Place end = down(linearize(level, p.state.opacity), false); better(end, best)) best = std::move(end);
@@ -387,7 +386,7 @@ NewtonSearch::Place NewtonSearch::byEstimates(const std::vector<Point>& starts, 
         at.place = here[0];
         arrive(at.place.state);
         // What does not hold there was no hint.
-        const auto first = std::min_element(here.begin(), here.end(), better);
+        const auto first = std::ranges::min_element(here, better);
         best = first == here.begin() ? down(std::move(at), true) : down(linearize(level, first->state.opacity), false);
     }
     return best;
@@ -409,8 +408,7 @@ std::vector<NewtonSearch::Place> NewtonSearch::spread(std::size_t level, const P
         for (Place& place : evaluate(level, points)) places.push_back(std::move(place));
     }
     m_spreadStarts += kSpread;
-    std::stable_sort(places.begin(), places.end(),
-                     [&](const auto& a, const auto& b) { return isBetter(a, b, weights); });
+    std::ranges::stable_sort(places, [&](const auto& a, const auto& b) { return isBetter(a, b, weights); });
     places.resize(std::min(places.size(), kRefined));
     return places;
 }
@@ -441,8 +439,7 @@ void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
         if (isGood(this->start())) return;
         places.erase(places.begin());
     }
-    const auto best = std::min_element(places.begin(), places.end(),
-                                       [&](const auto& a, const auto& b) { return isBetter(a, b, weights); });
+    const Place& best = bestIn(places, weights);
     if (differs) {
         const OptimizeState& here = places[base - (first ? 1 : 0)].state;
         for (std::size_t k = 0; k < free.size(); ++k) {
@@ -451,9 +448,9 @@ void NewtonSearch::refine(const Place& from, const Point& start, bool floors) {
             if (change != 0) at.derivative.col(free[k]) = (vectorOf(moved.vws) - vectorOf(here.vws)) / change;
         }
     } else {
-        mendBySeen(at.derivative, *best, places);
+        mendBySeen(at.derivative, best, places);
     }
-    at.place = *best;
+    at.place = best;
     arrive(at.place.state);
     if (!isBetter(at.place, this->start(), weights)) return; // a hint that does not hold on the volume
     descend(std::move(at), weights, true);
@@ -541,9 +538,7 @@ void NewtonSearch::toFloors(const std::vector<Point>& starts) {
         if (bestOf(true).lack <= kShownLack) return;
     }
     const std::vector<Weights> weights = phases(true);
-    std::vector<Place> places = evaluate(0, from);
-    Place best = *std::min_element(places.begin(), places.end(),
-                                   [&](const auto& a, const auto& b) { return isBetter(a, b, weights.front()); });
+    Place best = bestIn(evaluate(0, from), weights.front());
     for (const Weights& w : weights) {
         if (!mayMove(0)) return;
         best = descend(linearize(0, best.state.opacity), w);

@@ -80,9 +80,10 @@ private:
     bool mayMove(std::size_t level) const;
     double score(const Place& place, const Weights& weights) const;
     bool isThere(const Place& place, const Weights& weights) const;
-    bool isGood(const Place& place) const;  ///< on target, and of the wanted strength
-    double goalOf(std::size_t level) const; ///< F that is good enough
+    bool isGood(const Place& place) const;   ///< on target, and of the wanted strength
+    double goalOf(const Place& place) const; ///< F that is good enough on its level
     bool isBetter(const Place& a, const Place& b, const Weights& weights) const;
+    const Place& bestIn(const std::vector<Place>& places, const Weights& weights) const;
     const Place& start() const { return m_places.front(); }
     double rank(const Place& place, bool floors) const;
     Place bestOf(bool floors) const;

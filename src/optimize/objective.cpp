@@ -17,7 +17,7 @@ std::vector<double> normalizedTargets(std::vector<double> targets, std::size_t f
     double sum = 0;
     for (const double t : targets) {
         if (!std::isfinite(t) || t < 0)
-            throw UsageError("a target is finite and not negative", "targets", "correct it");
+            throw UsageError("a target must be finite and not negative", "targets", "correct it");
         sum += t;
     }
     if (!(sum > 0) || !std::isfinite(sum))
@@ -27,7 +27,7 @@ std::vector<double> normalizedTargets(std::vector<double> targets, std::size_t f
 }
 
 bool isAimed(std::span<const double> targets) {
-    return std::any_of(targets.begin(), targets.end(), [](double t) { return t > 0; });
+    return std::ranges::any_of(targets, [](double t) { return t > 0; });
 }
 
 double objectiveOf(std::span<const double> vws, std::span<const double> targets) {

@@ -104,6 +104,13 @@ private:
         return evaluate({stepped(at, d, step)})[0];
     }
 
+    /// Of equal ones the first; NaN never wins.
+    static OptimizeState best(const std::vector<OptimizeState>& states) {
+        return *std::ranges::min_element(states, [](const auto& a, const auto& b) {
+            return a.objective < b.objective || (std::isnan(b.objective) && !std::isnan(a.objective));
+        });
+    }
+
     OptimizeState fixedStep(const OptimizeState& at, const std::vector<double>& d) {
         if (stepped(at, d, m_options.step) == at.opacity) return at;
         return trial(at, d, m_options.step);
@@ -115,9 +122,7 @@ private:
         if (m_options.method == SearchMethod::Parallel) {
             std::vector<std::vector<double>> candidates;
             for (int i = 0; i < kSteps; ++i) candidates.push_back(stepped(at, d, m_options.step * std::exp2(i)));
-            const auto states = evaluate(candidates);
-            return *std::min_element(states.begin(), states.end(),
-                                     [](const auto& a, const auto& b) { return a.objective < b.objective; });
+            return best(evaluate(candidates));
         }
         OptimizeState best = trial(at, d, m_options.step);
         for (int i = 1; i < kSteps; ++i) {
@@ -159,14 +164,9 @@ private:
             std::vector<std::vector<double>> candidates;
             for (int i = kSmallestParallelStep; i <= kLargestParallelStep; ++i)
                 candidates.push_back(stepped(at, d, m_options.step * std::exp2(i + shift)));
-            const auto states = evaluate(candidates);
-            // Of equal ones the shorter step: min_element keeps the first. A NaN never wins.
-            const auto better = [](const auto& a, const auto& b) {
-                return a.objective < b.objective || (std::isnan(b.objective) && !std::isnan(a.objective));
-            };
-            const auto best = std::min_element(states.begin(), states.end(), better);
-            if (best->objective < at.objective) return *best;
-            if (shift == 0) leastBad = *best;
+            const OptimizeState found = best(evaluate(candidates));
+            if (found.objective < at.objective) return found;
+            if (shift == 0) leastBad = found;
         }
         return leastBad;
     }
@@ -178,24 +178,6 @@ private:
     const JobControl& m_job;
     int m_evaluations = 0;
 };
-
-/// One entry per feature. What is hidden, and what nothing can raise, is locked.
-std::vector<OpacityLimits> fullLimits(const VwsFunction& function, std::vector<OpacityLimits> limits) {
-    const TransferFunction& base = function.base();
-    const std::size_t n = base.features.size();
-    if (limits.empty()) limits.resize(n);
-    if (limits.size() != n)
-        throw UsageError(std::to_string(limits.size()) + " limits for " + std::to_string(n) + " features", "limits",
-                         "give one per feature");
-    const std::vector<double> most = featureOpacities(withFullPeaks(base));
-    for (std::size_t f = 0; f < n; ++f) {
-        if (!(limits[f].lowest >= 0 && limits[f].lowest <= limits[f].highest && limits[f].highest <= 1))
-            throw UsageError("the limits of '" + base.features[f].name + "' are no range within 0 and 1", "limits",
-                             "correct them");
-        if (base.features[f].hidden || most[f] == 0) limits[f].locked = true;
-    }
-    return limits;
-}
 
 /// Moves until the targets are met or nothing helps any more.
 StopReason descend(Search& search, const std::vector<OptimizeState>& history, const std::size_t& best,
@@ -299,6 +281,22 @@ std::span<const Setting> settingsOf<OptimizeOptions>() {
     return kSettings;
 }
 
+std::vector<OpacityLimits> limitsOfMoves(const TransferFunction& base, std::vector<OpacityLimits> given) {
+    const std::size_t n = base.features.size();
+    if (given.empty()) given.resize(n);
+    if (given.size() != n)
+        throw UsageError(std::to_string(given.size()) + " limits for " + std::to_string(n) + " features", "limits",
+                         "give one per feature");
+    const std::vector<double> most = featureOpacities(withFullPeaks(base));
+    for (std::size_t f = 0; f < n; ++f) {
+        if (!(given[f].lowest >= 0 && given[f].lowest <= given[f].highest && given[f].highest <= 1))
+            throw UsageError("the limits of '" + base.features[f].name + "' are not a range within 0 and 1", "limits",
+                             "correct them");
+        if (base.features[f].hidden || most[f] == 0) given[f].locked = true;
+    }
+    return given;
+}
+
 void OptimizeOptions::validate() const { checkSettings(*this, "optimize"); }
 
 int OptimizeResult::laterSteps() const { return searched == 0 ? 0 : static_cast<int>(history.size() - searched); }
@@ -329,7 +327,7 @@ OptimizeResult optimize(const OptimizeProblem& problem, const OptimizeOptions& o
     OptimizeResult result;
     result.tf = function.base();
     result.targets = normalizedTargets(problem.targets, function.featureCount());
-    const std::vector<OpacityLimits> limits = fullLimits(function, problem.limits);
+    const std::vector<OpacityLimits> limits = limitsOfMoves(function.base(), problem.limits);
     const std::vector<double> start = within(limits, featureOpacities(function.base()));
 
     const bool isNewton = options.method == SearchMethod::Newton;

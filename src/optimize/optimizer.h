@@ -95,6 +95,10 @@ struct OptimizeResult {
     bool converged() const { return reason == StopReason::Converged; }
 };
 
+/// The limits of what may move: `given`, or none where that is empty, with locks on what is hidden in `base` and what
+/// nothing can raise. Throws UsageError where there are not as many as features, or one is no range within 0 and 1.
+std::vector<OpacityLimits> limitsOfMoves(const TransferFunction& base, std::vector<OpacityLimits> given);
+
 /// What is to be solved. Keeps references.
 struct OptimizeProblem {
     const VwsFunction& function;

@@ -5,9 +5,7 @@
 
 #include "base/parallel.h"
 #include "optimize/bin_sampler.h"
-#include "render/ray_box.h"
 #include "tf/opacity.h"
-#include "volume/noise.h"
 
 namespace pellucid {
 
@@ -24,35 +22,17 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
     : m_features(tf.features.size()) {
     const BinFeatures features(tf);
     m_slotOfBin = features.slot;
-    const Geometry& geometry = volume.geometry();
-    const double d0 = geometry.d0();
-    m_stepInD0 = stepAlongRays(geometry);
-    const double step = m_stepInD0 * d0;
-    const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, geometry);
+    m_stepInD0 = stepAlongRays(volume.geometry());
+    const double step = m_stepInD0 * volume.geometry().d0();
 
     std::vector<std::vector<std::uint16_t>> rows(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
-    std::visit(
-        [&](const auto& samples) {
-            const BinSampler sampler(volume, samples);
-            parallelFor(static_cast<std::size_t>(pixels), [&](std::size_t row) {
-                job.throwIfStopped();
-                for (int column = 0; column < pixels; ++column) {
-                    const std::size_t pixel = row * static_cast<std::size_t>(pixels) + static_cast<std::size_t>(column);
-                    const Ray ray = inVoxels(
-                        pixelRay(view.camera, column + 0.5, static_cast<double>(row) + 0.5, pixels, pixels), geometry);
-                    RayInterval inside = intersectBox(ray, geometry);
-                    inside.enter = std::max(inside.enter, 0.0);
-                    cut(inside, ray, planes);
-                    // Each ray begins elsewhere, so that steps of several voxels hit thin things on average as often
-                    // as their thickness says.
-                    const double first = static_cast<double>(hashOf(column, static_cast<int>(row), 0, 1) % 1024) / 1024;
-                    for (double t = inside.enter + first * step; t < inside.exit; t += step)
-                        if (const int bin = sampler.at(ray.origin + t * ray.direction); bin >= 0 && features.keeps(bin))
-                            rows[pixel].push_back(static_cast<std::uint16_t>(bin));
-                }
-            });
-        },
-        volume.samples());
+    forEachRay(volume, view, pixels, step, 1, job,
+               [&](std::size_t pixel, const PixelRay& r, const auto& sampler, const auto&) {
+                   for (double t = r.first; t < r.exit; t += step)
+                       if (const int bin = sampler.at(r.ray.origin + t * r.ray.direction);
+                           bin >= 0 && features.keeps(bin))
+                           rows[pixel].push_back(static_cast<std::uint16_t>(bin));
+               });
 
     m_begins.push_back(0);
     for (const auto& bins : rows) {
@@ -60,7 +40,7 @@ RayBundle::RayBundle(const Volume& volume, const TransferFunction& tf, const Vie
         for (const std::uint16_t bin : bins) ++steps[static_cast<std::size_t>(m_slotOfBin[bin])];
         steps.pop_back(); // of what is in no feature
         const auto met = [&](int n) { return n * m_stepInD0 >= kMeets; };
-        if (std::none_of(steps.begin(), steps.end(), met)) continue;
+        if (std::ranges::none_of(steps, met)) continue;
         m_bins.insert(m_bins.end(), bins.begin(), bins.end());
         m_begins.push_back(static_cast<std::uint32_t>(m_bins.size()));
         for (const int n : steps) m_met.push_back(met(n));

@@ -11,9 +11,7 @@
 
 #include "base/parallel.h"
 #include "optimize/bin_sampler.h"
-#include "render/ray_box.h"
 #include "tf/opacity.h"
-#include "volume/noise.h"
 
 namespace pellucid {
 
@@ -66,7 +64,6 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
     const bool perspective = camera->projection == Projection::Perspective;
     const Vec3 forward = camera->forward();
     const Mat3 worldFromIndex = geometry.worldFromIndex();
-    const std::vector<VoxelPlane> planes = planesInVoxels(view.clipping, geometry);
     const Int3 dims = volume.dims();
 
     struct OfRay {
@@ -74,72 +71,53 @@ RaySamples::RaySamples(const Volume& volume, const TransferFunction& tf, const V
         std::vector<Met> voxels;
     };
     std::vector<OfRay> all(static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays));
-    std::visit(
-        [&](const auto& values) {
-            const BinSampler sampler(volume, values);
-            parallelFor(static_cast<std::size_t>(rays), [&](std::size_t row) {
-                job.throwIfStopped();
-                struct Point {
-                    double from; ///< t at which a voxel's light is taken
-                    Met met;
-                };
-                std::vector<double> begins; // of the steps that absorb
-                std::vector<Point> points;
-                for (int column = 0; column < rays; ++column) {
-                    OfRay& here = all[row * static_cast<std::size_t>(rays) + static_cast<std::size_t>(column)];
-                    const Ray world = pixelRay(*camera, column + 0.5, static_cast<double>(row) + 0.5, rays, rays);
-                    const Ray ray = inVoxels(world, geometry);
-                    RayInterval inside = intersectBox(ray, geometry);
-                    inside.enter = std::max(inside.enter, 0.0);
-                    cut(inside, ray, planes);
-                    if (inside.empty()) continue;
-                    const double slant = glm::dot(world.direction, forward);
-                    const double first = static_cast<double>(hashOf(column, static_cast<int>(row), 0, 2) % 1024) / 1024;
-                    begins.clear();
-                    points.clear();
-                    for (double t = inside.enter + first * step; t < inside.exit; t += step) {
-                        const Vec3 at = ray.origin + t * ray.direction;
-                        if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin)) {
-                            here.bins.push_back(static_cast<std::uint16_t>(bin));
-                            begins.push_back(t - step / 2);
-                        }
-                        const Int3 voxel = glm::clamp(Int3(glm::round(at)), Int3(0), dims - 1);
-                        const std::size_t index =
-                            static_cast<std::size_t>(voxel.x) +
-                            static_cast<std::size_t>(dims.x) *
-                                (static_cast<std::size_t>(voxel.y) +
-                                 static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(voxel.z));
-                        const double s = volume.intensityOfValue(static_cast<double>(values[index]));
-                        if (std::isnan(s) || !features.keeps(binOfIntensity(s))) continue;
-                        // As far along the ray as the voxel's centre, less the d0/2 in front of it.
-                        const double center = t + glm::dot(worldFromIndex * (Vec3(voxel) - at), world.direction);
-                        const double measure = perspective ? t * t * slant * slant * slant : 1;
-                        points.push_back({center - d0 / 2,
-                                          {weights.units(index), static_cast<float>(measure),
-                                           static_cast<std::uint16_t>(binOfIntensity(s)), 0, 0}});
-                    }
-                    for (Point& p : points) {
-                        const auto next = std::upper_bound(begins.begin(), begins.end(), p.from);
-                        auto behind = static_cast<std::size_t>(next - begins.begin());
-                        std::size_t quarters = 0;
-                        if (behind > 0) { // the last step that has begun may not have ended
-                            const double part = (p.from - begins[behind - 1]) / step;
-                            if (part < 1) {
-                                quarters = static_cast<std::size_t>(part * 4 + 0.5);
-                                if (quarters < 4) --behind;
-                                quarters %= 4;
-                            }
-                        }
-                        p.met.behind = static_cast<std::uint16_t>(behind);
-                        p.met.quarters = static_cast<std::uint16_t>(quarters);
-                    }
-                    std::stable_sort(points.begin(), points.end(),
-                                     [](const Point& a, const Point& b) { return a.met.behind < b.met.behind; });
-                    for (const Point& p : points) here.voxels.push_back(p.met);
+    const auto follow = [&](std::size_t pixel, const PixelRay& r, const auto& sampler, const auto& values) {
+        struct Point {
+            double from; ///< t at which a voxel's light is taken
+            Met met;
+        };
+        thread_local std::vector<double> begins; // of the steps that absorb
+        thread_local std::vector<Point> points;
+        begins.clear();
+        points.clear();
+        OfRay& here = all[pixel];
+        const double slant = glm::dot(r.direction, forward);
+        for (double t = r.first; t < r.exit; t += step) {
+            const Vec3 at = r.ray.origin + t * r.ray.direction;
+            if (const int bin = sampler.at(at); bin >= 0 && features.keeps(bin)) {
+                here.bins.push_back(static_cast<std::uint16_t>(bin));
+                begins.push_back(t - step / 2);
+            }
+            const Int3 voxel = glm::clamp(Int3(glm::round(at)), Int3(0), dims - 1);
+            const std::size_t index = voxelIndex(dims, voxel.x, voxel.y, voxel.z);
+            const double s = volume.intensityOfValue(static_cast<double>(values[index]));
+            if (std::isnan(s) || !features.keeps(binOfIntensity(s))) continue;
+            // As far along the ray as the voxel's centre, less the d0/2 in front of it.
+            const double center = t + glm::dot(worldFromIndex * (Vec3(voxel) - at), r.direction);
+            const double measure = perspective ? t * t * slant * slant * slant : 1;
+            points.push_back({center - d0 / 2,
+                              {weights.units(index), static_cast<float>(measure),
+                               static_cast<std::uint16_t>(binOfIntensity(s)), 0, 0}});
+        }
+        for (Point& p : points) {
+            const auto next = std::ranges::upper_bound(begins, p.from);
+            auto behind = static_cast<std::size_t>(next - begins.begin());
+            std::size_t quarters = 0;
+            if (behind > 0) { // the last step that has begun may not have ended
+                const double part = (p.from - begins[behind - 1]) / step;
+                if (part < 1) {
+                    quarters = static_cast<std::size_t>(part * 4 + 0.5);
+                    if (quarters < 4) --behind;
+                    quarters %= 4;
                 }
-            });
-        },
-        volume.samples());
+            }
+            p.met.behind = static_cast<std::uint16_t>(behind);
+            p.met.quarters = static_cast<std::uint16_t>(quarters);
+        }
+        std::ranges::stable_sort(points, {}, [](const Point& p) { return p.met.behind; });
+        for (const Point& p : points) here.voxels.push_back(p.met);
+    };
+    forEachRay(volume, View(*camera, view.clipping), rays, step, 2, job, follow);
     for (const OfRay& ray : all) {
         if (ray.voxels.empty()) continue;
         m_bins.insert(m_bins.end(), ray.bins.begin(), ray.bins.end());

@@ -156,7 +156,7 @@ TEST_CASE("wrong values of refine and optimize are wrong usage", "[cli][errors]"
         {"--view", "0,0"}, {"--orthographic"}, {"--clip", "x:0:0.5"}, {"--size", "32x32"}};
     for (const Words& words : ofPictures) checkFails(w, samples + words, 2, words[0]);
     // Its corner shows nothing.
-    checkFails(w, samples + Words{"--region", "0,0,2,2", "--size", "32x32"}, 1, "nothing is to be seen");
+    checkFails(w, samples + Words{"--region", "0,0,2,2", "--size", "32x32"}, 1, "the region shows nothing");
     checkFails(w, kRefine + Words{"--tf", "tents:3", "--fix", "0.4"}, 2, "0.366667"); // lists the points there are
     checkFails(w, kOptimize, 2, "--target is required");
     for (const char* target : {"1,1", "1,1,1,1", "0,0,0", "-1,1,1", "1,nan,1", "1,,1"})

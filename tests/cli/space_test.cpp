@@ -119,7 +119,7 @@ TEST_CASE("space shows two features as a heat map, the others keep their opaciti
     CHECK(log["axes"][0]["opacity"][2].get<double>() == Approx(0.1)); // the middle of 0.01 … 1 in equal factors
 }
 
-TEST_CASE("space draws the ways of methods", "[cli][space]") {
+TEST_CASE("space draws the paths of methods", "[cli][space]") {
     const Workshop w;
     w.json(kSpace + Words{"--out", "bare.png"});
     const json answer = w.json(kSpace + Words{"--out", "paths.png", "--paths", "parallel,fixed"});
@@ -163,7 +163,7 @@ TEST_CASE("space refuses what it cannot do", "[cli][space]") {
     refused({"--target", "1,3"}, "2 targets for 3 features");
     refused(target + Words{"--features", "f1"}, "two features or three");
     refused(target + Words{"--features", "f1,f9"}, "known: 'f1', 'f2', 'f3'");
-    refused(target + Words{"--features", "f1,f1"}, "a feature has two axes");
+    refused(target + Words{"--features", "f1,f1"}, "a feature is chosen for two axes");
     refused(target + Words{"--samples", "65"}, "--samples");
     refused(target + Words{"--scale", "cubic"}, "give linear or log");
     refused(target + Words{"--scale", "linear:0.1"}, "--scale");

@@ -235,7 +235,7 @@ TEST_CASE("a selection is moved, stretched and removed; one of nothing is refuse
     REQUIRE(w.refining().selecting() == RefineController::Selecting::Rectangle);
     drag(w.view(), {4, 4}, {30, 30});
     REQUIRE(waitFor([&] { return !w.refining().isBusy(); }));
-    CHECK(w.child<QLabel>("panelMessage").text().contains("nothing is to be seen"));
+    CHECK(w.child<QLabel>("panelMessage").text().contains("the region shows nothing"));
     CHECK_FALSE(w.refining().region());
     CHECK(w.document().stepCount() == 0);
     CHECK(w.document().tf() == tf);

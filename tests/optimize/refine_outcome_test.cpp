@@ -161,7 +161,7 @@ void tryVolume(const std::string& name, const Volume& data) {
                 priorities.push_back(
                     {"region at " + std::to_string(u).substr(0, 4) + "," + std::to_string(v).substr(0, 4),
                      {{}, regionColors(picture, region)}});
-            } catch (const Error&) { // nothing is to be seen there
+            } catch (const Error&) { // the region shows nothing there
             }
         }
         for (const RefineMethod method : {RefineMethod::Greedy, RefineMethod::Exact}) {

@@ -74,7 +74,7 @@ public:
         const Vector down = -up;
         std::vector<Place> stronger = follow(start, up, kPast), fainter;
         const auto most = [&] {
-            const auto at = std::max_element(stronger.begin(), stronger.end(), weaker);
+            const auto at = std::ranges::max_element(stronger, weaker);
             return at == stronger.end() ? start.coverage : std::max(start.coverage, at->coverage);
         };
         if (least < 1) {
@@ -87,7 +87,7 @@ public:
                     !other.empty() && other.back().coverage < end) {
                     fainter = std::move(other);
                     stronger.clear();
-                    const auto top = std::max_element(fainter.begin(), fainter.end(), weaker);
+                    const auto top = std::ranges::max_element(fainter, weaker);
                     if (top->coverage > start.coverage) {
                         start = *top;
                         fainter.erase(fainter.begin(), top + 1);
@@ -96,7 +96,7 @@ public:
         }
         std::vector<Place> path(fainter.rbegin(), fainter.rend());
         path.push_back(start);
-        const auto strongest = std::max_element(stronger.begin(), stronger.end(), weaker);
+        const auto strongest = std::ranges::max_element(stronger, weaker);
         if (strongest != stronger.end() && strongest->coverage > start.coverage)
             path.insert(path.end(), stronger.begin(), strongest + 1);
         return ascending(std::move(path), start.coverage);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace pellucid {
@@ -68,7 +69,7 @@ TransferFunction withPeaks(const TransferFunction& tf, const std::vector<double>
         const double x = tf.features[f].b;
         if (tf.features[f + 1].a != x) continue;
         const auto pointsAt = [x](auto& points) {
-            const auto begin = std::find_if(points.begin(), points.end(), [x](const auto& p) { return p.x == x; });
+            const auto begin = std::ranges::find_if(points, [x](const auto& p) { return p.x == x; });
             const auto end = std::find_if(begin, points.end(), [x](const auto& p) { return p.x != x; });
             return std::pair(begin, end);
         };

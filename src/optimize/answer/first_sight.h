@@ -1,4 +1,4 @@
-// Opacities for the first picture: solved for, from the view, so that outer features let the inner ones through
+// The opacities of the first picture of a volume, chosen for its view so that outer features let the inner ones through
 // (docs/method.md, "The automatic start").
 #pragma once
 

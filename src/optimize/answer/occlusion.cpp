@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace pellucid {
 
@@ -43,7 +44,7 @@ std::vector<std::string> occlusionWords(const OcclusionMatrix& matrix, const std
     for (std::size_t i = 0; i < matrix.size(); ++i)
         for (std::size_t j = 0; j < matrix.size(); ++j)
             if (matrix[i][j] >= kWorthTelling) all.push_back({matrix[i][j], i, j});
-    std::stable_sort(all.begin(), all.end(), [](const Hiding& a, const Hiding& b) { return a.part > b.part; });
+    std::ranges::stable_sort(all, std::greater{}, &Hiding::part);
     if (all.size() > most) all.resize(most);
     std::vector<std::string> words;
     for (const Hiding& h : all)

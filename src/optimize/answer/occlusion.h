@@ -1,4 +1,4 @@
-// Who hides whom (docs/method.md, "Why a target is out of reach").
+// Which feature hides which (docs/method.md, "Why a target is out of reach").
 #pragma once
 
 #include <string>

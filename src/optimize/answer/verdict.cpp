@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <numbers>
 
 #include "base/color.h"
+#include "base/round_numbers.h"
 #include "optimize/answer/visibility_words.h"
 
 namespace pellucid {
@@ -90,18 +92,7 @@ TransferFunction withColor(TransferFunction tf, std::size_t feature, const Rgb& 
     return tf;
 }
 
-std::string fText(double objective) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "F = %.4f", objective);
-    return text.data();
-}
-
-std::string listed(const std::vector<std::string>& words) {
-    std::string text;
-    for (std::size_t i = 0; i < words.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
-    return text;
-}
+std::string fText(double objective) { return "F = " + fixedText(objective, 4); }
 
 std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& problem, const std::vector<double>& targets,
                                      double tolerance) {
@@ -122,18 +113,18 @@ std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& probl
         const std::string& name = features[limit.feature].name;
         std::array<char, 64> opacity{};
         std::snprintf(opacity.data(), opacity.size(), "%.3g", v.opacity[limit.feature]);
+        const auto held = [&](const char* how, const char* otherwise) {
+            sentences.push_back(name + how + opacity.data() + otherwise + reached(limit.objective) + ".");
+        };
         switch (limit.reason) {
         case LimitReason::Locked:
-            sentences.push_back(name + " is locked at opacity " + opacity.data() + "; unlocked, " +
-                                reached(limit.objective) + ".");
+            held(" is locked at opacity ", "; unlocked, ");
             break;
         case LimitReason::Lowest:
-            sentences.push_back(name + " may not be fainter than " + opacity.data() + "; if it may, " +
-                                reached(limit.objective) + ".");
+            held(" may not be fainter than ", "; if it may, ");
             break;
         case LimitReason::Highest:
-            sentences.push_back(name + " may not be more opaque than " + opacity.data() + "; if it may, " +
-                                reached(limit.objective) + ".");
+            held(" may not be more opaque than ", "; if it may, ");
             break;
         case LimitReason::OutOfSight:
             sentences.push_back("Nothing of " + name + " is in sight from here" +
@@ -147,14 +138,12 @@ std::vector<std::string> sentencesOf(const Verdict& v, const ReachProblem& probl
     if (const auto hiding = occlusionWords(v.occlusion, features); !hiding.empty())
         sentences.push_back("There, " + listed(hiding) + ".");
     for (const ReachHelp& help : v.helps) {
-        std::array<char, 96> text{};
         switch (help.kind) {
         case ReachHelp::Kind::Release:
             break; // said of the limit
         case ReachHelp::Kind::View:
-            std::snprintf(text.data(), text.size(), "From azimuth %.0f°, elevation %.0f° ", help.view->azimuth,
-                          help.view->elevation);
-            sentences.push_back(text.data() + reached(help.objective) + ".");
+            sentences.push_back("From azimuth " + fixedText(help.view->azimuth, 0) + "°, elevation " +
+                                fixedText(help.view->elevation, 0) + "° " + reached(help.objective) + ".");
             break;
         case ReachHelp::Kind::Color:
             sentences.push_back("With another colour of " + features[help.feature].name + ", such as " +
@@ -192,8 +181,7 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
         verdict.limits.push_back({j, *reason, objective});
         verdict.helps.push_back({ReachHelp::Kind::Release, j, {}, {}, objective});
     }
-    const auto nearer = [](const auto& a, const auto& b) { return a.objective < b.objective; };
-    std::stable_sort(verdict.limits.begin(), verdict.limits.end(), nearer);
+    std::ranges::stable_sort(verdict.limits, {}, &ReachLimit::objective);
 
     const std::vector<Presence> presence = presenceOf(tools, problem, job);
     bool outOfSight = false;
@@ -211,8 +199,7 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
             verdict.helps.push_back({ReachHelp::Kind::Color, i, {}, color, objective});
     }
     // What is not there limits more than what is held.
-    std::stable_sort(absent.begin(), absent.end(),
-                     [&](const ReachLimit& a, const ReachLimit& b) { return targets[a.feature] > targets[b.feature]; });
+    std::ranges::stable_sort(absent, std::greater{}, [&](const ReachLimit& limit) { return targets[limit.feature]; });
     verdict.limits.insert(verdict.limits.begin(), absent.begin(), absent.end());
 
     if (!problem.view.clipping.isNone()) {
@@ -239,7 +226,7 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
             const double objective = objectiveAt(tools.solve(seenFrom(around[k]), true, job));
             promising.push_back({ReachHelp::Kind::View, 0, around[k], {}, objective});
         }
-        std::stable_sort(promising.begin(), promising.end(), nearer);
+        std::ranges::stable_sort(promising, {}, &ReachHelp::objective);
         for (std::size_t k = 0; k < kViewsVerified; ++k) {
             ReachHelp& help = promising[k];
             if (!helps(help.objective)) break;
@@ -249,7 +236,7 @@ Verdict explain(VerdictTools& tools, const ReachProblem& problem, const std::vec
             break;
         }
     }
-    std::stable_sort(verdict.helps.begin(), verdict.helps.end(), nearer);
+    std::ranges::stable_sort(verdict.helps, {}, &ReachHelp::objective);
     verdict.sentences = sentencesOf(verdict, problem, targets, options.tolerance);
     return verdict;
 }

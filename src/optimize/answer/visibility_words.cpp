@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
+#include <span>
+
+#include "base/round_numbers.h"
+#include "base/text.h"
 
 namespace pellucid {
 
@@ -10,45 +13,39 @@ namespace {
 
 constexpr double kSameShares = 0.005; ///< F below which shares read alike in per cent
 
-/// 'a', 'b' and 'c'
-std::string namesOf(const TransferFunction& tf, const std::vector<std::size_t>& features) {
-    std::string text;
-    for (std::size_t i = 0; i < features.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == features.size() ? " and " : ", ") + ("'" + tf.features[features[i]].name + "'");
-    return text;
-}
-
 /// 33 %, 33 % and 33 %
 std::string sharesText(const std::vector<double>& shares) {
-    std::string text;
-    for (std::size_t f = 0; f < shares.size(); ++f)
-        text += (f == 0 ? "" : f + 1 == shares.size() ? " and " : ", ") + percentText(shares[f]);
-    return text;
+    std::vector<std::string> words;
+    for (const double share : shares) words.push_back(percentText(share));
+    return listed(words);
 }
 
 /// "the picture is 0.4 % opaque, and 'f3' adds 0.1 % to the pixels that it covers"
 std::string thinness(const TransferFunction& tf, const std::vector<double>& targets, const Coverage& look) {
-    std::vector<std::size_t> unseen;
+    std::vector<std::string> unseen;
     double most = 0;
     for (std::size_t f = 0; f < targets.size(); ++f)
         if (targets[f] > 0 && look.covers[f] < kFaintCover) {
-            unseen.push_back(f);
+            unseen.push_back("'" + tf.features[f].name + "'");
             most = std::max(most, look.covers[f]);
         }
     std::string text = "the picture is " + percentText(look.coverage) + " opaque";
     if (!unseen.empty())
-        text += ", and " + namesOf(tf, unseen) + (unseen.size() == 1 ? " adds " : " add at most ") + percentText(most) +
+        text += ", and " + listed(unseen) + (unseen.size() == 1 ? " adds " : " add at most ") + percentText(most) +
                 (unseen.size() == 1 ? " to the pixels that it covers" : " to the pixels that they cover");
     return text;
 }
 
 } // namespace
 
+std::string listed(const std::vector<std::string>& words) {
+    if (words.size() < 2) return joined(words);
+    return joined(std::span(words).first(words.size() - 1)) + " and " + words.back();
+}
+
 std::string percentText(double share) {
     if (share > 0 && share < 0.0005) return "< 0.1 %";
-    char text[32];
-    std::snprintf(text, sizeof text, share < 0.0995 && share > 0 ? "%.1f %%" : "%.0f %%", 100 * share);
-    return text;
+    return fixedText(100 * share, share < 0.0995 && share > 0 ? 1 : 0) + " %";
 }
 
 std::string keptText(const OptimizeResult& result) {

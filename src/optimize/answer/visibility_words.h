@@ -1,7 +1,8 @@
-// What of an answer can be seen, in words.
+// How much of the answer of an optimization can be seen, in words.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "optimize/optimizer.h"
 
@@ -13,6 +14,9 @@ std::string keptText(const OptimizeResult& result);
 
 /// What of the answer cannot be seen, and which shares would show it; empty where it can be.
 std::string faintText(const OptimizeResult& result);
+
+/// "a, b and c"
+std::string listed(const std::vector<std::string>& words);
 
 /// "12 %"; below 10 % "1.2 %", below 0.1 % "< 0.1 %".
 std::string percentText(double share);

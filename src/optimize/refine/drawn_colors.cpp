@@ -59,7 +59,8 @@ TransferFunction withDrawnColors(const TransferFunction& tf, const Volume& volum
         if (bins[b].count == 0) continue;
         const double s = (static_cast<double>(b) + 0.5) / kBins;
         // The first point beyond s; of several in one place the first from below, the last from above.
-        const auto next = std::find_if(tf.points.begin(), tf.points.end(), [&](const auto& p) { return p.x > s; });
+        const auto next = std::ranges::find_if(
+            tf.points, [&](double x) { return x > s; }, &ControlPoint::x);
         const auto upper = static_cast<std::size_t>(next - tf.points.begin());
         if (upper == 0) {
             add(0, 1, bins[b]);

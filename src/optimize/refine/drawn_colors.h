@@ -1,4 +1,4 @@
-// What colours control points have in the picture where colours do not come from the transfer function.
+// The colours that control points have in a picture whose colours do not come from the transfer function.
 #pragma once
 
 #include "optimize/refine/refine.h"

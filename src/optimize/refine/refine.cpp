@@ -111,11 +111,11 @@ std::span<const Setting> settingsOf<RefineSteps>() {
 void RefineOptions::validate() const {
     checkSettings<RefineSteps>(*this, "refine");
     if (priority.intensity && !priority.region.empty())
-        throw UsageError("an intensity and a region are prioritized at once", "refine", "choose one of them");
+        throw UsageError("both an intensity and a region are prioritized", "refine", "choose one of them");
     if (priority.intensity && !(*priority.intensity >= 0 && *priority.intensity <= 1))
-        throw UsageError("the prioritized intensity lies in [0,1]", "refine",
+        throw UsageError("the prioritized intensity must lie in [0,1]", "refine",
                          "normalise it to the range of intensities");
-    if (total && !(*total >= 0)) throw UsageError("the total opacity is not negative", "refine", "correct it");
+    if (total && !(*total >= 0)) throw UsageError("the total opacity must not be negative", "refine", "correct it");
 }
 
 std::vector<double> edgeWeights(const Histogram& histogram, const TransferFunction& tf,

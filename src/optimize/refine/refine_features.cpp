@@ -16,8 +16,7 @@ constexpr double kLeastKept = 0.25; ///< of a feature that gives way to the one 
 /// α just below and just above x.
 std::pair<double, double> opacitiesAbout(const TransferFunction& tf, double x) {
     const std::vector<ControlPoint> points = tf.pointsWithEnds();
-    const auto below =
-        std::lower_bound(points.begin(), points.end(), x, [](const auto& p, double v) { return p.x < v; });
+    const auto below = std::ranges::lower_bound(points, x, {}, &ControlPoint::x);
     const double from = below != points.end() && below->x == x ? below->opacity : tf.opacity(x);
     return {from, tf.opacity(x)};
 }
@@ -59,7 +58,7 @@ std::vector<double> densityOf(const Histogram& histogram) {
 std::vector<double> ones(const TransferFunction& tf) { return std::vector<double>(tf.pointsWithEnds().size(), 1.0); }
 
 std::size_t indexOfLeast(const std::vector<double>& values) {
-    return static_cast<std::size_t>(std::min_element(values.begin(), values.end()) - values.begin());
+    return static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
 }
 
 /// The features as the search moves them: parts of Σ α·p.
@@ -188,7 +187,7 @@ bool movesFeatures(const TransferFunction& tf, const RefineOptions& options) {
 }
 
 bool isHeld(const TransferFunction& tf, const Feature& feature) {
-    return std::any_of(tf.points.begin(), tf.points.end(), [&](const ControlPoint& p) {
+    return std::ranges::any_of(tf.points, [&](const ControlPoint& p) {
         return p.fixed && p.opacity > 0 && p.x >= feature.a && p.x <= feature.b;
     });
 }

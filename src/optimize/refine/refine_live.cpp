@@ -44,8 +44,8 @@ std::vector<std::size_t> heldPoints(const TransferFunction& before, const Transf
         if (point.fixed) continue;
         ++movable;
         const auto isSame = [&](const ControlPoint& p) { return p.x == point.x && p.opacity == point.opacity; };
-        const bool same = sameCount ? before.points[i].opacity == point.opacity
-                                    : std::any_of(before.points.begin(), before.points.end(), isSame);
+        const bool same =
+            sameCount ? before.points[i].opacity == point.opacity : std::ranges::any_of(before.points, isSame);
         if (!same) held.push_back(i);
     }
     return held.size() == movable ? std::vector<std::size_t>() : held;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "base/round_numbers.h"
 #include "optimize/coverage.h"
 #include "optimize/refine/refine_features.h"
 #include "optimize/refine/refine_words.h"
@@ -85,8 +86,8 @@ Other strongestOther(const Histogram& histogram, const TransferFunction& before,
                 take(before.features[f].name, gainOf(was[f], is[f]));
         return most;
     }
-    const auto next = std::find_if(before.points.begin(), before.points.end(),
-                                   [&](const ControlPoint& p) { return p.x >= chosen.x; });
+    const auto next = std::ranges::find_if(
+        before.points, [&](double x) { return x >= chosen.x; }, &ControlPoint::x);
     const auto upper = static_cast<std::size_t>(next - before.points.begin());
     const bool onPoint = next != before.points.end() && next->x == chosen.x;
     for (std::size_t i = 0; i < before.points.size(); ++i) {
@@ -133,6 +134,19 @@ std::string reasonOf(const PriorityOutcome& outcome, const Other& other) {
     return outcome.name + " gained no more than " + other.name + ".";
 }
 
+/// Why a chosen feature cannot be brought out at all; empty where it can.
+std::string obstacle(const Histogram& histogram, const TransferFunction& tf, const Feature& f, const Chosen& chosen) {
+    if (f.hidden) return f.name + " is hidden and cannot be brought out: show it first.";
+    if (!hasVoxel(f, histogram))
+        return "No voxel has a value of " + f.name + ", so there is nothing to bring out: choose another value.";
+    if (isHeld(tf, f))
+        return f.name + " has a fixed control point and keeps its opacity: release the point to bring it out.";
+    if (!chosen.inside)
+        return "No feature holds the value " + valueName(tf, chosen.x) + "; the nearest is " + f.name +
+               ". Add a feature there to bring the value out.";
+    return {};
+}
+
 RefineMethod otherThan(RefineMethod method) {
     return method == RefineMethod::Greedy ? RefineMethod::Exact : RefineMethod::Greedy;
 }
@@ -155,26 +169,8 @@ std::optional<PriorityOutcome> priorityOutcome(const Histogram& histogram, const
     if (outcome.gained) return outcome;
     const std::string& name = outcome.name;
     if (chosen->feature) {
-        const Feature& f = before.features[*chosen->feature];
-        if (f.hidden) {
-            outcome.text = name + " is hidden and cannot be brought out: show it first.";
-            return outcome;
-        }
-        if (!hasVoxel(f, histogram)) {
-            outcome.text =
-                "No voxel has a value of " + name + ", so there is nothing to bring out: choose another value.";
-            return outcome;
-        }
-        if (isHeld(before, f)) {
-            outcome.text =
-                name + " has a fixed control point and keeps its opacity: release the point to bring it out.";
-            return outcome;
-        }
-        if (!chosen->inside) {
-            outcome.text = "No feature holds the value " + valueName(before, chosen->x) + "; the nearest is " + name +
-                           ". Add a feature there to bring the value out.";
-            return outcome;
-        }
+        outcome.text = obstacle(histogram, before, before.features[*chosen->feature], *chosen);
+        if (!outcome.text.empty()) return outcome;
     }
     const std::string why = before.opacity(chosen->x) >= 1 - kSame ? name + " is fully opaque already and cannot gain."
                                                                    : reasonOf(outcome, other);
@@ -236,11 +232,7 @@ std::optional<Darkening> darkeningOf(const RayBundle& rays, const Histogram& his
 }
 
 std::string darkeningText(const Darkening& d) {
-    const auto number = [](double coverage) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.2f", coverage);
-        return std::string(text);
-    };
+    const auto number = [](double coverage) { return fixedText(coverage, 2); };
     std::string text =
         "The picture gets dark: its coverage falls from " + number(d.before) + " to " + number(d.after) + ".";
     if (d.help == Darkening::Help::Exact) text += " With the method Exact it stays at " + number(d.helped) + ".";

@@ -74,7 +74,7 @@ double intensityOfHue(const TransferFunction& tf, double hueDegrees) {
     std::vector<double> places;
     for (const ControlPoint& p : tf.points) places.push_back(p.x);
     for (int i = 0; i <= kPlaces; ++i) places.push_back(static_cast<double>(i) / kPlaces);
-    std::sort(places.begin(), places.end());
+    std::ranges::sort(places);
 
     const TfSampler sampler(tf);
     double best = -1, bestDistance = 0, bestOpacity = 0;

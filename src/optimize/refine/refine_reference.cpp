@@ -37,8 +37,8 @@ RefineResult refineReference(const Histogram& histogram, const TransferFunction&
         const std::vector<double> edges = line.weights();
         const auto lighter = [&](std::size_t a, std::size_t b) { return edges[a] < edges[b]; };
         const auto& which = line.participating;
-        const std::size_t heaviest = *std::max_element(which.begin(), which.end(), lighter);
-        const std::size_t lightest = *std::min_element(which.begin(), which.end(), lighter);
+        const std::size_t heaviest = *std::ranges::max_element(which, lighter);
+        const std::size_t lightest = *std::ranges::min_element(which, lighter);
         const std::size_t down = line.endToMove(heaviest, true), up = line.endToMove(lightest, false);
         const double rise = line.stepUp(options, down, up);
         line.opacity[down] = std::clamp(line.opacity[down] - options.stepDown, 0.0, 1.0);

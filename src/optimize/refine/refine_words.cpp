@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 
 #include "base/check.h"
@@ -81,10 +82,9 @@ std::vector<OpacityChange> opacityChanges(const TransferFunction& before, const 
 
 std::string changeText(const std::vector<OpacityChange>& changes) {
     std::vector<OpacityChange> told;
-    std::copy_if(changes.begin(), changes.end(), std::back_inserter(told),
-                 [](const OpacityChange& c) { return sizeOf(c) >= std::log1p(kLeast); });
-    std::stable_sort(told.begin(), told.end(),
-                     [](const OpacityChange& a, const OpacityChange& b) { return sizeOf(a) > sizeOf(b); });
+    std::ranges::copy_if(
+        changes, std::back_inserter(told), [](double size) { return size >= std::log1p(kLeast); }, sizeOf);
+    std::ranges::stable_sort(told, std::greater{}, sizeOf);
     if (told.size() > kMost) told.resize(kMost);
     std::string text;
     for (const OpacityChange& c : told) text += (text.empty() ? "" : ", ") + wordsOf(c);

@@ -16,9 +16,9 @@ std::vector<RegionColor> regionColors(const Image& picture, const ImageRegion& r
                 pixels.push_back({p[0], p[1], p[2]});
         }
     if (pixels.empty())
-        throw Error("nothing is to be seen", "region of the picture",
+        throw Error("the region shows nothing", "region of the picture",
                     "choose a part of the picture that shows something");
-    std::sort(pixels.begin(), pixels.end());
+    std::ranges::sort(pixels);
     std::vector<RegionColor> colors;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         if (i > 0 && pixels[i] == pixels[i - 1])

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "base/check.h"
@@ -22,11 +23,11 @@ constexpr double kVoxelsInAWhile = 3e9; ///< voxels times sweeps that two cores 
 void ParameterAxes::validate(std::size_t featureCount) const {
     const char* const where = "parameter space";
     if (features.size() != 2 && features.size() != 3)
-        throw UsageError(std::to_string(features.size()) + " features for its axes", where, "choose two or three");
+        throw UsageError(std::to_string(features.size()) + " features cannot be its axes", where, "choose two or three");
     for (const std::size_t f : features)
         if (f >= featureCount) throw UsageError("there is no feature " + std::to_string(f + 1), where, "choose others");
     if (std::set<std::size_t>(features.begin(), features.end()).size() != features.size())
-        throw UsageError("a feature has two axes", where, "choose different ones");
+        throw UsageError("a feature is chosen for two axes", where, "choose different ones");
     if (samples < 2 || samples > kMostAxisSamples)
         throw UsageError(std::to_string(samples) + " samples along an axis", where,
                          "give a number from 2 to " + std::to_string(kMostAxisSamples));
@@ -72,7 +73,7 @@ const std::vector<double>& ParameterSpace::values(int shown) const {
 }
 
 ValueRange ParameterSpace::range(int shown) const {
-    const auto [least, most] = std::minmax_element(values(shown).begin(), values(shown).end());
+    const auto [least, most] = std::ranges::minmax_element(values(shown));
     return {*least, *most};
 }
 
@@ -136,9 +137,9 @@ std::vector<std::size_t> defaultAxes(const TransferFunction& tf, const std::vect
         throw UsageError("a parameter space has two features or three, and " + std::to_string(shown.size()) +
                              (shown.size() == 1 ? " is shown" : " are shown"),
                          "parameter space", "give a transfer function with more, such as tents:3");
-    std::stable_sort(shown.begin(), shown.end(), [&](std::size_t a, std::size_t b) { return targets[a] > targets[b]; });
+    std::ranges::stable_sort(shown, std::greater{}, [&](std::size_t f) { return targets[f]; });
     shown.resize(std::min<std::size_t>(3, shown.size()));
-    std::sort(shown.begin(), shown.end());
+    std::ranges::sort(shown);
     return shown;
 }
 
@@ -173,8 +174,7 @@ ParameterSpace withTargets(ParameterSpace space, const std::vector<double>& targ
         for (std::size_t f = 0; f < w.size(); ++f) w[f] = space.vws[f][s];
         space.objective[s] = objectiveOf(w, space.targets);
     }
-    space.best = static_cast<std::size_t>(std::min_element(space.objective.begin(), space.objective.end()) -
-                                          space.objective.begin());
+    space.best = static_cast<std::size_t>(std::ranges::min_element(space.objective) - space.objective.begin());
     return space;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "base/error.h"
 #include "optimize/solve/boxed_step.h"
 #include "optimize/solve/log_depths.h"
 
@@ -147,7 +146,7 @@ private:
         std::vector<Point> points;
         const auto add = [&](const Vector& d) {
             const Point x = m_depths.opacities(y + d, at.opacity);
-            if (x != at.opacity && std::find(points.begin(), points.end(), x) == points.end()) points.push_back(x);
+            if (x != at.opacity && std::ranges::find(points, x) == points.end()) points.push_back(x);
         };
         const double wanted = std::hypot(kSafety * m_options.distance(), at.least);
         for (const double length : {3.0, 1.0, 0.3, 0.1}) {
@@ -181,18 +180,6 @@ private:
 } // namespace
 
 double TrackOptions::distance() const { return std::max(kTrackGoal, coherence * kCoherentDistance); }
-
-std::vector<OpacityLimits> limitsOfMoves(const TransferFunction& base, const std::vector<OpacityLimits>& given) {
-    const std::size_t n = base.features.size();
-    std::vector<OpacityLimits> limits = given.empty() ? std::vector<OpacityLimits>(n) : given;
-    if (limits.size() != n)
-        throw UsageError(std::to_string(limits.size()) + " limits for " + std::to_string(n) + " features", "limits",
-                         "give one per feature");
-    const std::vector<double> most = featureOpacities(withFullPeaks(base));
-    for (std::size_t f = 0; f < n; ++f)
-        if (base.features[f].hidden || most[f] == 0) limits[f].locked = true;
-    return limits;
-}
 
 double leastDistance(const std::vector<double>& vws, const std::vector<std::vector<double>>& derivative,
                      const std::vector<double>& targets) {

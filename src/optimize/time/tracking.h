@@ -33,10 +33,6 @@ struct Tracked {
     int evaluations = 0; ///< of W, derivatives included
 };
 
-/// The limits of what may move: `given`, or none where that is empty, with locks on what is hidden in `base` and what
-/// nothing can raise. Throws UsageError where there are not as many as features.
-std::vector<OpacityLimits> limitsOfMoves(const TransferFunction& base, const std::vector<OpacityLimits>& given);
-
 /// F where features that nothing can raise have none, and the others divide what is left as well as it goes: the
 /// smallest that there can be. `derivative`: of W, [i][j], with respect to whatever moves the features.
 double leastDistance(const std::vector<double>& vws, const std::vector<std::vector<double>>& derivative,

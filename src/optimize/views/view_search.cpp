@@ -100,7 +100,7 @@ Place descend(const Value& value, const ViewMetric& metric, Place at, double ste
     return at;
 }
 
-/// Indices of directions none of whose neighbours is better, the best first.
+/// Indices of directions none of whose neighbours is better, the best first, kValleys at most.
 std::vector<std::size_t> valleysOf(const ViewMap& map) {
     const double reach = std::cos(1.5 * spacingOf(map.directions.size()));
     std::vector<std::size_t> valleys;
@@ -111,8 +111,9 @@ std::vector<std::size_t> valleysOf(const ViewMap& map) {
                     !map.metric.isBetter(map.values[j], map.values[i]);
         if (least) valleys.push_back(i);
     }
-    std::stable_sort(valleys.begin(), valleys.end(),
-                     [&](std::size_t a, std::size_t b) { return map.metric.isBetter(map.values[a], map.values[b]); });
+    const auto better = [&](double a, double b) { return map.metric.isBetter(a, b); };
+    std::ranges::stable_sort(valleys, better, [&](std::size_t i) { return map.values[i]; });
+    if (valleys.size() > kValleys) valleys.resize(kValleys);
     return valleys;
 }
 
@@ -168,17 +169,13 @@ double ViewMetric::valueOf(const std::vector<double>& figures) const {
 }
 
 std::size_t ViewMap::best() const {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < values.size(); ++i)
-        if (metric.isBetter(values[i], values[best])) best = i;
-    return best;
+    const auto better = [&](double a, double b) { return metric.isBetter(a, b); };
+    return static_cast<std::size_t>(std::ranges::min_element(values, better) - values.begin());
 }
 
 std::size_t ViewMap::worst() const {
-    std::size_t worst = 0;
-    for (std::size_t i = 1; i < values.size(); ++i)
-        if (metric.isBetter(values[worst], values[i])) worst = i;
-    return worst;
+    const auto worse = [&](double a, double b) { return metric.isBetter(b, a); };
+    return static_cast<std::size_t>(std::ranges::min_element(values, worse) - values.begin());
 }
 
 double ViewMap::interpolated(const Vec3& direction) const {
@@ -266,19 +263,17 @@ BestView bestView(const ViewLevel& coarse, const ViewLevel& full, const ViewSubj
         result.map.values[i] = metric.valueOf(sumOf(search.figures[i], shift));
     }
 
-    std::vector<std::size_t> valleys = valleysOf(result.map);
-    if (valleys.size() > kValleys) valleys.resize(kValleys);
     struct Start {
         Place place;
         std::vector<double> shift;
     };
     std::vector<Start> starts{{{-present.forward(), result.present.value}, {}}};
-    for (const std::size_t i : valleys) {
+    for (const std::size_t i : valleysOf(result.map)) {
         const std::vector<double> figures = measured(directions[i]);
         starts.push_back({{directions[i], metric.valueOf(figures)}, sumOf(figures, search.figures[i], -1)});
     }
-    std::stable_sort(starts.begin(), starts.end(),
-                     [&](const Start& a, const Start& b) { return metric.isBetter(a.place.value, b.place.value); });
+    std::ranges::stable_sort(
+        starts, [&](const Start& a, const Start& b) { return metric.isBetter(a.place.value, b.place.value); });
     if (starts.size() > kFollowed) starts.resize(kFollowed);
     const double spacing = spacingOf(directions.size());
     const auto isReached = [&] { return metric.figure == ViewMetric::Figure::Objective && best->value < kReached; };
@@ -329,9 +324,7 @@ std::vector<ReachableView> reachableViews(const ViewLevel& level, const ViewSubj
     };
 
     std::vector<Camera> cameras{subject.view.camera};
-    std::vector<std::size_t> valleys = valleysOf(search.map);
-    if (valleys.size() > kValleys) valleys.resize(kValleys);
-    for (const std::size_t i : valleys)
+    for (const std::size_t i : valleysOf(search.map))
         cameras.push_back(lookingFrom(subject.view.camera, geometry, search.map.directions[i]));
     for (int i = 0; i < kReachSpread && i < static_cast<int>(search.map.directions.size()); ++i)
         cameras.push_back(
@@ -341,11 +334,7 @@ std::vector<ReachableView> reachableViews(const ViewLevel& level, const ViewSubj
         all.push_back(reach(camera));
         job.report(0.9 * static_cast<double>(all.size()) / static_cast<double>(cameras.size()));
     }
-    const auto nearest = [&] {
-        return *std::min_element(all.begin(), all.end(), [](const ReachableView& a, const ReachableView& b) {
-            return a.objective < b.objective;
-        });
-    };
+    const auto nearest = [&] { return *std::ranges::min_element(all, {}, &ReachableView::objective); };
     // Where targets can be reached they mostly can from everywhere; only elsewhere the exact direction matters.
     double step = 0.5 * spacingOf(static_cast<std::size_t>(kReachSpread));
     for (int round = 0; round < kReachRounds && nearest().objective > kNear; ++round) {
@@ -358,7 +347,7 @@ std::vector<ReachableView> reachableViews(const ViewLevel& level, const ViewSubj
         job.report(0.9 + 0.1 * (round + 1) / kReachRounds);
     }
     const double least = std::max(kNear, nearest().objective);
-    std::stable_sort(all.begin(), all.end(), [&](const ReachableView& a, const ReachableView& b) {
+    std::ranges::stable_sort(all, [&](const ReachableView& a, const ReachableView& b) {
         const bool nearA = a.objective <= least, nearB = b.objective <= least;
         if (nearA && nearB) return a.seen > b.seen;
         return nearA != nearB ? nearA : a.objective < b.objective;
