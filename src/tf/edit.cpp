@@ -82,11 +82,10 @@ TransferFunction withPointColor(const TransferFunction& tf, int index, const Rgb
     point.color = color;
     const int feature = featureAt(tf.features, point.x);
     if (feature < 0) return result;
-    const auto f = static_cast<std::size_t>(feature);
     const bool isHighest = std::ranges::none_of(pointsOfFeature(tf, feature), [&](int i) {
         return tf.points[static_cast<std::size_t>(i)].opacity > point.opacity;
     });
-    if (isHighest) result.features[f].color = color;
+    if (isHighest) result.features[static_cast<std::size_t>(feature)].color = color;
     return result;
 }
 
@@ -99,8 +98,7 @@ TransferFunction withPointFixed(const TransferFunction& tf, int index, bool fixe
 
 TransferFunction withFeatureColor(const TransferFunction& tf, int feature, const Rgb& color) {
     TransferFunction result = tf;
-    const auto f = static_cast<std::size_t>(feature);
-    result.features.at(f).color = color;
+    result.features.at(static_cast<std::size_t>(feature)).color = color;
     for (const int i : pointsOfFeature(tf, feature)) result.points[static_cast<std::size_t>(i)].color = color;
     return result;
 }

@@ -200,10 +200,8 @@ Volume coarserCopy(const Volume& whole, int factor) {
 
 VoxelColors coarserColors(const VoxelColors& colors, int factor) {
     PELLUCID_CHECK(factor >= 1);
-    const Int3 n = colors.dims;
-    VoxelColors coarse{(n - 1) / glm::min(Int3(factor), n) + 1, {}};
-    const Int3 d = coarse.dims, step = glm::min(Int3(factor), n);
-    coarse.rgba.resize(voxelCount(d));
+    const Int3 n = colors.dims, step = glm::min(Int3(factor), n), d = (n - 1) / step + 1;
+    VoxelColors coarse{d, std::vector<std::uint32_t>(voxelCount(d))};
     forEachPlace(d, {}, [&](const Int3& place, std::size_t out) {
         const Int3 lo = place * step, hi = glm::min(lo + step, n);
         std::array<std::uint32_t, 3> sum{};

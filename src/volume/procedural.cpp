@@ -19,11 +19,10 @@ namespace {
 template <class T, class ValueAt>
 std::vector<T> fill(const Int3& dims, const JobControl& job, const ValueAt& valueAt) {
     std::vector<T> values(voxelCount(dims));
-    const std::size_t plane = layerSize(dims);
     std::atomic<int> done = 0;
     parallelFor(static_cast<std::size_t>(dims.z), [&](std::size_t k) {
         job.throwIfStopped();
-        T* out = values.data() + k * plane;
+        T* out = values.data() + k * layerSize(dims);
         for (int j = 0; j < dims.y; ++j)
             for (int i = 0; i < dims.x; ++i) *out++ = valueAt(i, j, static_cast<int>(k));
         job.report(static_cast<double>(++done) / dims.z);
